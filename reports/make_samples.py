@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 import actuator_opt as ao
+from actuator_opt.rendering.script_pages import write_study
 
 ROOT = Path(__file__).resolve().parent.parent
 SAMPLES = ROOT / "reports" / "samples"
@@ -38,9 +39,6 @@ def designs() -> None:
         else:
             subject = ao.evaluate(actuator)
         files = ao.report(subject, folder=SAMPLES, actuator=actuator, command=command)
-        for file in files[1:]:
-            if file.path.stem != path.stem:  # the PDF holds every sheet; one PNG is enough here
-                file.path.unlink()
         print(files[0].path.relative_to(ROOT), files[0].pages, "sheets")
 
 
@@ -58,7 +56,7 @@ def studies() -> None:
     """Run the design scripts that write pages."""
     for name in STUDIES:
         study = runpy.run_path(str(ROOT / "designs" / "scripts" / f"{name}.py"))
-        sheets = study["write"](study["compute"](), SAMPLES)
+        sheets = write_study(study["page"](study["compute"]()), SAMPLES, name)
         print(f"reports/samples/{name}.pdf", sheets, "sheets")
 
 

@@ -77,7 +77,7 @@ WRITERS = {
     ".png": ("typst", "matplotlib", "numpy", "pillow"),
     ".svg": ("matplotlib", "numpy"),
     ".dxf": ("ezdxf",),
-    ".xlsx": ("openpyxl", "python"),
+    ".xlsx": ("openpyxl", "python", "matplotlib", "numpy", "pillow"),
     ".parquet": ("pyarrow",),
 }
 """Tools whose versions decide the bytes of a file, beside the machine."""
@@ -212,6 +212,7 @@ def run_case(case: Case, keep: str | None) -> tuple[str, str, float]:
     with tempfile.TemporaryDirectory(prefix="frozen-") as folder:
         place = Path(folder).resolve()
         shutil.copytree(SHIPPED, place / "designs", ignore=shutil.ignore_patterns("__pycache__"))
+        (place / "out").mkdir()
         os.chdir(place)
         try:
             parts = [f"# {case.name}\n"]

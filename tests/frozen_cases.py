@@ -223,7 +223,7 @@ def _others() -> Iterator[Case]:
         "seal/options",
         (
             step(f"seal {knee} --seal piston --finite-elements --report --map --out out "
-                 "--write out/contact.yaml --speed", "0.05 m/s", *DATE),
+                 "--write contact.yaml --speed", "0.05 m/s", *DATE),
             step(f"seal {huang} --seal rod --report --out out --pressure", "60 bar", *DATE),
             step("seal designs/aalto_40_25_220.yaml --seal rod --report --out out", *DATE),
         ),

@@ -35,7 +35,7 @@ import actuator_opt as ao
 from actuator_opt.api.reports import origin
 from actuator_opt.cli import faults
 from actuator_opt.design.template import init_text
-from actuator_opt.pages.page import outcome
+from actuator_opt.pages.report import outcome
 from actuator_opt.rendering.attachments import embed
 
 BOUND = 30.0

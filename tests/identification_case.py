@@ -149,7 +149,7 @@ def identified(kind: str):
     """What a record of a kind tells; `bare` is one without any model."""
     if kind == "bare":
         whole = identified("pre-sliding")
-        why = "no half second of an unbroken record about a reversal: bristles show only there"
+        why = "no uninterrupted half second about a reversal, where bristles show"
         return replace(
             whole,
             points=(),

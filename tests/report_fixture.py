@@ -26,6 +26,11 @@ from actuator_opt.evaluation.result import (
 )
 from actuator_opt.optimisation.result import Infeasibility, Kkt, Optimisation, VariableResult
 from actuator_opt.optimisation.sensitivity import Sensitivity
+from actuator_opt.pages import report
+from actuator_opt.rendering import paper, terminal
+from actuator_opt.rendering.blocks import Table
+from actuator_opt.rendering.origin import Origin
+from actuator_opt.replicas import published
 
 SOURCE = """name: robot knee
 fluid:
@@ -852,6 +857,11 @@ def scaled(bore: float) -> Evaluation:
     return build_evaluation(outlines=parts, lengths=lengths, curve=curve(110e-3 * factor))
 
 
+def published_tables(evaluation: Evaluation) -> list[Table]:
+    """Tables of the paper that a design reproduces, without its drawings."""
+    return [block for block in published(evaluation) if isinstance(block, Table)]
+
+
 def overlaps(boxes):
     """Pairs of text boxes that share area."""
     return [
@@ -859,3 +869,27 @@ def overlaps(boxes):
         for a, b in itertools.combinations(boxes, 2)
         if min(a[3], b[3]) - max(a[1], b[1]) > 0.05 and min(a[4], b[4]) - max(a[2], b[2]) > 0.05
     ]
+
+
+def origin_of(subject, **source):
+    """Where the page of an evaluation or an optimisation comes from."""
+    return Origin(spec_hash=report.parts_of(subject)[0].spec_hash, **source)
+
+
+def page_data(subject, *, extra_tables=(), seals=(), **source):
+    """The page of an evaluation or an optimisation as data for the template."""
+    page = report.page(subject, extra_tables=extra_tables, seals=seals)
+    return paper.plain(page, origin_of(subject, **source))
+
+
+def write_report(subject, *, folder, stem, extra_tables=(), seals=(), all_pages=True, **source):
+    """Write the page of an evaluation or an optimisation, an image of every sheet."""
+    page = report.page(subject, extra_tables=extra_tables, seals=seals)
+    origin = origin_of(subject, **source)
+    return paper.write(page, origin, folder=folder, stem=stem, all_pages=all_pages)
+
+
+def shown(subject, *, colour=False, unicode=True, width=100):
+    """The page of an evaluation or an optimisation on the terminal."""
+    page = report.page(subject)
+    return terminal.text(page, colour=colour, unicode=unicode, width=width)

@@ -13,7 +13,7 @@ import pytest
 
 from actuator_opt import api as verbs
 from actuator_opt.design.circuit import ReducingValve
-from actuator_opt.replicas import aalto, aalto_dynamic, aalto_static
+from actuator_opt.replicas import aalto_models
 
 DESIGN = Path(__file__).parents[1] / "designs" / "aalto_40_25_220.yaml"
 AREA_A, AREA_B = pi / 4 * 0.040**2, pi / 4 * (0.040**2 - 0.025**2)
@@ -33,13 +33,13 @@ def design():
 @pytest.fixture(scope="module")
 def static(design):
     """Its static test."""
-    return aalto_static.static_test(design)
+    return aalto_models.static_test(design)
 
 
 @pytest.fixture(scope="module")
 def dynamic(design):
     """Its dynamic tests."""
-    return aalto_dynamic.dynamic_test(design)
+    return aalto_models.dynamic_test(design)
 
 
 def wall(inner, outer, length, modulus):
@@ -85,17 +85,17 @@ def test_the_design_meets_its_requirements():
 
 def test_figure_5(design):
     """Oil alone: 28.98 MN/m at 123.6 mm without lines; 194.4/27.7/95.1 with pipes."""
-    place, least = aalto.oil_alone(design, ()).weakest
+    place, least = aalto_models.oil_alone(design, ()).weakest
     assert (place * 1e3, least / 1e6) == pytest.approx((123.6, 28.98), abs=0.06)
-    found = aalto.oil_alone(design, aalto.pipes(design)).published_at / 1e6
+    found = aalto_models.oil_alone(design, aalto_models.pipes(design)).published_at / 1e6
     np.testing.assert_allclose(found, [194.4, 27.7, 95.1], atol=0.05)
 
 
 def test_figure_29(design):
     """Eq. 37 as printed, with and without the load cell: 56.0/19.5/42.8 MN/m with it."""
-    one = aalto.total(design, aalto.pipes(design), 1600e6)
+    one = aalto_models.total(design, aalto_models.pipes(design), 1600e6)
     np.testing.assert_allclose(one.published_at / 1e6, [56.0, 19.5, 42.8], atol=0.05)
-    bare = aalto.total(design, aalto.pipes(design), 1600e6, load_cell=False)
+    bare = aalto_models.total(design, aalto_models.pipes(design), 1600e6, load_cell=False)
     difference = 1 / one.published_at - 1 / bare.published_at
     np.testing.assert_allclose(difference, 1 / 106e6, rtol=1e-9)
 
@@ -105,17 +105,17 @@ def test_figure_32(design):
 
     Without it 25.46/12.68/14.10 and 24.73/12.52/12.29.
     """
-    one = aalto.total(design, design.lines, 1300e6)
+    one = aalto_models.total(design, design.lines, 1300e6)
     np.testing.assert_allclose(one.published_at / 1e6, [20.5, 11.33, 12.4], atol=0.05)
     np.testing.assert_allclose(one.per_chamber_at / 1e6, [20.1, 11.20, 11.0], atol=0.055)
-    bare = aalto.total(design, design.lines, 1300e6, load_cell=False)
+    bare = aalto_models.total(design, design.lines, 1300e6, load_cell=False)
     np.testing.assert_allclose(bare.published_at / 1e6, [25.46, 12.68, 14.10], atol=0.006)
     np.testing.assert_allclose(bare.per_chamber_at / 1e6, [24.73, 12.52, 12.29], atol=0.006)
 
 
 def test_the_stretch_only_softens(design):
     """The barrel's axial stretch, not in the thesis, takes no more than 2 % with hoses."""
-    one = aalto.total(design, design.lines, 1300e6)
+    one = aalto_models.total(design, design.lines, 1300e6)
     share = one.stretched_at / one.per_chamber_at
     assert np.all((share > 0.98) & (share < 1.001))
 
@@ -123,7 +123,7 @@ def test_the_stretch_only_softens(design):
 @pytest.mark.parametrize("pressure", [20.5e5, 42e5])
 def test_air_behind_1300_mpa(pressure):
     """Eq. 5 with the content found gives 1300 MPa of 1600 back."""
-    assert with_air(pressure, aalto.air_behind(pressure)) == pytest.approx(1300e6, rel=1e-4)
+    assert with_air(pressure, aalto_models.air_behind(pressure)) == pytest.approx(1300e6, rel=1e-4)
 
 
 def test_the_by_pass_of_the_measured_pressures(static):
@@ -170,7 +170,7 @@ def test_a_bubble_balances_volume_and_force(design, held):
 
     0.4 ml as held at 20.5 bar is 0.4 (21.5/1.013)^(1/1.4) ml at atmospheric pressure.
     """
-    bench = aalto_static.Bench(design)
+    bench = aalto_models.ClosedCylinder(design)
     air = bench.bubbles(compressed=held)
     grown = [((p + PRESSURE) / PRESSURE) ** (1 / 1.4) if held else 1.0 for p in (20.5e5, 42e5)]
     assert (air.a, air.b) == pytest.approx((0.4e-6 * grown[0], 0.08e-6 * grown[1]))
@@ -269,7 +269,7 @@ def test_the_linear_model_by_hand(dynamic, end, line_end, opening):
     """Both line ends and needles at all tested frequencies, within 3 % (stretch and 4.6 kg out)."""
     for found, area in ((dynamic.stated, 0.22e-4), (dynamic.read_back, dynamic.needle.area)):
         one = next(r for r in found[end] if r.opening == opening)
-        for frequency, value in zip(aalto_dynamic.TESTED, one.tested, strict=True):
+        for frequency, value in zip(aalto_models.TESTED, one.tested, strict=True):
             expected = by_hand(frequency, needle=opening * area, line_end=line_end)
             expected -= 4.6 * (2 * pi * frequency) ** 2
             assert abs(value - expected) < 0.03 * abs(expected) + 0.02e6
@@ -322,9 +322,9 @@ def test_a_valve_at_30_hz_does_not_do_it(design):
             )
         }
     )
-    found = aalto_dynamic.dynamic_test(design.model_copy(update={"ports": ports}))
+    found = aalto_models.dynamic_test(design.model_copy(update={"ports": ports}))
     one = found.stated["reducing_valve"][0].tested
-    for k, frequency in enumerate(aalto_dynamic.TESTED):
+    for k, frequency in enumerate(aalto_models.TESTED):
         expected = by_hand(frequency, needle=0.22e-4, line_end=lambda f: valve(f, natural=30))
         expected -= 4.6 * (2 * pi * frequency) ** 2
         assert abs(one[k] - expected) < 0.03 * abs(expected) + 0.02e6
@@ -342,14 +342,14 @@ def test_the_temperature_behind_a_viscosity(design, dynamic):
     slope = (warm[0] - cold[0]) / (warm[1] - cold[1])
     expected = exp(warm[1] + (log(log(60.0 + 0.7)) - warm[0]) / slope) - 273.15
     assert expected == pytest.approx(26.7, abs=0.2)
-    assert aalto.temperature_of(design, 60e-6) - 273.15 == pytest.approx(expected, abs=0.2)
+    assert aalto_models.temperature_of(design, 60e-6) - 273.15 == pytest.approx(expected, abs=0.2)
     assert dynamic.needle.temperature - 273.15 == pytest.approx(26.7, abs=0.2)
-    assert isnan(aalto.temperature_of(design, 1.0))
+    assert isnan(aalto_models.temperature_of(design, 1.0))
 
 
 def test_air_that_no_content_gives(design):
     """0 where the least air searched already moves more, infinite where the most moves less."""
-    bench = aalto_static.Bench(design)
+    bench = aalto_models.ClosedCylinder(design)
     assert bench.air_needed(4850.0, 0.05e-3, share=0.0) == 0.0
     assert bench.air_needed(4850.0, 5e-3, share=0.0) == inf
 
@@ -357,7 +357,7 @@ def test_air_that_no_content_gives(design):
 def test_the_peak_lies_at_20_hz(dynamic):
     """The dynamic stiffness over frequency is largest within half a hertz of 20 Hz."""
     one = dynamic.stated["reducing_valve"][0]
-    best = aalto_dynamic.FREQUENCIES[int(np.argmax(np.abs(one.over)))]
+    best = aalto_models.FREQUENCIES[int(np.argmax(np.abs(one.over)))]
     assert best == pytest.approx(20.0, abs=0.5)
 
 
@@ -372,7 +372,7 @@ def test_such_a_valve_needs_its_opening_to_be_stable(design, dynamic):
     assert dynamic.peak.slowest_decay < 0
     assert dynamic.without_opening > 0
     valve = dynamic.valve.model_copy(update={"passive_conductance": 0.0})
-    assert aalto_dynamic.Bench(design, valve).slowest_decay((0.22e-4,)) > 0
+    assert aalto_models.Bench(design, valve).slowest_decay((0.22e-4,)) > 0
 
 
 @pytest.mark.parametrize("frequency", [18.5, 19.5])
@@ -386,7 +386,7 @@ def test_neighbouring_valves_do_much_the_same(design, dynamic, frequency, dampin
         damping_ratio=damping,
     )
     assert valve in [one.valve for one in dynamic.neighbours]
-    bench = aalto_dynamic.Bench(design, valve)
+    bench = aalto_models.Bench(design, valve)
     ratio = np.abs(bench.responses("reducing_valve", 0.22e-4)[0].tested) / dynamic.static
     assert bench.slowest_decay((0.22e-4, dynamic.needle.area)) < 0
     assert np.all(ratio[:2] < 0.95)
@@ -396,7 +396,7 @@ def test_neighbouring_valves_do_much_the_same(design, dynamic, frequency, dampin
 
 def test_a_design_without_valves_takes_those_of_the_thesis(design, dynamic):
     """Without ports stated the same throttle and valve stand in."""
-    bare = aalto_dynamic.dynamic_test(design.model_copy(update={"ports": type(design.ports)()}))
+    bare = aalto_models.dynamic_test(design.model_copy(update={"ports": type(design.ports)()}))
     for end, found in dynamic.stated.items():
         for one, other in zip(found, bare.stated[end], strict=True):
             np.testing.assert_allclose(one.tested, other.tested, rtol=1e-9)

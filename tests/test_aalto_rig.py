@@ -15,7 +15,7 @@ from script_loader import script
 
 import actuator_opt as ao
 from actuator_opt.api import simulate
-from actuator_opt.replicas.aalto_dynamic import Bench
+from actuator_opt.replicas.aalto_models import Bench
 from actuator_opt.simulation import Simulation
 
 ROOT = Path(__file__).parents[1]

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import cli_runner
 import pytest
+import report_fixture as fixture
 from cli_runner import DESIGNS, evaluated, refused, run
 from hypothesis import given, settings, strategies as st
 
@@ -19,8 +20,7 @@ from actuator_opt.base.errors import InputError
 from actuator_opt.design import choice_list, read_design
 from actuator_opt.design.schema import json_schema
 from actuator_opt.design.writer import to_yaml
-from actuator_opt.pages.choices_table import block, heads, terminal
-from actuator_opt.pages.page import page
+from actuator_opt.pages.optimum import MOST_ROWS, heads, sizes_and_choices
 
 BENCH = cli_runner.BENCH.replace("12.2 %", "16 %")
 """The bench design with rings squeezed enough for every check of the seals."""
@@ -405,12 +405,11 @@ def test_the_report_has_the_table_with_or_without_variables():
     """The page lists the combinations; where there are no choices it has no such table."""
     for text in (listed(SEALS), listed(SEALS, FIXED)):
         result = optimum(text, starts=1)
-        made = page(result, source_text=text, source_name="d", command="", date=None)
+        made = fixture.page_data(result, source_text=text, source_name="d", command="")
         (table,) = (b for b in made["blocks"] if b.get("title", "").startswith("Choices"))
         assert len(table["rows"]) == 4
         json.dumps(table)
-    assert block(optimum(BENCH, starts=1)) is None
-    assert terminal(optimum(BENCH, starts=1)) == ""
+    assert "Choices" not in fixture.shown(optimum(BENCH, starts=1))
 
 
 def test_many_combinations_are_cut_in_the_table_not_in_the_record():
@@ -422,10 +421,11 @@ def test_many_combinations_are_cut_in_the_table_not_in_the_record():
     }
     result = optimum(listed(lists, FIXED))
     assert len(result.choices.combinations) == 48
-    shown = terminal(result, width=120)
-    assert "The best 12 are shown" in shown
+    shown = fixture.shown(result, width=120)
+    assert f"The best {MOST_ROWS} are shown" in shown
     assert "head.length 1" in shown
-    assert len(block(result)["rows"]) == 40
+    (table,) = sizes_and_choices(result)
+    assert len(table.rows) == MOST_ROWS
 
 
 def test_heads_tell_equal_endings_apart():

@@ -140,7 +140,7 @@ def test_reversed_pressures_are_detected_and_said(tmp_path):
     header, rows = table()
     swapped = [header[0], "p2 [bar]", "p1 [bar]", *header[3:]]
     line = refused(written(swapped, rows), tmp_path)
-    assert "p1 and p2 look reversed" in line
+    assert "p1 and p2 seem swapped" in line
     assert "swap them" in line
 
 
@@ -151,7 +151,7 @@ def test_reversed_pressures_are_detected_and_said(tmp_path):
         ("t [s],p1 [bar],p2 [bar],x [mm],F_L [N]\n", "no samples"),
         ("t [s],p1 [bar],p2 [bar],x [mm],F_L [N]\n0,1,1,1,1\n0.01,1,1,1,1\n", "too short"),
         ("0,1,2,3,4\n1,2,3,4,5\n", "no header"),
-        ("t [s],p1 [bar],p2 [bar],x [mm],F_L [N]\n0,1,x,1,1\n", '"x" is no number'),
+        ("t [s],p1 [bar],p2 [bar],x [mm],F_L [N]\n0,1,x,1,1\n", '"x" is not a number'),
     ],
 )
 def test_poor_records_are_one_line(tmp_path, text, said):

@@ -170,8 +170,8 @@ def test_sensitivities_are_ranked(short):
     ("scenario", "design", "said"),
     [
         ("course_open_loop.yaml", "knee.yaml", "valve"),
-        ("course_motor_velocity.yaml", "servo_knee.yaml", "in the place of the cylinder"),
-        ("course_valve_ramp.yaml", "servo_knee.yaml", "in the place of the cylinder"),
+        ("course_motor_velocity.yaml", "servo_knee.yaml", "replaces the cylinder"),
+        ("course_valve_ramp.yaml", "servo_knee.yaml", "replaces the cylinder"),
         ("aalto_closed_ports.yaml", "servo_knee.yaml", "stroke"),
     ],
 )

@@ -11,8 +11,10 @@ from cli_runner import BENCH, DESIGNS, run
 from hypothesis import given, settings, strategies as st
 
 import actuator_opt as ao
-from actuator_opt.pages.compare_figure import comparison_figure, comparison_ucurves
-from actuator_opt.pages.compare_text import comparison_text, sentences
+from actuator_opt.api.reports import origin as origin_of
+from actuator_opt.pages.comparison import comparison_figure, comparison_ucurves, page, sentences
+from actuator_opt.rendering import heights, paper, terminal
+from actuator_opt.rendering.blocks import Table
 
 SMALL = BENCH.replace("  retention.wall:\n    lower: 1 mm\n    upper: 10 mm\n", "")
 SHIPPED = sorted(DESIGNS.glob("*.yaml"))
@@ -106,9 +108,9 @@ def test_any_pair_of_shipped_designs(shipped):
     for a, b in itertools.combinations(shipped.values(), 2):
         found = ao.compare(a, b)
         for width in (80, 100):
-            text = comparison_text(found, width=width)
+            text = terminal.text(page(found), width=width)
             assert max(map(len, text.splitlines())) <= width, (a.name, b.name)
-        assert comparison_text(found, unicode=False).isascii()
+        assert terminal.text(page(found), unicode=False).isascii()
         _require_clear(comparison_figure(found))
         _require_clear(comparison_ucurves(found))
 
@@ -157,7 +159,7 @@ def test_stiffness_over_the_stroke_of_designs(shipped):
 def test_many_designs_at_once(shipped):
     """All shipped ones: the first in every piece of a table, each design in some piece."""
     found = ao.compare(*shipped.values())
-    text = comparison_text(found, width=80)
+    text = terminal.text(page(found), width=80)
     assert max(map(len, text.splitlines())) <= 80
     heads = [line.split() for line in text.splitlines() if line.split()[:1] == ["A"]][1:]
     assert all(head[0] == "A" and len(head) > 1 for head in heads)
@@ -168,6 +170,31 @@ def test_many_designs_at_once(shipped):
         assert len(row["values"]) == len(SHIPPED)
         assert len({str(value) for value in row["values"]}) > 1, row
     assert set(data["answers"]) == {"lighter", "stiffer", "smoother"}
+
+
+def test_the_page_of_many_designs_fits_its_sheets(shipped):
+    """Bars fill the room of the first sheet; the first design stands in every part of a table."""
+    found = ao.compare(*shipped.values())
+    sheet = page(found)
+    hero = sheet.hero(heights.room(sheet))
+    _require_clear(hero)
+    assert hero.height <= heights.room(sheet) + 1e-6
+    tables = [block for block in sheet.blocks if isinstance(block, Table)]
+    parts = [part for table in tables for part in heights.fitting(table, heights.FULL)]
+    assert len(parts) > len(tables)
+    assert all([column.head for column in part.columns[:2]] == ["", "A"] for part in parts)
+    shown = {table.title: set() for table in tables}
+    for part in parts:
+        shown[part.title] |= {column.head for column in part.columns}
+    assert all(heads == {"", *found.labels} for heads in shown.values())
+
+
+def test_the_page_is_written_on_paper(base, tmp_path):
+    """Bars, answers and tables of two designs as PDF."""
+    found = ao.compare(base, ao.read(SMALL, set={"cylinder.bore": "24 mm", "name": "other"}))
+    origin = origin_of(base.design, base.source)
+    files = paper.write(page(found), origin, folder=tmp_path, stem="both")
+    assert [file.path.name for file in files][:2] == ["both.pdf", "both.png"]
 
 
 @settings(max_examples=6)
@@ -218,7 +245,7 @@ def test_what_cannot_be_compared(tmp_path):
     one = run("compare", good, "--json")
     assert (one.code, one.errors[0]["message"]) == (2, "one design cannot be compared")
     one = run("compare", "-", "-", "--json", stdin=b"")
-    assert (one.code, one.errors[0]["message"]) == (2, "standard input holds one design")
+    assert (one.code, one.errors[0]["message"]) == (2, "standard input can only give one design")
     for twice in ((good, good), (good, renamed)):
         same = run("compare", *twice, "--json", "--out", tmp_path / "out")
         assert same.code == 3
@@ -264,7 +291,7 @@ def test_optima_and_evaluated_designs_are_told_apart(base, optima):
     (line,) = [note for note in data["notes"] if NOT_KNOWN in note]
     assert line.startswith("A is not known to be an optimum: ")
     assert line.endswith("; --optimise optimises each design first")
-    words = " ".join(comparison_text(found).split())
+    words = " ".join(terminal.text(page(found), width=100).split())
     assert "A test bench (small.yaml), evaluated, not optimised, requirements" in words.replace(
         found.origins[0], "small.yaml"
     )
@@ -284,7 +311,7 @@ def test_a_search_without_an_optimum_is_none(optima):
     missed = replace(optima[1], status="limit_infeasible")
     found = ao.compare(optima[0], missed)
     assert [one.word for one in found.states] == ["optimum", "evaluated"]
-    assert "no optimum (search: limit infeasible)" in comparison_text(found)
+    assert "no optimum (search: limit infeasible)" in terminal.text(page(found), width=100)
     (line,) = [note for note in ao.comparison_json(found)["notes"] if NOT_KNOWN in note]
     assert "--optimise" not in line  # it was
 

@@ -390,9 +390,9 @@ def test_dropped_samples(lost, pieces):
         assert error_of(motion, "x", record, truth) < 1e-4
         assert sum(piece.time.size for piece in motion.pieces) >= left.size
         if pieces == 2:
-            assert "1 gaps; 2 pieces used" in motion.notes
+            assert "1 gaps; 2 sections used" in motion.notes
         elif broken.time.size < record.time.size:
-            assert f"time leaves out {lost} samples: bridged" in motion.notes
+            assert f"{lost} samples are missing in time: interpolated" in motion.notes
 
 
 def test_missing_samples_of_what_is_not_needed_break_nothing():
@@ -603,7 +603,7 @@ def test_spectrum_of_a_sine_in_noise(quantum):
     assert 5.0 <= found.motion < 6.0
     assert found.motion < found.floor < 15.0
     assert found.kept == pytest.approx(1.0, abs=1e-3)
-    assert "a cut-off between them loses nothing and is quieter" in found.says(motion.cutoff)
+    assert "a cut-off between them loses nothing and reduces noise" in found.says(motion.cutoff)
     assert "within the cut-off" in found.says(found.motion + 0.1)
 
 
@@ -619,7 +619,7 @@ def test_spectrum_warns_of_motion_beyond_the_cutoff(width):
     # v^2 of 1 mm at 40 Hz over that of both sines
     lost = 0.04**2 / (0.04**2 + 0.04**2)
     assert found.kept == pytest.approx(1 - lost, abs=0.02)
-    assert "beyond the cut-off: raise --cutoff" in found.says(motion.cutoff)
+    assert "above the cut-off: raise --cutoff" in found.says(motion.cutoff)
     assert "within the cut-off" in found.says(60.0) or "between them" in found.says(60.0)
 
 

@@ -5,13 +5,15 @@ from __future__ import annotations
 import json
 import math
 import re
+import sys
 from pathlib import Path
 
 import pytest
+from report_fixture import published_tables
 
 from actuator_opt import api as verbs
+from actuator_opt.api.reports import REPLICAS, published as published_blocks
 from actuator_opt.optimisation.result import Optimisation
-from actuator_opt.replicas import published_tables
 
 DESIGNS = Path(__file__).parents[1] / "designs"
 ALL = sorted(DESIGNS.glob("*.yaml"))
@@ -201,3 +203,12 @@ def test_published_tables_follow_the_design() -> None:
     assert before[0].rows[1][3] == "110 mm"
     assert after[0].rows[1][3] == "150 mm"
     assert before[5].rows[0][3] != after[5].rows[0][3]
+
+
+def test_a_report_without_the_replicas_says_where_they_are(monkeypatch) -> None:
+    """A wheel comes without the papers' tables: one line of caution in their place."""
+    evaluation = verbs.evaluate(DESIGNS / "elasswad_knee.yaml")
+    monkeypatch.setitem(sys.modules, REPLICAS, None)
+    (notes,) = published_blocks(evaluation)
+    assert "ElAsswad2018 are not part of this installation" in notes.items[0]
+    assert published_blocks(verbs.evaluate(DESIGNS / "knee.yaml")) == []

@@ -184,7 +184,7 @@ def test_the_verb_takes_any_form_of_a_design(design, tmp_path):
     (file,) = ao.export(evaluation, formats="step", actuator=actuator, folder=tmp_path, stem="own")
     assert file.path == tmp_path / "own.step"
     assert file.to_dict() == {"path": str(file.path), "sha256": file.sha256}
-    with pytest.raises(ao.ActuatorError, match="is no date"):
+    with pytest.raises(ao.ActuatorError, match="is not a date"):
         ao.export(evaluation, formats=["xlsx"], folder=tmp_path, date="yesterday")
     with pytest.raises(ao.ActuatorError, match="no format named"):
         ao.export(evaluation, formats=[], folder=tmp_path)

@@ -182,6 +182,30 @@ def test_nothing_overlaps_whatever_the_design_has(name):
             assert document.modelspace().query(f'HATCH[layer=="{layer(one.part)}"]')
 
 
+def test_every_colour_shows_on_black_and_on_white():
+    """Contrast of 3:1 at least on either ground [WCAG 1.4.11]; letters are black or white (7)."""
+    document = drawn(DESIGNS / "knee.yaml")[1]
+    colours = ezdxf.colors
+
+    def luminance(index):
+        channels = [x / 255 for x in colours.int2rgb(colours.DXF_DEFAULT_COLORS[index])]
+        linear = [x / 12.92 if x <= 0.04045 else ((x + 0.055) / 1.055) ** 2.4 for x in channels]
+        return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+    layers = {one.dxf.name: one.dxf.color for one in document.layers}
+    for index in {*layers.values()} - {7}:
+        light = luminance(index)
+        assert min(1.05 / (light + 0.05), (light + 0.05) / 0.05) > 3.0, index
+    space = document.modelspace()
+    assert layers["text"] == 7
+    assert all(text.dxf.color == 256 for text in space.query("TEXT"))
+    for dimension in space.query("DIMENSION"):
+        block = document.blocks[dimension.dxf.geometry]
+        assert {text.dxf.color for text in block.query("TEXT MTEXT")} == {7}
+        assert {line.dxf.color for line in block.query("LINE INSERT SOLID")} == {256}
+    assert all(one.dxf.color == 256 for one in space.query("LWPOLYLINE HATCH LINE"))
+
+
 def test_eyes_are_round():
     """Lug and hole are arcs of the pin's proportions: 3/4 pi d^2 of lug, and the neck."""
     evaluation, document = drawn(DESIGNS / "knee.yaml")

@@ -7,12 +7,14 @@ import zipfile
 from dataclasses import replace
 
 import pytest
+from actuator_opt.pages.drawing import section
 from cli_runner import bench
 from formula_reader import Workbook
 from test_export_step import SHIPPED
 
 import actuator_opt as ao
 from actuator_opt.exports.xlsx import xlsx
+from actuator_opt.rendering.image import images
 
 openpyxl = pytest.importorskip("openpyxl")
 
@@ -149,6 +151,23 @@ def test_a_persons_words_are_no_formulas():
                 elif isinstance(cell.value, str) and cell.value[:1] in "=+":
                     assert cell.data_type == "s"
                     assert cell.quotePrefix
+
+
+def test_the_first_sheet_shows_the_section():
+    """One picture below the requirements, 180 mm wide, of the section that the report draws."""
+    evaluation = ao.evaluate(bench())
+    content = xlsx(evaluation, program="p")
+    book = openpyxl.load_workbook(io.BytesIO(content))
+    (picture,) = book.worksheets[0]._images
+    assert picture.anchor._from.row > book.worksheets[0].max_row - 1
+    extent = picture.anchor.ext
+    drawn = section(evaluation).ink
+    assert extent.width / extent.height == pytest.approx(drawn.width / drawn.height, rel=0.01)
+    assert extent.width / 36000 == pytest.approx(180.0, rel=0.01)  # EMU per mm
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        (name,) = [name for name in archive.namelist() if name.endswith(".png")]
+        assert archive.read(name) == images(drawn, "section")["section.png"]
+    assert not any(sheet._images for sheet in book.worksheets[1:])
 
 
 def test_same_design_same_bytes():

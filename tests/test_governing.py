@@ -25,8 +25,10 @@ from actuator_opt.optimisation.actuator import build, goal_of
 from actuator_opt.optimisation.pareto_result import ParetoFront
 from actuator_opt.optimisation.recorded import from_plain, to_plain
 from actuator_opt.optimisation.rounding import design_at
-from actuator_opt.pages import page, tables, terminal
-from actuator_opt.rendering import text
+from actuator_opt.pages import report as page
+from actuator_opt.rendering import paper, terminal, text
+from actuator_opt.rendering.blocks import short
+from actuator_opt.rendering.console import Console
 
 DESIGNS = ("knee", "servo_knee", "aerospace", "aalto_40_25_220", "linkage")
 LINKAGE = "linkage:\n  base_radius: 202.4 mm\n  crank_radius: 151.8 mm\n\nload:\n"
@@ -86,7 +88,8 @@ def margin(value, limit, sense):
 
 def table_rows(evaluation):
     """First value of every metric in the terminal's table."""
-    shown = terminal.evaluation_table(evaluation, width=400).replace("(!)", "").splitlines()
+    table = next(page.quantities(evaluation))
+    shown = terminal.block_text(table, Console(width=400)).replace("(!)", "").splitlines()
     cells = (re.split(" +", line) for line in shown)
     return {row[0]: row[1] for row in cells if len(row) > 2}
 
@@ -103,8 +106,9 @@ def test_a_limited_metric_is_governed_by_its_limit(name, sense):
     as_json = json.loads(json.dumps(evaluation.to_dict()))
     rows = {row["name"]: row for row in as_json["requirements"]}
     shown, printed = table_rows(evaluation), str(evaluation).splitlines()
+    data = paper.plain_blocks([page.requirements(evaluation)])[0]
     names = ((row, row[0] if isinstance(row[0], str) else "".join(row[0]))
-             for row in tables.requirements(evaluation)["rows"])  # fmt: skip
+             for row in data["rows"])  # fmt: skip
     block = {name.removesuffix(" (!)"): row[3] for row, name in names}  # outside its range or not
     tiles = page.key_figures(evaluation)
     swept = evaluate_many(one, {"supply.pressure": np.full(2, one.numbers["supply.pressure"])}, 2)
@@ -129,12 +133,12 @@ def test_a_limited_metric_is_governed_by_its_limit(name, sense):
             row = min(own_rows, key=lambda r: r.margin[0])
             assert float(row.value[0]) == pytest.approx(worst, rel=1e-9), metric
             assert float(row.margin[0]) == pytest.approx(own, rel=1e-6, abs=1e-9), metric
-    labels = {page.short(ROWS[m].short or METRICS[m].label, 30): m for m in known}
+    labels = {short(ROWS[m].short or METRICS[m].label, 30): m for m in known}
     assert len(tiles) == 5
     for tile in tiles:
-        metric = labels[tile["label"]]
+        metric = labels[short(tile.label, 30)]
         row = page._limited(evaluation, metric)
-        assert tile["value"] == text.number(METRICS[metric].to_display(row.value))
+        assert tile.value == text.number(METRICS[metric].to_display(row.value))
 
 
 @pytest.mark.parametrize("name", DESIGNS)

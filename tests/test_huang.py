@@ -14,13 +14,7 @@ import pytest
 from actuator_opt import api as verbs
 from actuator_opt.design.housings import housings_for
 from actuator_opt.models.damping import flat_gap
-from actuator_opt.replicas import (
-    huang,
-    huang_parts,
-    huang_readings,
-    huang_study,
-    huang_trend as trend,
-)
+from actuator_opt.replicas import huang_models
 from actuator_opt.studies.film_walk import film_map
 from actuator_opt.studies.seal import study as seal_study
 
@@ -43,13 +37,13 @@ def evaluation(actuator):
 @pytest.fixture(scope="module")
 def found(actuator):
     """Its rings and those of the plunger."""
-    return huang.sealings(actuator.design)
+    return huang_models.sealings(actuator.design)
 
 
 @pytest.fixture(scope="module")
 def studied(actuator):
     """Everything the pages show."""
-    return huang_study.study(actuator.design)
+    return huang_models.study_of(actuator.design)
 
 
 def by_hand(ring, pressure):
@@ -142,14 +136,14 @@ def test_balance_of_the_step_ring_by_hand(found, pressure):
     """Load, width and balance of the closed form, worked out again."""
     ring = found.plunger.rings[0]
     load, width, balance = by_hand(ring, pressure)
-    contact = trend.seal_contact(ring.at(pressure=pressure))
+    contact = huang_models.seal_contact(ring.at(pressure=pressure))
     assert (contact.line_load, contact.width) == pytest.approx((load, width), rel=1e-3)
-    assert trend.balance(ring, pressure) == pytest.approx(balance, rel=1e-3)
+    assert huang_models.balance(ring, pressure) == pytest.approx(balance, rel=1e-3)
 
 
 def test_balance_of_the_compact_seal(found):
     """nu/(1 - nu), 0.98 at 0.495: the block passes on what it is pressed with."""
-    assert trend.balance(found.piston.rings[0], 3e6) == pytest.approx(0.495 / 0.505)
+    assert huang_models.balance(found.piston.rings[0], 3e6) == pytest.approx(0.495 / 0.505)
 
 
 @pytest.mark.parametrize("pressure", [2e6, 6e6])
@@ -183,7 +177,7 @@ def test_piston_cylinder_rises_with_pressure(studied):
     cylinder = studied.cylinder
     assert np.all(np.diff(cylinder.damping, axis=0) > 0)
     i = int(np.argmin(np.abs(cylinder.pressures - 6e6)))
-    j = studied.plunger.at(6e6, huang.TYPICAL)
+    j = studied.plunger.at(6e6, huang_models.TYPICAL)
     assert cylinder.damping[i, j[1]] > studied.plunger.damping[j]
 
 
@@ -191,7 +185,7 @@ def test_plunger_rises_too_because_the_yx_bears_the_pressure(studied):
     """Not as measured: equal flows leave the Yx over 80 % of 6 MPa and 90 % of the friction."""
     mapped = studied.plunger
     assert np.all(np.diff(mapped.damping, axis=0) > 0)
-    i, j = mapped.at(6e6, huang.TYPICAL)
+    i, j = mapped.at(6e6, huang_models.TYPICAL)
     assert 0.8 < mapped.between[i, j] / 6e6 < 1
     assert mapped.parts[i, j, 1] / mapped.friction[i, j] > 0.9
 
@@ -242,7 +236,7 @@ def test_nothing_here_falls_as_table_2_does(studied):
     measured = kinds["plunger, measured (table 2)"]
     assert measured.rise == pytest.approx(0.2412, abs=1e-4)
     assert min(one.rise for one in studied.kinds if one is not measured) > measured.rise
-    assert kinds[trend.BOTH].damping[0] < measured.damping[0] / 5
+    assert kinds[huang_models.BOTH].damping[0] < measured.damping[0] / 5
     assert log(kinds["compact (DAS), piston"].rise) > 0 > log(measured.rise)
 
 
@@ -260,10 +254,10 @@ def test_total_is_the_sum_of_its_parts(studied):
 
 def test_shares_of_the_total_by_hand():
     """Eq. 26: 90 N of seals, 8 of ring, 2 of chamber at 20 mm/s: 5000 N s/m, a tenth beside."""
-    parts = {"seal": 4500.0, huang_parts.BACK_UP: 400.0, huang_parts.CHAMBER: 100.0}
-    one = huang_parts.Total(6e6, 0.02, parts, (300.0, 350.0))
+    parts = {"seal": 4500.0, huang_models.BACK_UP: 400.0, huang_models.CHAMBER: 100.0}
+    one = huang_models.Total(6e6, 0.02, parts, (300.0, 350.0))
     assert (one.damping, one.seals) == pytest.approx((100 / 0.02, 90 / 0.02))
-    assert one.share(huang_parts.CHAMBER) == pytest.approx(0.02)
+    assert one.share(huang_models.CHAMBER) == pytest.approx(0.02)
     assert one.beside_share == pytest.approx(450 / 4500)
 
 
@@ -279,7 +273,7 @@ def test_back_up_ring(studied):
     viscosity = studied.sealings.lubricant.dynamic_viscosity
     for one in studied.rings:
         assert one.film.converged, one.film.reason
-        flat = {"dynamic_viscosity": viscosity, "diameter": 0.125, "length": huang_parts.WIDTH}
+        flat = {"dynamic_viscosity": viscosity, "diameter": 0.125, "length": huang_models.WIDTH}
         most = flat_gap(**flat, gap=float(one.film.film.min()))
         least = flat_gap(**flat, gap=float(one.film.film.mean()))
         assert least < one.damping < most
@@ -288,7 +282,7 @@ def test_back_up_ring(studied):
 
 def test_a_dry_back_up_ring_could_not_be_neglected(found, studied):
     """0.1 of 0.1 MPa on 15 mm of 125 mm: 58.9 N, a quarter of the least friction of the seals."""
-    dry = huang_parts.dry_ring(found)
+    dry = huang_models.dry_ring(found)
     assert dry == pytest.approx(0.1 * pi * 0.125 * 15e-3 * 0.1e6)
     assert dry / studied.plunger.friction.min() > 0.2
     assert min(float(one.film.film.min()) for one in studied.rings) < 0.8e-6
@@ -306,7 +300,7 @@ def test_contact_over_pressure(studied):
 
 def test_film_of_the_step_ring(studied):
     """Figure 18: ours is the distance that roughness keeps, 3 to 4 times it, at every pressure."""
-    assert [one.pressure for one in studied.profiles] == list(trend.FILM_PRESSURES)
+    assert [one.pressure for one in studied.profiles] == list(huang_models.FILM_PRESSURES)
     roughness = (0.8e-6**2 + 0.2e-6**2) ** 0.5
     for one in studied.profiles:
         assert 3 < one.mean / roughness < 4
@@ -319,23 +313,23 @@ def test_letters_of_the_paper(found):
     The swap turns the sign of phi_s = (2 V - 1) Phi_s, so it adds pi d U sigma (1 - 2 V) Phi_s(H)
     to the flow, Phi_s = 1.899 H^0.98 e^(-0.92 H + 0.05 H^2) at the mean film, within 3 %.
     """
-    read = huang_readings.readings(found)
+    read = huang_models.readings(found)
     assert abs(read.shift) > 0.01 * read.mean
     assert abs(read.excess) > 0.1
     sigma = (0.8e-6**2 + 0.2e-6**2) ** 0.5
     ratio, share = read.mean / sigma, (0.2e-6 / sigma) ** 2
     factor = 1.899 * ratio**0.98 * exp(-0.92 * ratio + 0.05 * ratio**2)
-    expected = pi * 0.125 * trend.FILM_SPEED * sigma * (1 - 2 * share) * factor
+    expected = pi * 0.125 * huang_models.FILM_SPEED * sigma * (1 - 2 * share) * factor
     assert read.swapped - read.flow == pytest.approx(expected, rel=0.03)
 
 
 def test_a_ring_that_lifts_off_has_no_number(found):
     """Balance below 0: the land loses its load within the map, and the map says so."""
-    with_long = trend.with_relief(found, 5.2e-3)
+    with_long = huang_models.with_relief(found, 5.2e-3)
     assert with_long.balance < 0
     assert np.isfinite(with_long.damping[0])
     assert np.isnan(with_long.damping[-1])
-    changes = trend.reshaped(found.plunger.rings[0], 5.2e-3)
+    changes = huang_models.reshaped(found.plunger.rings[0], 5.2e-3)
     mapped = film_map(found.plunger.alone(0), (10e6,), SPEEDS, **changes)
     assert len(mapped.why) == len(SPEEDS)
     assert "opens the contact" in mapped.why[0].reason

@@ -161,7 +161,7 @@ def test_an_offset_as_large_as_friction_leaves_nothing_identified():
 def test_a_model_that_misses_friction_is_not_identifiable():
     """Where LuGre says that it misses friction, only what the steady points know too is left."""
     found = identify(knee(), bench(**{"cylinder.bore": "22.5 mm"}))
-    assert any("misses friction at turns" in one for one in found.lugre.doubts)
+    assert any("misses friction at reversals" in one for one in found.lugre.doubts)
     assert any("misses the points" in one for one in found.stribeck.doubts)
     assert not any(one.identifiable for one in found.lugre.parameters.values())
 
@@ -186,20 +186,20 @@ def test_travel_beyond_the_stroke():
     assert "unit of x" in line
     assert "cylinder.stroke" in line
     moved = identify(but(knee(), x=knee()["x"] + 0.2), bench())
-    assert any("its zero is not the cap end" in one for one in moved.notes)
+    assert any("its zero is not at the cap end" in one for one in moved.notes)
 
 
 def test_a_reversed_position_is_named():
     """Friction of the same size that drives by 100 % opposes as soon as x is turned."""
-    assert "x looks reversed" in refused(but(knee(), x=0.1 - knee()["x"]))
+    assert "x seems to have the wrong sign" in refused(but(knee(), x=0.1 - knee()["x"]))
 
 
 def test_reversed_pressures_are_two_options():
     """The remedy is what the command takes: one --column each."""
     line = refused(but(knee(), p1=knee()["p2"], p2=knee()["p1"]))
-    assert "p1 and p2 look reversed" in line
+    assert "p1 and p2 seem swapped" in line
     assert "--column p1=... --column p2=..." in line
-    assert "F_L looks reversed" in refused(but(knee(), F_L=-knee()["F_L"]))
+    assert "F_L seems to have the wrong sign" in refused(but(knee(), F_L=-knee()["F_L"]))
 
 
 @pytest.mark.parametrize(("factor", "told"), [(2.0, "2.00"), (-1.0, "-1.00"), (0.0, "0.00")])

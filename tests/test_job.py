@@ -51,7 +51,7 @@ def test_every_piece_of_a_kind_is_there(kind):
 
 def test_a_kind_that_is_doubled_or_incomplete_is_refused():
     """Both fail where they are declared, which is at import."""
-    kind = results.KINDS["scatter.result:Uncertainty"]
+    kind = results.KINDS["uncertainties.result:Uncertainty"]
     with pytest.raises(TypeError, match="twice"):
         results.kinds(kind, kind)
     with pytest.raises(TypeError, match="csv"):

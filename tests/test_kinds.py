@@ -35,7 +35,7 @@ from actuator_opt.friction.kinds import LAWS as FRICTION_LAWS
 from actuator_opt.friction.law import FrictionLaw
 from actuator_opt.models.elastomer import MODULUS_LAWS
 from actuator_opt.models.seals import LAWS as CONTACT_LAWS
-from actuator_opt.pages.seal_gland_figure import slots
+from actuator_opt.pages.seal_figures import filled_grooves
 from actuator_opt.seals import o_ring
 from actuator_opt.seals.kinds import SIZES, TYPES
 from actuator_opt.seals.seal_type import Room, SealSizes, SealType
@@ -280,7 +280,7 @@ def test_a_design_with_a_type_is_evaluated(kind):
     assert "piston seal" in said
     json.dumps(found.to_dict(), allow_nan=False)
     assert kind.contact_model.format(law="x")
-    (slot,) = slots(ao.read(text(block(kind), block(kind))).design, "rod")
+    (slot,) = filled_grooves(ao.read(text(block(kind), block(kind))).design, "rod")
     assert slot.shapes
 
 

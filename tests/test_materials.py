@@ -11,7 +11,6 @@ import pytest
 from actuator_opt.base import files as store
 from actuator_opt.base.errors import InputError
 from actuator_opt.base.quantities import MATERIAL_PROPERTIES
-from actuator_opt.design import material_tables
 from actuator_opt.design.material import BASES, CONFIDENCES, compliance_determinant
 from actuator_opt.design.materials import (
     Library,
@@ -23,6 +22,8 @@ from actuator_opt.design.materials import (
 )
 from actuator_opt.models.fluid import viscosity_astm_d341
 from actuator_opt.models.tait import bulk_modulus_tait
+from actuator_opt.pages import material as material_page
+from actuator_opt.rendering.terminal import blocks_text
 
 
 @pytest.fixture(scope="module")
@@ -465,18 +466,20 @@ def test_data_folders_packaged_first_then_checkout(tmp_path):
 
 def test_text_tables_can_be_ascii_and_show_everything(library):
     """List, show and compare are plain lines; sources are numbered; ratios to the first."""
-    listed = material_tables.list_lines(library, ascii=True)
+
+    def lines(blocks):
+        return blocks_text(blocks, colour=False, unicode=False, width=100).split("\n")
+
+    listed = lines(material_page.listing(library))
     assert all(line.isascii() for line in listed)
     for name in library.names():
         assert any(line.startswith(f"{name} ") for line in listed), name
     for material in library:
-        shown = material_tables.show_lines(material, ascii=True)
+        shown = lines(material_page.blocks(material))
         assert all(line.isascii() for line in shown)
         assert sum(line.startswith("[") for line in shown) >= 1
-    lines = material_tables.compare_lines(
-        [library.get("steel_e355"), library.get("al_6061_t6")], ascii=True
-    )
-    (modulus,) = [line for line in lines if line.startswith("youngs_modulus ")]
+    pair = [library.get("steel_e355"), library.get("al_6061_t6")]
+    compared = lines(material_page.comparison(pair))
+    (modulus,) = [line for line in compared if line.startswith("youngs_modulus ")]
     assert "206 GPa" in modulus
     assert "(x0.334)" in modulus  # 68.9/206
-    assert material_tables.to_dict([library.get("iso_vg_32")])["iso_vg_32"]["kind"] == "fluid"

@@ -12,7 +12,7 @@ import actuator_opt as ao
 from actuator_opt.design import with_values
 from actuator_opt.design.schema import json_schema
 from actuator_opt.design.writer import to_yaml
-from actuator_opt.pages import tables
+from actuator_opt.pages import report as page
 
 KNEE = (Path(__file__).parents[1] / "designs" / "knee.yaml").read_text(encoding="utf-8")
 PATH = "seals.piston.friction_coefficient"
@@ -95,8 +95,8 @@ def test_a_value_beyond_its_bounds_is_said():
 
 def test_the_report_names_the_record():
     """The data sheet of the report holds value, bounds and record."""
-    block = tables.assumptions(ao.evaluate(ao.read(entry())))
-    row = next(row for row in block["rows"] if "bench.csv" in row)
+    block = page.assumptions(ao.evaluate(ao.read(entry())))
+    row = next(row for row in block.rows if "bench.csv" in row)
     assert "0.100 (0.0900 to 0.110)" in "".join(row[1])
 
 

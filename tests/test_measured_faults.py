@@ -18,10 +18,10 @@ import actuator_opt as ao
 from actuator_opt.base.errors import InputError
 from actuator_opt.design.scenario import recorded
 from actuator_opt.identification import parse_column
-from actuator_opt.pages import measured_figures as figures
-from actuator_opt.pages.measured_figures import drawn, measured_figures
-from actuator_opt.pages.measured_rows import measured_blocks, measured_text
+from actuator_opt.pages import measured as pages
+from actuator_opt.pages.measured import drawn, measured_figures
 from actuator_opt.pages.simulation_figures import simulation_figure
+from actuator_opt.rendering import terminal
 from actuator_opt.simulation.measured import Measured, fit, overlay, parse_measured
 from actuator_opt.simulation.parts.signals import acts_after, at_start
 from actuator_opt.studies.plant import plant
@@ -126,9 +126,9 @@ def test_a_record_acts_until_its_last_change():
         ("t [s],U [V]\n", 'column "U" holds no course', 1),
         ("t [s],U [V]\n0,nan\n1,2\n", 'column "U" holds no course', 1),
         ("t [s],U [V]\n0,1\n,2\n2,1\n", "no time", 3),
-        ("t [s],U [V]\n0,1\n2,2\n1,1\n", "the time does not rise", 4),
+        ("t [s],U [V]\n0,1\n2,2\n1,1\n", "time does not increase", 4),
         ("t [s],U [mm]\n0,1\n2,2\n", 'column "U": ', 1),
-        ("t [s],U [V]\n0,1\n2,x\n", '"x" is no number', 3),
+        ("t [s],U [V]\n0,1\n2,x\n", '"x" is not a number', 3),
     ],
 )
 def test_bad_inputs_are_told_in_one_line(text, message, line):
@@ -224,7 +224,7 @@ def test_lines_break_where_samples_are_missing():
 def test_every_channel_is_drawn_with_what_is_left_over(count):
     """Names, the noise of the sensor, the gap left open; nothing overlaps or leaves the paper."""
     found = overlay(ao.simulate(trial()), record(count))
-    made = measured_figures(found)
+    made = [*measured_figures(found)]
     assert [boxes_collide(ink) for ink in made] == [[]] * len(made)
     words = [one[0] for ink in made for one in ink.text_boxes()]
     assert sum(one.startswith("Measured less simulated, ") for one in words) == count
@@ -235,9 +235,10 @@ def test_every_channel_is_drawn_with_what_is_left_over(count):
 
 @pytest.mark.parametrize("width", [40, 60, 80, 100])
 def test_the_terminal_shows_every_parameter_whole(width):
-    """Names, bounds and verdict at any width, in lines that fit; powers of ten as printed."""
+    """Names, values and verdict at any width, in lines that fit; powers of ten as printed."""
     found = fitted()
-    text = measured_text(found.after, found, width=width)
+    blocks = pages.blocks(found.after, found)
+    text = terminal.blocks_text(blocks, colour=False, unicode=True, width=width)
     assert max(map(len, text.splitlines())) <= width
     flat = " ".join(text.split())
     for word in ("air content", "valve capacity", "lag", "pressure A", "identified", "ms"):
@@ -249,9 +250,10 @@ def test_the_terminal_shows_every_parameter_whole(width):
 def test_numbers_show_what_they_are_uncertain_by():
     """Bounds differ from their value by two digits at least."""
     found = fitted()
-    block = measured_blocks(found.after, found)[0]
-    for row, one in zip(block["rows"], found.parameters.values(), strict=True):
-        value, low, high = (float(cell.replace("\N{MINUS SIGN}", "-")) for cell in row[3:6])
+    table = pages.blocks(found.after, found)[0]
+    for row, one in zip(table.rows, found.parameters.values(), strict=True):
+        cells = (cell.split(" ")[0].replace("\N{MINUS SIGN}", "-") for cell in row[2:5])
+        value, low, high = map(float, cells)
         scale = one.entry.quantity.to_display(1.0)
         half = scale * (one.parameter.upper - one.parameter.value)
         assert high - value == pytest.approx(half, rel=0.15)
@@ -371,7 +373,7 @@ def test_no_name_of_a_curve_is_cut_for_a_record(kind):
     assert not [one for one in words - bare if "…" in one]
 
 
-@pytest.mark.parametrize("module", [recorded, figures])
+@pytest.mark.parametrize("module", [recorded, pages])
 def test_examples_in_docstrings(module):
     """What the docstrings show is what comes out."""
     found = doctest.testmod(module)

@@ -18,7 +18,7 @@ from hypothesis import given, strategies as st
 import actuator_opt as ao
 from actuator_opt.design.materials import load_library
 from actuator_opt.evaluation import compute, oil
-from actuator_opt.pages.fluid_figure import fluid_figure
+from actuator_opt.pages.material import fluid_figure
 
 KNEE = Path(__file__).parent.parent / "designs" / "knee.yaml"
 FLUIDS = load_library().names(kind="fluid")

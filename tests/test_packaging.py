@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import ast
+import contextlib
 import re
 import shutil
 import subprocess
+import tarfile
 import tomllib
+import zipfile
 from importlib.resources import files
 from pathlib import Path
 
@@ -58,6 +61,30 @@ def test_data_ships_inside_the_package():
     assert wheel["packages"] == ["actuator_opt"]
     assert (ROOT / "materials").is_dir()
     assert "materials" in wheel["force-include"]
+
+
+def test_replicas_stay_in_the_sources():
+    """The source distribution has the re-created papers, the wheel has not."""
+    targets = PROJECT["tool"]["hatch"]["build"]["targets"]
+    assert targets["wheel"]["exclude"] == ["/actuator_opt/replicas"]
+    assert "actuator_opt" in targets["sdist"]["include"]
+    assert "exclude" not in targets["sdist"]
+    assert (ROOT / "actuator_opt" / "replicas" / "__init__.py").is_file()
+
+
+def test_built_distributions(tmp_path):
+    """The files of both, as the build backend writes them; where it is installed."""
+    hatchling = pytest.importorskip("hatchling.build")
+    with contextlib.chdir(ROOT):
+        wheel = zipfile.ZipFile(tmp_path / hatchling.build_wheel(str(tmp_path)))
+        archive = tmp_path / hatchling.build_sdist(str(tmp_path))
+    with wheel, tarfile.open(archive) as sources:
+        assert not [name for name in wheel.namelist() if "replicas" in name]
+        assert "actuator_opt/_data/materials/fluids.yaml" in wheel.namelist()
+        packed = {name.partition("/")[2] for name in sources.getnames()}
+    replicas = (ROOT / "actuator_opt" / "replicas").rglob("*.*")
+    names = {str(path.relative_to(ROOT)) for path in replicas if path.suffix in (".py", ".yaml")}
+    assert names <= packed
 
 
 def test_no_file_names_a_private_place():

@@ -20,8 +20,9 @@ from actuator_opt.optimisation.problem import BoxProblem, ParametricProblem, Val
 from actuator_opt.optimisation.sensitivity import ranked
 from actuator_opt.optimisation.solver import solve
 from actuator_opt.pages import prices as told
-from actuator_opt.pages.tornado import tornado
+from actuator_opt.pages.prices import tornado
 from actuator_opt.rendering import text
+from actuator_opt.rendering.blocks import Notes
 
 DESIGNS = Path(__file__).parents[1] / "designs"
 
@@ -157,7 +158,8 @@ def test_straight_only_where_the_price_tells_both_ends():
 
 def test_what_buys_the_most():
     """By hand: 205.2 - 190.4 = 14.8 g for stiffness, 7.9 g for pressure, nothing at 283.5 N."""
-    lines = told.buys_most(fixture.build_optimisation())
+    (block,) = (b for b in told.price_blocks(fixture.build_optimisation()) if isinstance(b, Notes))
+    lines = block.items
     assert lines == [
         "Giving up 10 % of stiffness_min (to 9 kN/mm) saves 14.8 g (7.2 %), the most of any"
         " requirement.",
@@ -182,7 +184,7 @@ def test_kinked_prices_stand_side_by_side():
     """Where raising and lowering cost differently, both are told, a lost side as infinite."""
     best = fixture.build_optimisation()
     row = replace(best.sensitivities[0], price_up=None, price_down=1e-8)
-    told_row = told.sensitivities(replace(best, sensitivities=(row,)))["rows"][0]
+    told_row = told.sensitivities(replace(best, sensitivities=(row,))).rows[0]
     assert "".join(told_row[5]) == "∞ up, +10.0 down"
 
 

@@ -49,7 +49,7 @@ def test_a_record_that_parts_nothing_is_one_line():
         for name, one in whole.stribeck.parameters.items()
     }
     blind = replace(whole, stribeck=replace(whole.stribeck, parameters=unknown))
-    with pytest.raises(ao.InputError, match="tells nothing of the seals"):
+    with pytest.raises(ao.InputError, match="determines no seal parameter"):
         calibration(blind)
 
 
@@ -115,7 +115,7 @@ def test_a_measured_coefficient_is_no_variable_any_more():
     )
     found = ao.calibrate(identified("plateaus"), design=ao.read(text), search=False)
     assert path not in found.actuator.design.variables
-    assert any("held as measured" in words for words in found.calibration.doubts)
+    assert any("fixed as measured" in words for words in found.calibration.doubts)
 
 
 @pytest.mark.parametrize("verb", ["identify", "calibrate"])
@@ -231,4 +231,4 @@ def test_other_compounds_take_the_measured_friction_over_and_it_is_said():
     assert set(found.actuator.design.choices) == {"seals.rod.compound"}
     said = " ".join(found.calibration.doubts)
     assert "choices of seals.rod.compound take it over" in said
-    assert "held as measured: seals.rod.friction_coefficient" in said
+    assert "fixed as measured: seals.rod.friction_coefficient" in said

@@ -9,22 +9,14 @@ import re
 from pathlib import Path
 
 import pytest
-from report_fixture import overlaps
+from report_fixture import overlaps, published_tables
 
 from actuator_opt import api as verbs
-from actuator_opt.pages.page import page
-from actuator_opt.replicas import (
-    aalto,
-    aalto_dynamic,
-    aalto_equations,
-    aalto_figures,
-    aalto_static,
-    aalto_tables,
-    published_tables,
-)
+from actuator_opt.pages.report import page
+from actuator_opt.rendering.blocks import Drawing, Table
+from actuator_opt.replicas import aalto, aalto_figures, aalto_models, published
 
 DESIGN = Path(__file__).parents[1] / "designs" / "aalto_40_25_220.yaml"
-SOURCE = {"source_text": "a: 1", "source_name": "a.yaml", "command": "report", "date": None}
 OTHERS = (
     {"cylinder.stroke": "120 mm"},
     {"cylinder.stroke": "800 mm", "rod.outer_diameter": "28 mm"},
@@ -74,18 +66,21 @@ def words(tables):
 
 def figures(design):
     """The three drawings of the page."""
-    pipes = aalto.pipes(design)
-    oil = [("no lines", aalto.oil_alone(design, ())), ("pipes", aalto.oil_alone(design, pipes))]
+    pipes = aalto_models.pipes(design)
+    oil = [
+        ("no lines", aalto_models.oil_alone(design, ())),
+        ("pipes", aalto_models.oil_alone(design, pipes)),
+    ]
     stroke = design.cylinder.stroke
     return (
         aalto_figures.theory_figure(
             stroke,
             oil,
-            aalto.total(design, pipes, 1600e6),
-            aalto.total(design, design.lines, 1300e6),
+            aalto_models.total(design, pipes, 1600e6),
+            aalto_models.total(design, design.lines, 1300e6),
         ),
-        aalto_figures.static_figure(stroke, aalto_static.static_test(design)),
-        aalto_figures.dynamic_figure(aalto_dynamic.dynamic_test(design)),
+        aalto_figures.static_figure(stroke, aalto_models.static_test(design)),
+        aalto_figures.dynamic_figure(aalto_models.dynamic_test(design)),
     )
 
 
@@ -216,15 +211,13 @@ def test_another_cylinder_turns_the_verdict():
 
 def test_every_equation_is_traced_once():
     """1 to 46, each in one row: to functions, or out of scope with the reason."""
-    numbers = [n for t in aalto_equations.TRACES for n in range(t.first, t.last + 1)]
+    numbers = [n for t in aalto.TRACES for n in range(t.first, t.last + 1)]
     assert numbers == list(range(1, 47))
-    for trace in aalto_equations.TRACES:
+    for trace in aalto.TRACES:
         assert trace.functions or re.match(r"out of scope: \w+", trace.remark), trace.subject
 
 
-@pytest.mark.parametrize(
-    "name", sorted({name for t in aalto_equations.TRACES for name in t.functions})
-)
+@pytest.mark.parametrize("name", sorted({name for t in aalto.TRACES for name in t.functions}))
 def test_every_traced_function_exists_and_cites_the_thesis(name):
     """Each is a public function of `models` whose references name the thesis."""
     module, _, function = name.partition(".")
@@ -236,7 +229,7 @@ def test_every_traced_function_exists_and_cites_the_thesis(name):
 def test_functions_named_in_remarks_exist():
     """Those of eq. 39's remark too."""
     for module, function in (("orifice", "orifice_resistance"), ("elements", "inertance")):
-        remark = next(t.remark for t in aalto_equations.TRACES if t.first == 39)
+        remark = next(t.remark for t in aalto.TRACES if t.first == 39)
         assert function in remark
         assert hasattr(importlib.import_module(f"actuator_opt.models.{module}"), function)
 
@@ -246,7 +239,7 @@ def test_tables_and_figures_bear_any_design(changes):
     """Whatever the design: every table is made, no label overlaps or leaves the drawing."""
     one = evaluated(**changes)
     found = published_tables(one)
-    assert len(found) == len(aalto_tables.TABLES)
+    assert len(found) == len(aalto.TABLES)
     assert all(table.rows and table.note for table in found)
     cells = [str(cell) for table in found for row in table.rows for cell in row]
     assert not [cell for cell in cells if re.search(r"\bnan\b", cell)]
@@ -268,11 +261,10 @@ def test_curves_stay_in_their_frames(evaluation):
 
 
 def test_figures_stand_after_their_tables(evaluation):
-    """On the page each drawing follows its table; the equations stand last, before the input."""
-    blocks = page(evaluation, **SOURCE, extra_tables=published_tables(evaluation))["blocks"]
-    titles = [b.get("title", "") for b in blocks]
+    """On the page each drawing follows its table; the equations stand last."""
+    blocks = page(evaluation, extra_tables=published(evaluation)).blocks
+    titles = [block.title for block in blocks]
     for name in ("stiffness along the stroke", "static test", "dynamic tests"):
         at = titles.index(f"Aalto thesis: {name}")
-        assert (blocks[at]["kind"], blocks[at + 1]["kind"]) == ("table", "figure")
-    assert titles.index("Aalto thesis: where its equations are") == len(blocks) - 2
-    assert blocks[-1]["kind"] == "listing"
+        assert (type(blocks[at]), type(blocks[at + 1])) == (Table, Drawing)
+    assert titles.index("Aalto thesis: where its equations are") == len(blocks) - 1

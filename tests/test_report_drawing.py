@@ -10,8 +10,8 @@ from hypothesis import given, settings, strategies as st
 from report_fixture import overlaps
 
 from actuator_opt.evaluation.result import Outline
-from actuator_opt.pages import drawing, stiffness_figure
-from actuator_opt.pages.drawing import SCALES, choose_scale, section
+from actuator_opt.pages import section as drawing, stiffness as stiffness_page
+from actuator_opt.pages.section import SCALES, choose_scale, section
 from actuator_opt.rendering import axes as figures, ink
 
 
@@ -148,7 +148,7 @@ def test_spread_keeps_order_and_gaps(wanted, gap):
 def test_stiffness_figure_stacks_to_the_total():
     """The top edge of the stacked compliances is the sum, at the scale of the axis."""
     curve = fixture.curve()
-    drawn = stiffness_figure.stiffness_figure(curve, fixture.requirements()[2])
+    drawn = stiffness_page.stiffness_figure(curve, fixture.requirements()[2])
     areas = [
         m
         for m in drawn.marks
@@ -168,7 +168,7 @@ def test_stiffness_figure_stacks_to_the_total():
 def test_stiffness_labels_stay_apart(limit):
     """The minimum and the requirement may coincide or not: labels never overlap."""
     row = replace(fixture.requirements()[2], limit=limit)
-    assert overlaps(stiffness_figure.stiffness_figure(fixture.curve(), row).text_boxes()) == []
+    assert overlaps(stiffness_page.stiffness_figure(fixture.curve(), row).text_boxes()) == []
 
 
 def test_degenerate_curves_do_not_fail():
@@ -177,5 +177,5 @@ def test_degenerate_curves_do_not_fail():
     single = replace(
         curve, position=curve.position[:1], stiffness=curve.stiffness[:1], contributions={}
     )
-    assert stiffness_figure.stiffness_figure(single, None).marks
-    assert stiffness_figure.stiffness_figure(curve, None).marks
+    assert stiffness_page.stiffness_figure(single, None).marks
+    assert stiffness_page.stiffness_figure(curve, None).marks

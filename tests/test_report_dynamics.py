@@ -15,17 +15,12 @@ from test_through_wall import text_of
 
 import actuator_opt as ao
 from actuator_opt.pages import (
-    bode,
-    bode_loop,
-    dynamics_page,
-    places,
-    stiffness_page,
-    terminal,
-    write_report,
+    dynamics as dynamics_page,
+    dynamics_figures as bode,
+    stiffness as stiffness_page,
 )
-from actuator_opt.pages.page import page
-from actuator_opt.pages.stiffness_figure import PARTS, fills
-from actuator_opt.rendering import paper_plain as fallback
+from actuator_opt.pages.stiffness import PARTS, fills
+from actuator_opt.rendering import paper, paper_plain as fallback, text
 from actuator_opt.rendering.axes import AREAS, Axes
 from actuator_opt.rendering.ink import BLACK, RED, Ink
 
@@ -127,7 +122,9 @@ def evaluated(name):
 
 def blocks_of(evaluation):
     """Blocks of stiffness and dynamics by title."""
-    found = stiffness_page.blocks(evaluation) + dynamics_page.blocks(evaluation)
+    found = paper.plain_blocks(
+        stiffness_page.stiffness_blocks(evaluation) + dynamics_page.dynamics_blocks(evaluation)
+    )
     return {block["title"]: block for block in found}
 
 
@@ -136,6 +133,11 @@ def ink_of(block):
     ink = Ink(block["ink"]["width"], block["ink"]["height"])
     ink.marks = block["ink"]["marks"]
     return ink
+
+
+def stiffness_blocks(evaluation):
+    """Figure and table of the stiffness as data for the template."""
+    return paper.plain_blocks(stiffness_page.stiffness_blocks(evaluation))
 
 
 def texts(ink):
@@ -202,7 +204,7 @@ def test_a_shaken_design_has_no_loop():
 
 def test_without_a_study_there_is_no_dynamics():
     """An evaluation without dynamics keeps its stiffness alone."""
-    titles = [b["title"] for b in page(fixture.build_evaluation(), **SOURCE)["blocks"]]
+    titles = [b["title"] for b in fixture.page_data(fixture.build_evaluation(), **SOURCE)["blocks"]]
     assert not any(title.startswith(("Dynamic", "Position loop")) for title in titles)
     assert "Stiffness budget" in titles
 
@@ -213,7 +215,7 @@ def test_without_a_study_there_is_no_dynamics():
 def test_the_budget_adds_up_to_the_curve():
     """Printed shares are each part's compliance over the sum, at every place and the weakest."""
     curve = fixture.curve()
-    table = stiffness_page.blocks(fixture.build_evaluation(curve=curve))[1]
+    table = stiffness_blocks(fixture.build_evaluation(curve=curve))[1]
     index = int(np.argmin(curve.stiffness))
     at = [0, 40, 80, 120, 160, index]
     total = sum(curve.contributions.values())
@@ -245,7 +247,7 @@ def test_the_part_that_buys_most_is_named_with_what_it_buys():
     name = max(parts, key=parts.get)
     halved = sum(parts.values()) - parts[name] / 2
     gain = sum(parts.values()) / halved - 1
-    said = stiffness_page.sentence(curve)
+    said = stiffness_page.gain_sentence(curve)
     assert f"{name} would buy most" in said
     assert f"would make the actuator {100 * gain:.0f} % stiffer" in said
 
@@ -253,7 +255,7 @@ def test_the_part_that_buys_most_is_named_with_what_it_buys():
 def test_ports_case_and_a_published_topology_are_named():
     """The figure says ports closed and its case; another topology than ours is named as such."""
     evaluation = fixture.build_evaluation()
-    note = stiffness_page.blocks(evaluation)[0]["note"]
+    note = stiffness_blocks(evaluation)[0]["note"]
     assert note.startswith("Case stance, ports closed. Per chamber")
     stiffness = evaluation.design.stiffness
     for topology, words in (
@@ -263,7 +265,7 @@ def test_ports_case_and_a_published_topology_are_named():
         design = evaluation.design.model_copy(
             update={"stiffness": stiffness.model_copy(update={"topology": topology})}
         )
-        note = stiffness_page.blocks(replace(evaluation, design=design))[0]["note"]
+        note = stiffness_blocks(replace(evaluation, design=design))[0]["note"]
         assert words in note
 
 
@@ -281,14 +283,14 @@ def test_a_flat_or_single_curve_has_no_budget():
     """One part, or one position, is nothing to divide."""
     curve = fixture.curve()
     single = replace(curve, contributions={"oil": curve.contributions["oil"]})
-    assert len(stiffness_page.blocks(fixture.build_evaluation(curve=single))) == 1
+    assert len(stiffness_blocks(fixture.build_evaluation(curve=single))) == 1
     short = replace(
         curve,
         position=curve.position[:1],
         stiffness=curve.stiffness[:1],
         contributions={k: v[:1] for k, v in curve.contributions.items()},
     )
-    assert len(stiffness_page.blocks(fixture.build_evaluation(curve=short))) == 1
+    assert len(stiffness_blocks(fixture.build_evaluation(curve=short))) == 1
     assert stiffness_page.summary(short) == ""
 
 
@@ -504,13 +506,13 @@ def test_open_loop_of_an_integrator_and_its_drawing():
         open_phase=np.full(len(s), -math.pi / 2),
         closed_magnitude=np.abs(1 / (1 + s)),
     )
-    ink = bode_loop.open_figure(study, [one], bode_loop.LoopLimits())
+    ink = bode.open_figure(study, [one], bode.LoopLimits())
     assert "no gain makes it swing" in texts(ink)
     curve = next(m["path"][0] for m in ink.marks if m.get("stroke") == bode.STYLES[0]["stroke"])
     zero = level_y(ink, 0.0, (("0", 0.0), ("−40", -40.0)))
     at = float(np.interp(-zero, [-p[1] for p in curve[::-1]], [p[0] for p in curve[::-1]]))
     assert at == pytest.approx(log_x(ink, 10.0), abs=0.05)
-    closed = bode_loop.closed_figure(study, [one], bode_loop.LoopLimits())
+    closed = bode.closed_figure(study, [one], bode.LoopLimits())
     marks = circles(closed, bode.STYLES[0]["stroke"])
     assert marks[0][0] == pytest.approx(log_x(closed, 10.0), abs=0.03)
 
@@ -550,27 +552,31 @@ def test_a_needle_is_cut_at_both_edges():
 def test_equal_designs_give_equal_files(tmp_path):
     """The report of a design with a loop has the same bytes again; the plain one can draw it."""
     given = {"stem": "r", "source_text": "a: 1\n", "source_name": "a.yaml", "command": "c"}
-    first = write_report(evaluated("loop"), folder=tmp_path / "1", **given)
+    first = fixture.write_report(evaluated("loop"), folder=tmp_path / "1", **given)
     again = ao.evaluate(ao.read(TEXTS["loop"]))
-    second = write_report(again, folder=tmp_path / "2", **given)
+    second = fixture.write_report(again, folder=tmp_path / "2", **given)
     assert [f.sha256 for f in first] == [f.sha256 for f in second]
-    data = page(again, **SOURCE) | {"source_file": "a.yaml", "source": "a: 1\n", "run": "{}"}
+    data = fixture.page_data(again, **SOURCE) | {
+        "source_file": "a.yaml",
+        "source": "a: 1\n",
+        "run": "{}",
+    }
     assert fallback.render(data, 0)[1]
 
 
 def test_terminal_keeps_places_and_groups_reasons():
     """At 100 columns the places of the loop are whole; one reason stands once."""
-    shown = terminal.evaluation_text(evaluated("loop"), width=100)
+    shown = fixture.shown(evaluated("loop"), width=100)
     line = next(x for x in shown.splitlines() if x.startswith("bandwidth"))
     assert re.search(r"swing, retract, 100 %$", line)
     assert "…" not in next(x for x in shown.splitlines() if x.startswith("phase_margin"))
-    knee = terminal.evaluation_text(evaluated("knee"), width=100)
+    knee = fixture.shown(evaluated("knee"), width=100)
     assert knee.count("no valve stated: add valve") == 2  # once for all metrics, and at the check
     assert "compliance there: oil A 42" in knee
-    assert terminal.evaluation_text(evaluated("loop"), unicode=False, width=100).isascii()
+    assert fixture.shown(evaluated("loop"), unicode=False, width=100).isascii()
 
 
-@pytest.mark.parametrize("module", [bode, bode_loop, dynamics_page, places, stiffness_page])
+@pytest.mark.parametrize("module", [bode, dynamics_page, text, stiffness_page])
 def test_examples_in_docstrings(module):
     """The worked examples hold."""
     assert doctest.testmod(module).failed == 0

@@ -9,16 +9,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from report_fixture import overlaps
+from report_fixture import overlaps, published_tables
 
 from actuator_opt import api as verbs
 from actuator_opt.models import barrel, stiffness, stiffness_published
-from actuator_opt.pages.page import page
-from actuator_opt.replicas import elasswad_record, elasswad_tables, published_tables
+from actuator_opt.pages.report import page
+from actuator_opt.rendering.blocks import Drawing, Table
+from actuator_opt.replicas import elasswad, elasswad_models, published
 from actuator_opt.replicas.elasswad_figures import record_figure
 
 DESIGN = Path(__file__).parents[1] / "designs" / "elasswad_knee.yaml"
-SOURCE = {"source_text": "a: 1", "source_name": "a.yaml", "command": "report", "date": None}
 OTHERS = (
     {"barrel.layup[0].thickness": "0.6 mm"},
     {"barrel.layup[0].thickness": "8 mm"},
@@ -148,7 +148,7 @@ def test_the_record_gives_the_published_friction(evaluation):
 
     It starts, turns and ends without pressure, and the piston nowhere exceeds the cases' speed.
     """
-    record = elasswad_record.own_record(evaluation)
+    record = elasswad_models.own_record(evaluation)
     width = sqrt(2.0**2 - 1.7**2) * 1e-3
     force = 0.61 * record.pressure * width * pi * (BORE + ROD)
     assert np.mean(force[:-1]) == pytest.approx(166.0, rel=1e-9)
@@ -166,8 +166,8 @@ def test_along_the_record_by_hand(evaluation):
 
     A force moves the piston by y: p_A = -A_A y/C_A, p_B = A_B y/C_B.
     """
-    record = elasswad_record.own_record(evaluation)
-    found = elasswad_record.along(evaluation, record)
+    record = elasswad_models.own_record(evaluation)
+    found = elasswad_models.along(evaluation, record)
     ratio = OUTER / INNER
     lame = (ratio**2 + 1) / (ratio**2 - 1) + 0.3
     inner = INNER * record.pressure / FLEXURAL * lame
@@ -240,10 +240,10 @@ def test_tables_and_figure_bear_any_design(changes):
     """Whatever the design: every table is made, no label overlaps or leaves the drawing."""
     one = evaluated(**changes)
     found = published_tables(one)
-    assert len(found) == len(elasswad_tables.TABLES)
+    assert len(found) == len(elasswad.TABLES)
     assert all(table.rows and table.note for table in found)
-    record = elasswad_record.own_record(one)
-    ink = record_figure(record, elasswad_record.along(one, record))
+    record = elasswad_models.own_record(one)
+    ink = record_figure(record, elasswad_models.along(one, record))
     boxes = ink.text_boxes()
     assert overlaps(boxes) == []
     for words, left, top, right, bottom in boxes:
@@ -253,18 +253,17 @@ def test_tables_and_figure_bear_any_design(changes):
 
 def test_the_figure_stands_after_its_table(evaluation):
     """On the page the drawing follows the table of the record, and says whose record it is."""
-    blocks = page(evaluation, **SOURCE, extra_tables=published_tables(evaluation))["blocks"]
-    at = next(i for i, b in enumerate(blocks) if b.get("title", "").endswith("pressure record"))
-    assert blocks[at]["kind"] == "table"
-    assert blocks[at + 1]["kind"] == "figure"
-    assert "record of our own" in blocks[at + 1]["note"]
-    assert blocks[-1]["kind"] == "listing"
+    blocks = page(evaluation, extra_tables=published(evaluation)).blocks
+    at = next(i for i, b in enumerate(blocks) if b.title.endswith("pressure record"))
+    assert isinstance(blocks[at], Table)
+    assert isinstance(blocks[at + 1], Drawing)
+    assert "record of our own" in blocks[at + 1].note
 
 
 def test_every_curve_is_labelled_in_its_own_ink(evaluation):
     """Each of the nine curves has its label beside the frame, in its colour, with its value."""
-    record = elasswad_record.own_record(evaluation)
-    ink = record_figure(record, elasswad_record.along(evaluation, record))
+    record = elasswad_models.own_record(evaluation)
+    ink = record_figure(record, elasswad_models.along(evaluation, record))
     curves = [m for m in ink.marks if "path" in m and max(map(len, m["path"])) > 200]
     named = [m for m in ink.marks if "text" in m and re.search(r"\d (MPa|µm|k?N/mm)$", m["text"])]
     assert len(curves) == len(named) == 9

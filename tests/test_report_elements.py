@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from report_fixture import overlaps
 from test_finite_elements_step_ring import SECTION, SHAPE, SQUEEZE, seal as step_seal
-from test_report_seal import TEXTS, area, ink_of
+from test_report_seal import TEXTS, area, blocks, ink_of, shown
 
 import actuator_opt as ao
 from actuator_opt.evaluation.contact_elements import closed_form, room
@@ -20,13 +20,8 @@ from actuator_opt.evaluation.kernel import base
 from actuator_opt.finite_elements.material import MooneyRivlin
 from actuator_opt.finite_elements.o_ring import squeezed_ring
 from actuator_opt.finite_elements.result import StressField
-from actuator_opt.pages import (
-    seal_elements_figure as drawn,
-    seal_rows,
-    seal_sheet,
-    seal_text,
-    stress_bands,
-)
+from actuator_opt.pages import seal, seal_figures as drawn
+from actuator_opt.rendering import contours
 from actuator_opt.studies.seal import study
 
 COLUMNS = ((11.0, 66.0), (103.0, 66.0))
@@ -67,6 +62,17 @@ def solved(name):
 
 
 BOTH = ["o_ring", "step_ring"]
+
+
+def bands_of(field, levels):
+    """Outlines of the bands of stress."""
+    values = contours.corner_values(field.nodes, field.triangles, field.von_mises)
+    return contours.mesh_bands(field.nodes, field.triangles, values, levels)
+
+
+def outlines_of(field):
+    """Outlines of the bodies."""
+    return contours.mesh_outlines(field.nodes, field.triangles, field.body)
 
 
 def words_of(ink):
@@ -164,10 +170,10 @@ def test_bands_fill_the_bodies(name):
         field = contact.field
         a, b, c = (field.nodes[field.triangles[:, k]] for k in range(3))
         turn = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
-        parts = [signed(rings) for rings in stress_bands.bands(field, drawn.stress_levels(one))]
+        parts = [signed(rings) for rings in bands_of(field, drawn.stress_levels(one))]
         assert min(parts) >= -1e-15
         assert sum(parts) == pytest.approx(turn.sum() / 2, rel=1e-9)
-        whole = sum(signed(rings) for rings in stress_bands.outlines(field))
+        whole = sum(signed(rings) for rings in outlines_of(field))
         assert whole == pytest.approx(turn.sum() / 2, rel=1e-9)
 
 
@@ -177,13 +183,15 @@ def test_a_band_ends_where_the_stress_meets_its_level():
     triangles = np.array([[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]])
     field = StressField(nodes, triangles, np.array([1.0, 1.0, 3.0, 3.0]), np.zeros(4, int))
     # corners (1,0) and (1,1): means of elements 1, 3, 3 and of 1, 1, 3
-    assert stress_bands.corner_values(field) == pytest.approx([1, 7 / 3, 3, 1, 5 / 3, 3])
-    low, high = stress_bands.bands(field, [0.0, 2.0, 4.0])
+    assert contours.corner_values(field.nodes, field.triangles, field.von_mises) == pytest.approx(
+        [1, 7 / 3, 3, 1, 5 / 3, 3]
+    )
+    low, high = bands_of(field, [0.0, 2.0, 4.0])
     points = {(round(x, 6), round(y, 6)) for ring in low for x, y in ring}
     # level 2 on the edges: 0-1 at (2-1)/(4/3); 1-4 at (7/3-2)/(2/3); 4-5 at (2-5/3)/(4/3)
     assert {(0.75, 0.0), (1.0, 0.5), (1.25, 1.0)} <= points
     assert sum(map(area, low)) + sum(map(area, high)) == pytest.approx(2.0)
-    (ring,) = stress_bands.outlines(field)[0]
+    (ring,) = outlines_of(field)[0]
     assert len(ring) == 6
 
 
@@ -202,13 +210,13 @@ def test_back_up_rings_take_their_room():
 def test_contact_curves_are_those_of_elements_and_closed_form(name):
     """Highest points of all curves, by the frames' own ticks, are both solutions' peaks."""
     one = solved(name)
-    ink = drawn.contact_figure(one)
+    ink = drawn.elements_figure(one)
     marks = [m for m in ink.marks if m.get("anchor") == "right" and m["at"][1] < 50]
     scale = sorted((float(m["text"]), m["at"][1]) for m in marks if m["at"][0] < 11)
     slope = (scale[-1][1] - scale[0][1]) / (scale[-1][0] - scale[0][0])
     ring = one.out.rings[0].ring
     for k, (contact, style) in enumerate(
-        zip(one.elements, itertools.cycle(drawn.CURVES), strict=False)
+        zip(one.elements, itertools.cycle(drawn.ELEMENT_CURVES), strict=False)
     ):
         dash = list(style.get("dash", ()))
         lines = [path for path in paths(ink, stroke=style["stroke"], dash=dash) if len(path[0]) > 2]
@@ -225,7 +233,7 @@ def test_contact_curves_are_those_of_elements_and_closed_form(name):
 def test_circles_are_the_peaks_and_widths(name):
     """Each circle stands at its pressure and the solution's peak or width, by the ticks."""
     one = solved(name)
-    ink = drawn.contact_figure(one)
+    ink = drawn.elements_figure(one)
     circles = [np.mean(m["path"][0], axis=0) for m in ink.marks if m.get("fill") == drawn.WHITE]
     assert len(circles) == 2 * len(one.elements)
     values = [[c.peak_pressure / 1e6 for c in one.elements], [1e3 * c.width for c in one.elements]]
@@ -249,9 +257,9 @@ def test_circles_are_the_peaks_and_widths(name):
 @pytest.mark.parametrize("name", BOTH)
 def test_figures_stay_small_and_nothing_collides(name):
     """Both stand on the sheet; texts apart, all ink on the paper, each below 300 kB."""
-    blocks = [b for b in seal_sheet.blocks(solved(name)) if "finite elements" in b["title"]]
-    assert len(blocks) == 2
-    for block in blocks:
+    figures = [b for b in blocks(solved(name)) if "finite elements" in b["title"]]
+    assert len(figures) == 2
+    for block in figures:
         ink = ink_of(block)
         assert overlaps(ink.text_boxes()) == []
         for _, left, top, right, bottom in ink.text_boxes():
@@ -267,35 +275,33 @@ def test_figures_stay_small_and_nothing_collides(name):
 
 def test_the_notes_say_what_is_left_out():
     """No friction, creep, yielding; of a step ring the edge's peak, and what was not found."""
-    stress, contact = (
-        b["note"] for b in seal_sheet.blocks(solved("step_ring")) if "finite el" in b["title"]
-    )
+    stress, contact = (b["note"] for b in blocks(solved("step_ring")) if "finite el" in b["title"])
     for words in ("no friction", "no creep", "no yielding"):
         assert words in stress
     for words in ("depends on the mesh", "Huang2017", "not found", "closed form"):
         assert words in contact
-    assert "Huang2017" not in drawn.contact_note(solved("o_ring"))
+    assert "Huang2017" not in seal.contact_note(solved("o_ring"))
 
 
 def test_without_elements_there_is_neither_figure_nor_line():
     """A study by closed forms has no block of elements and no sentence."""
     one = replace(solved("o_ring"), elements=())
-    assert not any("finite elements" in b["title"] for b in seal_sheet.blocks(one))
-    assert drawn.sentence(one) == ""
-    assert "finite elements" not in seal_text.seal_text(one)
-    assert "finite elements" not in str(seal_rows.contacts(one))
+    assert not any("finite elements" in b["title"] for b in blocks(one))
+    assert seal.elements_sentence(one) == ""
+    assert "finite elements" not in shown(one)
+    assert "finite elements" not in str(seal.contact_rows(one))
 
 
 @pytest.mark.parametrize("width", [60, 100])
 def test_the_terminal_names_width_and_peak(width):
     """One sentence with width and peak of the contact, and those of the closed form."""
     one = solved("o_ring")
-    shown = seal_text.seal_text(one, width=width)
-    assert max(map(len, shown.splitlines())) <= width
-    said = " ".join(shown.split())
+    lines = shown(one, width=width)
+    assert max(map(len, lines.splitlines())) <= width
+    said = " ".join(lines.split())
     ring = one.out.rings[0]
     law = closed_form(ring.ring)
     for value in (1e3 * float(law.width), 1e-6 * float(law.peak)):
         assert f"closed form {value:.3g}"[:16] in said
     assert "by finite elements: at 210 bar width" in said
-    assert seal_rows.contacts(one)[0][-1] == "finite elements"
+    assert seal.contact_rows(one)[0][-1] == "finite elements"

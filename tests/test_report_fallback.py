@@ -6,7 +6,7 @@ import re
 import pytest
 import report_fixture as fixture
 
-from actuator_opt.pages import read_attachment, write_report
+from actuator_opt.pages import read_attachment
 from actuator_opt.rendering import attachments as embed, paper_plain as fallback
 
 
@@ -22,7 +22,7 @@ def no_typst(monkeypatch):
 def test_plain_report_says_so_and_carries_its_input(tmp_path, no_typst):
     """PDF and PNG exist, the input is inside, and the sheet says why it is plain."""
     given = {"stem": "r", "source_text": "a: 1\n", "source_name": "a.yaml", "command": "c"}
-    files = write_report(fixture.build_infeasible(), folder=tmp_path, **given)
+    files = fixture.write_report(fixture.build_infeasible(), folder=tmp_path, **given)
     assert files[0].pages == len(files) - 1
     assert read_attachment(files[0].path).source == "a: 1\n"
     content = files[0].path.read_bytes()

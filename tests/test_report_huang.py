@@ -15,19 +15,13 @@ from report_fixture import overlaps
 
 from actuator_opt import api as verbs
 from actuator_opt.evaluation import film
-from actuator_opt.pages.page import page
-from actuator_opt.replicas import (
-    TABLES,
-    huang_equations,
-    huang_figures,
-    huang_panels,
-    huang_study,
-    huang_tables,
-    huang_text,
-)
+from actuator_opt.pages.report import page
+from actuator_opt.rendering.blocks import Drawing, Table
+from actuator_opt.replicas import MODULES, huang, huang_figures, huang_models
 
 DESIGN = Path(__file__).parents[1] / "designs" / "huang_110_80_560.yaml"
-SOURCE = {"source_text": "a: 1", "source_name": "a.yaml", "command": "report", "date": None}
+UNDRAWN = ("why pressure acts both ways", "where its equations are")
+"""Tables without a drawing."""
 LONG = {"seals.rod.relief": "4.8 mm", "seals.rod.land": "1 mm"}
 OTHERS = (
     LONG
@@ -39,10 +33,11 @@ OTHERS = (
 
 @dataclass(frozen=True)
 class Pages:
-    """A design with its tables by the end of their title, and their drawings."""
+    """A design with its tables by the end of their title, all blocks, and the drawings."""
 
     subject: object
     tables: dict
+    blocks: list
     figures: list
 
 
@@ -50,9 +45,9 @@ def pages(subject):
     """All tables, then all drawings, of one study with films of 61 nodes instead of 121."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(film, "NODES", 61)
-        found = huang_study.study(subject.design)
-        patch.setattr(huang_tables, "study", lambda design: found)
-        made = huang_tables.tables(subject)
+        found = huang_models.study_of(subject.design)
+        patch.setattr(huang, "study_of", lambda design: found)
+        made = huang.blocks(subject)
     drawn = (
         huang_figures.cylinder_figure(found),
         huang_figures.plunger_figure(found),
@@ -62,8 +57,8 @@ def pages(subject):
         huang_figures.back_up_figure(found),
         huang_figures.relief_figure(found),
     )
-    tables = {t.title.partition(": ")[2]: t for t in made}
-    return Pages(subject, tables, [ink for ink in drawn if ink is not None])
+    tables = {t.title.partition(": ")[2]: t for t in made if isinstance(t, Table)}
+    return Pages(subject, tables, made, [ink for ink in drawn if ink is not None])
 
 
 def plain(words):
@@ -169,7 +164,7 @@ def test_another_seal_turns_the_verdicts(other):
 
 def check(made):
     """Every table is made, no cell is NaN, no label overlaps or leaves the drawing."""
-    assert len(made.tables) == len(huang_tables.TABLES)
+    assert len(made.tables) == len(huang.TABLES)
     assert all(table.rows and table.note for table in made.tables.values())
     for table in made.tables.values():
         assert {len(row) for row in table.rows} == {len(table.columns)}
@@ -200,7 +195,7 @@ def test_tables_and_figures_bear_other_designs(other):
 
 def test_the_design_gets_these_pages():
     """Tables are looked up by what the design reproduces."""
-    assert TABLES["Huang2017"] is huang_tables.tables
+    assert MODULES["Huang2017"] == huang.__name__.rpartition(".")[2]
     assert verbs.read(DESIGN).design.reproduces == "Huang2017"
 
 
@@ -208,7 +203,7 @@ def test_contours_lie_where_the_surface_has_the_level():
     """B = p/v on a grid: the pieces of the level 2 lie on p = 2 v, within the grid's width."""
     speeds, pressures = np.geomspace(0.5, 10, 40), np.linspace(1, 10, 40)
     values = pressures[:, None] / speeds
-    pieces = huang_panels.segments(np.log10(speeds), pressures, np.log(values), np.log(2.0))
+    pieces = huang_figures.segments(np.log10(speeds), pressures, np.log(values), np.log(2.0))
     assert pieces
     for x, y in itertools.chain(*pieces):
         assert y == pytest.approx(2 * 10**x, rel=1e-2)  # the level is linear in ln B between nodes
@@ -218,15 +213,13 @@ def test_contours_lie_where_the_surface_has_the_level():
 
 def test_every_equation_is_traced_once():
     """1 to 31, each in one row: to functions, or out of scope with the reason."""
-    numbers = [n for t in huang_equations.TRACES for n in range(t.first, t.last + 1)]
+    numbers = [n for t in huang.TRACES for n in range(t.first, t.last + 1)]
     assert numbers == list(range(1, 32))
-    for trace in huang_equations.TRACES:
+    for trace in huang.TRACES:
         assert trace.functions or trace.remark.startswith("out of scope: "), trace.subject
 
 
-@pytest.mark.parametrize(
-    "name", sorted({name for t in huang_equations.TRACES for name in t.functions})
-)
+@pytest.mark.parametrize("name", sorted({name for t in huang.TRACES for name in t.functions}))
 def test_every_traced_function_exists(name):
     """Each is a public function or class of the package."""
     module, _, function = name.rpartition(".")
@@ -250,15 +243,16 @@ def test_misprints_stand_in_the_trace(tables):
 )
 def test_words_of_a_verdict(share, words):
     """By the share of a claim that holds."""
-    assert huang_text.verdict(share) == words
+    assert huang.verdict(share) == words
 
 
 def test_figures_stand_after_their_tables(shipped, tables):
-    """On the page each drawing follows its table; the equations stand last, before the input."""
-    blocks = page(shipped.subject, **SOURCE, extra_tables=list(tables.values()))["blocks"]
-    titles = [b.get("title", "") for b in blocks]
-    for name, table in tables.items():
+    """On the page each drawing follows its table; the equations stand last."""
+    blocks = page(shipped.subject, extra_tables=shipped.blocks).blocks
+    titles = [block.title for block in blocks]
+    drawn = [name for name in tables if name not in UNDRAWN]
+    for name in drawn:
         at = titles.index(f"Huang 2017: {name}")
-        if table.drawing is not None:
-            assert (blocks[at]["kind"], blocks[at + 1]["kind"]) == ("table", "figure")
-    assert titles.index("Huang 2017: where its equations are") == len(blocks) - 2
+        assert (type(blocks[at]), type(blocks[at + 1])) == (Table, Drawing)
+    assert len(drawn) == len(shipped.figures)
+    assert titles.index("Huang 2017: where its equations are") == len(blocks) - 1

@@ -5,8 +5,10 @@ from dataclasses import replace
 import pytest
 import report_fixture as fixture
 
-from actuator_opt.pages import ExtraTable, infeasibility_card
-from actuator_opt.pages.page import key_figures, page, verdict
+from actuator_opt.pages import optimum
+from actuator_opt.pages.report import key_figures, verdict
+from actuator_opt.rendering import paper
+from actuator_opt.rendering.blocks import text_table
 
 SOURCE = {"source_text": "a: 1\n", "source_name": "a.yaml", "command": "x", "date": None}
 
@@ -30,7 +32,7 @@ def rows_of(data, title):
 
 def test_requirements_show_limit_result_margin_status_and_case():
     """One row per requirement with everything an engineer signs for."""
-    rows = rows_of(page(fixture.build_evaluation(), **SOURCE), "Requirements")
+    rows = rows_of(fixture.page_data(fixture.build_evaluation(), **SOURCE), "Requirements")
     assert rows[5] == [
         "seal_squeeze",
         "smallest seal squeeze after growth and tolerance",
@@ -46,21 +48,23 @@ def test_requirements_show_limit_result_margin_status_and_case():
 
 def test_price_is_per_display_unit():
     """0.77 × 205.2 g / 10 kN/mm is 15.8 g per kN/mm, the value beside it in kN/mm too."""
-    row = rows_of(page(fixture.build_optimisation(), **SOURCE), "What each")[0]
+    row = rows_of(fixture.page_data(fixture.build_optimisation(), **SOURCE), "What each")[0]
     assert row[:7] == ["stiffness_min.min", "10 kN/mm", "10.00", "0.0 %", "●", "+15.8", "+0.770"]
     assert row[7:11] == ["221.0", "221.7", "189.4", "190.4"]
-    assert row[11] == "12.1 kN/mm, then rod.outer_diameter upper bound"
+    assert "12.1 kN/mm, then rod.outer_diameter upper bound" in fixture.shown(
+        fixture.build_optimisation(), width=200
+    )
 
 
 def test_infeasible_resolve_shows_a_dash():
     """A re-solve that found nothing is a dash, never a number."""
-    rows = rows_of(page(fixture.build_optimisation(), **SOURCE), "What each")
+    rows = rows_of(fixture.page_data(fixture.build_optimisation(), **SOURCE), "What each")
     assert rows[3][10] == "–"
 
 
 def test_masses_add_up():
     """The printed parts add up to the printed dry mass; oil stands below it."""
-    rows = rows_of(page(fixture.build_evaluation(), **SOURCE), "Mass")
+    rows = rows_of(fixture.page_data(fixture.build_evaluation(), **SOURCE), "Mass")
     parts = [float(row[1]) for row in rows[:-3]]
     assert sum(parts) == pytest.approx(float(rows[-3][1]), abs=0.011)
     assert [row[0] for row in rows[-3:]] == ["dry mass", "oil inside", "filled"]
@@ -69,7 +73,7 @@ def test_masses_add_up():
 def test_checks_all_stand_with_reason_and_source():
     """Every line of the check list is printed, unchecked ones with their reason."""
     evaluation = fixture.build_evaluation()
-    rows = rows_of(page(evaluation, **SOURCE), "Check list")
+    rows = rows_of(fixture.page_data(evaluation, **SOURCE), "Check list")
     assert len(rows) == len(evaluation.checks)
     assert rows[7][4] == "not checked"
     assert rows[7][6].startswith("the design has no lines; common practice")
@@ -77,7 +81,7 @@ def test_checks_all_stand_with_reason_and_source():
 
 def test_extrapolated_models_are_flagged():
     """A model outside its range says so in its row and in the note."""
-    found = block(page(fixture.build_evaluation(), **SOURCE), "Models")
+    found = block(fixture.page_data(fixture.build_evaluation(), **SOURCE), "Models")
     assert [text_of(row[5]) for row in found["rows"]] == ["inside", "EXTRAPOLATED", "EXTRAPOLATED"]
     assert "2 of 3" in found["note"]
 
@@ -99,8 +103,8 @@ def test_extrapolated_models_are_flagged():
 def test_verdict(subject, state):
     """The badge says met (or which checks are not), missed or infeasible, with the counts."""
     found = verdict(subject)
-    assert found["state"] == state
-    assert found["lines"][1] == "checks: 6 met · 1 missed · 3 not checked"
+    assert found.state == state
+    assert found.lines[1] == "checks: 6 met · 1 missed · 3 not checked"
 
 
 def test_key_figures_are_five_and_start_with_the_objective():
@@ -110,15 +114,15 @@ def test_key_figures_are_five_and_start_with_the_objective():
     evaluation = replace(evaluation, metrics=dict(evaluation.metrics) | {"stiffness_min": empty})
     tiles = key_figures(fixture.build_optimisation(evaluation))
     assert len(tiles) == 5
-    assert tiles[0]["value"] == "205.2"
-    assert tiles[0]["note"] == "start 312.1 g, −34.3 %"
-    assert "stiffness" not in " ".join(tile["label"] for tile in tiles)
+    assert tiles[0].value == "205.2"
+    assert tiles[0].note == "start 312.1 g, −34.3 %"
+    assert "stiffness" not in " ".join(tile.label for tile in tiles)
 
 
 def test_the_infeasibility_card_reads_as_advice():
     """Limits by the PATH to set, now and needed with units, signed changes; what alone cannot."""
-    said, joint, alone, bounds, proof = infeasibility_card.blocks(
-        fixture.build_infeasible().infeasibility
+    said, joint, alone, bounds, proof = paper.plain_blocks(
+        optimum.infeasibility_blocks(fixture.build_infeasible().infeasibility)
     )
     assert "250 N → 281 N (+12.4 %)" in text_of(said["items"][0])
     assert [text_of(cell) for cell in joint["rows"][1]] == [
@@ -144,23 +148,26 @@ def test_nothing_to_say_is_said():
     evaluation = fixture.build_evaluation(
         requirements=(), checks=(), warnings=(), unverified=(), models=()
     )
-    data = page(evaluation, **SOURCE)
+    data = fixture.page_data(evaluation, **SOURCE)
     assert "states no requirement" in text_of(block(data, "Requirements")["items"][0])
     assert all(b["title"] != "Warnings" for b in data["blocks"])
 
 
-def test_extra_tables_stand_before_the_input():
-    """A caller's table is printed, numbers aligned right, before the listing."""
-    extra = ExtraTable(
-        "Published beside ours", ["what", "paper", "ours"], [["gap", 1.5, 1.6]], "they differ"
+def test_extra_tables_stand_before_the_appendix():
+    """A caller's table is printed; then models, data and the listing."""
+    extra = text_table(
+        "Published beside ours", ["what", "paper", "ours"], [["gap", "1.5", "1.6"]], "they differ"
     )
-    data = page(fixture.build_evaluation(), **SOURCE, extra_tables=[extra])
-    assert data["blocks"][-2]["title"] == "Published beside ours"
-    assert [c["align"] for c in data["blocks"][-2]["columns"]] == ["left", "right", "right"]
+    data = fixture.page_data(fixture.build_evaluation(), **SOURCE, extra_tables=[extra])
+    titles = [b["title"] for b in data["blocks"]]
+    start = titles.index("Published beside ours")
+    assert titles[start + 1 : start + 4] == [
+        "Appendix", "Assumptions and unverified data", "Models",
+    ]  # fmt: skip
     assert data["blocks"][-1]["kind"] == "listing"
 
 
 def test_wall_time_stays_off_the_page():
     """Seconds differ between runs, so equal input gives equal data."""
-    one = page(fixture.build_optimisation(seconds=0.1), **SOURCE)
-    assert one == page(fixture.build_optimisation(seconds=9.9), **SOURCE)
+    one = fixture.page_data(fixture.build_optimisation(seconds=0.1), **SOURCE)
+    assert one == fixture.page_data(fixture.build_optimisation(seconds=9.9), **SOURCE)

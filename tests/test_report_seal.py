@@ -11,23 +11,14 @@ from functools import cache
 
 import numpy as np
 import pytest
+import report_fixture as fixture
 from test_through_wall import text_of
 
 import actuator_opt as ao
 from actuator_opt.evaluation import compute
-from actuator_opt.pages import (
-    seal_document,
-    seal_figures,
-    seal_gland_figure,
-    seal_map_figure,
-    seal_rows,
-    seal_shapes,
-    seal_sheet,
-    seal_text,
-    write_report,
-)
-from actuator_opt.pages.page import page
-from actuator_opt.rendering import paper_plain as fallback, shading
+from actuator_opt.pages import seal, seal_figures
+from actuator_opt.pages.report import page
+from actuator_opt.rendering import contours, paper, paper_plain as fallback, terminal, text
 from actuator_opt.rendering.ink import Ink
 from actuator_opt.rendering.origin import Origin
 from actuator_opt.studies.seal import study
@@ -133,9 +124,24 @@ def plain(cell):
     return cell if isinstance(cell, str) else "".join(cell)
 
 
+def blocks(one):
+    """The blocks of a place in the report of a design, as the template gets them."""
+    return paper.plain_blocks(seal.blocks(one))
+
+
+def sheet(one):
+    """The page of a place, as the template gets it."""
+    return paper.plain(seal.page(one), ORIGIN)
+
+
+def shown(one, *, width=100, unicode=True):
+    """The page of a place on the terminal."""
+    return terminal.text(seal.page(one), colour=False, unicode=unicode, width=width)
+
+
 def by_title(one, end):
     """The block whose title ends so."""
-    return next(b for b in seal_sheet.blocks(one) if b["title"].endswith(end))
+    return next(b for b in blocks(one) if b["title"].endswith(end))
 
 
 def first_number(words):
@@ -157,10 +163,10 @@ def area(points):
 def test_the_gland_is_true_to_scale(name, place):
     """Width and depth of every groove on paper are those of the design by one factor."""
     one = studied(name, place)
-    drawing = seal_gland_figure.gland_drawing(one)
+    drawing = seal_figures.gland_drawing(one)
     paper, real = map(int, drawing.scale.split(":"))
     assert drawing.millimetres_per_metre == 1000 * paper / real
-    slots = seal_gland_figure.slots(one.design, place)
+    slots = seal_figures.filled_grooves(one.design, place)
     edges = [m["path"][0] for m in drawing.ink.marks if "path" in m and not m["closed"]]
     edge = next(line for line in edges if len(line) == 4 * len(slots) + 2)
     surface = next(m["path"][1] for m in drawing.ink.marks if "path" in m and m["path"][0] == edge)
@@ -182,13 +188,13 @@ def test_a_round_ring_keeps_its_section():
     for name, place in (("rings", "rod"), ("tandem", "rod")):
         (ring,) = [
             shape
-            for slot in seal_gland_figure.slots(studied(name, place).design, place)
+            for slot in seal_figures.filled_grooves(studied(name, place).design, place)
             if slot.groove.place == "rod seal"
             for shape in slot.shapes
             if shape.kind == "elastomer"
         ]
         assert area(ring.points) == pytest.approx(math.pi / 4 * 1.78e-3**2, rel=3e-3)
-    slot = seal_gland_figure.slots(studied("rings", "rod").design, "rod")[0]
+    slot = seal_figures.filled_grooves(studied("rings", "rod").design, "rod")[0]
     heights = [r for _, r in slot.shapes[0].points]
     assert (min(heights), max(heights)) == pytest.approx((0.0, 0.86 * 1.78e-3), abs=1e-9)
 
@@ -196,7 +202,7 @@ def test_a_round_ring_keeps_its_section():
 def test_rings_touch_the_surface_and_stay_in_their_groove():
     """What is mounted lies between surface and floor and between the walls of its groove."""
     for name, place in EVERY:
-        for slot in seal_gland_figure.slots(studied(name, place).design, place):
+        for slot in seal_figures.filled_grooves(studied(name, place).design, place):
             mounted = [shape for shape in slot.shapes if shape.kind != "free"]
             points = [p for shape in mounted for p in shape.points]
             assert min(r for _, r in points) == pytest.approx(0.0, abs=1e-9)
@@ -207,7 +213,7 @@ def test_rings_touch_the_surface_and_stay_in_their_groove():
 
 def test_back_up_rings_stand_on_both_sides():
     """The ring lies between its two back-up rings, each as thick as stated."""
-    slot = seal_gland_figure.slots(studied("rings", "piston").design, "piston")[0]
+    slot = seal_figures.filled_grooves(studied("rings", "piston").design, "piston")[0]
     backs = [shape.points for shape in slot.shapes if shape.kind == "back-up"]
     ends = sorted((min(x for x, _ in p), max(x for x, _ in p)) for p in backs)
     assert ends[0] == pytest.approx((0.0, 1.1e-3))
@@ -219,12 +225,12 @@ def test_back_up_rings_stand_on_both_sides():
 
 def test_sizes_carry_their_tolerances():
     """Gland depth and section are printed with what the design allows them."""
-    ink = seal_gland_figure.gland_drawing(studied("rings", "rod")).ink
+    ink = seal_figures.gland_drawing(studied("rings", "rod")).ink
     words = {mark["text"] for mark in ink.marks if "text" in mark}
     assert {"1.531 ±0.05", "section 1.78 ±0.08", "rod ⌀13", "radial gap 0.03", "210 bar"} <= words
-    (row,) = seal_rows.gland(studied("rings", "rod"))
-    assert row[3:6] == ["1.78 ±0.08", "14 %", "1.531 ±0.05"]
-    piston = seal_gland_figure.gland_drawing(studied("rings", "piston"))
+    (row,) = seal.gland_rows(studied("rings", "rod"))
+    assert row[3:6] == ("1.78 ±0.08", "14 %", "1.531 ±0.05")
+    piston = seal_figures.gland_drawing(studied("rings", "piston"))
     growth = studied("rings", "piston").growth
     said = next(m["text"] for m in piston.ink.marks if m.get("text", "").startswith("+ growth"))
     assert float(said.split()[-1]) == pytest.approx(1e3 * growth, rel=0.01)
@@ -233,10 +239,10 @@ def test_sizes_carry_their_tolerances():
 def test_both_rings_of_a_pair_stand_in_their_order():
     """Guide, step ring, lip seal, wiper, from the sealed side on the left; pressures beside."""
     one = studied("tandem", "rod")
-    assert [slot.groove.role for slot in seal_gland_figure.slots(one.design, "rod")] == [
+    assert [slot.groove.role for slot in seal_figures.filled_grooves(one.design, "rod")] == [
         "guide", "element", "element", "wiper",
     ]  # fmt: skip
-    ink = seal_gland_figure.gland_drawing(one).ink
+    ink = seal_figures.gland_drawing(one).ink
     at = {mark["text"]: mark["at"][0] for mark in ink.marks if "text" in mark}
     order = ["sealed side", "guide", "seal: step ring", "secondary seal: u cup", "wiper"]
     places = [at[words] for words in [*order, "outer side"]]
@@ -251,7 +257,7 @@ def test_both_rings_of_a_pair_stand_in_their_order():
 def test_nothing_written_collides(name, place):
     """In every figure no two texts overlap, all stay on the paper, and so does every line."""
     checked = 0
-    for block in [*seal_sheet.blocks(studied(name, place)), *seal_sheet.blocks(failed())]:
+    for block in [*blocks(studied(name, place)), *blocks(failed())]:
         if block["kind"] != "figure":
             continue
         checked += 1
@@ -314,7 +320,7 @@ def test_a_gap_in_the_map_stays_white():
     parts[0, -2:] = np.nan
     why = ((1.0, 1.0, "9e5 Pa: no"), (1.0, 2.0, "no film at 3 mm"))
     gap = replace(one, map=replace(one.map, parts=parts, why=why))
-    crosses = [m for m in seal_map_figure.map_figure(gap).marks if m.get("pen") == 0.2]
+    crosses = [m for m in seal_figures.map_figure(gap).marks if m.get("pen") == 0.2]
     missing = int(np.sum(~np.isfinite(gap.map.friction)))
     assert len(crosses) == 2 * 2 * missing
     assert f"{len(why)} of 78 points" in by_title(gap, "speed and pressure")["note"]
@@ -326,7 +332,7 @@ def test_contours_lie_where_the_values_are():
     pressures = np.linspace(1e6, 11e6, 6)
     table = np.outer(pressures / 1e5, np.ones(len(one.map.speeds)))
     found = replace(one.map, pressures=pressures, parts=table[:, :, None])
-    ink = seal_map_figure.map_figure(replace(one, map=found))
+    ink = seal_figures.map_figure(replace(one, map=found))
     lines = [m["path"][0] for m in ink.marks if m.get("stroke") == "#ffffff" and "path" in m]
     left = [line for line in lines if line[0][0] < 100]
     ticks = {m["text"]: m["at"][1] for m in ink.marks if m.get("anchor") == "right"}
@@ -339,7 +345,7 @@ def test_contours_lie_where_the_values_are():
 def test_levels_enclose_the_values():
     """Levels are round, ascending, few, and reach beyond both ends."""
     for low, high in ((33.0, 121.0), (1.0, 2.0), (5e-5, 9e6), (100.0, 100.1)):
-        found = shading.levels(low, high)
+        found = contours.levels(low, high)
         assert found[0] <= low * (1 + 1e-6)
         assert found[-1] >= high * (1 - 1e-6)
         assert found == sorted(set(found))
@@ -353,9 +359,9 @@ def test_levels_enclose_the_values():
 def test_tables_carry_the_numbers_of_the_study(name, place):
     """Friction, damping, flow and contact in the tables are those of the study, rounded."""
     one = studied(name, place)
-    lines = {line.name: line for line in seal_rows.operating(one)}
-    for point, side in ((one.drive, "drive"), (one.other, "other")):
-        value = {name: first_number(getattr(line, side)) for name, line in lines.items()}
+    rows = {name: values for name, *values in seal.operating_rows(one)}
+    for point, side in ((one.drive, 0), (one.other, 1)):
+        value = {name: first_number(values[side]) for name, values in rows.items()}
         assert value["friction, film"] == pytest.approx(point.friction, rel=6e-4)
         assert value["of the asperities"] == pytest.approx(point.asperity, rel=6e-4)
         assert value["breakaway, dry"] == pytest.approx(point.breakaway, rel=6e-4)
@@ -363,19 +369,19 @@ def test_tables_carry_the_numbers_of_the_study(name, place):
             point.friction / point.speed / 1e3, rel=6e-4
         )
         assert value["flow towards the outer side"] == pytest.approx(1e9 * point.flow, rel=6e-4)
-    contacts = seal_rows.contacts(one)
+    contacts = seal.contact_rows(one)
     assert first_number(contacts[0][3]) == pytest.approx(
         1e-3 * float(one.drive.rings[0].contact.line_load), rel=6e-4
     )
     assert len(contacts) == (4 if len(one.out.rings) == 2 else 1)
-    title = next(b["title"] for b in seal_sheet.blocks(one) if ": at " in b["title"])
-    assert seal_figures.speed_words(one.out.speed) in title
+    title = next(b["title"] for b in blocks(one) if ": at " in b["title"])
+    assert text.speed_words(one.out.speed) in title
 
 
 def test_a_double_stroke_is_what_the_strokes_leave():
     """The sentence gives the oil carried out, drawn back and left, in mm³."""
     one = studied("rings", "rod")
-    said = seal_rows.leakage(one)
+    said = seal.leakage(one)
     numbers = [float(x) for x in re.findall(r"([\d.]+) mm³", said)]
     out = 1e9 * one.out.flow * one.stroke / one.out.speed
     back = 1e9 * one.back.flow * one.stroke / one.back.speed
@@ -394,24 +400,24 @@ def test_a_piston_is_driven_away_from_its_pressure():
     assert [c["head"] for c in by_title(one, "100 mm/s, 40 °C")["columns"]][1:] == [
         "driven", "overrun",
     ]  # fmt: skip
-    data = seal_document.sheet_page(one, ORIGIN)
+    data = sheet(one)
     labels = [tile["label"] for tile in data["tiles"]]
     assert labels[:2] == ["friction, driven", "secant damping, driven"]
     assert first_number(data["tiles"][0]["value"]) == pytest.approx(one.back.friction, rel=6e-4)
     crossed = next(t for t in data["tiles"] if t["label"] == "flow across, driven")
     assert first_number(crossed["value"]) == pytest.approx(1e9 * one.back.flow, rel=6e-4)
-    told = seal_text.seal_text(one, width=400) + str(seal_sheet.blocks(one)) + str(data)
+    told = shown(one, width=400) + str(blocks(one)) + str(data)
     for words in ("outstroke", "instroke", "double stroke", "carries out", "the other side"):
         assert words not in told, words
     assert "Friction, driven, N" in told
-    assert "overrun" not in seal_text.seal_text(rod) + str(seal_sheet.blocks(rod))
+    assert "overrun" not in shown(rod) + str(blocks(rod))
 
 
 def test_flow_across_a_piston_is_told_with_its_way():
     """Both flows stand in the sentence without sign: out of the higher pressure, or back in."""
     one = studied("tandem", "piston")
     assert one.drive.flow < 0 < one.other.flow
-    driven, overrun = seal_rows.leakage(one).split("; overrun: ")
+    driven, overrun = seal.leakage(one).split("; overrun: ")
     assert first_number(driven.partition(": ")[2]) == pytest.approx(-1e9 * one.drive.flow, rel=6e-4)
     assert "back into" in driven
     assert first_number(overrun) == pytest.approx(1e9 * one.other.flow, rel=6e-4)
@@ -472,7 +478,7 @@ def test_a_film_that_fails_is_a_sentence_and_no_figure():
     """Without a film the sheet says why, draws no profile, and prints dashes for its numbers."""
     one = failed()
     assert one.out.why
-    found = seal_sheet.blocks(one)
+    found = blocks(one)
     assert not any(b["title"].endswith("oil film") for b in found)
     table = next(b for b in found if ": at " in b["title"])
     assert f"No film on the outstroke: {one.out.why}" in table["note"]
@@ -480,26 +486,26 @@ def test_a_film_that_fails_is_a_sentence_and_no_figure():
     assert friction[1] == "–"
     assert float(one.out.rings[0].contact.line_load) == 0
     assert (one.out.breakaway, one.out.coefficient_friction) == (0.0, 0.0)  # nothing presses
-    data = seal_document.sheet_page(one, ORIGIN)
+    data = sheet(one)
     assert data["verdict"]["state"] == "missed"
     assert one.out.why.split(":")[0] in plain(data["sentence"])
-    assert one.out.why.split()[0] in seal_text.seal_text(one, width=400)
+    assert one.out.why.split()[0] in shown(one, width=400)
 
 
 def test_no_map_and_no_curves_give_no_figure():
     """What was not asked for is not drawn; nothing but missing points is neither."""
     one = replace(studied("rings", "rod"), map=None, curves=None)
-    titles = [b["title"] for b in seal_sheet.blocks(one)]
+    titles = [b["title"] for b in blocks(one)]
     assert not any("over speed" in title for title in titles)
     bare = studied("rings", "rod").map
     empty = replace(one, map=replace(bare, parts=np.full_like(bare.parts, np.nan)))
-    assert [b["title"] for b in seal_sheet.blocks(empty)] == titles
-    assert "over speed" not in seal_text.seal_text(one)
+    assert [b["title"] for b in blocks(empty)] == titles
+    assert "damping B over speed" not in shown(one)
 
 
 def test_notes_tell_model_from_input():
     """The sheet says what its film model cannot know and what was never measured."""
-    said = " ".join(seal_rows.notes(studied("tandem", "rod")))
+    said = " ".join(seal.notes(studied("tandem", "rod")))
     for words in (
         "literature orders of magnitude",
         "at rest too",
@@ -516,23 +522,22 @@ def test_notes_tell_model_from_input():
 def test_terminal_text_keeps_its_width(width):
     """No line is longer than the terminal, also in plain ASCII."""
     for one in (studied("tandem", "rod"), studied("rings", "piston"), failed()):
-        shown = seal_text.seal_text(one, width=width)
-        assert max(map(len, shown.splitlines())) <= width
-        assert seal_text.seal_text(one, width=width, unicode=False).isascii()
-    shown = seal_text.seal_text(studied("rings", "rod"), width=width)
-    assert f"{studied('rings', 'rod').out.friction:.4g}" in shown
+        assert max(map(len, shown(one, width=width).splitlines())) <= width
+        assert shown(one, width=width, unicode=False).isascii()
+    words = shown(studied("rings", "rod"), width=width)
+    assert f"{studied('rings', 'rod').out.friction:.4g}" in words
 
 
 def test_the_sheet_is_a_document_with_equal_bytes(tmp_path):
     """PDF and PNG of one place, the same bytes again; the plain renderer can draw it too."""
     given = {"stem": "s"}
     one = studied("tandem", "rod")
-    first = seal_document.write_sheet(one, ORIGIN, folder=tmp_path / "1", **given)
+    first = paper.write(seal.page(one), ORIGIN, folder=tmp_path / "1", **given)
     again = study(ao.read(TEXTS["tandem"]).subject(), "rod", curves=True, mapped=True)
-    second = seal_document.write_sheet(again, ORIGIN, folder=tmp_path / "2", **given)
+    second = paper.write(seal.page(again), ORIGIN, folder=tmp_path / "2", **given)
     assert [f.sha256 for f in first] == [f.sha256 for f in second]
     assert {f.path.name for f in first} >= {"s.pdf", "s.png"}
-    data = seal_document.sheet_page(one, ORIGIN)
+    data = sheet(one)
     data |= {"title": "x", "source": "a: 1\n", "source_file": "a.yaml", "run": "{}"}
     assert fallback.render(data, 0)[1]
     assert ao.rendering.attachments.read_attachment(tmp_path / "1" / "s.pdf").source == "a: 1\n"
@@ -542,18 +547,16 @@ def test_the_report_carries_the_sheets(tmp_path):
     """Given studies, the design's report holds their blocks; without, it has none."""
     evaluation = ao.evaluate(ao.read(TEXTS["rings"]))
     source = {"source_text": "a: 1\n", "source_name": "a.yaml", "command": "x", "date": None}
-    titles = [b["title"] for b in page(evaluation, **source)["blocks"]]
+    titles = [block.title for block in page(evaluation).blocks]
     assert not any("Rod seals" in title for title in titles)
     both = [studied("rings", place) for place in ("piston", "rod")]
-    titles = [b["title"] for b in page(evaluation, **source, seals=both)["blocks"]]
+    titles = [block.title for block in page(evaluation, seals=both).blocks]
     assert {"Piston seals: gland", "Rod seals: gland"} <= set(titles)
-    files = write_report(evaluation, folder=tmp_path, stem="r", seals=both, **source)
+    files = fixture.write_report(evaluation, folder=tmp_path, stem="r", seals=both, **source)
     assert files[0].pages > 3
 
 
-@pytest.mark.parametrize(
-    "module", [shading, seal_figures, seal_gland_figure, seal_map_figure, seal_rows, seal_shapes]
-)
+@pytest.mark.parametrize("module", [contours, seal, seal_figures, text])
 def test_examples_in_docstrings(module):
     """The worked examples hold."""
     assert doctest.testmod(module).failed == 0

@@ -7,14 +7,18 @@ import numpy as np
 import pytest
 import report_fixture as fixture
 
-from actuator_opt.pages import terminal
+from actuator_opt.pages import report, stiffness
+from actuator_opt.rendering import terminal
 from actuator_opt.rendering.console import Console, visible
 
+PLAIN = {"colour": False, "unicode": True}
 SUBJECTS = {
-    "evaluation": lambda **s: terminal.evaluation_text(fixture.build_evaluation(), **s),
-    "optimisation": lambda **s: terminal.optimisation_text(fixture.build_optimisation(), **s),
-    "infeasible": lambda **s: terminal.optimisation_text(fixture.build_infeasible(), **s),
-    "checks": lambda **s: terminal.checks_table(fixture.build_evaluation(), all_rows=True, **s),
+    "evaluation": lambda **s: fixture.shown(fixture.build_evaluation(), **s),
+    "optimisation": lambda **s: fixture.shown(fixture.build_optimisation(), **s),
+    "infeasible": lambda **s: fixture.shown(fixture.build_infeasible(), **s),
+    "prices": lambda **s: terminal.text(
+        report.prices_page(fixture.build_optimisation()), **PLAIN | s
+    ),
 }
 
 
@@ -45,7 +49,7 @@ def test_colour_only_adds_codes(subject):
 
 def test_evaluation_shows_values_limits_and_what_is_missing():
     """Value with unit, limit, margin and case in one line; a null metric with its reason."""
-    shown = terminal.evaluation_table(fixture.build_evaluation(), width=100)
+    shown = fixture.shown(fixture.build_evaluation())
     line = next(x for x in shown.splitlines() if x.startswith("push_force"))
     assert line.split()[:8] == ["push_force", "9.894", "kN", "≥", "6", "kN", "+64.9", "%"]
     assert "stance" in line
@@ -56,7 +60,7 @@ def test_evaluation_shows_values_limits_and_what_is_missing():
 def test_missed_requirements_are_named_first():
     """The verdict names what is missed."""
     row = replace(fixture.requirements()[2], met=False, margin=-0.2)
-    shown = terminal.verdict(fixture.build_evaluation(requirements=(row,)))
+    shown = fixture.shown(fixture.build_evaluation(requirements=(row,)))
     assert "requirements missed" in shown
     assert "missed: stiffness_min" in shown
 
@@ -64,7 +68,7 @@ def test_missed_requirements_are_named_first():
 def test_terminal_escapes_in_names_are_shown_not_sent():
     """A design name cannot colour, clear or retitle the terminal."""
     evaluation = fixture.build_evaluation("bad\x1b]0;owned\x07\nname")
-    shown = terminal.verdict(evaluation)
+    shown = fixture.shown(evaluation)
     assert "\x1b" not in shown
     assert "⟨U+001B⟩]0;owned⟨U+0007⟩ name" in shown
 
@@ -87,23 +91,26 @@ def test_margin_bar(margin, bar):
     assert len(Console(unicode=False).margin_bar(margin)) == 11
 
 
+def drawn(evaluation, *, unicode=True, width=100):
+    """Lines of the curve of stiffness over the stroke."""
+    console = Console(False, unicode, width)
+    return terminal.block_text(stiffness.stiffness_blocks(evaluation)[0], console).splitlines()
+
+
 @pytest.mark.parametrize("unicode", [True, False])
 def test_curve_is_a_u_with_its_requirement(unicode):
     """The lowest drawn line is in the middle of the stroke; the limit stands at its level."""
-    row = fixture.requirements()[2]
-    shown = terminal.stiffness_curve(fixture.curve(), row, unicode=unicode, width=60)
-    lines = shown.splitlines()
-    assert "minimum 10.00 at 59.8 mm, required 10" in lines[-1]
+    lines = drawn(fixture.build_evaluation(), unicode=unicode, width=60)
+    assert "minimum 10.00 at 59.8 mm, required 10" in lines[10]
     assert lines[7].startswith("10.0")
     curve_marks = [i for i, c in enumerate(lines[1]) if c in "*" or "\u2801" <= c <= "\u28ff"]
     assert curve_marks[0] < 12
-    assert len(lines) == 11
 
 
 def test_flat_and_broken_curves_are_left_out():
     """A constant or non-finite curve gives no plot instead of a fault."""
     curve = fixture.curve()
     broken = replace(curve, stiffness=np.full(len(curve.position), np.nan))
-    assert terminal.stiffness_curve(broken) == ""
+    assert drawn(fixture.build_evaluation(curve=broken)) == []
     flat = replace(curve, stiffness=np.full(len(curve.position), 1e7))
-    assert "minimum 10.00" in terminal.stiffness_curve(flat)
+    assert "minimum 10.00" in " ".join(drawn(fixture.build_evaluation(curve=flat)))

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from actuator_opt.base import units
-from actuator_opt.pages import drawing, optimum
+from actuator_opt.pages import optimum, section as drawing
 from actuator_opt.rendering import axes as figures, blocks, console, ink, text
 
 
@@ -71,6 +71,16 @@ def test_soft_breaks_lose_no_letter(words):
     assert joined == blocks.clean(words)
 
 
+def test_paths_break_behind_their_separators_alone():
+    """No name of a PATH is cut while a column has room for it; an index stays with its name."""
+    assert blocks.soft("materials.steel_42crmo4.youngs_modulus", 22) == [
+        "materials.", "steel_42crmo4.", "youngs_modulus",
+    ]  # fmt: skip
+    assert blocks.soft("barrel.layup[2].thickness", 20) == ["barrel.", "layup[2].", "thickness"]
+    assert blocks.soft("load_cases[swing].force", 20) == ["load_cases[", "swing].", "force"]
+    assert blocks.soft("retention_burst_factor", 18) == ["retention_", "burst_", "factor"]
+
+
 def test_control_characters_become_code_points():
     """An escape sequence or a direction override in a name is printed, not obeyed."""
     assert blocks.clean("a\x1b[31mb\u202ec") == "a⟨U+001B⟩[31mb⟨U+202E⟩c"
@@ -78,4 +88,4 @@ def test_control_characters_become_code_points():
 
 def test_letters_outside_the_typeface_become_code_points():
     """Letters that the typeface cannot draw are named; technical signs stay."""
-    assert blocks.printable({"a": ["中 Ω ≥ é ✔"]}) == {"a": ["⟨U+4E2D⟩ Ω ≥ é ✔"]}
+    assert blocks.printable("中 Ω ≥ é ✔") == "⟨U+4E2D⟩ Ω ≥ é ✔"

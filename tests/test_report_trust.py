@@ -15,6 +15,7 @@ from actuator_opt.optimisation.certificate.envelopes import refuse
 from actuator_opt.optimisation.certificate.relaxation import Unknown
 from actuator_opt.optimisation.result import Certificate
 from actuator_opt.pages import trust
+from actuator_opt.rendering.blocks import Notes
 
 PROVEN = Certificate(
     sentence="no design that meets the covered limits has less than 195 g: within 4.9 %",
@@ -35,7 +36,7 @@ def test_the_page_tells_what_is_proven_and_what_is_not():
     assert "stiffness_min, seal_gap" in said[1]
     assert "first-ply (leak) pressure (its model is no closed expression)" in said[2]
     assert "6 of 6" in said[3]
-    short = trust.proof(replace(best, certificate=PROVEN), brief=True)
+    short = trust.proof(replace(best, certificate=PROVEN), shortened=True)
     assert "It covers 2 limits" in short[1]
 
 
@@ -43,7 +44,7 @@ def test_without_a_certificate_the_way_to_one_is_told():
     """A feasible optimum without proof names the option; an infeasible one has nothing to prove."""
     assert "--certify" in trust.proof(fixture.build_optimisation())[0]
     assert trust.proof(fixture.build_infeasible()) == []
-    assert [block["kind"] for block in trust.blocks(fixture.build_infeasible())] == ["notes"]
+    assert [type(block) for block in trust.trust_blocks(fixture.build_infeasible())] == [Notes]
 
 
 @given(st.floats(0.5, 0.9999), st.lists(st.floats(1.0, 1.5), max_size=6))
@@ -83,7 +84,7 @@ def test_an_objective_without_a_bound_says_so(setting, reason):
     assert found["lower_bound"] is None
     assert found["gap"] is None
     assert reason in found["sentence"]
-    assert "evidence, no proof" in found["evidence"]
+    assert "evidence, not proof" in found["evidence"]
 
 
 @pytest.mark.parametrize(
@@ -91,7 +92,7 @@ def test_an_objective_without_a_bound_says_so(setting, reason):
     [
         ({"layup": True}, "a rod of layers"),
         ({"linkage": True}, "a linkage"),
-        ({"film": True}, "a seal on its oil film"),
+        ({"film": True}, "a seal with an oil film"),
         ({}, ""),
     ],
 )

@@ -11,9 +11,8 @@ from test_through_wall import evaluated, with_wall
 
 import actuator_opt as ao
 from actuator_opt.pages import wall
-from actuator_opt.pages.page import page
 from actuator_opt.pages.wall_figures import Rung, ladder_figure
-from actuator_opt.rendering import paper_plain as fallback
+from actuator_opt.rendering import paper, paper_plain as fallback
 from actuator_opt.rendering.ink import Ink
 
 SOURCE = {"source_text": "a: 1\n", "source_name": "a.yaml", "command": "x", "date": None}
@@ -39,7 +38,7 @@ def subjects():
 
 def blocks_of(evaluation):
     """Blocks of the wall by what follows "Barrel wall"."""
-    found = wall.blocks(evaluation)
+    found = paper.plain_blocks(wall.wall_blocks(evaluation))
     assert all(block["title"].startswith("Barrel wall") for block in found)
     return {block["title"].removeprefix("Barrel wall").strip(":, "): block for block in found}
 
@@ -78,7 +77,7 @@ def test_without_a_study_there_is_the_drawing():
 
 def test_the_wall_stands_before_the_check_list():
     """The section follows the masses and comes before the checks, in one piece."""
-    titles = [b["title"] for b in page(evaluated("knee.yaml"), **SOURCE)["blocks"]]
+    titles = [b["title"] for b in fixture.page_data(evaluated("knee.yaml"), **SOURCE)["blocks"]]
     places = [k for k, title in enumerate(titles) if title.startswith("Barrel wall")]
     assert places == list(range(places[0], places[0] + 9))
     assert titles[places[-1] + 1] == "Check list"
@@ -87,7 +86,7 @@ def test_the_wall_stands_before_the_check_list():
 
 def figures_of(evaluation):
     """Every figure of the wall as ink."""
-    for block in wall.blocks(evaluation):
+    for block in paper.plain_blocks(wall.wall_blocks(evaluation)):
         if block["kind"] == "figure":
             ink = Ink(block["ink"]["width"], block["ink"]["height"])
             ink.marks = block["ink"]["marks"]
@@ -170,15 +169,15 @@ def test_a_fabric_carries_its_warning():
 def test_equal_designs_give_equal_pages():
     """Two evaluations of one design make the same data to the letter."""
     first, second = (ao.evaluate(evaluated("knee.yaml").design) for _ in range(2))
-    assert page(first, **SOURCE) == page(second, **SOURCE)
+    assert fixture.page_data(first, **SOURCE) == fixture.page_data(second, **SOURCE)
 
 
 def test_the_plain_report_draws_it_too():
     """Without the typst wheel the section is there, on sheets of the fallback."""
-    data = page(evaluated("knee.yaml"), **SOURCE) | {
+    data = fixture.page_data(evaluated("knee.yaml"), **SOURCE) | {
         "source_file": "a.yaml", "source": "a: 1\n", "run": "{}",
     }  # fmt: skip
-    data["blocks"] = wall.blocks(evaluated("knee.yaml"))
+    data["blocks"] = paper.plain_blocks(wall.wall_blocks(evaluated("knee.yaml")))
     pdf, images = fallback.render(data, 0)
     assert pdf.startswith(b"%PDF")
     assert len(images) == 3

@@ -12,16 +12,17 @@ import report_fixture as fixture
 from full_disk import fill
 
 from actuator_opt.base.errors import InputError
-from actuator_opt.pages import ExtraTable, read_attachment, write_report
+from actuator_opt.pages import read_attachment
+from actuator_opt.rendering.blocks import text_table
 
 HERE = Path(__file__).parent
 NAME = r"a # $ \ * _ @ < > [x](y) `z` {w} ~ // /* é ü θ ≥ "
 SCRIPT = """
 import sys, pathlib
 import report_fixture as fixture
-from actuator_opt.pages import write_report
-for file in write_report(fixture.build_optimisation(), folder=pathlib.Path(sys.argv[1]), stem="r",
-        source_text=fixture.SOURCE, source_name="knee.yaml", command="c", date=sys.argv[2] or None):
+for file in fixture.write_report(
+        fixture.build_optimisation(), folder=pathlib.Path(sys.argv[1]), stem="r", command="c",
+        source_text=fixture.SOURCE, source_name="knee.yaml", date=sys.argv[2] or None):
     print(file.path.name, file.sha256)
 """
 
@@ -35,7 +36,7 @@ def write(subject, folder, **changes):
         "command": "actuator-opt optimise designs/knee.yaml",
         "date": None,
     }
-    return write_report(subject, folder=folder, **(given | changes))
+    return fixture.write_report(subject, folder=folder, **(given | changes))
 
 
 @pytest.mark.parametrize("date", ["", "2026-02-03"])
@@ -178,7 +179,7 @@ def test_absurd_content_still_prints(tmp_path):
         source_text="# " + "y" * 900 + "\n\ttab\n" * 3,
         command="c " * 900,
         date="2026-02-03",
-        extra_tables=[ExtraTable("#t", ["a"], [])],
+        extra_tables=[text_table("#t", ["a"], [])],
     )
     assert files[0].path.read_bytes().startswith(b"%PDF-1.7")
     assert files[0].pages < 12

@@ -49,12 +49,12 @@ def test_a_report_repeats_to_the_byte(reports, tmp_path, kind):
     data = result.json
     assert data["rerun"]["repeats"] is True
     assert data["rerun"]["differences"] == {}
-    assert "the result repeats" in data["rerun"]["outcome"]
+    assert "the result is reproduced" in data["rerun"]["outcome"]
     assert "--set 'load.mass=21 kg'" in data["rerun"]["command"]
     assert ("kkt" in data) == (kind == "o")
     assert (tmp_path / "small one.pdf").read_bytes() == reports[kind].read_bytes()
     told = run("rerun", reports[kind])
-    assert told.err.endswith("as is this\n")
+    assert told.err.endswith("the same as this one\n")
     assert run("rerun", reports[kind], "--quiet").out == ""
 
 
@@ -116,11 +116,11 @@ FACTS = {"actuator_opt": "0.6.0", "command": "actuator-opt evaluate a.yaml", "so
         ({"actuator_opt": "99.0.0"}, "was made by actuator-opt 99.0.0"),
         ({"command": ""}, "made by a script"),
         ({"command": "actuator-opt 'evaluate"}, "made by actuator-opt ?"),
-        ({"command": "actuator-opt simulate s.yaml"}, "whose input is more than a design"),
-        ({"command": "rm -rf x"}, "whose input is more than a design"),
-        ({"command": "actuator-opt evaluate a --frob 3"}, "cannot be run again"),
-        ({"command": "actuator-opt optimise a --seed x"}, "cannot be run again"),
-        ({"command": "actuator-opt optimise"}, "cannot be run again"),
+        ({"command": "actuator-opt simulate s.yaml"}, "needs more input than a design"),
+        ({"command": "rm -rf x"}, "needs more input than a design"),
+        ({"command": "actuator-opt evaluate a --frob 3"}, "cannot be repeated"),
+        ({"command": "actuator-opt optimise a --seed x"}, "cannot be repeated"),
+        ({"command": "actuator-opt optimise"}, "cannot be repeated"),
         ({"command": "actuator-opt evaluate a --plugin own.py"}, "which is a program"),
         ({"command": "actuator-opt evaluate a --set bore"}, "PATH=VALUE"),
         ({"command": "actuator-opt optimise a --verify-dynamics no.yaml"}, "no such file"),

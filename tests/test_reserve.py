@@ -14,6 +14,7 @@ from statistics import NormalDist
 
 import numpy as np
 import pytest
+import report_fixture as fixture
 import scatter_case as case
 from scipy.special import betaincinv, ndtri
 
@@ -27,15 +28,14 @@ from actuator_opt.optimisation.result import Optimisation
 from actuator_opt.optimisation.robustness import Robust
 from actuator_opt.pages import (
     calibration,
-    compare_text,
-    page,
-    pareto_document,
-    runs_text,
-    tables,
-    terminal,
+    comparison,
+    pareto,
+    report as page,
+    runs,
+    sweep,
 )
-from actuator_opt.pages.sweep_text import sweep_text
-from actuator_opt.rendering import paper_plain as fallback
+from actuator_opt.rendering import paper, paper_plain as fallback, terminal as renderer
+from actuator_opt.rendering.terminal import blocks_text
 from actuator_opt.uncertainties.draw import normal_quantile
 from actuator_opt.uncertainties.estimate import exact
 from actuator_opt.uncertainties.quick import DRAWS, quick_yield
@@ -96,8 +96,8 @@ def test_a_limit_with_a_tenth_of_reserve_holds_in_every_draw():
     assert (found.value, found.upper) == (1.0, 1.0)
     assert found.lower == pytest.approx(0.025 ** (1 / DRAWS), rel=1e-9)
     assert evaluation.tight == ()
-    assert page.verdict(evaluation)["text"] == "REQUIREMENTS MET"
-    assert page.verdict(evaluation)["state"] == "met"
+    assert page.verdict(evaluation).text == "REQUIREMENTS MET"
+    assert page.verdict(evaluation).state == "met"
     assert "About 100 %" in " ".join(page.reserve_sentences(evaluation))
     assert "--yield" not in " ".join(page.reserve_sentences(evaluation))
 
@@ -138,7 +138,7 @@ def test_without_draws_the_reason_and_the_way_on_are_said(wide):
         assert words in found.why
         assert shown.to_dict()["reserve"]["yield"] is None
         assert words in shown.to_dict()["reserve"]["why"]
-        for text in (terminal.verdict(shown, width=200), str(shown)):
+        for text in (fixture.shown(shown, width=200), str(shown)):
             assert f"Yield not estimated ({found.why})" in text
             assert "`actuator-opt uncertainty`" in text
 
@@ -160,7 +160,7 @@ def test_the_yield_asked_for_is_told_by_its_own_sample(optimum):
     found = verbs.optimum.estimated(replace(optimum, robust=robust), ())
     told = found.to_dict()["reserve"]["yield"]
     assert [told[key] for key in ("value", "lower", "upper", "draws")] == [0.93, 0.92, 0.94, 10_000]
-    assert page.verdict(found)["state"] == "met"
+    assert page.verdict(found).state == "met"
     assert page.reserve_sentences(found) == []
 
 
@@ -215,8 +215,8 @@ def test_the_verdict_is_amber_where_a_limit_has_no_reserve(optimum):
     assert count >= 10
     words = f"requirements met, {count} limits without reserve"
     badge = page.verdict(optimum)
-    assert (badge["state"], badge["text"]) == ("checks", words.upper())
-    shown = terminal.optimisation_text(optimum, colour=True, width=120)
+    assert (badge.state, badge.text) == ("checks", words.upper())
+    shown = fixture.shown(optimum, colour=True, width=500)
     assert f"\x1b[33;1m! {words}\x1b[0m" in shown
     assert "`actuator-opt optimise --yield 0.99`" in shown
     fails = optimum.best_evaluation.yield_estimate.worst_fails
@@ -232,21 +232,22 @@ def test_the_verdict_is_amber_where_a_limit_has_no_reserve(optimum):
 def test_rows_without_reserve_are_marked_on_paper_and_in_the_terminal(optimum):
     """The state of a row is a word: it reads in grey and without colour."""
     evaluation = optimum.best_evaluation
-    rows = tables.requirements(evaluation)["rows"]
+    rows = paper.plain_blocks([page.requirements(evaluation)])[0]["rows"]
     states = {"".join(row[0]): row[6]["text"] for row in rows}
     assert states["buckling_factor"] == "no reserve"
     assert states["burst_factor"] == "met"
-    plain = terminal.requirements_table(evaluation, unicode=False, width=120)
-    assert [line.split()[0] for line in plain.splitlines() if "buckling_factor" in line] == ["!"]
-    assert "cap retention" in terminal.checks_table(evaluation, width=120)
+    plain = fixture.shown(optimum, unicode=False, width=120)
+    rows = [line.split() for line in plain.splitlines()]
+    assert [row[0] for row in rows if row[1:2] == ["buckling_factor"]] == ["!"]
+    assert any(row[:3] == ["!", "cap", "retention"] for row in rows)
 
 
 def test_one_limit_reads_as_one(wide, monkeypatch):
     """A singular; and the fallback renderer has the same amber."""
     row = replace(wide.requirements[0], margin=0.0)
     shown = replace(unchecked(wide), requirements=(row, *wide.requirements[1:]))
-    assert page.verdict(shown)["text"] == "REQUIREMENTS MET, 1 LIMIT WITHOUT RESERVE"
-    data = page.page(shown, source_text="", source_name="a.yaml", command="", date=None)
+    assert page.verdict(shown).text == "REQUIREMENTS MET, 1 LIMIT WITHOUT RESERVE"
+    data = fixture.page_data(shown, source_text="", source_name="a.yaml", command="")
     drawn = []
     monkeypatch.setattr(fallback, "_draw", lambda sheets, title: drawn.extend(sheets) or (b"", []))
     monkeypatch.setattr(fallback, "embed", lambda pdf, files, timestamp: pdf)
@@ -262,8 +263,8 @@ def test_a_missed_check_is_not_hidden_by_limits_without_reserve(optimum):
     missed = Check("a line", "missed", metric="mass", sense="max", limit=1.0, value=2.0, margin=-1)
     shown = replace(evaluation, checks=(*evaluation.checks, missed))
     badge = page.verdict(shown)
-    assert badge["text"] == "REQUIREMENTS MET, CHECKS MISSED"
-    assert any("limits without reserve" in line for line in badge["cautions"])
+    assert badge.text == "REQUIREMENTS MET, CHECKS MISSED"
+    assert any("limits without reserve" in line for line in badge.cautions)
 
 
 # ---- counts ----
@@ -283,18 +284,18 @@ def test_counts_of_unverified_and_extrapolated_stand_on_page_one(wide):
         "extrapolated_models": len(models),
     }
     badge = page.verdict(evaluation)
-    assert badge["cautions"] == [
+    assert badge.cautions == [
         f"values not verified: {len(evaluation.unverified)}",
         f"EXTRAPOLATED: {len(flagged)} result, {len(models)} model",
     ]
-    shown = terminal.verdict(evaluation, colour=True)
+    shown = fixture.shown(evaluation, colour=True)
     assert f"\x1b[33mvalues not verified: {len(evaluation.unverified)}; EXTRAPOLATED" in shown
-    assert "(cycle_life)" in shown
-    table = tables.requirements(evaluation)
+    assert "extrapolated: cycle_life" in shown
+    table = paper.plain_blocks([page.requirements(evaluation)])[0]
     names = ["".join(row[0]) for row in table["rows"]]
     assert "cycle_life (!)" in names
     assert "(!) EXTRAPOLATED" in table["note"]
-    assert "cycle_life (!)" in terminal.requirements_table(evaluation, width=120)
+    assert "cycle_life (!)" in fixture.shown(evaluation, width=120)
     clean = replace(
         evaluation,
         unverified=(),
@@ -302,10 +303,10 @@ def test_counts_of_unverified_and_extrapolated_stand_on_page_one(wide):
         models=tuple(replace(m, in_range=True) for m in evaluation.models),
     )
     badge = page.verdict(clean)
-    assert badge["cautions"] == []
-    assert badge["lines"][-2:] == ["values not verified: 0", "EXTRAPOLATED: 0 results"]
+    assert badge.cautions == []
+    assert badge.lines[-2:] == ["values not verified: 0", "EXTRAPOLATED: 0 results"]
     one = replace(clean, unverified=(Unverified("a", "b", "c", "d"),))
-    assert page.verdict(one)["cautions"] == ["values not verified: 1"]
+    assert page.verdict(one).cautions == ["values not verified: 1"]
 
 
 # ---- brothers ----
@@ -316,20 +317,21 @@ def test_other_places_that_say_met_say_it_without_reserve_too(optimum):
     evaluation = optimum.best_evaluation
     count = len(evaluation.tight)
     beside = verbs.compare(optimum, KNEE)
-    assert compare_text.named(beside, 0).endswith(f"met, {count} limits without reserve")
+    assert comparison.named(beside, 0).endswith(f"met, {count} limits without reserve")
     assert beside.to_dict()["designs"][0]["without_reserve"] == list(evaluation.tight)
     head = {"kind": "optimise", "status": "optimal", "met": True, "without_reserve": count}
-    assert runs_text.outcome(head) == f"met, {count} without reserve"
-    assert "\x1b[33mmet, " in runs_text.runs_table([("one", head)], colour=True)
+    assert runs.outcome(head) == f"met, {count} without reserve"
+    listing = runs.listing([("one", head)])
+    assert "\x1b[33mmet, " in blocks_text([listing], colour=True, unicode=True, width=100)
 
     class Front:
         points, knee = (1, 2), None
 
     Front.evaluation = evaluation
-    badge = pareto_document._verdict(Front())
-    assert badge["state"] == "checks"
-    assert badge["cautions"][0] == f"first design: {count} limits without reserve"
-    assert badge["cautions"][1:] == page.doubts(evaluation)[1]
+    badge = pareto.verdict(Front())
+    assert badge.state == "checks"
+    assert badge.cautions[0] == f"first design: {count} limits without reserve"
+    assert badge.cautions[1:] == page.doubts(evaluation)[1]
 
     class Changes:
         best_after = optimum
@@ -345,11 +347,11 @@ def test_the_best_of_a_sweep_say_that_they_have_no_reserve(optimum):
     """Around an optimum the least margin is 0; with limits relaxed by far there is no remark."""
     swept = ao.sweep(optimum.best, ["fluid.air_content=0.5 %,0.6 %"], workers=1)
     assert len(swept.best) == 1  # more air is less stiff
-    shown = sweep_text(swept, colour=True)
-    assert "\x1b[33m1 of these without reserve: least margin below 0.1 %" in shown
+    shown = renderer.text(sweep.page(swept), colour=True)
+    assert "\x1b[33m1 of the best without reserve: least margin below 0.1 %" in shown
     with_room = replace(swept.best[0], row=(*swept.best[0].row[:-3], 0.02, *swept.best[0].row[-2:]))
     swept.best[:] = [with_room]
-    assert "without reserve" not in sweep_text(swept)
+    assert "without reserve" not in renderer.text(sweep.page(swept))
 
 
 # ---- light ----
@@ -373,7 +375,7 @@ def test_the_estimate_loads_no_scipy():
     code = (
         "import sys\n"
         "import actuator_opt as ao\n"
-        "from actuator_opt import verbs\n"
+        "from actuator_opt import api as verbs\n"
         f"found = verbs.with_yield(ao.evaluate({str(DESIGNS / 'aalto_40_25_220.yaml')!r}))\n"
         "assert found.yield_estimate.draws == 500\n"
         "assert 'scipy' not in sys.modules, 'scipy was imported'\n"

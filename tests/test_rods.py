@@ -23,7 +23,7 @@ from actuator_opt.evaluation import rod_strength
 from actuator_opt.evaluation.kernel import compute
 from actuator_opt.models import stepped
 from actuator_opt.optimisation.actuator import build
-from actuator_opt.pages import drawing
+from actuator_opt.pages import section as drawing
 
 KNEE = (Path(__file__).parents[1] / "designs" / "knee.yaml").read_text(encoding="utf-8")
 PLY_P = {

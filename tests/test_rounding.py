@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import report_fixture as fixture
 from cli_runner import bench, run
 from hypothesis import given, settings, strategies as st
 
@@ -22,7 +23,6 @@ from actuator_opt.optimisation.listed import Listed
 from actuator_opt.optimisation.problem import BoxProblem, Values
 from actuator_opt.optimisation.rounding import Wanted, misfits, plies, rounded, sizes_of
 from actuator_opt.optimisation.solver import solve
-from actuator_opt.pages.page import page
 from actuator_opt.pages.prices import quality
 from actuator_opt.rendering import text
 
@@ -531,9 +531,9 @@ def test_plies_too_coarse_for_the_requirements(tmp_path):
 def test_page_one_is_the_design_that_is_built(simple):
     """Badge, tiles, drawing, tables and hash are of the rounded design; the sheet says so."""
     assert simple.best_objective > simple.objective_value
-    data = page(simple, source_text="", source_name="x.yaml", command="", date=None)
-    made = page(
-        ao.evaluate(simple.best), source_text="", source_name="x.yaml", command="", date=None
+    data = fixture.page_data(simple, source_text="", source_name="x.yaml", command="")
+    made = fixture.page_data(
+        ao.evaluate(simple.best), source_text="", source_name="x.yaml", command=""
     )
     for part in ("section", "hash"):
         assert data[part] == made[part]
@@ -542,7 +542,7 @@ def test_page_one_is_the_design_that_is_built(simple):
     for title in ("Requirements", "Check list", "Mass"):
         assert tables[title]["rows"] == alone[title]["rows"], title
     heads = [one["head"] for one in tables["Design variables"]["columns"]]
-    place = heads.index("whole\nplies")
+    place = heads.index("whole plies")
     for row, variable in zip(
         tables["Design variables"]["rows"], simple.rounding.variables, strict=True
     ):

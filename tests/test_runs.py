@@ -18,7 +18,7 @@ from actuator_opt.base import runs as run_store
 from actuator_opt.optimisation import recorded
 from actuator_opt.optimisation.result import Optimisation
 from actuator_opt.optimisation.run import optimise as solver_entry
-from actuator_opt.pages.convergence_figure import convergence_figure
+from actuator_opt.pages.trust import convergence_figure
 from actuator_opt.rendering.ink import Ink
 
 WALL = "  retention.wall:\n    lower: 1 mm\n    upper: 10 mm\n"
@@ -120,7 +120,7 @@ def test_own_metrics_come_back_where_their_file_is_named(folder, design, tmp_pat
     optimised(design, "--plugin", plugin, "--report", "--out", tmp_path / "a")
     refused = run("report", "last", "--out", tmp_path / "b", "--json")
     assert refused.code == 3
-    assert refused.errors[0]["message"].startswith(f"its own metrics came from {plugin}")
+    assert refused.errors[0]["message"].startswith(f"its custom metrics came from {plugin}")
     assert refused.errors[0]["remedy"] == "name it with --plugin to run it"
     named = run("report", "last", "--out", tmp_path / "b", "--plugin", plugin)
     assert (named.code, named.err.count("SHA-256")) == (0, 0)
@@ -269,7 +269,7 @@ def test_many_writers_at_once(tmp_path):
     threads = [threading.Thread(target=write) for _ in range(4)]
     other = subprocess.Popen(
         [sys.executable, "-c",
-         "import sys; from pathlib import Path; from actuator_opt import run_store\n"
+         "import sys; from pathlib import Path; from actuator_opt.base import runs as run_store\n"
          "for k in range(20): run_store.write(Path(sys.argv[1]), '20260101-000000', {}, {})",
          str(tmp_path)],
         env=surroundings(),

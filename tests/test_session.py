@@ -282,7 +282,7 @@ def test_designs_without_a_session():
     bare = text[: text.index("\nvariables:")] + "\n"
     with pytest.raises(ao.InputError, match="no variables"):
         ao.session(bare)
-    with pytest.raises(ao.InputError, match="no design meets every requirement"):
+    with pytest.raises(ao.InputError, match="no design meets all requirements"):
         ao.session(STEEL, set={"requirements.stiffness_min.min": "60 kN/mm"})
     choices = f"{text}\nchoices:\n  rod.material: [steel_42crmo4, ti_6al4v]\n"
     with pytest.raises(ao.ActuatorError, match="choices"):

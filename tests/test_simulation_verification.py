@@ -16,9 +16,8 @@ from actuator_opt.design.model import Limit
 from actuator_opt.design.scenario.model import Load, Scenario
 from actuator_opt.evaluation.build import prepare
 from actuator_opt.evaluation.springs import Give
-from actuator_opt.pages.tables import extra
-from actuator_opt.pages.verification_rows import sensitivity_rows, verification_rows
-from actuator_opt.pages.verification_text import sensitivity_text, verification_text
+from actuator_opt.pages import verification as pages
+from actuator_opt.rendering import terminal
 from actuator_opt.simulation import sensitivity
 from actuator_opt.simulation.sensitivity import sensitivities
 from actuator_opt.simulation.verification import DYNAMIC, experiments, verify
@@ -269,15 +268,15 @@ def test_verification_reads_as_tables():
     """Terminal in its width and in ASCII, report tables and JSON without NaN."""
     found = sticking()
     for width in (60, 100, 160):
-        plain = verification_text(found, width=width, unicode=False)
+        plain = terminal.blocks_text(pages.blocks(found), colour=False, unicode=False, width=width)
         assert plain.isascii()
         assert max(map(len, plain.splitlines())) <= width
     held = sum(one.met for one in found.rows)
-    assert f"{held} of {len(found.rows)} requirements hold in time" in verification_text(found)
-    tables = verification_rows(found)
+    assert f"{held} of {len(found.rows)} requirements hold in time" in plain
+    tables = pages.tables(found)
     assert len(tables[0].rows) == len(found.rows)
     for table in tables:
-        assert extra(table)["rows"]
+        assert table.columns
     json.dumps(found.to_dict(), allow_nan=False)
 
 
@@ -420,12 +419,14 @@ def test_what_is_asked_wrongly_is_said_in_one_line(arguments, words):
 
 
 def test_sensitivities_read_as_a_table():
-    """Terminal in its width and in ASCII, and a table of the report."""
+    """Terminal in its width and in ASCII; every parameter has a row, each left out its reason."""
     found = followed()
     for width in (50, 100):
-        plain = sensitivity_text(found, width=width, unicode=False)
+        plain = terminal.blocks_text(
+            pages.sensitivity_blocks(found), colour=False, unicode=False, width=width
+        )
         assert plain.isascii()
         assert max(map(len, plain.splitlines())) <= width
-    (table,) = sensitivity_rows(found)
+    table, left_out = pages.sensitivity_blocks(found)
     assert len(table.rows) == len(found.parameters)
-    assert extra(table)["rows"]
+    assert len(left_out.items) == len(found.skipped)

@@ -9,6 +9,7 @@ from dataclasses import replace
 import cli_runner
 import numpy as np
 import pytest
+import report_fixture as fixture
 from cli_runner import PLIES, bench, refused, run
 from hypothesis import given, settings, strategies as st
 from problems import pressure_vessel
@@ -25,8 +26,7 @@ from actuator_opt.optimisation.branch_and_bound import search
 from actuator_opt.optimisation.listed import Listed
 from actuator_opt.optimisation.problem import BoxProblem, Values
 from actuator_opt.optimisation.solver import solve
-from actuator_opt.pages.choices_table import terminal
-from actuator_opt.pages.whole_plies import notes as rounding_notes
+from actuator_opt.pages.optimum import rounding_notes
 
 BORE = "  cylinder.bore:\n    lower: 20 mm\n    upper: 30 mm\n"
 THICKNESS = "  barrel.layup[1].thickness:\n    lower: 0.5 mm\n    upper: 4 mm\n"
@@ -392,7 +392,7 @@ def test_choices_with_sizes_are_those_of_brute_force():
             own = alone[tuple(v if isinstance(v, str) else round(v) for v in one.values.values())]
             assert one.rounded >= own * (1 - 1e-6)
             assert one.cost == pytest.approx(one.rounded - best.rounded, abs=1e-9)
-    assert "with sizes" in terminal(result)
+    assert "with sizes" in fixture.shown(result)
     json.dumps(result.to_dict()["choices"])
 
 

@@ -15,13 +15,16 @@ from hypothesis import given, settings, strategies as st
 from test_sweep import KNEE, NEAR, STEEL, WAYS
 
 import actuator_opt as ao
+from actuator_opt.api import reports
 from actuator_opt.base.bounds import SWEEP_FIGURES
 from actuator_opt.base.errors import InputError, UsageError
-from actuator_opt.pages import sweep_figure
-from actuator_opt.pages.sweep_contour import contour_figure
-from actuator_opt.pages.sweep_figures import sweep_figures
-from actuator_opt.pages.sweep_marks import SweepFigureData
+from actuator_opt.pages.sweep import page
+from actuator_opt.pages.sweep_figures import drawing
+from actuator_opt.pages.sweep_figures.contour import contour_figure
+from actuator_opt.pages.sweep_figures.drawing import sweep_figures
+from actuator_opt.pages.sweep_figures.shared import SweepFigure, SweepFigureData, fits
 from actuator_opt.pages.ucurves import STYLES, differences_drawn
+from actuator_opt.rendering import html, paper, terminal
 from actuator_opt.rendering.ink import Ink
 from actuator_opt.sweeps import sample
 from actuator_opt.sweeps.field import field
@@ -317,17 +320,32 @@ def test_differences_of_curves_are_read_off_their_own_axis():
     assert len(second) == 2  # at 0 and 20 mm: at 40 mm the first curve has ended
 
 
+def test_the_page_of_a_sweep(knee, tmp_path):
+    """On paper and in HTML with parallel axes; without a feasible design it says why."""
+    swept = ao.sweep(knee, GRID, workers=1)
+    sheet = page(swept)
+    assert sheet.hero(100.0).width == 180.0
+    assert sheet.hero(100.0).marks
+    origin = reports.origin(knee.design, knee.source)
+    files = paper.write(sheet, origin, folder=tmp_path, stem="sweep")
+    assert files[0].pages == 1
+    assert "Best designs" in html.document(sheet, origin)
+    missed = page(ao.sweep(STEEL, ["cylinder.bore=18..20 mm:3"], workers=1))
+    assert not missed.hero(100.0).marks
+    assert "is missed furthest in 3 of them" in terminal.text(missed, width=200)
+
+
 @pytest.mark.parametrize("kind", SWEEP_FIGURES)
 def test_every_figure_of_a_sweep_is_whole(kind):
     """Its module states a complete figure; modules with a figure are listed."""
-    own = sweep_figure.figure(kind)
+    own = drawing.figure(kind)
     assert callable(own.check)
     assert callable(own.draw)
-    folder = Path(sweep_figure.__file__).parent
+    folder = Path(drawing.__file__).parent
     modules = {
         file.stem for file in folder.glob("*.py") if "\nFIGURE = " in file.read_text("utf-8")
     }
-    assert modules == {*SWEEP_FIGURES.values()}
+    assert modules == {*SWEEP_FIGURES}
     assert len(modules) == len(SWEEP_FIGURES)
     assert all(re.fullmatch(r"[a-z_]+", word) for word in SWEEP_FIGURES)
 
@@ -335,4 +353,4 @@ def test_every_figure_of_a_sweep_is_whole(kind):
 def test_a_figure_that_forgets_a_piece_is_refused():
     """At import of its module."""
     with pytest.raises(TypeError, match="draw"):
-        sweep_figure.SweepFigure(every=True, lines=False, check=sweep_figure.fits)
+        SweepFigure(every=True, lines=False, check=fits)

@@ -16,8 +16,9 @@ from test_sweep import KNEE, NEAR, STEEL, WAYS
 import actuator_opt as ao
 from actuator_opt.base.database import Rows
 from actuator_opt.base.errors import ActuatorError, InputError, UsageError
-from actuator_opt.pages import sweep_parquet
-from actuator_opt.pages.sweep_parquet import SweepParquet
+from actuator_opt.pages.sweep import SweepColumns, about
+from actuator_opt.rendering import parquet as parquet_file
+from actuator_opt.rendering.parquet import ParquetFile
 from actuator_opt.sweeps import run
 from actuator_opt.sweeps.chunk import Chunk
 
@@ -36,7 +37,7 @@ def files(tmp_path_factory):
     folder = tmp_path_factory.mktemp("rows")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(run, "CHUNK", 64)
-        patch.setattr(sweep_parquet, "GROUP", 100)
+        patch.setattr(parquet_file, "GROUP", 100)
         swept = ao.sweep(
             ao.read(KNEE, set=NEAR), MIXED, method="lhs", n=300, seed=3, workers=1,
             csv=folder / "r.csv", parquet=folder / "r.parquet",
@@ -134,10 +135,12 @@ def test_memory_does_not_grow_with_the_rows(tmp_path):
     for count in (25, 49):
         held = 0
         tracemalloc.start()
-        with SweepParquet(study, tmp_path / "many.parquet") as table:
+        columns = SweepColumns(study)
+        with ParquetFile(columns.fields, about(study), tmp_path / "many.parquet") as table:
             for k in range(count):
                 given = Rows(rows, {})
-                table.add(Chunk(4096 * k, given, 4096, rows[:, 0], rows[:, -1] == 1.0))
+                chunk = Chunk(4096 * k, given, 4096, rows[:, 0], rows[:, -1] == 1.0)
+                table.add(columns.values(chunk))
                 held = max(held, arrow.total_allocated_bytes())
         peaks.append(tracemalloc.get_traced_memory()[1] + held)
         tracemalloc.stop()
@@ -161,8 +164,8 @@ signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, 300_000))
 import actuator_opt as ao
 from actuator_opt.base.errors import InputError
-from actuator_opt.pages import sweep_parquet
-sweep_parquet.GROUP = int(sys.argv[4])
+from actuator_opt.rendering import parquet
+parquet.GROUP = int(sys.argv[4])
 vary = ["cylinder.bore=18..26 mm", "rod.outer_diameter=9..13 mm"]
 try:
     ao.sweep(
@@ -222,4 +225,4 @@ def test_the_terminal_names_the_file(tmp_path):
     assert parquet.read_metadata(file).num_rows == 3
     done = terminal(*words, "--parquet", str(file), "--reduce", "best:3")
     assert done.code == 2
-    assert "leave out --store, --csv and --parquet" in done.err
+    assert "omit --store, --csv and --parquet" in done.err

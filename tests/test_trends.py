@@ -16,7 +16,7 @@ from actuator_opt import api as verbs
 from actuator_opt.design.materials import load_library
 from actuator_opt.evaluation.film import FilmRow, slopes, solve
 from actuator_opt.evaluation.seal_contact import seal_contact
-from actuator_opt.replicas import aalto_trends, trends
+from actuator_opt.replicas import trends
 from actuator_opt.replicas.trends import FACTORS
 
 DESIGNS = Path(__file__).parents[1] / "designs"
@@ -301,7 +301,7 @@ def test_pressure(found):
     assert min(ends) - 2e-3 <= dry <= max(ends) + 2e-3
     assert 0 < wet < dry
     assert said(found, "hydraulic pressure") == ("disagrees", "disagrees")
-    assert "energised" in aalto_trends._pressure(found)
+    assert "energised" in trends._pressure(found)
 
 
 def test_temperature(name, found):
@@ -410,11 +410,11 @@ def test_verdict_follows_from_the_number():
 
 def test_every_verdict_here_is_explained(found):
     """No cell of these designs is left to "we do not know why", none names an unknown factor."""
-    for model, known in ((found.coefficient, aalto_trends.COEFFICIENT),
-                         (found.film, aalto_trends.FILM)):  # fmt: skip
-        assert {factor for factor, _ in known} <= set(NAMES)
+    for model, known in ((found.coefficient, trends.COEFFICIENT),
+                         (found.film, trends.FILM)):  # fmt: skip
+        assert set(known) <= set(NAMES)
         for index, factor in enumerate(NAMES):
-            assert (factor, model.verdict(index)) in known
+            assert model.verdict(index) in known[factor]
 
 
 def evaluated(name, **changes):
@@ -424,7 +424,7 @@ def evaluated(name, **changes):
 
 def test_the_table_shows_numbers_and_reasons():
     """Ten rows in print's order; the note names the odd row and what is unknown of the seals."""
-    table = aalto_trends.trends_table(evaluated("aalto_40_25_220"))
+    table = trends.trends_table(evaluated("aalto_40_25_220"))
     assert [row[0].partition(" ")[2] for row in table.rows] == NAMES
     pressure = table.rows[NAMES.index("hydraulic pressure")]
     assert pressure[0].startswith("decrease")
@@ -435,7 +435,7 @@ def test_the_table_shows_numbers_and_reasons():
 
 def test_without_a_film_the_reason_stands_in_the_note():
     """A law without preload holds no film: the column is empty and says why."""
-    table = aalto_trends.trends_table(evaluated("elasswad_knee"))
+    table = trends.trends_table(evaluated("elasswad_knee"))
     assert {row[2] for row in table.rows} == {"–"}
     assert "opens the contact" in table.note
     hardness = table.rows[NAMES.index("seal material hardness")]
@@ -445,7 +445,7 @@ def test_without_a_film_the_reason_stands_in_the_note():
 def test_without_a_moving_case_there_is_no_friction_to_follow():
     """Standing still: no numbers, and what it needs."""
     changes = {f"load_cases[{case}].speed": "0 m/s" for case in ("stance", "swing")}
-    table = aalto_trends.trends_table(evaluated("knee", **changes))
+    table = trends.trends_table(evaluated("knee", **changes))
     assert {cell for row in table.rows for cell in row[1:]} == {"–"}
     assert "needs a speed above zero" in table.note
 

@@ -1,4 +1,4 @@
-"""The verbs of the library: one name each in the terminal and in scripts."""
+"""The public functions of the library, named as in the terminal."""
 
 from ..evaluation.comparison import Comparison
 from .actuator import Actuator, read

@@ -1,4 +1,4 @@
-"""A design as read, and its faults."""
+"""A design as read, with its faults."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Plugins = Iterable["Plugin | Callable[[View], object] | str | Path"]
 
 @dataclass(frozen=True, slots=True)
 class Actuator:
-    """A design as read: the design, where its values stand, and the user's own metrics."""
+    """A design as read: the design, the locations of its values, and the user's own metrics."""
 
     design: Design
     source: Source | None = None
@@ -36,7 +36,7 @@ class Actuator:
 
 
 def plugins_of(given: Plugins) -> tuple[Plugin, ...]:
-    """The plugins of functions and Python files."""
+    """Plugins from functions and Python files."""
     found: list[Plugin] = []
     for item in given:
         if isinstance(item, Plugin):
@@ -88,7 +88,7 @@ def read_as(
     set: Sequence[tuple[str, str]] = (),
     plugins: Plugins = (),
 ) -> Actuator:
-    """The design of a file's text, as if read from a file of that name; parameters as `read`."""
+    """The design in a file's text, as if read from a file of that name; parameters as `read`."""
     try:
         actuator = read(f"{text}\n", set=set, plugins=plugins)
     except InputError as error:
@@ -111,13 +111,13 @@ def as_actuator(design: Actuator | Design | str | Path, plugins: Plugins = ()) -
 
 
 def place(actuator: Actuator) -> Callable[[str, str, str], Diagnostic] | None:
-    """What makes a fault of a variable's PATH, with its place in the file."""
+    """A function that builds a fault of a variable's PATH, with its place in the file."""
     return None if actuator.source is None else actuator.source.of_variable
 
 
 @contextmanager
 def located(actuator: Actuator) -> Iterator[None]:
-    """Give faults that know only their PATH the place in the file too."""
+    """Add the place in the file to faults that only know their PATH."""
     try:
         yield
     except InputError as error:

@@ -1,4 +1,4 @@
-"""Faults of a file, whatever kind of file it is."""
+"""Faults of a design or scenario file."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .simulations import read_scenario
 
 
 class Examined(NamedTuple):
-    """What a file has: faults, and where it has none, values out of all proportion."""
+    """Result of examining a file: its faults or, without any, implausible values."""
 
     faults: list[Diagnostic]
     warnings: list[str]
@@ -30,8 +30,8 @@ def check(
 ) -> list[Diagnostic]:
     """All faults of a design or scenario; an empty list for a good one. Parameters as `read`.
 
-    Found too: variables that no model reads, requirements that no model answers. The models are
-    run for that, but no oil film is solved.
+    Includes variables that no model reads and requirements on missing metrics. This runs the
+    models, but solves no oil film.
     """
     return examine(source, set=set, plugins=plugins).faults
 
@@ -42,8 +42,8 @@ def examine(
     set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
     plugins: Plugins = (),
 ) -> Examined:
-    """All faults as `check`, and a warning for every value out of all proportion."""
-    if source == "-":  # read once, whatever it turns out to be
+    """All faults as `check`, and a warning for every implausible value."""
+    if source == "-":  # read once, whatever kind it is
         text, name = opened(source)
         found = examine(f"{text}\n", set=set, plugins=plugins)
         faults = [replace(one, file=name) if one.file == TEXT else one for one in found.faults]
@@ -60,13 +60,13 @@ def examine(
     except InputError as error:
         return Examined(error.diagnostics, [])
     faults = _of_models(actuator, without_films(subject))
-    if faults and actuator.plugins:  # they may mind the NaN of a film that is not solved
+    if faults and actuator.plugins:  # they may not accept the NaN of an unsolved film
         faults = _of_models(actuator, subject)
     return Examined(faults, [] if faults else _out_of_proportion(subject))
 
 
 def _of_models(actuator: Actuator, subject: PreparedDesign) -> list[Diagnostic]:
-    """Requirements that no model answers, variables that none reads, choices that exclude all."""
+    """Requirements on missing metrics, variables that no model reads, impossible choices."""
     try:
         faults = unanswered(actuator, subject)
         if faults:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ..pages import ReportFile
 
 MOST = 12
-"""Designs beside each other, at most: a choice."""
+"""Maximum number of designs to compare: a choice."""
 
 
 def compare(
@@ -33,15 +33,15 @@ def compare(
     optimise: bool = False,
     seed: int = 0,
 ) -> Comparison:
-    """Designs side by side: what differs in the inputs, and which parts make one better.
+    """Compare designs: differences of the inputs, and the parts that make one better.
 
     Parameters
     ----------
-    designs : two or more: files, recorded runs (id, ``last``), or what other verbs give; the first
-        is what the others are held against
+    designs : two or more: files, recorded runs (id, ``last``), or results of other functions; the
+        first is the reference
     set : values to replace in every file
     plugins : the user's own metrics
-    optimise : optimise every design first that is no optimum and has variables
+    optimise : first optimise every design with variables that is not an optimum
     seed : of these searches
 
     Raises
@@ -55,7 +55,7 @@ def compare(
     if len(designs) > MOST:
         raise UsageError(Diagnostic(f"{len(designs)} designs are too many", f"name up to {MOST}"))
     if sum(one == "-" for one in designs if isinstance(one, str)) > 1:
-        raise UsageError(Diagnostic("standard input holds one design", "name - once"))
+        raise UsageError(Diagnostic("standard input can only give one design", "name - once"))
     found: list[tuple[Evaluation, str, DesignState]] = []
     faults: list[Diagnostic] = []
     for one in designs:
@@ -67,13 +67,13 @@ def compare(
         raise InputError(faults)
     try:
         evaluations, origins, states = zip(*found, strict=True)
-        return comparison.compare(evaluations, _told(origins), states)
+        return comparison.compare(evaluations, _numbered(origins), states)
     except InputError as error:
         remedy = "name designs that differ"
         raise InputError(Diagnostic(error.diagnostics[0].message, remedy)) from None
 
 
-def _told(origins: Sequence[str]) -> list[str]:
+def _numbered(origins: Sequence[str]) -> list[str]:
     """Origins, numbered where one stands twice."""
     return [
         f"{one} ({origins[: k + 1].count(one)})" if origins.count(one) > 1 else one
@@ -84,7 +84,7 @@ def _told(origins: Sequence[str]) -> list[str]:
 def _found(
     one: Any, set: Any, plugins: Plugins, optimise: bool, seed: int
 ) -> tuple[Evaluation, str, DesignState]:
-    """The evaluation of whatever names a design, its origin, and whether it is an optimum."""
+    """The evaluation of a named design, its origin, and whether it is an optimum."""
     from ..optimisation.result import Optimisation
     from . import optimum
 
@@ -92,7 +92,7 @@ def _found(
         one, name = _file(one, set, plugins)
     elif isinstance(one, (str, Path, Run)):
         if set:
-            message = "--set: a run is compared as it was"
+            message = "--set: a recorded run cannot be changed"
             raise UsageError(Diagnostic(message, "name designs instead"))
         back: Restored = restore(one, plugins=plugins)
         one, name = back.optimisation, f"run {back.run.id}"
@@ -115,47 +115,47 @@ def _found(
 
 
 def _file(one: str | Path, set: Any, plugins: Plugins) -> tuple[Actuator, str]:
-    """A design read from a file or a text, and where it comes from."""
+    """A design read from a file or a text, and its origin."""
     actuator = read(one, set=set, plugins=plugins)
     name = str(one) if "\n" not in str(one) else file_name(actuator.design, actuator.source)
     return actuator, "<stdin>" if name == "-" else name
 
 
-def comparison_json(found: Comparison) -> dict[str, Any]:
+def comparison_json(comparison: Comparison) -> dict[str, Any]:
     """The `compare --json` object (SI)."""
-    from ..pages.compare_text import sentences
+    from ..pages.comparison import sentences
 
-    said = sentences(found)
+    said = sentences(comparison)
     answers = {
         question.name: {
             "metric": question.metric,
-            "best": None if question.best is None else found.labels[question.best],
-            "than": None if question.other is None else found.labels[question.other],
+            "best": None if question.best is None else comparison.labels[question.best],
+            "than": None if question.other is None else comparison.labels[question.other],
             "values": list(question.values),
             "parts": [{"part": part, "change": step} for part, step in question.steps],
             "sentence": sentence,
         }
-        for question, sentence in zip(found.questions, said, strict=False)
+        for question, sentence in zip(comparison.questions, said, strict=False)
     }
-    return found.to_dict() | {"answers": answers, "notes": said[len(answers) :]}
+    return comparison.to_dict() | {"answers": answers, "notes": said[len(answers) :]}
 
 
-def report_comparison(found: Comparison, **paper: Unpack[Paper]) -> list[ReportFile]:
+def report_comparison(comparison: Comparison, **paper: Unpack[Paper]) -> list[ReportFile]:
     """Draw a comparison as its report: PNG and SVG carry no title block."""
-    return report_files(draw_comparison(found, paper.get("folder", "reports")))
+    return report_files(draw_comparison(comparison, paper.get("folder", "reports")))
 
 
-def draw_comparison(found: Comparison, folder: str | Path = "reports") -> list[Path]:
+def draw_comparison(comparison: Comparison, folder: str | Path = "reports") -> list[Path]:
     """Write PNG and SVG of a comparison.
 
     ``comparison``: mass, compliance and friction part by part; ``comparison-stiffness``: the
     stiffness over the stroke of the first six designs, where any has it.
     """
-    from ..pages.compare_figure import comparison_figure, comparison_ucurves
+    from ..pages.comparison import comparison_figure, comparison_ucurves
     from ..rendering.image import write_ink
 
-    paths = write_ink(comparison_figure(found), Path(folder), "comparison")
-    curves = comparison_ucurves(found)
+    paths = write_ink(comparison_figure(comparison), Path(folder), "comparison")
+    curves = comparison_ucurves(comparison)
     if curves is not None:
         paths += write_ink(curves, Path(folder), "comparison-stiffness")
     return paths

@@ -1,4 +1,4 @@
-"""Look through a kept sweep, or a front."""
+"""Interactive page of a stored sweep or a front."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ..sweeps.explored import Explored
 
 ROWS = 5000
-"""Designs of a page; of more, an even sample."""
+"""Designs of a page; larger sets are sampled evenly."""
 
 
 def explore(
@@ -31,14 +31,14 @@ def explore(
     rows: int = ROWS,
     plugins: Sequence[str | Path] = (),
 ) -> list[ExplorerFile]:
-    """Write a kept sweep or a front as one page to look through, and its base design beside it.
+    """Write an interactive page of a stored sweep or a front, and its base design beside it.
 
     Parameters
     ----------
     store : database of `sweep`, or a recorded run of `sweep` or `pareto` as `read_run` takes it
     out : the page's file (``.html``), or a folder
     study : number of the study; default: the newest, or that of the run
-    rows : most designs of a sweep shown; of more, an even sample and the best
+    rows : maximum designs of a sweep shown; larger ones give an even sample and the best
     plugins : files with the user's metrics and constraints, as in the sweep; a record names them
         but never runs them
 
@@ -49,10 +49,10 @@ def explore(
     Raises
     ------
     UsageError
-        no row is asked for
+        fewer than one row
     InputError
-        no such file, study or run, not a store, one that has moved, one of other models, materials
-        or own metrics, or a place where nothing can be written
+        no such file, study or run; not a store, or one that has moved; one of other models,
+        materials or custom metrics; or a place that cannot be written
     """
     from ..explorer import write_explorer
     from ..sweeps.explored import explored
@@ -60,10 +60,10 @@ def explore(
     if rows < 1:
         raise UsageError(Diagnostic(f"--rows {rows}", "give 1 or more"))
     if str(out) == "-":
-        raise UsageError(Diagnostic("--out -: a page is no text to print", "name a file"))
+        raise UsageError(Diagnostic("--out -: the page cannot be printed as text", "name a file"))
     run = read_run(store) if run_store.is_name(str(store)) else None
     if run is not None and study is not None:
-        raise UsageError(Diagnostic("--study: a run is of one study", "leave it out"))
+        raise UsageError(Diagnostic("--study: a run has only one study", "leave it out"))
     front = run is not None and run.head.get("kind") == "pareto"
     which: int | str | None = study
     source, target = Path(store), Path(out)
@@ -88,7 +88,7 @@ def explore(
 
 
 def _require(target: Path, source: Path) -> None:
-    """Refuse a place where nothing can be written, or what is read stands."""
+    """Reject a target that cannot be written or is the source itself."""
     from ..explorer import design_beside
 
     files.require_folder(target.parent)

@@ -1,4 +1,4 @@
-"""A design as files for other programs."""
+"""Exports of a design to other programs."""
 
 from __future__ import annotations
 
@@ -33,16 +33,16 @@ def export(
     their volumes are those of the mass breakdown. Not in it, for the models know no shape of
     theirs: threads, studs and plugs of the rod, eyes, seals and guides, ports, and the holes of tie
     rods in the plates. DXF is the section with true dimensions, layers by part; XLSX has the
-    requirements with live margins, the variables and the masses.
+    requirements with live margins, the section as a picture, the variables and the masses.
 
     Parameters
     ----------
     subject : a design in any form, an evaluation, or an optimisation (its best design)
     formats : one or more of "step", "dxf" (extra ``cad``), "xlsx" (extra ``excel``)
-    folder, stem : where to; default: the design's name in ``reports/``
-    actuator : the design as read, where `subject` is its evaluation: the files get its file's name
-    date : ISO date the files carry; default: SOURCE_DATE_EPOCH, else none
-    plugins : the user's metrics and constraints, of a design that is no `Actuator` yet
+    folder, stem : target; default: the design's name in ``reports/``
+    actuator : the design as read, if `subject` is its evaluation: the files get its file's name
+    date : ISO date in the files; default: SOURCE_DATE_EPOCH, else none
+    plugins : the user's metrics and constraints, for a design that is not an `Actuator` yet
 
     Returns
     -------
@@ -50,7 +50,7 @@ def export(
 
     Raises
     ------
-    UsageError : no such format, or no ISO date
+    UsageError : no such format, or not an ISO date
     InputError : a part cannot be drawn, or the folder cannot be written
     ActuatorError : the format's extra is not installed
     """

@@ -1,4 +1,4 @@
-"""Pareto fronts: found, and written down."""
+"""Pareto fronts: the search, and its files."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Unpack
 
 from ..design import Design
 from .actuator import Actuator, Plugins, answered, located, place
-from .reports import Paper, page_of
+from .reports import Paper, page_of, report_files
 
 if TYPE_CHECKING:
     from ..optimisation.pareto_result import ParetoFront
@@ -30,9 +30,9 @@ def pareto(
     ----------
     design : as `optimise`
     objectives : two to four of ``METRIC:min`` or ``METRIC:max``
-    n : designs asked for
+    n : designs requested
     seed : same seed, same front
-    checks : full searches at places in between, for what is merely local
+    checks : independent searches between designs, which reveal merely local ones
     plugins : the user's metrics and constraints
     """
     from ..optimisation.pareto import pareto as run
@@ -42,21 +42,26 @@ def pareto(
         return run(subject, objectives, count=n, seed=seed, checks=checks, fault=place(actuator))
 
 
-def write_front_csv(found: ParetoFront, path: str | Path) -> ReportFile:
+def write_front_csv(front: ParetoFront, path: str | Path) -> ReportFile:
     """Write the designs of a front as CSV, units in the header."""
-    from ..pages.pareto_rows import write_csv
+    from ..pages.pareto import series
+    from ..rendering.series import write_csv
 
-    return write_csv(found, Path(path))
+    return write_csv(series(front), Path(path))
 
 
 def write_front(front: ParetoFront, **paper: Unpack[Paper]) -> list[ReportFile]:
     """Write the page of a front (PDF and PNG) and its figure (PNG and SVG).
 
-    Nothing is written where no design was found. Parameters as `report`.
+    A front without designs writes nothing. Parameters as `report`.
     """
-    from ..pages.pareto_document import write_front_sheet
+    from ..pages.pareto import front_figure, front_outcome, page
+    from ..rendering import paper as printed
+    from ..rendering.image import write_ink
 
     if not front.points:
         return []
     origin, place = page_of(front.subject, "_pareto", **paper)
-    return write_front_sheet(front, origin, **place)
+    files = printed.write(page(front), origin, result=front_outcome(front), **place)
+    pictures = write_ink(front_figure(front), place["folder"], f"{place['stem']}_figure")
+    return files + report_files(pictures)

@@ -1,4 +1,4 @@
-"""`doctor`: what this installation has, lacks and may write."""
+"""`doctor`: the state of this installation."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
     from ..rendering.console import Style
 
 Status: TypeAlias = Literal["ok", "missing", "fault"]
-"""As it must be; an extra that is not installed; something that a command will fail at."""
+"""State of an item: as required; an extra not installed; a cause for commands to fail."""
 
 _NAME = "actuator-opt"
 _OLDEST = (3, 11)
 _FONTS = ("DejaVuSans.ttf", "DejaVuSans-Bold.ttf", "DejaVuSansMono.ttf")
-"""What the pages and figures are set in; matplotlib brings them."""
+"""Fonts of pages and figures, included in matplotlib."""
 _REQUIREMENT = re.compile(r"([A-Za-z0-9][\w.-]*)\s*(\[[^\]]*\])?\s*([^;]*)")
 _EXTRA = re.compile(r"extra\s*==\s*['\"]([\w.-]+)['\"]")
 _BOUND = re.compile(r"(>=|<=|==|!=|~=|<|>)\s*([\d.]+)")
@@ -34,7 +34,7 @@ _BOUND = re.compile(r"(>=|<=|==|!=|~=|<|>)\s*([\d.]+)")
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One thing looked at: `remedy` says what to do where it is not as it must be."""
+    """One item examined; `remedy` says how to fix it."""
 
     group: str
     name: str
@@ -45,13 +45,13 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Installation:
-    """What was found; `ok` where no command will fail at it."""
+    """Items examined; `ok` if no command will fail."""
 
     findings: tuple[Finding, ...]
 
     @property
     def ok(self) -> bool:
-        """Whether nothing that a command needs is missing."""
+        """Whether everything that commands need is present."""
         return all(finding.status != "fault" for finding in self.findings)
 
     def to_dict(self) -> dict[str, Any]:
@@ -65,22 +65,23 @@ class Installation:
 
     def text(self, **style: Unpack[Style]) -> str:
         """What the terminal shows."""
-        from ..pages.installation_text import installation_text
+        from ..pages.installation import findings
+        from ..rendering.terminal import blocks_text
 
         rows = [(x.group, x.name, x.status, x.value, x.remedy) for x in self.findings]
-        return installation_text(rows, **style)
+        return blocks_text([findings(rows)], **style)
 
 
 def doctor(
     *, out: str | Path = "reports", runs: str | Path | None = None, terminal: str = ""
 ) -> Installation:
-    """Look at Python, dependencies, extras, fonts, data, folders and the machine.
+    """Examine Python, dependencies, extras, fonts, data, folders and the machine.
 
     Parameters
     ----------
     out : folder of reports to be written
-    runs : folder of run records; None where no runs are recorded
-    terminal : what the terminal can show, in words; "" leaves it out
+    runs : folder of run records; None if no runs are recorded
+    terminal : capabilities of the terminal, in words; "" leaves it out
     """
     found = [_python(), Finding("program", _NAME, "ok", f"{VERSION}, {Path(__file__).parents[1]}")]
     found += [*_packages(), _fonts(), _materials()]
@@ -103,7 +104,7 @@ def _python() -> Finding:
 
 
 def _requirements() -> tuple[list[str], dict[str, list[str]]]:
-    """What the project needs, and what each of its extras does."""
+    """Requirements of the project, and of each extra."""
     project = Path(__file__).parents[2] / "pyproject.toml"
     if project.is_file():
         stated = tomllib.loads(project.read_text("utf-8")).get("project", {})
@@ -121,7 +122,7 @@ def _requirements() -> tuple[list[str], dict[str, list[str]]]:
 
 
 def _packages() -> Iterator[Finding]:
-    """Every dependency, and every extra but those of developers."""
+    """Every dependency, and every extra except those for developers."""
     core, extras = _requirements()
     modules: dict[str, list[str]] = {}
     for module, names in metadata.packages_distributions().items():
@@ -146,7 +147,7 @@ def _packages() -> Iterator[Finding]:
 
 
 def _package(text: str, modules: dict[str, list[str]]) -> tuple[str, str, str]:
-    """Name, version and what is wrong of a required package; it is imported to see."""
+    """Name, version and problem of a required package; imports it to check."""
     match = _REQUIREMENT.match(text.strip())
     assert match is not None, text
     name = match[1]
@@ -178,7 +179,7 @@ def _numbers(version: str) -> tuple[int, ...]:
 
 
 def _fits(version: str, bounds: str) -> bool:
-    """Whether a version keeps to bounds such as ``>=12,<13``.
+    """Whether a version satisfies bounds such as ``>=12,<13``.
 
     >>> _fits("12.0.2", ">=12,<13"), _fits("13.0", ">=12,<13"), _fits("2.10", ">=2.9")
     (True, False, True)

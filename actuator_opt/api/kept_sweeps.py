@@ -1,4 +1,4 @@
-"""A recorded sweep: where its rows lie, and its figures and CSV out of them."""
+"""A recorded sweep: location of its rows, and its figures and CSV from them."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class KeptSweep:
-    """A sweep by its record: what was evaluated, and the run that tells where its rows lie."""
+    """A sweep from its record: the study, and the run with the location of its rows."""
 
     run: Run
     study: Study
 
 
 def kept_sweep(run: Run, actuator: Actuator) -> KeptSweep:
-    """The sweep of a record, none of its rows read yet."""
+    """The sweep of a record, without reading its rows yet."""
     asked = run.body["asked"]
     study = study_of(actuator, _plan(run), full=not asked["reduce"], show=asked["show"])
     return KeptSweep(run, study)
@@ -70,20 +70,20 @@ def store_of(run: Run) -> tuple[Path, str]:
 
     Raises
     ------
-    InputError : it kept none, or the file is no longer where it was
+    InputError : the sweep has no store, or the file has moved
     """
     if run.head.get("kind") != "sweep":
-        message = f"is a run of {run.head.get('kind')}, which keeps no rows"
+        message = f"is a run of {run.head.get('kind')}, which has no stored rows"
         raise InputError(Diagnostic(message, "name a run of sweep or pareto", str(run.path)))
     kept = run.body["asked"]["store"]
     if kept is None:
-        message = f"run {run.id} is of a sweep without --store: its rows were not kept"
+        message = f"run {run.id} is a sweep without --store, so its rows were not stored"
         remedy = "see its best with runs show, or run it again with --store F.db"
         raise InputError(Diagnostic(message, remedy, str(run.path)))
     path = Path(kept["path"])
     if not path.exists():
-        message = f"is no longer there; run {run.id} kept its rows in it"
-        remedy = "put it back, or name the file where it is now: actuator-opt explore F.db"
+        message = f"no longer exists; run {run.id} stored its rows there"
+        remedy = "restore it, or name its new location: actuator-opt explore F.db"
         raise InputError(Diagnostic(message, remedy, str(path)))
     return path, kept["study"]
 
@@ -91,16 +91,16 @@ def store_of(run: Run) -> tuple[Path, str]:
 def report_sweep(kept: KeptSweep, **paper: Unpack[Paper]) -> list[ReportFile]:
     """Write the figures and tables of a recorded sweep again, from the rows in its store.
 
-    The figures are those that the sweep drew, else parallel axes where a design is feasible; the
-    CSV (``NAME-sweep.csv``) is left out of a sweep of over a million points that wrote none; a
-    Parquet file comes where the sweep wrote one. Of `paper` (see `report`) folder and stem count.
+    The figures are those of the sweep, else parallel axes if a design is feasible. The CSV
+    (``NAME-sweep.csv``) is omitted for a sweep of over a million points that wrote none; a Parquet
+    file is written if the sweep wrote one. Of `paper` (see `report`) only folder and stem are used.
 
     Raises
     ------
-    InputError : its store is gone, holds other rows or lacks some, or the folder cannot be written
+    InputError : the store is missing, has other rows or lacks some, or the folder cannot be written
     """
     from ..base.files import require_folder
-    from ..pages.sweep_figures import watched
+    from ..pages.sweep_figures.drawing import watched
     from ..sweeps import swept_again
 
     target = Path(paper.get("folder", "reports"))

@@ -1,10 +1,10 @@
-"""Evaluate, optimise, price."""
+"""Evaluate, optimise and price a design."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING, Any
 
 from ..design import Design
 from ..evaluation import Evaluation, PreparedDesign, evaluate as evaluate_subject, prepare
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ..optimisation.result import Optimisation
     from ..optimisation.sensitivity import Sensitivity
     from ..pages import ReportFile
-    from ..rendering.console import Style
+    from ..rendering.blocks import Page
 
 
 def evaluate(
@@ -28,7 +28,7 @@ def evaluate(
     ----------
     design : the design
     plugins : the user's own metrics and constraints
-    seed : of the draws of a quick estimate of the yield (`with_yield`); None: no estimate
+    seed : of the draws of a quick yield estimate (`with_yield`); None: no estimate
     """
     actuator = as_actuator(design, plugins)
     evaluation = evaluate_subject(actuator.subject())
@@ -40,7 +40,7 @@ def evaluate(
 def with_yield(
     evaluation: Evaluation, *, plugins: tuple[Plugin, ...] = (), seed: int = 0
 ) -> Evaluation:
-    """An evaluation with a quick estimate of its yield (`scatter.quick`).
+    """An evaluation with a quick estimate of its yield (`uncertainties.quick`).
 
     Parameters
     ----------
@@ -69,11 +69,11 @@ def optimise(
     certify: bool = False,
     yield_target: float | None = None,
 ) -> Optimisation:
-    """The best design; parameters as `optimisation.run.optimise`.
+    """Find the best design; parameters as `optimisation.run.optimise`.
 
-    With a `yield_target` all limits hold with that probability while the design's numbers scatter
-    (`scatter.robust`); `robust` of the result says how. Without one, `best_evaluation` carries a
-    quick estimate of its yield (`scatter.quick`).
+    With a `yield_target`, all limits are met with that probability under the design's uncertain
+    inputs (`uncertainties.robust`); `robust` of the result has the details. Without one,
+    `best_evaluation` has a quick estimate of its yield (`uncertainties.quick`).
     """
     from ..optimisation.run import optimise as run
 
@@ -104,7 +104,7 @@ def optimise(
 
 
 def estimated(found: Optimisation, plugins: tuple[Plugin, ...]) -> Optimisation:
-    """An optimum whose evaluation has its yield: of its own sample, else a quick estimate."""
+    """An optimum with its yield: from its own sample, else a quick estimate."""
     best, sample = found.best_evaluation, found.robust
     if sample is not None:
         known = YieldEstimate(
@@ -127,13 +127,13 @@ def estimated(found: Optimisation, plugins: tuple[Plugin, ...]) -> Optimisation:
 def sensitivity(
     design: Actuator | Design | str | Path, *, seed: int = 0, plugins: Plugins = ()
 ) -> tuple[Sensitivity, ...]:
-    """What each requirement and parameter costs at the design's optimum."""
+    """Prices of requirements and parameters at the design's optimum."""
     return optimise(design, seed=seed, plugins=plugins).sensitivities
 
 
 @dataclass(frozen=True, slots=True)
 class Prices:
-    """The prices of an optimum alone: what `sensitivity` shows."""
+    """The prices of an optimum, as shown by `sensitivity`."""
 
     optimisation: Optimisation
 
@@ -144,13 +144,11 @@ class Prices:
         keys += ["what_buys_most", "kkt", "infeasibility"]
         return {key: data[key] for key in keys if key in data}
 
-    def text(self, **style: Unpack[Style]) -> str:
-        """Prices in the terminal, or why there is no optimum."""
-        from ..pages import infeasibility_card, prices
+    def page(self) -> Page:
+        """Prices and movements, or why there is no optimum."""
+        from ..pages.report import prices_page
 
-        best = self.optimisation
-        shown = prices.terminal(best, moving=True, **style)
-        return f"{shown or infeasibility_card.terminal(best, **style) or best.sentence}\n"
+        return prices_page(self.optimisation)
 
     def report(self, **paper: Any) -> list[ReportFile]:
         """Write the report of the optimum."""

@@ -1,6 +1,6 @@
-"""What the fields of a run record and of a report's attachment must be.
+"""Required form of the fields of a run record and of a report's attachment.
 
-Either may be damaged, or written by a stranger.
+Either may be damaged, or written by someone else.
 """
 
 from __future__ import annotations
@@ -9,9 +9,9 @@ from collections.abc import Mapping
 from typing import Any
 
 Form = Any
-"""A type, a tuple of forms of which one must fit, ``[form]`` for a list of any length, or an
-object: fields by name (``name?`` may be missing, others may be beside them), or ``{"*": form}``
-for any names. ``float`` takes whole numbers too, None is null, ``object`` is anything."""
+"""A type, a tuple of alternative forms, ``[form]`` for a list of any length, or an object: fields
+by name (``name?`` is optional, others are allowed), or ``{"*": form}`` for any names. ``float``
+also accepts whole numbers, None is null, ``object`` is anything."""
 
 _OBJECTIVE = {"metric?": (str, None), "value?": (float, None)}
 _HEAD: Form = {
@@ -117,15 +117,15 @@ _RUN: Form = {
 
 
 def run_fault(run: object) -> str:
-    """What is wrong with the facts attached to a report; "" where nothing is."""
+    """The fault of the facts attached to a report; "" if there is none."""
     return _fault(run, _RUN)
 
 
 def head_fault(head: object) -> str:
-    """What is wrong with the head of a record; "" where nothing is.
+    """The fault of the head of a record; "" if there is none.
 
     >>> head_fault({"kind": 3})
-    'kind is no text'
+    'kind must be text'
     """
     found = _fault(head, _HEAD)
     if found or not isinstance(head, Mapping):
@@ -134,38 +134,38 @@ def head_fault(head: object) -> str:
 
 
 def body_fault(kind: str, body: object) -> str:
-    """What is wrong with the body of a record of this kind; "" where nothing is."""
+    """The fault of the body of a record of this kind; "" if there is none."""
     return _fault(body, _BODY) or _fault(body, _BODIES.get(kind, {}))
 
 
-_WORDS = {str: "text", int: "whole number", bool: "true or false", float: "number"}
+_WORDS = {str: "text", int: "a whole number", bool: "true or false", float: "a number"}
 
 
 def _fault(value: object, form: Form, path: str = "") -> str:
-    """Where a value does not fit a form, and what it should be; "" where it does."""
+    """Where a value deviates from a form, and what is expected; "" if it fits."""
     if isinstance(form, tuple):
         found = [_fault(value, one, path) for one in form]
         return "" if "" in found else found[0]
     if isinstance(form, list):
         if not isinstance(value, list):
-            return f"{path} is no list"
+            return f"{path} must be a list"
         return next(
             filter(None, (_fault(x, form[0], f"{path}[{k}]") for k, x in enumerate(value))), ""
         )
     if isinstance(form, dict):
         return _object_fault(value, form, path)
     if form is None:
-        return "" if value is None else f"{path} is not null"
+        return "" if value is None else f"{path} must be null"
     wanted = (int, float) if form is float else form
     if isinstance(value, wanted) and (form in (bool, object) or not isinstance(value, bool)):
         return ""
-    return f"{path} is no {_WORDS[form]}"
+    return f"{path} must be {_WORDS[form]}"
 
 
 def _object_fault(value: object, form: dict[str, Form], path: str) -> str:
-    """As `_fault`, of an object."""
+    """`_fault` for an object."""
     if not isinstance(value, dict):
-        return f"{path or 'it'} is no object"
+        return f"{path or 'it'} must be an object"
     head = f"{path}." if path else ""
     if "*" in form:
         found = (_fault(below, form["*"], f"{head}{name}") for name, below in value.items())

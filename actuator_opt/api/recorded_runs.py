@@ -1,4 +1,4 @@
-"""Run records: what was asked and what came out, listed and read back."""
+"""Run records: input and outcome of runs, listed and read back."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ if TYPE_CHECKING:
 
 _STATED = re.compile(r"^Version: *(\S+)", re.MULTILINE)
 CLOSE = 1e-9
-"""Relative difference up to which a number counts as repeated: a choice, far above rounding."""
+"""Relative difference up to which a number counts as reproduced: a choice, far above rounding."""
 
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """A recorded run: `head` says what lists show, `body` holds input, versions and result."""
+    """A recorded run: `head` is shown in lists, `body` has input, versions and result."""
 
     id: str
     path: Path
@@ -46,15 +46,16 @@ class Run:
 
     def text(self, **style: Unpack[Style]) -> str:
         """What the terminal shows."""
-        from ..pages.runs_text import run_text
+        from ..pages.runs import blocks
+        from ..rendering.terminal import blocks_text
 
         with sound(self):
-            return run_text(self.id, self.head, self.body, **style)
+            return blocks_text(blocks(self.id, self.head, self.body), **style)
 
 
 @contextmanager
 def sound(run: Run) -> Iterator[None]:
-    """Say in one line that what is read of a record is not in it, or not as it should be."""
+    """Report missing or malformed parts of a record in one line."""
     try:
         yield
     except (
@@ -96,7 +97,7 @@ def record_run(
 
     Returns
     -------
-    the record; None where recording is switched off (ACTUATOR_OPT_NO_RECORD)
+    the record; None if recording is switched off (ACTUATOR_OPT_NO_RECORD)
 
     Raises
     ------
@@ -143,13 +144,13 @@ def _started() -> datetime:
 
 
 def _plugins(plugins: Sequence[Plugin]) -> list[dict[str, str]]:
-    """The Python files of plugins, each once; "" stands for functions of a script."""
+    """The Python files of plugins, each once; "" means functions of a script."""
     files = dict.fromkeys(plugin.file for plugin in plugins)
     return [{"file": os.path.abspath(x) if x else x, "sha256": sha256(x)} for x in files]
 
 
 def sha256(file: str) -> str:
-    """Hash of a file; "" where it cannot be read."""
+    """Hash of a file; "" if it cannot be read."""
     try:
         return hashlib.sha256(Path(file).read_bytes()).hexdigest()
     except OSError:
@@ -163,7 +164,7 @@ def _versions() -> dict[str, str]:
             package = metadata.distribution(name)
         except metadata.PackageNotFoundError:
             continue
-        head = _STATED.search(package.read_text("METADATA") or "")  # parsed whole it takes 4 ms
+        head = _STATED.search(package.read_text("METADATA") or "")  # a full parse takes 4 ms
         found[name] = package.version if head is None else head[1]
     return found
 
@@ -174,13 +175,13 @@ def runs(
     command: str | None = None,
     folder: str | Path | None = None,
 ) -> tuple[list[run_store.Entry], list[Diagnostic]]:
-    """Recorded runs, newest first, and what is wrong with records that cannot be read.
+    """Recorded runs, newest first, and faults of records that cannot be read.
 
     Parameters
     ----------
-    design : only those of a design of this name or file
+    design : only runs of a design with this name or file
     command : only those of this command (``optimise``, ``pareto``, ``sweep``)
-    folder : where they are; default as `record`
+    folder : location of the records; default as `record`
     """
     place = run_store.folder() if folder is None else Path(folder)
     if place is None:
@@ -209,7 +210,7 @@ def _names(head: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def read_run(name: str | Path, *, folder: str | Path | None = None) -> Run:
-    """A recorded run by its id, the beginning of one, ``last``, or its file.
+    """A recorded run by its id or the start of one, ``last``, or its file.
 
     Raises
     ------
@@ -225,18 +226,18 @@ def read_run(name: str | Path, *, folder: str | Path | None = None) -> Run:
 
 
 def delete_run(name: str, *, folder: str | Path | None = None) -> str:
-    """Delete a recorded run; its id. Parameters as `read_run`."""
+    """Delete a recorded run and return its id. Parameters as `read_run`."""
     path = run_store.find(run_store.folder() if folder is None else Path(folder), name)
     if not run_store.is_record(path):
         remedy = "write its id"
-        raise InputError(Diagnostic("is no record of a run", remedy, str(path)))
+        raise InputError(Diagnostic("is not a record of a run", remedy, str(path)))
     if not run_store.delete(path):
         raise InputError(Diagnostic("no such file", "see: actuator-opt runs list", str(path)))
     return path.stem
 
 
 def prune_runs(*, keep: int, folder: str | Path | None = None) -> list[str]:
-    """Delete all runs but the newest `keep`; ids of those deleted, by nobody else meanwhile."""
+    """Delete all runs but the newest `keep`; ids of those this call deleted."""
     place = run_store.folder() if folder is None else Path(folder)
     if place is None:
         return []
@@ -245,7 +246,7 @@ def prune_runs(*, keep: int, folder: str | Path | None = None) -> list[str]:
 
 
 def differing(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
-    """Names whose numbers are not the same within `CLOSE`, and those only one side has."""
+    """Names whose numbers differ by more than `CLOSE`, or that only one side has."""
     names = dict.fromkeys([*then, *now])
     return [name for name in names if not same(then.get(name), now.get(name))]
 

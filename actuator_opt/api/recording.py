@@ -1,10 +1,10 @@
-"""What a run record keeps of an optimisation, of a front and of a sweep."""
+"""Contents of the run record of an optimisation, a front and a sweep."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,15 +15,15 @@ from .reports import verification_tables
 if TYPE_CHECKING:
     from ..optimisation.pareto_result import ParetoFront
     from ..optimisation.result import Optimisation
-    from ..pages import ExtraTable
+    from ..pages import Table
     from ..simulation.verification import Verification
     from ..sweeps import Swept
 
 BEST = 10
-"""Best designs of a sweep that its record keeps, at most: the store has them all."""
+"""Maximum number of best designs in a sweep's record; the store has all rows."""
 
 REASONS = 20
-"""Reasons of failed designs that it keeps, the commonest."""
+"""Number of failure reasons recorded, most frequent first."""
 
 
 def record(
@@ -32,22 +32,22 @@ def record(
     actuator: Actuator,
     command: str = "",
     date: str | None = None,
-    extra_tables: Sequence[ExtraTable] = (),
+    extra_tables: Sequence[Table] = (),
     dynamics_verified: Verification | None = None,
     folder: str | Path | None = None,
 ) -> Run | None:
-    """Record an optimisation with its input, so that it can be shown and reported later.
+    """Record an optimisation with its input, for showing and reporting it later.
 
     Parameters
     ----------
     result : of `optimise`
-    actuator : that was optimised
+    actuator : the design optimised
     command, date, extra_tables, dynamics_verified : of its report
-    folder : where to; default: ACTUATOR_OPT_RUNS, else the person's data folder
+    folder : target; default: ACTUATOR_OPT_RUNS, else the user's data folder
 
     Returns
     -------
-    the record; None where recording is switched off (ACTUATOR_OPT_NO_RECORD)
+    the record; None if recording is switched off (ACTUATOR_OPT_NO_RECORD)
 
     Raises
     ------
@@ -69,13 +69,28 @@ def record(
         "result": result.to_dict(),
         "state": to_plain(result),
         "tables": [
-            asdict(table) for table in (*extra_tables, *verification_tables(dynamics_verified))
+            _plain_table(table)
+            for table in (*extra_tables, *verification_tables(dynamics_verified))
         ],
     }
     return record_run(
         "optimise", head, more, actuator=actuator, command=command, date=date,
         seed=result.seed, folder=folder,
     )  # fmt: skip
+
+
+def _plain_table(table: Table) -> dict[str, object]:
+    """A table of a report as a record holds it: texts under their heads."""
+    from ..rendering.heights import cells_of, joined
+
+    flexible = all(column.flexible for column in table.columns)
+    return {
+        "title": table.title,
+        "columns": [column.head for column in table.columns],
+        "rows": [[joined(cell) for cell in cells_of(row)] for row in table.rows],
+        "note": table.note,
+        "widths": [column.width for column in table.columns] if flexible else [],
+    }
 
 
 def record_front(
@@ -86,7 +101,7 @@ def record_front(
     date: str | None = None,
     folder: str | Path | None = None,
 ) -> Run | None:
-    """Record a Pareto front, so that it can be shown and reported later; as `record`."""
+    """Record a Pareto front, for showing and reporting it later; as `record`."""
     from ..optimisation.recorded import to_plain
 
     knee = None if found.knee is None else found.knee.index
@@ -122,7 +137,7 @@ def record_sweep(
     date: str | None = None,
     folder: str | Path | None = None,
 ) -> Run | None:
-    """Record a sweep: its plan, counts, the best designs and where its rows lie, but no rows.
+    """Record a sweep: plan, counts, best designs and the location of its rows, but no rows.
 
     Parameters
     ----------
@@ -130,7 +145,7 @@ def record_sweep(
     actuator, command, date, folder : as `record`
     store, csv, parquet, keep, figures, show : as given to `sweep`
     """
-    from ..pages.sweep_text import counts
+    from ..pages.sweep import counts
 
     study = found.study
     goal, met = study.goal, bool(found.best or found.feasible)

@@ -1,4 +1,4 @@
-"""Records of a test bench: read, identified, and put into the design they were made with."""
+"""Test records: read them, identify parameters, and calibrate the design tested."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ..rendering.blocks import Page
 
 MOST_BYTES = 1_000_000_000
-"""Largest file of a record (a choice: what memory holds several times)."""
+"""Largest file of a record (a choice: memory must hold it several times)."""
 _WISHES = (
     "name",
     "notes",
@@ -31,7 +31,7 @@ _WISHES = (
     "objective",
     "measured",
 )
-"""Keys of a design that say nothing of the actuator tested."""
+"""Keys of a design that do not describe the tested actuator."""
 
 
 Units = str | Path | Mapping[str, str] | None
@@ -50,12 +50,12 @@ def read_record(
     Parameters
     ----------
     source : path, ``"-"`` for standard input
-    columns : header by channel where it is none of the known names, with a unit where the file
-        states none: ``{"p1": "Channel 3 [bar]"}``
+    columns : header by channel if it is not a known name, with a unit if the file states none:
+        ``{"p1": "Channel 3 [bar]"}``
     units : of columns whose header states none: ``"SI"`` (m, s, Pa, N, m/s, K), a file with lines
-        ``p1: bar`` (YAML) or ``p1,bar``, or a mapping; a unit in the header counts before ``"SI"``
-        and must agree with one stated for its column
-    needed : channels whose missing unit is a fault; others are left out and noted; default: all
+        ``p1: bar`` (YAML) or ``p1,bar``, or a mapping; a unit in the header takes precedence over
+        ``"SI"`` and must agree with one stated for its column
+    needed : channels that must have a unit; others without one are left out and noted; default: all
         but v and T
 
     Returns
@@ -65,7 +65,7 @@ def read_record(
     Raises
     ------
     InputError
-        no such file, an unknown or doubled column, a missing unit, a cell that is no number
+        no such file, an unknown or repeated column, a missing unit, a cell that is not a number
     """
     from ..base.files import read_bytes
     from ..identification import column_units, decode_record, parse_record
@@ -93,7 +93,7 @@ def identify(
     bootstrap: int = 0,
     seed: int = 0,
 ) -> Identification:
-    """Friction and damping from a test record of the actuator.
+    """Identify friction and damping from a test record of the actuator.
 
     F_r = p_1 A_1 - p_2 A_2 - F_L - m a, areas in the bore as grown.
 
@@ -106,9 +106,9 @@ def identify(
         passes together are -3 dB at the cut-off
     mass : moving inside the force sensor [kg]; default: rod, piston and fastening, without a
         force channel also the design's load
-    load_force : against extension where no channel measures it [N]
-    pressure_lag : of the pressures [s]; None looks for it in the record
-    bootstrap : resampled records for the bounds; 0 takes those of the linearised model
+    load_force : against extension if no channel measures it [N]
+    pressure_lag : of the pressures [s]; None fits it to the record
+    bootstrap : resampled records for the bounds; 0 for those of the linearised model
     seed : of the resampling
 
     Returns
@@ -118,7 +118,7 @@ def identify(
     Raises
     ------
     InputError
-        a channel missing, a record too short, channels turned round, no motion
+        a missing channel, a record too short, wrong signs, no motion
     """
     from ..identification import Settings, identify as run
     from ..studies.bench import bench
@@ -149,7 +149,7 @@ def _record(
         return read_record(record, columns=columns, units=units, needed=needed)
     for given, what in ((columns, "columns are named"), (units, "units are stated")):
         if given:
-            message = f"{what}, and the record is read already"
+            message = f"{what}, but the record is already read"
             raise InputError(Diagnostic(message, "give them to read_record"))
     return record
 
@@ -170,15 +170,15 @@ def bending(
     ----------
     record : as read, or its path
     span : between the supports [m]
-    design, part : whose section was bent, "rod" or "barrel"; of a metal part its shear modulus
-        too is taken from there
+    design, part : source of the section, "rod" or "barrel"; for a metal part also of its shear
+        modulus
     specimen : in place of span, design and part
     columns, units : as `read_record`
 
     Raises
     ------
     InputError
-        a channel missing, no straight part, no section
+        a missing channel, no straight part, or no section
     """
     from ..identification import bending as run
     from ..identification.specimen import specimen_of
@@ -193,12 +193,12 @@ def bending(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Calibrated:
-    """A design with the friction that a record measured, and what that changes.
+    """A design with measured seal friction, and the effect on its requirements.
 
     Parameters
     ----------
     actuator : with the new values and their bounds
-    calibration : what the record told
+    calibration : parameters from the record
     redesign : before and after, as tested and at the optimum
     """
 
@@ -237,10 +237,10 @@ def calibrate(
     seed: int = 0,
     **settings: Any,
 ) -> Calibrated:
-    """The design with the seal friction that its record measured.
+    """Set the seal friction of a design from its test record.
 
-    Coefficients of friction, breakaway ratio, Stribeck speed and viscous friction of the seals,
-    their bounds under ``measured``; requirements before and after; the optimum before and after.
+    Determines coefficients of friction, breakaway ratio, Stribeck speed and viscous friction of the
+    seals, with bounds under ``measured``; requirements and optimum before and after.
 
     Parameters
     ----------
@@ -278,7 +278,7 @@ def calibrate(
 
 
 def _with_values(before: Actuator, found: Calibration) -> tuple[Actuator, list[str]]:
-    """The actuator with the values a record gave, held where they were free; what to doubt."""
+    """The actuator with measured values, fixed if they were free; and caveats."""
     design, new = before.design, found.values()
     held = [path for path in new if path in design.variables or path in design.choices]
     free = {path: one for path, one in design.variables.items() if path not in held}
@@ -289,7 +289,7 @@ def _with_values(before: Actuator, found: Calibration) -> tuple[Actuator, list[s
     after = base.changed(new).design.model_copy(update={"measured": known})
     doubts = []
     if held:
-        doubts.append(f"no longer free, held as measured: {', '.join(held)}")
+        doubts.append(f"no longer free, fixed as measured: {', '.join(held)}")
     other = [
         path
         for path in choices
@@ -297,8 +297,8 @@ def _with_values(before: Actuator, found: Calibration) -> tuple[Actuator, list[s
     ]
     if other:
         doubts.append(
-            f"the friction measured is that of the seals tested: choices of {', '.join(other)} "
-            "take it over"
+            "the measured friction is that of the tested seals, but choices of "
+            f"{', '.join(other)} use it too"
         )
     return Actuator(after, before.source, before.plugins), doubts
 
@@ -309,10 +309,10 @@ def _require_use(
     reading: Mapping[str, object],
     settings: Mapping[str, Any],
 ) -> None:
-    """Refuse what an identified record has no use for, and another actuator's record."""
+    """Reject settings that an identified record ignores, and records of another actuator."""
     unused = [*(name for name, given in reading.items() if given), *settings]
     if unused:
-        message = f"{', '.join(unused)}: of no use, the record is identified already"
+        message = f"{', '.join(unused)}: without effect, as the record is already identified"
         raise InputError(Diagnostic(message, "give them to identify"))
     own, other = (
         one.model_copy(update=dict.fromkeys(_WISHES)) for one in (design, identified.bench.design)
@@ -348,7 +348,7 @@ def write_series(identification: Identification, path: str | Path) -> ReportFile
 def write_calibration(calibrated: Calibrated, **paper: Unpack[Paper]) -> list[ReportFile]:
     """Write the page of a calibration (PDF and PNG), the new design attached.
 
-    Parameters as `report`; the design is the calibrated one.
+    Parameters as `report`; the attached design is the calibrated one.
     """
     from ..design.writer import to_yaml
     from ..pages.identification import samples_hash

@@ -1,4 +1,4 @@
-"""`rerun`: the command of a report once more, from the input that the PDF carries."""
+"""`rerun`: repeat the command of a report from the input attached to its PDF."""
 
 from __future__ import annotations
 
@@ -26,24 +26,24 @@ from .reports import Paper, is_date, verification_tables
 if TYPE_CHECKING:
     from ..optimisation.pareto_result import ParetoFront
     from ..optimisation.result import Optimisation
-    from ..pages import ExtraTable, ReportFile
+    from ..pages import ReportFile, Table
     from ..rendering.console import Style
 
 OPTIMISED, EVALUATED = ("optimise", "optimize", "sensitivity"), ("evaluate", "report")
 FRONTS = ("pareto",)
-"""Commands that can be run again."""
+"""Commands that can be repeated."""
 _VALUES = ("--algorithm", "--verify-dynamics", "--date")
 _FLAGS = ("--whole-plies", "--standard-sizes", "--certify")
 _LONGEST = 100_000
-"""Letters of a command, at most: somewhat less than the system takes as one argument."""
+"""Maximum length of a command, below the system's limit for one argument."""
 
 
 @dataclass(frozen=True, slots=True)
 class Rerun:
-    """What a report's command gives now, beside what it gave then.
+    """The repeated result of a report's command, compared with the original.
 
-    `repeats` is None where the report carries no result to compare; `differences` maps what is
-    not the same to its value then and now.
+    `repeats` is None if the report has no result to compare; `differences` maps what has changed to
+    its value then and now.
     """
 
     file: Path
@@ -52,13 +52,13 @@ class Rerun:
     date: str | None
     subject: Evaluation | Optimisation | ParetoFront
     actuator: Actuator
-    tables: tuple[ExtraTable, ...]
+    tables: tuple[Table, ...]
     repeats: bool | None
     differences: Mapping[str, tuple[Any, Any]]
     sentence: str
 
     def to_dict(self) -> dict[str, Any]:
-        """The `rerun --json` object: that of the command, and `rerun`."""
+        """The `rerun --json` object: that of the command, with `rerun`."""
         return self.subject.to_dict() | {
             "rerun": {
                 "report": str(self.file),
@@ -74,34 +74,34 @@ class Rerun:
         }
 
     def text(self, **style: Unpack[Style]) -> str:
-        """What the command shows in the terminal."""
+        """The terminal output of the command."""
         return results.text(self.subject, **style)
 
     def report(self, **paper: Unpack[Paper]) -> list[ReportFile]:
-        """Write the report again: the command and the date are those of the first."""
+        """Write the report again, with the original command and date."""
         paper |= {"actuator": self.actuator, "command": self.command, "date": self.date}
         tables: dict[str, Any] = {"extra_tables": self.tables} if self.tables else {}
         return results.report(self.subject, **paper, **tables)
 
     def record(self, **paper: Any) -> Run | None:
-        """Record the run, where its command leaves a record."""
+        """Record the run, if its command does so."""
         paper |= {"actuator": self.actuator, "command": self.command, "date": self.date}
         tables: dict[str, Any] = {"extra_tables": self.tables} if self.tables else {}
         return results.keep(self.subject, **paper, **tables)
 
 
 def rerun(report: str | Path, *, plugins: Plugins = ()) -> Rerun:
-    """Run the command of a report again, from the input attached to its PDF.
+    """Repeat the command of a report, from the input attached to its PDF.
 
     Parameters
     ----------
     report : the PDF
-    plugins : the Python files it was made with; they are programs, so never taken by themselves
+    plugins : the Python files it was made with; as programs, they are never run unless named
 
     Raises
     ------
     InputError
-        no PDF of this program, encrypted, damaged, of a newer version, or of a command that
+        not a PDF of this program; encrypted, damaged or of a newer version; or of a command that
         needs more than the design
     """
     from ..pages import read_attachment
@@ -130,7 +130,7 @@ def rerun(report: str | Path, *, plugins: Plugins = ()) -> Rerun:
     found: dict[str, tuple[Any, Any]] | None
     if isinstance(then, dict):
         found = _differences(then, subject)
-    else:  # an older report: the hash of what it shows says as much where it is the same
+    else:  # an older report: an equal hash of its content is just as good
         same = inside.run.get("spec_hash", "") == _hash(subject)
         found = {} if same else None
     return Rerun(
@@ -150,36 +150,36 @@ def rerun(report: str | Path, *, plugins: Plugins = ()) -> Rerun:
 def _text(run: Mapping[str, Any], key: str) -> str:
     value = run.get(key)
     if not isinstance(value, str):
-        raise InputError(Diagnostic(f"does not say its {key}", "take the original file"))
+        raise InputError(Diagnostic(f"does not state its {key}", "use the original file"))
     return value
 
 
 def _require_facts(run: Mapping[str, Any]) -> str | None:
-    """The date among the facts of a report; refuse what is not as we write it."""
+    """The date in the facts of a report; rejects facts in another form."""
     fault, date = run_fault(run), run.get("date")
     if not fault and date is not None and not is_date(date):
-        fault = "date is no date"
+        fault = "date is invalid"
     if fault:
         message = f"its attachment is damaged ({shown(fault)})"
-        raise InputError(Diagnostic(message, "take the original file"))
+        raise InputError(Diagnostic(message, "use the original file"))
     return date
 
 
 def _order(version: str) -> tuple[int, ...]:
-    """A version as numbers, to compare."""
+    """A version as numbers, for comparison."""
     return tuple(int(part) for part in re.findall(r"\d{1,9}", version)[:3])
 
 
 class _Parser(argparse.ArgumentParser):
-    """Options of a report's command; what is not among them is told as a fault."""
+    """Options of a report's command; other options are reported as a fault."""
 
     def error(self, message: str) -> NoReturn:
-        told = f"its command cannot be run again: {shown(message, 200)}"
+        told = f"its command cannot be repeated: {shown(message, 200)}"
         raise InputError(Diagnostic(told, "run it by hand"))
 
 
 def parser() -> argparse.ArgumentParser:
-    """The options that change a result, of the commands that can be run again."""
+    """The options that affect a result, for the commands that can be repeated."""
     made = _Parser(prog="actuator-opt", add_help=False, allow_abbrev=False)
     made.add_argument("design")
     made.add_argument("--set", action="append", default=[])
@@ -198,7 +198,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def parsed(command: str) -> tuple[str, argparse.Namespace]:
-    """Verb and options of a command line as a report carries it."""
+    """Command and options of the command line in a report."""
     if len(command) > _LONGEST:
         message = f"its command has more than {_LONGEST} letters"
         raise InputError(Diagnostic(message, "run it by hand"))
@@ -207,27 +207,27 @@ def parsed(command: str) -> tuple[str, argparse.Namespace]:
     except ValueError:
         words = ["actuator-opt", "?"]
     if len(words) < 2:
-        message = "was made by a script and says no command"
+        message = "was made by a script and states no command"
         raise InputError(Diagnostic(message, "run the script"))
     verb = words[1]
     if words[0] != "actuator-opt" or verb not in OPTIMISED + EVALUATED + FRONTS:
         made = shown(" ".join(words[:2]))
-        message = f"was made by {made}, whose input is more than a design"
+        message = f"was made by {made}, which needs more input than a design"
         raise InputError(Diagnostic(message, f"run it by hand: {shown(command, 400)}"))
     asked = parser().parse_args(words[2:])
     scenario = asked.verify_dynamics
     if scenario == "-" or (scenario and Path(scenario).exists() and not Path(scenario).is_file()):
-        message = f"its command asks for the scenario {shown(scenario)}, which is no regular file"
+        message = f"its command needs the scenario {shown(scenario)}, which is not a regular file"
         raise InputError(Diagnostic(message, "run it by hand"))
     return verb, asked
 
 
 def _within(bounds: Bounds) -> Callable[[str], int]:
-    """What reads a whole number as the terminal does, within the same bounds."""
+    """A function that reads a whole number within bounds, as the terminal does."""
 
     def whole(text: str) -> int:
         if not re.fullmatch(r"[+-]?\d{1,19}", text):
-            raise argparse.ArgumentTypeError(f"{shown(text)} is no whole number")
+            raise argparse.ArgumentTypeError(f"{shown(text)} is not a whole number")
         if not bounds.least <= int(text) <= bounds.most:
             raise argparse.ArgumentTypeError(f"give {bounds.least} to {bounds.most}")
         return int(text)
@@ -243,7 +243,7 @@ def _pair(text: str) -> tuple[str, str]:
 
 def _again(
     verb: str, asked: argparse.Namespace, actuator: Actuator
-) -> tuple[Evaluation | Optimisation | ParetoFront, Sequence[ExtraTable]]:
+) -> tuple[Evaluation | Optimisation | ParetoFront, Sequence[Table]]:
     """The result of the command, and the further tables of its report."""
     if verb in EVALUATED:
         return evaluate(actuator, seed=asked.seed), []
@@ -272,10 +272,10 @@ def _again(
 def _differences(
     then: Mapping[str, Any], subject: Evaluation | Optimisation | ParetoFront
 ) -> dict[str, tuple[Any, Any]]:
-    """What is not the same now: status, variables by PATH, metrics by name."""
+    """Changes: status, variables by PATH, metrics by name."""
     from ..optimisation.pareto_result import ParetoFront
-    from ..pages.page import outcome
-    from ..pages.pareto_rows import front_outcome
+    from ..pages.pareto import front_outcome
+    from ..pages.report import outcome
 
     now = front_outcome(subject) if isinstance(subject, ParetoFront) else outcome(subject)
     found: dict[str, tuple[Any, Any]] = {}
@@ -289,31 +289,31 @@ def _differences(
 
 
 def _hash(subject: Evaluation | Optimisation | ParetoFront) -> str | None:
-    """The hash that a report of it carries; None where that is of the input alone."""
+    """The hash in its report; None if that only covers the input."""
     from ..optimisation.pareto_result import ParetoFront
-    from ..pages.page import parts_of
+    from ..pages.report import parts_of
 
     return None if isinstance(subject, ParetoFront) else parts_of(subject)[0].spec_hash
 
 
 def _sentence(found: Mapping[str, tuple[Any, Any]] | None, version: str) -> str:
-    """Whether it repeats, in words."""
+    """Whether the result is reproduced, in words."""
     made = f"the report was made by actuator-opt {version}"
-    also = made if version != VERSION else f"{made}, as is this"
+    also = made if version != VERSION else f"{made}, the same as this one"
     if found is None:
-        return f"the report carries no result to compare with; {also}"
+        return f"the report has no result to compare with; {also}"
     if not found:
-        return f"the result repeats; {also}"
+        return f"the result is reproduced; {also}"
     parts = [_change(name, *values) for name, values in found.items()]
     parts.sort(reverse=True)
     names = ", ".join(words for _, words in parts[:3])
     more = f" and {len(parts) - 3} more" if len(parts) > 3 else ""
-    here = also if version == VERSION else f"{made}, this is {VERSION}"
-    return f"the result does not repeat: {names}{more}; {here}"
+    here = also if version == VERSION else f"{made}, but this is {VERSION}"
+    return f"the result is not reproduced: {names}{more}; {here}"
 
 
 def _change(name: str, then: Any, now: Any) -> tuple[float, str]:
-    """How far one value moved, as a fraction, and in words."""
+    """Relative change of a value, with the change in words."""
     if isinstance(then, (int, float)) and isinstance(now, (int, float)) and then:
         moved = abs(now / then - 1)
         return moved, f"{shown(name)} {100 * (now / then - 1):+.3g} %"

@@ -1,4 +1,4 @@
-"""Reports of designs, and designs written down; what every report takes."""
+"""Reports of designs, saving of designs, and arguments common to all reports."""
 
 from __future__ import annotations
 
@@ -6,8 +6,9 @@ import hashlib
 import os
 import re
 from collections.abc import Iterable, Sequence
+from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, TypedDict, Unpack
+from typing import TYPE_CHECKING, Required, TypedDict, Unpack
 
 from ..base.errors import Diagnostic, UsageError
 from ..design import Design, Source
@@ -20,17 +21,24 @@ from .stamp import stamped
 if TYPE_CHECKING:
     from ..evaluation.rings import Place
     from ..optimisation.result import Optimisation
-    from ..pages import ExtraTable, ReportFile
+    from ..pages import ReportFile, Table
+    from ..rendering.blocks import Block
     from ..rendering.origin import Origin
     from ..simulation.verification import Verification
     from ..studies.seal import SealStudy
 
+REPLICAS = "actuator_opt.replicas"
+"""Package of the papers' tables, found by name."""
+ABSENT = (
+    "Caution: the tables that compare this design with {paper} are not part of this installation. "
+    "The source distribution and the repository contain them, in actuator_opt/replicas."
+)
 _LAST_SECOND = 253_402_300_799
-"""End of the year 9999, the last a date can hold."""
+"""End of the year 9999, the latest date."""
 
 
 def _seal_studies(subject: PreparedDesign) -> list[SealStudy]:
-    """The seal sheets of a report: every place of the design that asks for an oil film."""
+    """The seal sheets of a report, one for every place with an oil film in the design."""
     from ..studies.seal import study
 
     places: tuple[Place, ...] = ("piston", "rod")
@@ -40,20 +48,22 @@ def _seal_studies(subject: PreparedDesign) -> list[SealStudy]:
 
 
 class Paper(TypedDict, total=False):
-    """What every report takes; see `report`."""
+    """Arguments common to all reports; see `report`."""
 
     folder: str | Path
     stem: str | None
     actuator: Actuator | None
     command: str
     date: str | None
+    all_pages: bool
 
 
-class Target(TypedDict):
-    """Folder and name of the files of a page, without suffix."""
+class Target(TypedDict, total=False):
+    """Folder and name of the files of a page, without suffix; which sheets are images."""
 
-    folder: Path
-    stem: str
+    folder: Required[Path]
+    stem: Required[str]
+    all_pages: bool
 
 
 def page_of(
@@ -66,73 +76,90 @@ def page_of(
     actuator: Actuator | None = None,
     command: str = "",
     date: str | None = None,
+    all_pages: bool = False,
 ) -> tuple[Origin, Target]:
-    """What the title block of a page says, and where the page is written.
+    """Title block of a page, and its target.
 
     Parameters
     ----------
-    design : the page is about
-    tail : of the file names, behind the name of the design's file
+    design : subject of the page
+    tail : added to the name of the design's file
     beside : another file that gives the name
-    folder, stem, actuator, command, date : as `report`
+    folder, stem, actuator, command, date, all_pages : as `report`
 
     Raises
     ------
-    UsageError : no ISO date
+    UsageError : not an ISO date
     """
     if date is not None:
         require_date(date)
     source = None if actuator is None else actuator.source
     named = f"{Path(beside or file_name(design, source)).stem}{tail}"
     page = origin(design, source, command=command, date=date)
-    return page, {"folder": Path(folder), "stem": stem or named}
+    place: Target = {"folder": Path(folder), "stem": stem or named}
+    if all_pages:
+        place["all_pages"] = True
+    return page, place
 
 
 def report_design(
     subject: Evaluation | Optimisation,
     *,
-    extra_tables: Sequence[ExtraTable] = (),
+    extra_tables: Sequence[Table] = (),
     dynamics_verified: Verification | None = None,
     **paper: Unpack[Paper],
 ) -> list[ReportFile]:
     """Write the report of an evaluation or an optimisation; parameters as `report`."""
-    from ..pages import write_report
-    from ..pages.robust_rows import robust_tables
-    from ..replicas import published_tables
+    from ..pages.report import outcome, page
+    from ..rendering.paper import write
 
+    evaluation = subject if isinstance(subject, Evaluation) else subject.best_evaluation
     design = subject.design if isinstance(subject, Evaluation) else subject.best
     origin, place = page_of(design, **paper)
-    tables = [*published_tables(subject), *robust_tables(subject), *extra_tables]
-    return write_report(
-        subject,
-        source_text=origin.source_text,
-        source_name=origin.source_name,
-        command=origin.command,
-        date=origin.date,
-        extra_tables=[*tables, *verification_tables(dynamics_verified)],
-        seals=_seal_studies(prepare(design)),
-        **place,
-    )
+    tables = [*published(evaluation), *extra_tables, *verification_tables(dynamics_verified)]
+    shown = page(subject, extra_tables=tables, seals=_seal_studies(prepare(design)))
+    how = {"actuator_opt": evaluation.version, "result": outcome(subject)}
+    return write(shown, origin, **place, **how)
 
 
-def verification_tables(verification: Verification | None) -> list[ExtraTable]:
+def published(evaluation: Evaluation) -> list[Block]:
+    """The numbers of the paper that a design reproduces, beside ours.
+
+    The package of these tables is found by name, because a wheel comes without it; then the report
+    says where the tables are.
+    """
+    from ..rendering.blocks import Notes
+
+    if evaluation.design.reproduces is None:
+        return []
+    try:
+        replicas = import_module(REPLICAS)
+    except ModuleNotFoundError as error:
+        if error.name != REPLICAS:
+            raise
+        return [Notes("Published numbers", [ABSENT.format(paper=evaluation.design.reproduces)])]
+    blocks: list[Block] = replicas.published(evaluation)
+    return blocks
+
+
+def verification_tables(verification: Verification | None) -> list[Table]:
     """Requirements checked in time, as tables of a report."""
     if verification is None:
         return []
-    from ..pages.verification_rows import verification_rows
+    from ..pages.verification import tables
 
-    return [*verification_rows(verification)]
+    return [*tables(verification)]
 
 
 def report_files(paths: Iterable[Path]) -> list[ReportFile]:
-    """Files written by others, each with its hash."""
+    """Files written elsewhere, each with its hash."""
     from ..pages import ReportFile
 
     return [ReportFile(path, hashlib.sha256(path.read_bytes()).hexdigest(), 1) for path in paths]
 
 
 def file_name(design: Design, source: Source | None) -> str:
-    """Name of the design's file; of a design that came without one, its own name made fit."""
+    """Name of the design's file; without a file, the design's own name made suitable."""
     if source is not None and not source.file.startswith("<"):
         return Path(source.file).name
     name = re.sub(r"[^\w-]+", "_", design.name).strip("_")
@@ -142,7 +169,7 @@ def file_name(design: Design, source: Source | None) -> str:
 def origin(
     design: Design, source: Source | None, *, command: str = "", date: str | None = None
 ) -> Origin:
-    """Where a page about a design comes from: the file as read, else its text as written."""
+    """Origin of a page about a design: the file as read, else the design's text."""
     from ..design.writer import to_yaml
     from ..evaluation.build import spec_hash
     from ..rendering.origin import Origin
@@ -171,9 +198,9 @@ def is_date(text: str) -> bool:
 
 
 def require_date(text: str, option: str = "date") -> None:
-    """Refuse what is no ISO date; raises `UsageError`."""
+    """Reject a text that is not an ISO date; raises `UsageError`."""
     if not is_date(text):
-        raise UsageError(Diagnostic(f'{option} "{text}" is no date', "write YYYY-MM-DD"))
+        raise UsageError(Diagnostic(f'{option} "{text}" is not a date', "write YYYY-MM-DD"))
 
 
 def date_from_environment() -> str | None:
@@ -181,14 +208,14 @@ def date_from_environment() -> str | None:
 
     Raises
     ------
-    UsageError : it is no count of seconds
+    UsageError : it is not a count of seconds
     """
     stamp = os.environ.get("SOURCE_DATE_EPOCH", "").strip()
     if not stamp:
         return None
     digits = stamp.isdecimal() and stamp.isascii() and len(stamp) <= 12
     if not digits or int(stamp) > _LAST_SECOND:
-        message = f'SOURCE_DATE_EPOCH "{stamp[:40]}" is no count of seconds since 1970'
+        message = f'SOURCE_DATE_EPOCH "{stamp[:40]}" is not a count of seconds since 1970'
         raise UsageError(Diagnostic(message, "write e.g. 1700000000, or unset it"))
     from datetime import UTC, datetime
 
@@ -201,10 +228,10 @@ def save(
     *,
     source: Source | None = None,
 ) -> Path:
-    """Write a design file that keeps full precision, comments and order where it can.
+    """Write a design file with full precision, keeping comments and order if possible.
 
-    Of an optimisation it is the design to build. Its first line says so where it is an optimum,
-    unless it has metrics of the user's own, which may change without the file.
+    Of an optimisation it is the design to build. Its first line marks an optimum, unless it has
+    custom metrics, which may change independently of the file.
     """
     from ..base.files import write_text
     from ..design.writer import to_yaml

@@ -1,4 +1,4 @@
-"""A recorded run as the result it was, and its report, nothing solved again."""
+"""Restore the result of a recorded run, and its report, without solving again."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Restored:
-    """A result out of its record, and where today's models say otherwise than then."""
+    """A result from its record, with differences between the models then and now."""
 
     run: Run
     result: Optimisation | ParetoFront | KeptSweep
@@ -34,30 +34,30 @@ class Restored:
 
     @property
     def optimisation(self) -> Optimisation:
-        """The result of `optimise`; raises `InputError` where it is another command's."""
+        """The result of `optimise`; raises `InputError` for another command's."""
         from ..optimisation.result import Optimisation
 
         if not isinstance(self.result, Optimisation):
-            message = f"is a run of {self.run.head['kind']}, which has no best design of its own"
+            message = f"is a run of {self.run.head['kind']}, which has no single best design"
             raise InputError(Diagnostic(message, "name a run of optimise", str(self.run.path)))
         return self.result
 
 
 def restore(of: Run | str | Path, *, plugins: Plugins = ()) -> Restored:
-    """The result of a recorded run, nothing solved again.
+    """Restore the result of a recorded run without solving again.
 
-    Designs are those of the record to the last digit; their evaluations come from the models as
-    they are now. `doubts` says where these differ from what was recorded. Of a sweep it is where
-    the rows lie.
+    Designs are exactly those of the record; their evaluations come from the present models.
+    `doubts` lists differences from the recorded values. For a sweep, the result is the location of
+    its rows.
 
     Parameters
     ----------
     of : the run, or what `read_run` takes
-    plugins : the Python files of its own metrics; they are programs, so never taken by themselves
+    plugins : the Python files of its own metrics; as programs, they are never run unless named
 
     Raises
     ------
-    InputError : a run of another command, a damaged record, plugins that are not named
+    InputError : a run of another command, a damaged record, or plugins that are not named
     """
     found = of if isinstance(of, Run) else read_run(of)
     kind = found.head.get("kind")
@@ -82,7 +82,7 @@ def restore(of: Run | str | Path, *, plugins: Plugins = ()) -> Restored:
 
 
 def _solved(found: Run, own: tuple[Plugin, ...]) -> tuple[Optimisation | ParetoFront, Evaluation]:
-    """An optimisation or a front, and the evaluation that its record tells."""
+    """An optimisation or a front, and its recorded evaluation."""
     from ..optimisation.pareto_result import ParetoFront
     from ..optimisation.recorded import from_plain
     from ..optimisation.result import Optimisation
@@ -95,32 +95,32 @@ def _solved(found: Run, own: tuple[Plugin, ...]) -> tuple[Optimisation | ParetoF
 
 
 def named_plugins(found: Run, plugins: Plugins) -> tuple[Plugin, ...]:
-    """The plugins that this call names for a run; a record by itself never runs a program.
+    """The plugins that this call names for a run; a record alone never runs a program.
 
     Raises
     ------
-    InputError : the run had own metrics, and none is named
+    InputError : the run had custom metrics, and none is named
     """
     own = plugins_of(plugins)
     files = [one["file"] or "a function of a script" for one in found.body["input"]["plugins"]]
     if files and not own:
-        message = f"its own metrics came from {', '.join(files)}, which is a program"
+        message = f"its custom metrics came from {', '.join(files)}, which is a program"
         raise InputError(Diagnostic(message, "name it with --plugin to run it", str(found.path)))
     return own
 
 
 def changed_plugins(found: Run, own: Sequence[Plugin]) -> list[str]:
-    """Say which files of own metrics are not those that were recorded."""
+    """List files of custom metrics that differ from those recorded."""
     now = {sha256(file) for file in {plugin.file for plugin in own} if file}
     return [
-        f"run {found.id} was made with another {one['file']} (its SHA-256 differs)"
+        f"run {found.id} was made with another version of {one['file']} (its SHA-256 differs)"
         for one in found.body["input"]["plugins"]
         if one["file"] and one["sha256"] not in now
     ]
 
 
 def _doubts(found: Run, now: Evaluation) -> list[str]:
-    """What to know where today's models do not repeat what was recorded."""
+    """Notes where the present models do not reproduce the record."""
     then = found.body["result"]["metrics"]
     before = {name: row["value"] for name, row in then.items()}
     changed = differing(before, {name: row.value for name, row in now.metrics.items()})
@@ -130,22 +130,22 @@ def _doubts(found: Run, now: Evaluation) -> list[str]:
     names = ", ".join(changed[:3]) + (f" and {len(changed) - 3} more" if len(changed) > 3 else "")
     made = f"actuator-opt {version}" if version != VERSION else "other material data or plugins"
     return [
-        f"run {found.id} was made by {made}; today's models (actuator-opt {VERSION}) give other "
-        f"values of {names}, which the report shows"
+        f"run {found.id} was made by {made}; the present models (actuator-opt {VERSION}) give "
+        f"other values of {names}, which the report shows"
     ]
 
 
 def report_run(
     of: Restored | Run | str | Path, *, plugins: Plugins = (), **paper: Unpack[Paper]
 ) -> list[ReportFile]:
-    """Write the report of a recorded run: the bytes that its command wrote.
+    """Write the report of a recorded run, identical to that of its command.
 
-    Of a front that is its page, its figure and its CSV (``NAME_pareto.csv``); there are none where
-    no front was found. Of a sweep it is what `report_sweep` writes.
+    For a front these are its page, figure and CSV (``NAME_pareto.csv``), or nothing if no front was
+    found. For a sweep see `report_sweep`.
 
     Parameters
     ----------
-    of : what `restore` takes, or gives
+    of : argument or result of `restore`
     plugins : as `restore`
     paper : as `report`; design and command are those of the run, and its date unless one is given
     """
@@ -158,26 +158,35 @@ def report_run(
 
 def _reported(found: Restored, paper: Paper) -> list[ReportFile]:
     from ..optimisation.result import Optimisation
-    from ..pages import ExtraTable
+    from ..rendering.blocks import text_table
 
     result = found.result
     if isinstance(result, KeptSweep):
         return report_sweep(result, **paper)
     if isinstance(result, Optimisation):
-        tables = [ExtraTable(**table) for table in found.run.body["tables"]]
+        tables = [
+            text_table(
+                table["title"],
+                table["columns"],
+                [[str(cell) for cell in row] for row in table["rows"]],
+                table["note"],
+                table["widths"],
+            )
+            for table in found.run.body["tables"]
+        ]
         return report_design(result, extra_tables=tables, **paper)
     files = write_front(result, **paper)
     return [*files, *(write_front_csv(result, x.path.with_suffix(".csv")) for x in files[:1])]
 
 
 def draw_run(of: Run, folder: str | Path) -> list[Path]:
-    """Write how the search of a run went: ID-convergence.png and .svg.
+    """Draw the convergence of a run's search: ID-convergence.png and .svg.
 
     Raises
     ------
     InputError : a run of another command than optimise
     """
-    from ..pages.convergence_figure import convergence_figure
+    from ..pages.trust import convergence_figure
     from ..rendering.image import write_ink
 
     if of.head.get("kind") != "optimise":

@@ -1,9 +1,8 @@
-"""What can be done with a result, declared once for every type of result.
+"""Output functions of every type of result, declared once.
 
-The terminal and the library look a result up by its type: its text and JSON, its report, its CSV,
-its record and the exit code. A piece is named "module:function" below `actuator_opt`, or as a
-method of the result, and is imported when it is used. A piece that a type does not have is None;
-leaving one out fails at import.
+The terminal and the library look up a result by its type: text and JSON, report, CSV, record and
+exit code. Each function is named "module:function" below `actuator_opt`, or is a method of the
+result, and is imported on use. None means that a type lacks it; leaving one out fails at import.
 """
 
 from __future__ import annotations
@@ -33,20 +32,21 @@ _PACKAGE = f"{__package__.rpartition('.')[0]}."
 
 @dataclass(frozen=True)
 class ResultKind:
-    """The pieces of one type of result.
+    """The output functions of one type of result.
 
     Parameters
     ----------
     type : of the result, "module:class"
     exit_code : of a command that gives this result
     page : builds the `Page` of a result: its text, its report and its HTML
-    text : lines for the terminal of (result, colour=, unicode=, width=), where there is no page
-    report : writes the report of (result, **`Paper`); more keywords where a kind needs them
+    blocks : builds the blocks of a result that has no page: its text
+    text : lines for the terminal of (result, colour=, unicode=, width=), if there is neither
+    report : writes the report of (result, **`Paper`); some kinds need more keywords
     csv : writes the result to a path
     record : records the run of (result, actuator=, command=, date=)
     data : plain data for JSON, SI
     remarks : lines for standard error below the text
-    writes : whether there is something to write, as report or CSV; None: always
+    writes : whether there is a report or CSV to write; None: always
     """
 
     type: str
@@ -55,6 +55,7 @@ class ResultKind:
     csv: str | None
     record: str | None
     page: str | None = None
+    blocks: str | None = None
     text: str | None = None
     data: str | None = "to_dict"
     remarks: Callable[[Any], list[str]] | None = None
@@ -62,7 +63,7 @@ class ResultKind:
 
 
 def _always(result: object) -> ExitCode:
-    """Of what has no requirements."""
+    """Exit code of a result without requirements."""
     return ExitCode.MET
 
 
@@ -107,7 +108,7 @@ def _unrounded(result: Any) -> list[str]:
 
 
 def kinds(*declared: ResultKind) -> dict[str, ResultKind]:
-    """Kinds by their type; refuses one type twice."""
+    """Kinds by their type; rejects a type declared twice."""
     found = {kind.type: kind for kind in declared}
     if len(found) != len(declared):
         raise TypeError("a type of result is declared twice")
@@ -117,20 +118,20 @@ def kinds(*declared: ResultKind) -> dict[str, ResultKind]:
 # fmt: off
 KINDS = kinds(
     ResultKind(
-        "evaluation.result:Evaluation", _met, text="pages.terminal:evaluation_text",
+        "evaluation.result:Evaluation", _met, page="pages.report:page",
         report="api.reports:report_design", csv=None, record=None,
     ),
     ResultKind(
-        "optimisation.result:Optimisation", _optimised, text="pages.terminal:optimisation_text",
+        "optimisation.result:Optimisation", _optimised, page="pages.report:page",
         report="api.reports:report_design", csv=None, record="api:record",
         remarks=_unrounded, writes=lambda result: not result.status.startswith("interrupted"),
     ),
     ResultKind(
-        "api.optimum:Prices", lambda prices: _optimised(prices.optimisation), text="text",
+        "api.optimum:Prices", lambda prices: _optimised(prices.optimisation), page="page",
         report="report", csv=None, record=None,
     ),
     ResultKind(
-        "optimisation.pareto_result:ParetoFront", _solved, text="pages.pareto_rows:front_text",
+        "optimisation.pareto_result:ParetoFront", _solved, page="pages.pareto:page",
         report="api:write_front", csv="api:write_front_csv",
         record="api:record_front", writes=lambda front: bool(front.points),
     ),
@@ -139,36 +140,35 @@ KINDS = kinds(
         report="api:write_uncertainty", csv="api:write_draws", record=None,
     ),
     ResultKind(
-        "evaluation.comparison:Comparison", _always, text="pages.compare_text:comparison_text",
+        "evaluation.comparison:Comparison", _always, page="pages.comparison:page",
         report="api.comparing:report_comparison", csv=None, record=None,
         data="api:comparison_json",
     ),
     ResultKind(
         "sweeps.swept:Swept", lambda swept: _missed(not swept.best),
-        text="pages.sweep_text:sweep_text",
+        page="pages.sweep:page",
         report=None, csv=None, record="api:record_sweep",
         writes=lambda swept: False,  # rows are written as they come, figures by draw_sweep
     ),
     ResultKind(
-        "studies.seal_result:SealStudy", _converged, text="pages.seal_text:seal_text",
+        "studies.seal_result:SealStudy", _converged, page="pages.seal:page",
         report="api:write_seal", csv=None, record=None,
     ),
     ResultKind(
-        "simulation.result:Simulation", _met, text="pages.simulation_text:simulation_text",
-        report="api:write_simulation", csv="api:write_signals",
-        record=None,
+        "simulation.result:Simulation", _met, page="pages.simulation:page",
+        report="api:write_simulation", csv="api:write_signals", record=None,
     ),
     ResultKind(
-        "api.simulations:Compared", lambda compared: _met(compared.simulation), text="text",
+        "api.simulations:Compared", lambda compared: _met(compared.simulation), blocks="blocks",
         report="report", csv=None, record=None,
     ),
     ResultKind(
         "simulation.sensitivity:Sensitivities", _always,
-        text="pages.verification_text:sensitivity_text", report=None, csv=None, record=None,
+        blocks="pages.verification:sensitivity_blocks", report=None, csv=None, record=None,
     ),
     ResultKind(
         "simulation.verification.verify:Verification", _met,
-        text="pages.verification_text:verification_text", report=None, csv=None, record=None,
+        blocks="pages.verification:blocks", report=None, csv=None, record=None,
     ),
     ResultKind(
         "identification.result:Identification", _always,
@@ -208,16 +208,16 @@ KINDS = kinds(
 
 
 def kind_of(result: object) -> ResultKind:
-    """The kind of a result, by its type; raises `TypeError` for what is no result."""
+    """The kind of a result, by its type; raises `TypeError` for other objects."""
     for cls in type(result).__mro__:
         kind = KINDS.get(f"{cls.__module__.removeprefix(_PACKAGE)}:{cls.__qualname__}")
         if kind is not None:
             return kind
-    raise TypeError(f"{type(result).__name__} is no result of a verb")
+    raise TypeError(f"{type(result).__name__} is not a result of a command")
 
 
 def piece(name: str, result: object) -> Callable[..., Any]:
-    """A piece of a kind, to be called without the result."""
+    """A function of a kind, to be called without the result."""
     module, _, function = name.rpartition(":")
     if not module:
         return getattr(result, name)  # type: ignore[no-any-return]
@@ -230,12 +230,16 @@ def exit_code(result: object) -> ExitCode:
 
 
 def text(result: object, **style: Unpack[Style]) -> str:
-    """What the terminal shows of a result; "" for what has no text."""
+    """The terminal text of a result; "" if it has none."""
     kind = kind_of(result)
     if kind.page is not None:
         from ..rendering import terminal
 
         return terminal.text(piece(kind.page, result)(), **style)
+    if kind.blocks is not None:
+        from ..rendering import terminal
+
+        return terminal.blocks_text(piece(kind.blocks, result)(), **style)
     return "" if kind.text is None else str(piece(kind.text, result)(**style))
 
 
@@ -252,13 +256,13 @@ def remarks(result: object) -> list[str]:
 
 
 def writes(result: object) -> bool:
-    """Whether there is something to write."""
+    """Whether there is a report or CSV to write."""
     found = kind_of(result).writes
     return found is None or found(result)
 
 
 def write_csv(result: object, path: str | Path) -> ReportFile:
-    """Write a result as CSV; raises `UsageError` for a kind without."""
+    """Write a result as CSV; raises `UsageError` if its kind has none."""
     name = kind_of(result).csv
     if name is None:
         raise UsageError(Diagnostic(f"{type(result).__name__} has no CSV", "leave out --csv"))
@@ -267,7 +271,7 @@ def write_csv(result: object, path: str | Path) -> ReportFile:
 
 
 def keep(result: object, **how: Any) -> Run | None:
-    """Record the run of a result; None for a kind without records. Parameters as `record`."""
+    """Record the run of a result; None if its kind has no records. Parameters as `record`."""
     name = kind_of(result).record
     return None if name is None else piece(name, result)(**how)
 
@@ -280,26 +284,29 @@ def report(
     actuator: Actuator | None = None,
     command: str = "",
     date: str | None = None,
+    all_pages: bool = False,
     seed: int = 0,
     plugins: Plugins = (),
     **more: Any,
 ) -> list[ReportFile]:
-    """Write the report of a design or of any result: the bytes that the terminal writes.
+    """Write the report of a design or a result, identical to that of the terminal.
 
-    A design is evaluated, as by ``actuator-opt report``; an evaluation without an estimate of its
-    yield gets one (`with_yield`).
+    A design is evaluated first, as by ``actuator-opt report``. An evaluation without a yield
+    estimate gets one (`with_yield`).
 
     Parameters
     ----------
     subject : a design in any form, a run (id, ``last``, `Run`, `Restored`), or a result: of
         `evaluate`, `optimise`, `pareto`, `uncertainty`, `seal`, `simulate`, `compare_measured`,
         `identify`, `calibrate`, `compare`, `rerun`
-    folder, stem : where to; default: the design's name in ``reports/``
+    folder, stem : target; default: the design's name in ``reports/``
     actuator : the design as read, for its listing and attachment
-    command : what made the report, printed on it
+    command : command that made the report, printed on it
     date : ISO date; default: SOURCE_DATE_EPOCH, else none
+    all_pages : an image of every sheet, not of the first alone
     seed : of the draws of the estimate
-    plugins : the user's metrics and constraints, of a design that is no `Actuator` yet, or a run
+    plugins : the user's metrics and constraints, for a design that is not an `Actuator` yet, or a
+        run
     more : `dynamics_verified` (of `verify_dynamics`) and `extra_tables` of an evaluation or an
         optimisation; `scenario` as read, `measured` and `sensitivities` of a simulation; `sheet`
         (False: the map alone) of a seal
@@ -310,10 +317,12 @@ def report(
 
     Raises
     ------
-    UsageError : no ISO date, a result without report, one that needs `actuator` or `scenario`
+    UsageError : not an ISO date, a result without a report, or one that needs `actuator` or
+        `scenario`
     InputError : the folder cannot be written; no partial file is left
     """
     paper: dict[str, Any] = {"folder": folder, "stem": stem, "command": command, "date": date}
+    paper |= {"all_pages": True} if all_pages else {}
     if isinstance(subject, Run) or (
         isinstance(subject, str | Path) and run_store.is_name(str(subject))
     ):

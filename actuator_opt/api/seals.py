@@ -1,4 +1,4 @@
-"""One seal looked at closely."""
+"""Detailed study of a seal."""
 
 from __future__ import annotations
 
@@ -27,25 +27,25 @@ def seal(
 ) -> SealStudy:
     """Contact, oil film, friction, leakage and damping of the seals of piston or rod.
 
-    The film is solved whether the design asks for it or for a coefficient of friction.
+    The film is solved whether the design uses it or a coefficient of friction.
 
     Parameters
     ----------
     design : as `evaluate`
     place : "piston" or "rod"
     speed, pressure : of the counterface [m/s], sealed gauge [Pa]; default: those of the moving
-        load case of the highest pressure
-    curves : whether to follow friction over speed at three pressures
-    mapped : whether to fill a map over speed and pressure
-    finite_elements : whether to compute the contact profiles of O-rings and step rings (extra
-        ``fem``); the study's design states them
+        load case with the highest pressure
+    curves : compute friction over speed at three pressures
+    mapped : compute a map over speed and pressure
+    finite_elements : compute the contact profiles of O-rings and step rings (extra ``fem``); the
+        study's design states them
 
     Raises
     ------
     InputError
-        no speed above zero, or a pressure beyond the stated contact profiles
+        no positive speed, or a pressure beyond the stated contact profiles
     ActuatorError
-        no finite elements of this seal, or no balance
+        no finite elements for this seal, or no equilibrium
     """
     from ..friction import film
     from ..studies.seal import study, with_elements
@@ -67,7 +67,7 @@ def seal(
 
 
 def with_contact(actuator: Actuator, study: SealStudy) -> Actuator:
-    """The actuator as read, with the contact profiles its seal was studied with."""
+    """The actuator as read, with the contact profiles of its seal study."""
     seals = actuator.design.seals
     found = getattr(study.design.seals, study.place).contact
     seal = getattr(seals, study.place).model_copy(update={"contact": found})
@@ -77,7 +77,7 @@ def with_contact(actuator: Actuator, study: SealStudy) -> Actuator:
 
 
 def write_seal(study: SealStudy, *, sheet: bool = True, **paper: Unpack[Paper]) -> list[ReportFile]:
-    """Write the sheet of a seal (PDF and PNG), and its map as CSV where it has one.
+    """Write the sheet of a seal (PDF and PNG), and its map, if any, as CSV.
 
     Parameters
     ----------
@@ -85,10 +85,14 @@ def write_seal(study: SealStudy, *, sheet: bool = True, **paper: Unpack[Paper]) 
     sheet : whether to write the sheet, or the map alone
     paper : as `report`
     """
-    from ..pages.seal_document import write_map, write_sheet
+    from ..pages.seal import page, series
+    from ..rendering.paper import write
+    from ..rendering.series import write_csv
 
     origin, place = page_of(study.design, f"_{study.place}_seal", **paper)
-    files = write_sheet(study, origin, **place) if sheet else []
+    files = write(page(study), origin, **place) if sheet else []
     if study.map is not None:
-        files.append(write_map(study.map, place["folder"] / f"{place['stem']}_map.csv"))
+        folder: Path = place["folder"]
+        folder.mkdir(parents=True, exist_ok=True)
+        files.append(write_csv(series(study.map), folder / f"{place['stem']}_map.csv"))
     return files

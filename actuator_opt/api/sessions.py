@@ -25,28 +25,28 @@ Changes = Mapping[str, float | str]
 """New numbers by PATH: SI, or text with a unit."""
 
 STARTS, SAMPLES = 6, 2048
-"""Effort of the one cold solve: that of `optimise`."""
+"""Effort of the single cold solve: that of `optimise`."""
 
 NUDGE = 1e-4
-"""Relative change of a number by which its effect on others is looked for."""
+"""Relative change of a number for testing its effect on others."""
 
 ROUNDING = 1e-9
-"""Share of a change, or of a number, that counts as none."""
+"""Share of a change, or of a number, that counts as zero."""
 
 
 @dataclass(frozen=True, slots=True)
 class Prediction:
-    """An optimum by straight lines from the session's, in SI.
+    """An optimum extrapolated linearly from the session's, in SI.
 
     f(p + d) = f(p) + s(d), x(p + d) = x(p) + J d, with the one-sided slope s and the derivative J
     of the optimum, solution of its linearised optimality conditions [Fiacco1983].
 
     Parameters
     ----------
-    objective : predicted objective; infinite (the worst) where the first step leaves no design
+    objective : predicted objective; infinite (the worst) if the first step leaves no design
     variables : predicted free dimensions by PATH
-    valid : whether the same limits hold the optimum all the way, to first order
-    why : what changes on the way where not, and after which share of it
+    valid : whether the same limits stay active all the way, to first order
+    why : what changes on the way if not, and after which share of it
     """
 
     objective: float
@@ -61,16 +61,16 @@ class Prediction:
 
 @dataclass(frozen=True, slots=True)
 class Price:
-    """What one number costs at the session's optimum: objective per unit of it, both SI.
+    """Price of a number at the session's optimum: objective per unit of it, both SI.
 
     Parameters
     ----------
     path, value : the number and its value
-    slope_down, slope_up : change of the objective per unit, with the sign of a derivative, when the
-        number falls and when it grows. They differ only at a degenerate vertex. None where the
-        next step that way leaves no design
-    holds : lowest and highest value up to which the same limits hold the optimum, to first order;
-        None on a side without a change within ±100 %
+    slope_down, slope_up : change of the objective per unit, with the sign of a derivative, for a
+        falling and a rising number. They differ only at a degenerate vertex. None if the next step
+        that way leaves no design
+    holds : lowest and highest value up to which the same limits stay active, to first order; None
+        on a side without a change within ±100 %
     changes : what changes there
     movement : change of each free dimension per unit, by PATH
     """
@@ -95,10 +95,10 @@ class Curve:
     Parameters
     ----------
     path, quantity : the number
-    values : its values, in the order asked for
-    objectives : at the optima; None where no design was found
-    variables : the free dimensions of each optimum by PATH; empty where no design was found
-    objective : quantity of the objective; None where it has none (weighted terms)
+    values : its values, in the requested order
+    objectives : at the optima; None without a design
+    variables : the free dimensions of each optimum by PATH; empty without a design
+    objective : quantity of the objective; None if it has none (weighted terms)
     """
 
     path: str
@@ -114,11 +114,11 @@ class Curve:
 
     @property
     def found(self) -> tuple[bool, ...]:
-        """Whether a design was found at each value."""
+        """Whether there is a design at each value."""
         return tuple(one is not None for one in self.objectives)
 
     def columns(self) -> dict[str, list[float]]:
-        """Value, objective and free dimensions as columns of SI; NaN where no design was found."""
+        """Value, objective and free dimensions as columns of SI; NaN without a design."""
         names = dict.fromkeys(name for row in self.variables for name in row)
         result = {
             self.path: list(self.values),
@@ -150,11 +150,11 @@ class Curve:
 
 
 class Session:
-    """A design's optimum, kept warm for what comes.
+    """A design's optimum, prepared for fast re-solving.
 
-    Every call takes its changes as the whole difference from the design as read: nothing a call
-    does changes what a later one returns. An objective of weighted terms divides each by its value
-    in the design as read; `solve` by that with the changes, as `optimise` would.
+    Every call takes its changes relative to the design as read; no call affects a later one. An
+    objective of weighted terms divides each by its value in the design as read; `solve` by that
+    with the changes, as `optimise` would.
 
     Attributes
     ----------
@@ -186,7 +186,7 @@ class Session:
         if not solution.feasible:
             raise InputError(
                 Diagnostic(
-                    "no design meets every requirement: a session has nothing to start from",
+                    "no design meets all requirements, so the session has no optimum to start from",
                     "call optimise, which says what to relax",
                     path="requirements",
                 )
@@ -205,27 +205,26 @@ class Session:
     def solve(
         self, changes: Changes, *, prices: bool = False, stop: Callable[[], bool] | None = None
     ) -> Optimisation:
-        """The optimum with some numbers changed, warm.
+        """Re-solve the optimum with some numbers changed.
 
-        Full steps from the session's optimum; where they do not converge, restoration and descent;
-        then a search, which alone may find no design. The optimality conditions are checked to
-        1e-6. `start` of the result is the session's optimum, `samples` is 0 unless a search was
-        made; why nothing fits is for `optimise` to say.
+        Full steps start from the session's optimum. If they do not converge, restoration and
+        descent follow, then a search; only the search may find no design. The optimality conditions
+        are checked to 1e-6. `start` of the result is the session's optimum, `samples` is 0 unless a
+        search was made. For the reason of an infeasible result use `optimise`.
 
         Parameters
         ----------
-        changes : new numbers by PATH, SI or text with a unit; the whole difference from the design
-            as read
+        changes : new numbers by PATH, SI or text with a unit, relative to the design as read
         prices : whether to price requirements and parameters, as `optimise`
-        stop : asked between steps; once it returns True, the result has the status "interrupted",
+        stop : called between steps; once it returns True, the result has the status "interrupted",
             or "interrupted_infeasible", and the best design known
 
         Raises
         ------
         InputError
-            an unknown PATH, a word, a value that is not finite or does not fit the design
+            an unknown PATH, a word, or a value that is not finite or does not fit the design
         UsageError
-            a PATH whose value the session finds itself
+            a PATH of a free dimension
         """
         from ..optimisation.run import result_of
 
@@ -251,10 +250,10 @@ class Session:
         )
 
     def predict(self, changes: Changes) -> Prediction:
-        """The optimum with some numbers changed, by straight lines: no model is evaluated.
+        """Predict the optimum with some numbers changed, linearly: no model is evaluated.
 
-        The first prediction with a number calculates its derivatives. Parameters and errors as of
-        `solve`; a number whose derivative is not known raises `UsageError`.
+        The first prediction with a number computes its derivatives. Parameters and errors as of
+        `solve`; a number without a derivative raises `UsageError`.
         """
         _, numbers = self._changed(changes)
         present = {path: self._priced(path) for path in numbers}
@@ -276,7 +275,7 @@ class Session:
         return Prediction(objective + shown, self._named(x + line.moves), not why, why)
 
     def price(self, path: str) -> Price:
-        """What a number costs at the session's optimum.
+        """Price a number at the session's optimum.
 
         The slope is the derivative of the Lagrangian by the number [Fiacco1983], one-sided at a
         degenerate vertex [Gauvin1982].
@@ -295,7 +294,7 @@ class Session:
         return self.prices([path])[0]
 
     def prices(self, paths: Sequence[str]) -> tuple[Price, ...]:
-        """The prices of several numbers, whose derivatives are calculated together; as `price`."""
+        """Price several numbers, whose derivatives are computed together; as `price`."""
         names = [self._path(path) for path in paths]
         values = {path: self._priced(path) for path in names}
         self._warm.differentiate(names)
@@ -321,15 +320,15 @@ class Session:
         *,
         stop: Callable[[], bool] | None = None,
     ) -> Curve:
-        """The optima along values of one number, solved together, outwards from the optimum.
+        """Compute the optima along values of one number, together, outwards from the optimum.
 
-        Beyond a value where a search found no design nothing is searched for any more.
+        The search stops at the first value without a design.
 
         Parameters
         ----------
         path : the number
         values : SI, or text with a unit
-        stop : asked between steps; what is not solved by then counts as not found
+        stop : called between steps; values not solved by then have no design
 
         Raises
         ------
@@ -375,8 +374,8 @@ class Session:
             if name in self._actuator.design.variables:
                 raise UsageError(
                     Diagnostic(
-                        "a free dimension: the session finds its value",
-                        f"to hold it, change lower, upper and start of variables.{name}",
+                        "a free dimension: the session computes its value",
+                        f"to fix it, change lower, upper and start of variables.{name}",
                         path=path,
                     )
                 )
@@ -421,7 +420,7 @@ class Session:
         return subject, problem
 
     def _priced(self, path: str) -> float:
-        """The present value of a number that has a price."""
+        """The present value of a number with a price."""
         numbers = self._warm.actuator.subject.numbers
         if path in self._actuator.design.variables:
             raise UsageError(
@@ -430,7 +429,7 @@ class Session:
         if path not in numbers:
             raise UsageError(
                 Diagnostic(
-                    "has no derivative at the optimum: it is no number that the design states",
+                    "has no derivative at the optimum, as the design does not state it as a number",
                     remedy(path, numbers) if get(self._actuator.design, path) is None
                     else "re-solve with it instead (session.solve)",
                     path=path,
@@ -441,8 +440,8 @@ class Session:
         if not self._differentiable[path]:
             raise UsageError(
                 Diagnostic(
-                    "has no derivative here: it is a whole number, or decides more than what the "
-                    "models read of it",
+                    "has no derivative here, as it is a whole number, or affects more than the "
+                    "models read directly",
                     "re-solve with it instead (session.solve, session.curve)",
                     path=path,
                 )
@@ -450,9 +449,9 @@ class Session:
         return float(numbers[path])
 
     def _only_read(self, path: str, value: float) -> bool:
-        """Whether a small change of a number changes nothing else: no other number, no factor.
+        """Whether a small change of a number affects no other number and no factor.
 
-        Temperatures decide the factors on strengths, say.
+        Temperatures, for example, change the factors on strengths.
         """
         own = self._warm.actuator.subject
         for share in (NUDGE, -NUDGE):
@@ -466,7 +465,7 @@ class Session:
         return False
 
     def _shown(self, slope: float) -> float:
-        """A change of the objective as the user states it."""
+        """A change of the objective with the user's sign."""
         return self._warm.actuator.goal.shown(slope)
 
     def _slope(self, slope: float) -> float | None:
@@ -489,12 +488,12 @@ class Session:
 
 
 def _require_continuous(actuator: Actuator, sizes: object) -> None:
-    """A session re-solves continuous dimensions only."""
+    """Reject designs with choices or sizes, as a session re-solves continuous dimensions only."""
     design = actuator.design
     if design.choices:
         raise UsageError(
             Diagnostic(
-                "a session holds words, but the design has choices",
+                "a session keeps choices fixed, but the design has choices",
                 "optimise it, and open a session on the best design",
                 path="choices",
             )
@@ -502,7 +501,7 @@ def _require_continuous(actuator: Actuator, sizes: object) -> None:
     if sizes is not None:
         raise UsageError(
             Diagnostic(
-                "a session re-solves continuous dimensions, but variables keep to sizes",
+                "a session re-solves continuous dimensions, but variables take listed sizes",
                 "remove `sizes` and `step` of the variables",
                 path="variables",
             )
@@ -516,7 +515,7 @@ def session(
     plugins: Plugins = (),
     seed: int = 0,
 ) -> Session:
-    """Solve a design once, cold, for warm re-solves of changes.
+    """Solve a design once, for fast re-solving of changes.
 
     Parameters
     ----------
@@ -528,9 +527,9 @@ def session(
     Raises
     ------
     InputError
-        a fault of the design, no variables, no design that meets every requirement
+        a fault of the design, no variables, or no design that meets all requirements
     UsageError
-        a design with choices, or with variables that keep to sizes
+        a design with choices, or with variables of listed sizes
     """
     from .actuator import read
 

@@ -1,4 +1,4 @@
-"""Scenarios: read with their design and records, simulated, written down."""
+"""Read scenarios with their design and records, simulate them, write reports."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .reports import Paper, Target, page_of
 if TYPE_CHECKING:
     from ..design.scenario import LoadedScenario, Scenario
     from ..pages import ReportFile
-    from ..rendering.console import Style
+    from ..rendering.blocks import Block
     from ..rendering.origin import Origin
     from ..simulation import Simulation
     from ..simulation.measured import Overlay
@@ -35,7 +35,7 @@ _TABLES = (".csv", ".txt", ".tsv")
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """A scenario as read, with its design as it is there and the records it names."""
+    """A scenario as read, with its design, changed by its values, and its records."""
 
     scenario: Scenario
     actuator: Actuator
@@ -104,7 +104,7 @@ def _records(loaded: LoadedScenario, units: Units) -> dict[tuple[str, str], tupl
 
 
 def _where(fault: Diagnostic, path: str, loaded: LoadedScenario) -> Diagnostic:
-    """A fault of a record without a line stands where the scenario names the file."""
+    """A fault of a record without a line, placed where the scenario names the file."""
     if fault.line is not None:
         return fault
     return loaded.diagnostic(path, f"{fault.file}: {fault.message}", fault.remedy)
@@ -117,27 +117,27 @@ def simulate(
     verify: bool = False,
     method: Method = "lsoda",
 ) -> Simulation:
-    """A scenario around its design over time.
+    """Simulate a scenario around its design.
 
     Parameters
     ----------
     scenario : as read, or its path
     set : values to replace, by PATH of the scenario, else of its design; a bare number is SI
-    verify : integrate again by another method and tell the difference
+    verify : integrate again by another method and compare
     method : "lsoda"; "cvodes" is faster (extra ``fast``); "radau"
 
     Returns
     -------
-    what happened, SI: `time` and `signals` by name over it, `told` (label and quantity of each),
+    the results, SI: `time` and `signals` by name over it, `told` (label and quantity of each),
     `values` by the names of `quantities.RESULTS` (None with a reason in `why`), `requirements`,
     `servo`, `balance`, `events`, `notes`; printed, a table
 
     Raises
     ------
     InputError
-        as `read_scenario`; a gain that no rule gives
+        as `read_scenario`; a gain without a tuning rule
     Unsolvable
-        where the integration cannot go on, with the time
+        the integration fails; gives the time
     """
     from ..simulation import simulate as run
 
@@ -154,7 +154,7 @@ def simulate(
 
 @contextmanager
 def placed(trial: Trial) -> Iterator[None]:
-    """Give faults of a scenario's values their place in its file."""
+    """Add the place in the file to faults of a scenario's values."""
     try:
         yield
     except InputError as error:
@@ -176,40 +176,41 @@ def as_trial(
     if not isinstance(scenario, Trial):
         return read_scenario(scenario, set=set)
     if set:
-        message = "values are set, and the scenario is read already"
+        message = "values are set, but the scenario is already read"
         raise InputError(Diagnostic(message, "set them in read_scenario"))
     return scenario
 
 
 def write_signals(simulation: Simulation, path: str | Path) -> ReportFile:
     """Write every signal of a simulation as CSV."""
-    from ..pages.simulation_csv import write_signals as write
+    from ..pages.simulation import series
+    from ..rendering.series import write_csv
 
-    return write(simulation, Path(path))
+    return write_csv(series(simulation), Path(path))
 
 
 @dataclass(frozen=True, slots=True)
 class Compared:
-    """A simulation under a measured record, with the parameters fitted to it."""
+    """A simulation compared with a measured record, and the parameters fitted to it."""
 
     overlay: Overlay
-    """After the fit, where there is one."""
+    """Simulation after the fit, if any."""
     fit: Fit | None = None
 
     @property
     def simulation(self) -> Simulation:
-        """What lies under the record."""
+        """The simulation compared with the record."""
         return self.overlay.simulation
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data for JSON, SI."""
         return self.overlay.to_dict() if self.fit is None else self.fit.to_dict()
 
-    def text(self, **style: Unpack[Style]) -> str:
-        """What the terminal shows below the simulation."""
-        from ..pages.measured_rows import measured_text
+    def blocks(self) -> list[Block]:
+        """Blocks below those of the simulation."""
+        from ..pages.measured import blocks
 
-        return measured_text(self.overlay, self.fit, **style)
+        return blocks(self.overlay, self.fit)
 
     def report(self, **how: Any) -> list[ReportFile]:
         """Write the page of the simulation with the record; parameters as `write_simulation`."""
@@ -227,22 +228,22 @@ def compare_measured(
     method: Method = "lsoda",
     simulation: Simulation | None = None,
 ) -> Compared:
-    """A measured record over a scenario: residuals, and parameters fitted to it.
+    """Compare a measured record with a scenario: residuals, and fitted parameters.
 
     Parameters
     ----------
     scenario : as read, or its path
     record : CSV file with t and any of p1, p2, x, v, F_L, ...
     fit : names of parameters, as ``air_content``; see `simulation.measured.parameters`
-    columns : header by channel where it is none of the known names
+    columns : header by channel if it is not a known name
     units : of columns whose header states none, as `read_record`
-    verify, method : as `simulate`; of a fit, of the run with the fitted values
-    simulation : of the scenario, where it has been run
+    verify, method : as `simulate`; with a fit, of the run with the fitted values
+    simulation : of the scenario, if already run
 
     Raises
     ------
     InputError
-        as `read_scenario`; nothing in common, an unknown parameter
+        as `read_scenario`; no overlap, or an unknown parameter
     """
     from ..base.files import read_bytes
     from ..identification import column_units, decode_record
@@ -270,12 +271,12 @@ def compare_measured(
 def servo_sensitivities(
     scenario: Trial | str | Path, names: Sequence[str] | None = None
 ) -> Sensitivities:
-    """Parameters of a scenario and its design, ranked by what they change in its results.
+    """Rank parameters of a scenario and its design by their effect on its results.
 
     Parameters
     ----------
     scenario : as read, or its path
-    names : PATHs; default: those that count in a servo
+    names : PATHs; default: those relevant for a servo
     """
     from ..simulation.sensitivity import sensitivities
 
@@ -287,7 +288,7 @@ def servo_sensitivities(
 def verify_dynamics(
     scenario: Trial | str | Path, design: Actuator | Design | str | Path | None = None
 ) -> Verification:
-    """Every dynamic requirement of a design and of a scenario, checked in time.
+    """Verify every dynamic requirement of a design and of a scenario in time.
 
     Parameters
     ----------
@@ -303,19 +304,19 @@ def verify_dynamics(
 
 
 def fitting(trial: Trial, design: Actuator | Design | str | Path) -> Actuator:
-    """Another design in a scenario's place, with the values that the scenario sets.
+    """Another design for a scenario, with the values that the scenario sets.
 
     Raises
     ------
     InputError
-        a scenario that this design cannot do, or that has no cylinder to verify
+        a scenario that does not fit this design, or that has no cylinder to verify
     """
     from ..design.scenario import design_faults
 
     scenario, source = trial.scenario, trial.loaded.source
     for key in ("motor", "held_ports"):
         if getattr(scenario, key) is not None:
-            fault = trial.loaded.diagnostic(key, "stands in the place of the cylinder")
+            fault = trial.loaded.diagnostic(key, "replaces the cylinder")
             raise InputError(replace(fault, remedy="verify a design with a scenario without it"))
     changes = {change.path: change.value for change in trial.loaded.changes}
     actuator = as_actuator(design)
@@ -340,32 +341,27 @@ def write_simulation(
     ----------
     simulation : of `simulate`
     scenario : as read
-    measured, sensitivities : what else to show
+    measured, sensitivities : further results to show
     paper : as `report`; the name is the scenario file's
 
     Raises
     ------
-    UsageError : no `scenario`: the simulation does not keep its file
+    UsageError : no `scenario`, as the simulation does not keep its file
     """
-    from ..pages.measured_figures import drawn
-    from ..pages.measured_rows import measured_blocks
-    from ..pages.simulation_document import write_simulation_sheet
-    from ..pages.tables import extra
-    from ..pages.verification_rows import sensitivity_rows
+    from ..pages.measured import drawn
+    from ..pages.simulation import page
+    from ..pages.verification import sensitivity_blocks
+    from ..rendering import paper as printed
 
     if scenario is None:
         message = "the page of a simulation needs its scenario"
         raise UsageError(Diagnostic(message, "give scenario=read_scenario(...)"))
     origin, place = _page(scenario, simulation, "", paper)
-    blocks = [] if measured is None else measured_blocks(measured.overlay, measured.fit)
-    blocks += [] if sensitivities is None else map(extra, sensitivity_rows(sensitivities))
-    return write_simulation_sheet(
-        simulation,
-        origin,
-        measured=None if measured is None else drawn(measured.overlay),
-        extra=blocks,
-        **place,
-    )
+    blocks = [] if measured is None else measured.blocks()
+    blocks += [] if sensitivities is None else sensitivity_blocks(sensitivities)
+    record = None if measured is None else drawn(measured.overlay)
+    made = page(simulation, measured=record, extra=blocks)
+    return printed.write(made, origin, **place, scenario_hash=simulation.spec_hash)
 
 
 def write_comparison(
@@ -376,7 +372,7 @@ def write_comparison(
     notes: Sequence[str] = (),
     **paper: Unpack[Paper],
 ) -> list[ReportFile]:
-    """Write one page about several simulations side by side (PDF and PNG).
+    """Write one page that compares several simulations (PDF and PNG).
 
     Parameters
     ----------
@@ -388,20 +384,20 @@ def write_comparison(
     Raises
     ------
     InputError
-        no run, a name that stands twice
+        no run, or a repeated name
     """
-    from ..pages.simulation_comparison import comparison
-    from ..pages.simulation_comparison_document import write_comparison_sheet
+    from ..pages.simulation_comparison import comparison, page
+    from ..rendering import paper as printed
 
-    made = comparison(runs, title, notes)
+    made = page(comparison(runs, title, notes))
     origin, place = _page(scenario, runs[0][1], "-compared", paper)
-    return write_comparison_sheet(made, origin, **place)
+    return printed.write(made, origin, **place)
 
 
 def _page(
     scenario: Trial, simulation: Simulation, tail: str, paper: Paper
 ) -> tuple[Origin, Target]:
-    """As `page_of`; the scenario's file is attached, and names the page."""
+    """`page_of` for a scenario, which is attached and names the page."""
     source = scenario.loaded.source
     name = "scenario.yaml" if source.file.startswith("<") else Path(source.file).name
     paper["actuator"] = scenario.actuator

@@ -1,4 +1,4 @@
-"""Sweep a design: many variants at once."""
+"""Sweep a design: evaluate many variants."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from ..sweeps.plan import Method, Plan
 
 LARGE = 1_000_000
-"""Points from which a sweep that evaluates them all in full must be meant."""
+"""Number of points from which a full sweep needs confirmation."""
 
 MOST_WORKERS = 1024
-"""Most processes of one machine (a choice: more are a slip, and may bring it down)."""
+"""Maximum processes on one machine (a choice: more are probably a slip, and may overload it)."""
 
 
 def sweep(
@@ -52,20 +52,21 @@ def sweep(
 
     Parameters
     ----------
-    design : the design that stands where nothing varies
+    design : the base design
     vary : ``"PATH=A..B:N"`` or ``"PATH=a,b,c"``, or these by PATH
     method : "grid" (full factorial), "sobol" or "lhs" (Latin hypercube)
     n : points of "sobol" and "lhs"
     seed : of "sobol" and "lhs"
-    store : database to take rows from and put them into
-    csv : file to write every row into
+    store : database to read rows from and write them to
+    csv : file for every row
     parquet : the same as Apache Parquet, typed and with metadata (extra `parquet`)
     keep : best feasible designs to return
-    reduce : whether only what tells the best is computed
+    reduce : compute only what is needed to find the best
     workers : processes; default: one per core
-    scheduler : address of a Dask scheduler to work on instead (extra `cluster`)
-    engine : what `reduce` screens with, "numpy" or "jax" (extra `gpu`); NumPy where JAX is missing
-    yes : whether a sweep of a million points that are all evaluated in full is meant
+    scheduler : address of a Dask scheduler, used instead of local processes (extra `cluster`)
+    engine : array library of the screen of `reduce`, "numpy" or "jax" (extra `gpu`); NumPy if JAX
+        is missing
+    yes : confirms a full sweep of a million points or more
     plugins : the user's metrics and constraints
     figures : "parallel", "scatter", "contour", "ucurves", drawn as PNG and SVG
     show : metrics of the figures; default: the objective and the requirements
@@ -74,11 +75,10 @@ def sweep(
     Raises
     ------
     UsageError
-        nothing to vary, a form that is not one, a size that must be confirmed, or a figure that
-        does not fit the sweep
+        nothing to vary, an invalid form, a size that must be confirmed, or a figure that does not
+        fit the sweep
     InputError
-        a PATH or value that is none, an objective that the design has no value of, or a store that
-        cannot be used
+        an invalid PATH or value, an objective without a value, or a store that cannot be used
     """
     from ..sweeps import plan, read_axis, sweep as run
     from ..sweeps.engine import usable_engine
@@ -88,8 +88,8 @@ def sweep(
         raise UsageError(Diagnostic(f"--workers {workers}", f"give 1 to {MOST_WORKERS}"))
     _require_apart(store, csv, parquet)
     if reduce and any(file is not None for file in (store, csv, parquet)):
-        message = "--reduce keeps the best alone"
-        raise UsageError(Diagnostic(message, "leave out --store, --csv and --parquet"))
+        message = "--reduce only keeps the best designs"
+        raise UsageError(Diagnostic(message, "omit --store, --csv and --parquet"))
     actuator = as_actuator(design, plugins)
     for file in (store, csv, parquet):
         if file is not None:
@@ -104,13 +104,13 @@ def sweep(
     axes = [read_axis(text, base, subject.quantities) for text in given]
     chosen = plan(axes, method=method, count=n, seed=seed)
     if chosen.count > LARGE and not reduce and not yes:
-        message = f"{chosen.count:,} points would all be evaluated in full".replace(",", " ")
-        remedy = "add --yes, or keep the best alone with --reduce best:K"
+        message = f"all {chosen.count:,} points would be evaluated in full".replace(",", " ")
+        remedy = "confirm with --yes, or keep only the best with --reduce best:K"
         raise UsageError(Diagnostic(message, remedy))
     study = study_of(actuator, chosen, full=not reduce, show=show, engine=engine)
     if actuator.plugins and scheduler is not None:
-        message = "own metrics cannot travel to other machines"
-        raise UsageError(Diagnostic(message, "leave out --scheduler or --plugin"))
+        message = "custom metrics cannot be sent to other machines"
+        raise UsageError(Diagnostic(message, "omit --scheduler or --plugin"))
     how: dict[str, Any] = {
         "store": None if store is None else Path(store),
         "keep": keep,
@@ -130,34 +130,38 @@ def writing(
     study: Study, csv: str | Path | None, parquet: str | Path | None
 ) -> Iterator[Callable[[Chunk], None]]:
     """What writes a chunk into every file asked for, all in place once the last is complete."""
-    from ..pages.sweep_csv import SweepTable
-    from ..pages.sweep_parquet import SweepParquet
+    from ..pages.sweep import SweepColumns, about
+    from ..rendering.parquet import ParquetFile
+    from ..rendering.series import CsvFile
 
-    with ExitStack() as files:
-        tables: list[SweepTable | SweepParquet] = []
+    columns = SweepColumns(study)
+    with ExitStack() as stack:
+        files: list[CsvFile | ParquetFile] = []
         if csv is not None:
-            tables.append(files.enter_context(SweepTable(study, Path(csv))))
+            files.append(stack.enter_context(CsvFile(columns.fields, Path(csv))))
         if parquet is not None:
-            tables.append(files.enter_context(SweepParquet(study, Path(parquet))))
+            file = ParquetFile(columns.fields, about(study), Path(parquet))
+            files.append(stack.enter_context(file))
 
         def each(chunk: Chunk) -> None:
-            for table in tables:
-                table.add(chunk)
+            values = columns.values(chunk) if files else []
+            for file in files:
+                file.add(values)
 
         yield each
 
 
 def _require_objective(subject: PreparedDesign) -> None:
-    """Refuse an objective that the design has no value of; raises `InputError`."""
+    """Reject an objective without a value; raises `InputError`."""
     from ..optimisation.actuator import goal_of
 
     goal_of(subject).value(compute(subject, subject.values()).computed, subject.cases)
 
 
 def _require_apart(*files: str | Path | None) -> None:
-    """Refuse one file for two things, and standard output; raises `UsageError`."""
+    """Reject one file for two purposes, and standard output; raises `UsageError`."""
     if "-" in map(str, files):
-        message = "-: standard output carries the results"
+        message = "-: standard output is used for the results"
         raise UsageError(Diagnostic(message, "name a file for --store, --csv or --parquet"))
     places = []
     for path in (Path(file) for file in files if file is not None):
@@ -170,30 +174,30 @@ def _require_apart(*files: str | Path | None) -> None:
 
 
 def _read_from(actuator: Actuator) -> list[str]:
-    """The files that a design and its own metrics were read from."""
+    """The files that a design and its custom metrics were read from."""
     design = [] if actuator.source is None else [actuator.source.file]
     return [*design, *(plugin.file for plugin in actuator.plugins if plugin.file)]
 
 
 def free(actuator: Actuator) -> Design:
-    """Its design, in which nothing is left to an optimiser."""
+    """Its design without free variables."""
     return actuator.design.model_copy(update={"variables": {}, "choices": {}})
 
 
 def study_of(
     actuator: Actuator, plan: Plan, *, full: bool, show: Sequence[str], engine: Engine = "numpy"
 ) -> Study:
-    """What a sweep evaluates: the design, its points and the metrics wanted of them."""
+    """The study of a sweep: the design, its points and the requested metrics."""
     from ..sweeps.chunk import Study
 
     return Study(free(actuator), plan, actuator.plugins, full=full, more=tuple(show), engine=engine)
 
 
 def _watched(study: Study, figures: Sequence[str], show: Sequence[str]) -> tuple[str, ...]:
-    """The metrics whose Pareto lines figures need; a faulty figure is refused before the work."""
+    """The metrics for Pareto lines of the figures; rejects an invalid figure before the work."""
     if not figures:
         return ()
-    from ..pages.sweep_figures import watched
+    from ..pages.sweep_figures.drawing import watched
 
     return watched(study, figures, show)
 
@@ -210,12 +214,12 @@ def draw_sweep(
 
     Parameters
     ----------
-    swept : what `sweep` came to
+    swept : result of `sweep`
     figures : "parallel" (what varies, the objective, metrics), "scatter" (metrics in pairs with
         their Pareto lines), "contour" (of metrics over the two numbers of a grid, with the
         boundary of every limit), "ucurves" (stiffness over the stroke of the best designs)
     show : metrics; default: the objective and the requirements, in a contour the objective
-    out, stem : where to; default: the design's name in ``reports/``
+    out, stem : target; default: the design's name in ``reports/``
 
     Returns
     -------
@@ -230,11 +234,11 @@ def draw_sweep(
 
     Notes
     -----
-    At most 4096 of the feasible designs and of the others are kept to be drawn, an even choice of
-    more, which the figure tells. Pareto lines are of every feasible design where the metrics were
-    known before the sweep (``sweep(..., figures=["scatter"], show=...)``), and of those kept else.
+    At most 4096 of the feasible designs and of the others are drawn, sampled evenly, with a note in
+    the figure. Pareto lines cover every feasible design if the metrics were known before the sweep
+    (``sweep(..., figures=["scatter"], show=...)``), else only the sample.
     """
-    from ..pages.sweep_figures import write_figures
+    from ..pages.sweep_figures.drawing import write_figures
 
     name = stem or Path(file_name(swept.study.design, None)).stem
     return write_figures(swept, figures, show, Path(out), name)

@@ -1,4 +1,4 @@
-"""What scatter does to a design, as results and files."""
+"""Run uncertainty studies and write their reports."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ..uncertainties import Uncertainty
 
 LEAST, MOST = 20, 10_000_000
-"""Fewest and most draws of a yield."""
+"""Minimum and maximum number of draws."""
 
 
 def uncertainty(
@@ -29,25 +29,25 @@ def uncertainty(
     metrics: Sequence[str] = (),
     plugins: Plugins = (),
 ) -> Uncertainty:
-    """Yield, sensitivity indices and tornado from what scatters in a design.
+    """Return yield, sensitivity indices and tornado of a design with uncertain inputs.
 
-    What scatters is stated in the design (``uncertainty:``, ``measured:``), in the libraries, in
-    ISO 286 and practice.
+    Uncertain inputs come from the design (``uncertainty:``, ``measured:``), the libraries, ISO 286
+    and common practice.
 
     Parameters
     ----------
     design : the design
-    count : draws of the yield
+    count : draws for the yield
     seed : the same seed gives the same result
-    quasi_random : whether to draw scrambled Sobol points, 16 times, instead of independent ones
-    rows : rows behind the indices, (inputs + 2) evaluations each; 0 for no indices
-    metrics : followed beside the margins of all limits; default: those of the objective
+    quasi_random : draw scrambled Sobol points, with 16 randomisations, instead of independent ones
+    rows : rows for the indices, (inputs + 2) evaluations each; 0 for no indices
+    metrics : evaluated beside the margins of all limits; default: those of the objective
     plugins : the user's own metrics and constraints
 
     Raises
     ------
     InputError
-        a distribution that does not fit its value, or is of a number that no model reads
+        a distribution that does not fit its value, or of a number that no model reads
     """
     from ..uncertainties import uncertainty as run
 
@@ -62,11 +62,11 @@ def uncertainty(
 
 
 def write_uncertainty(study: Uncertainty, **paper: Unpack[Paper]) -> list[ReportFile]:
-    """Write the page of a yield as PDF and PNG; parameters as `report`.
+    """Write the page of an uncertainty study as PDF and PNG; parameters as `report`.
 
     Raises
     ------
-    UsageError : no `actuator`: the study does not keep its design
+    UsageError : no `actuator`, as the study does not keep its design
     """
     from ..pages.uncertainty import page
     from ..rendering import paper as printed
@@ -80,7 +80,7 @@ def write_uncertainty(study: Uncertainty, **paper: Unpack[Paper]) -> list[Report
 
 
 def write_draws(study: Uncertainty, path: str | Path) -> ReportFile:
-    """Write the draws that were kept as CSV: inputs, margins of all limits, whether all hold."""
+    """Write the stored draws as CSV: inputs, margins of all limits, whether all are met."""
     from ..pages.uncertainty import series
     from ..rendering.series import write_csv
 

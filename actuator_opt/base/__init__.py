@@ -1,1 +1,1 @@
-"""What every package rests on: errors, units, quantities, numerics, files, databases."""
+"""Foundations of every package: errors, units, quantities, numerics, files, databases."""

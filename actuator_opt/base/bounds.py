@@ -1,4 +1,4 @@
-"""What commands take, wherever they come from: bounds of numbers, words of figures."""
+"""Limits of the numbers that commands accept, and the figures of a sweep by name."""
 
 from __future__ import annotations
 
@@ -6,25 +6,20 @@ from typing import NamedTuple
 
 
 class Bounds(NamedTuple):
-    """The least and the greatest of a whole number."""
+    """Lower and upper bound of a whole number."""
 
     least: int
     most: int
 
 
 STARTS = Bounds(1, 1000)
-"""Local searches."""
+"""Number of local searches."""
 CHECKS = Bounds(0, 100)
-"""Full searches of a front."""
+"""Number of full searches for a front."""
 SEED = Bounds(0, 2**32 - 1)
-"""What every generator takes: NLopt's is an unsigned long, which may have 32 bits."""
+"""Seeds that every generator accepts: NLopt's is an unsigned long, which may have 32 bits."""
 FRONT = Bounds(3, 2000)
-"""Designs of a front."""
+"""Number of designs on a front."""
 
-SWEEP_FIGURES = {
-    "parallel": "sweep_parallel",
-    "scatter": "sweep_scatter",
-    "contour": "sweep_contour",
-    "ucurves": "sweep_ucurves",
-}
-"""Figures of a sweep by their word, with the module of `pages` that draws each."""
+SWEEP_FIGURES = ("parallel", "scatter", "contour", "ucurves")
+"""Figures of a sweep, named as the modules of `pages.sweep_figures` that draw them."""

@@ -1,24 +1,24 @@
-"""Roots of many cubics at once: Newton steps that cannot miss, then the quadratic that is left."""
+"""Roots of many cubics at once: safeguarded Newton steps, then the remaining quadratic."""
 
 from __future__ import annotations
 
 import numpy as np
 
 BEYOND = 1.324718
-"""Root of x^3 = x + 1: scales the distance of the start that lies beyond every root but one."""
+"""Root of x^3 = x + 1: scales the distance to a start point beyond all roots but one."""
 
 SHY = 1 + 1e-15
-"""Divisor of a Newton step, which so stays on its side of the root in rounded arithmetic."""
+"""Divisor of a Newton step: keeps it on its side of the root despite rounding."""
 
 MOST = 120
-"""Steps of a triple root, which takes a third of its distance at a time."""
+"""Number of steps for a triple root: each step covers a third of the distance."""
 
 
 def cubic_roots(square: np.ndarray, slope: np.ndarray, constant: np.ndarray) -> np.ndarray:
-    """All roots of x^3 + square x^2 + slope x + constant, (..., 3) complex, the real one first.
+    """All roots of x^3 + square x^2 + slope x + constant, (..., 3) complex, the real root first.
 
-    From a point beyond the outer real root Newton's steps run towards it from one side; the
-    quadratic that is left is divided out from the end that loses least [Kahan1986].
+    Newton's steps start beyond the outer real root and approach it from one side. The remaining
+    quadratic is divided out from the end that loses fewest digits [Kahan1986].
 
     Parameters
     ----------
@@ -26,8 +26,8 @@ def cubic_roots(square: np.ndarray, slope: np.ndarray, constant: np.ndarray) -> 
 
     Examples
     --------
-    >>> found = cubic_roots(np.array([-6.0]), np.array([11.0]), np.array([-6.0]))
-    >>> print(np.sort(found.real.round(12)))
+    >>> roots = cubic_roots(np.array([-6.0]), np.array([11.0]), np.array([-6.0]))
+    >>> print(np.sort(roots.real.round(12)))
     [[1. 2. 3.]]
     """
     x = _outer_root(square, slope, constant)
@@ -53,9 +53,9 @@ def cubic_roots(square: np.ndarray, slope: np.ndarray, constant: np.ndarray) -> 
 
 
 def _outer_root(square: np.ndarray, slope: np.ndarray, constant: np.ndarray) -> np.ndarray:
-    """A real root of each cubic: the one beyond its inflection, on the side where it lies.
+    """A real root of each cubic: the outer root on the far side of the inflection point.
 
-    At a triple root slope and value are rounding alone: no step passes the inflection.
+    At a triple root, slope and value are rounding errors only: no step passes the inflection.
     """
     x = inflection = square * (-1 / 3)
     value, rise = _value(x, square, slope, constant)

@@ -1,12 +1,12 @@
-"""The database of a sweep: rows of numbers by the hash of what they were computed from, in SQLite.
+"""SQLite database of a sweep: rows of numbers, each under the hash of its inputs.
 
-Every chunk is one transaction, so that a process that is killed at any instant leaves whole
-chunks and nothing else. A row stands once, whoever computes it.
+Every chunk is one transaction: a process killed at any moment leaves whole chunks and nothing
+else. Each row is stored once, whichever process computes it.
 
-Every row has a checksum of its study, its key and its numbers, and counts only where that fits.
-It is of a row, not of a chunk: another sweep takes the same rows in other chunks. It is BLAKE2b,
-as the keys are, since a cyclic redundancy check, the faster one, misses one edit in 2^32. It
-guards against damage and slips; whoever changes a row on purpose can write its checksum too.
+Every row has a checksum of its study, its key and its numbers; a row that fails it is ignored.
+The checksum covers a row, not a chunk, since another sweep groups the same rows differently.
+It is BLAKE2b, as for the keys: a faster cyclic redundancy check misses one change in 2^32. It
+guards against damage, not against forgery: who edits a row can also write its checksum.
 """
 
 from __future__ import annotations
@@ -27,22 +27,22 @@ from .files import make_private
 from .numeric import Array
 
 FORMAT = 2
-"""Of the tables below. Rows of format 1 have no checksums, so none of them can be trusted."""
+"""Version of the tables below. Rows of format 1 have no checksums and are not trusted."""
 
 BUSY = 60.0
-"""Seconds to wait for another process that writes."""
+"""Seconds to wait while another process writes."""
 
 ASKED = 500
-"""Keys of one question; SQLite takes at least 999 parameters."""
+"""Keys per query; SQLite accepts at least 999 parameters."""
 
 OURS = frozenset({"meta", "studies", "rows"})
-"""Tables by which a database of ours is known."""
+"""Tables that identify a database of this program."""
 
 PAUSE = 0.01
-"""Seconds between two tries to open a file that another process is opening."""
+"""Seconds between two attempts to open a file that another process is opening."""
 
 CHECK = 8
-"""Bytes of a checksum: damage goes unnoticed once in 2^64 times."""
+"""Bytes of a checksum: one damage in 2^64 goes unnoticed."""
 
 _PUT = "INSERT OR REPLACE INTO rows (study, key, numbers, failure, checksum) VALUES (?, ?, ?, ?, ?)"
 _TABLES = """
@@ -62,35 +62,35 @@ CREATE TABLE IF NOT EXISTS texts (
 
 
 class Column(NamedTuple):
-    """One number of a row: its name and its SI unit."""
+    """A number of a row: name and SI unit."""
 
     name: str
     unit: str
 
 
 class Rows(NamedTuple):
-    """Numbers (n, columns) of some keys; NaN rows and a reason where a design failed."""
+    """Numbers (n, columns) of several keys; NaN and a reason where a design failed."""
 
     numbers: Array
     failures: dict[int, str]
 
 
 class Seals:
-    """Checksums of the rows of a study."""
+    """Computes and checks the checksums of a study's rows."""
 
     def __init__(self, study: str, width: int) -> None:
         self._size = 8 * width
         self._head = hashlib.blake2b(study.encode(), digest_size=CHECK)
 
     def of(self, key: bytes, numbers: bytes | None, failure: str | None) -> bytes:
-        """The checksum of a row."""
+        """Checksum of a row."""
         found = self._head.copy()
         found.update(key)
         found.update(b"failed " + (failure or "").encode() if numbers is None else numbers)
         return found.digest()
 
     def fits(self, key: Any, numbers: Any, failure: Any, checksum: Any) -> bool:
-        """Whether a row out of a file is whole: numbers, or a reason why there are none."""
+        """Whether a stored row is intact: numbers, or the reason for a failed design."""
         if not isinstance(key, bytes):
             return False
         if numbers is None:
@@ -100,7 +100,7 @@ class Seals:
 
 
 class Database:
-    """An open database, of one study: a design, what varies and the version of the models."""
+    """Open database of one study: a design, its varied inputs and the version of the models."""
 
     def __init__(
         self, connection: sqlite3.Connection, number: int, study: str, width: int, path: Path
@@ -109,14 +109,14 @@ class Database:
         self.width, self.seals = width, Seals(study, width)
 
     def missing(self, keys: Sequence[bytes]) -> tuple[list[int], int]:
-        """Numbers of the keys without a whole row, and how many of their rows are damaged."""
+        """Indices of the keys without an intact row, and how many of their rows are damaged."""
         known = self._known(keys)
         sound = [key for key, row in known.items() if row is not None]
         lacking = set(keys).difference(sound)
         return [k for k, key in enumerate(keys) if key in lacking], len(known) - len(sound)
 
     def known(self, keys: Sequence[bytes]) -> dict[int, tuple[Array | None, str | None]]:
-        """Rows already stored, by the number of their key, without damaged ones."""
+        """Rows already stored, by the index of their key; damaged rows are left out."""
         rows = self._known(keys)
         kept: dict[int, tuple[Array | None, str | None]] = {}
         for k, key in enumerate(keys):
@@ -127,7 +127,7 @@ class Database:
         return kept
 
     def _known(self, keys: Sequence[bytes]) -> dict[bytes, tuple[bytes | None, str | None] | None]:
-        """Numbers and failures of the rows of some keys, by their key; None of damaged ones."""
+        """Numbers and failure reasons of stored rows by key; None for damaged rows."""
         some = "SELECT 1 FROM rows WHERE study = ? LIMIT 1"
         if self.connection.execute(some, (self.number,)).fetchone() is None:
             return {}
@@ -144,7 +144,7 @@ class Database:
         return kept
 
     def put(self, keys: Sequence[bytes], rows: Rows) -> None:
-        """Keep a chunk, all of it or nothing, in the place of damaged rows."""
+        """Store a chunk completely or not at all; damaged rows are replaced."""
         width = 8 * self.width
         data = np.ascontiguousarray(rows.numbers, dtype="<f8").tobytes()
         failures = rows.failures
@@ -169,21 +169,21 @@ def opened(
     version: str,
     texts: Iterable[tuple[str, str]] = (),
 ) -> Iterator[Database]:
-    """Open or begin the database of a study.
+    """Open the database of a study, or create it.
 
     Parameters
     ----------
-    path : of the file; made where it is not there
-    study : hash of the design and of what varies
-    name, design : of the study, for whoever reads the file
-    columns : of its rows
-    version : of the models; another one's rows are not mixed in
-    texts : PATHs with the texts (materials, ...) they take, which rows name by their key alone
+    path : file; created if missing
+    study : hash of the design and its varied inputs
+    name, design : name and design of the study, for readers of the file
+    columns : columns of its rows
+    version : version of the models; rows of different versions are never mixed
+    texts : PATHs with their text values (materials, ...); rows store only the key of a text
 
     Raises
     ------
     InputError
-        the file is no such database, of another version, or cannot be written
+        not a database of sweeps, another version, or not writable
     """
     make_private(path)
     with _diagnosed(path):
@@ -201,7 +201,7 @@ def opened(
 
 
 def _begun(connection: sqlite3.Connection, path: Path, study: tuple[str, str, str, str]) -> int:
-    """The number of a study (hash, name, design, columns), which is entered where it lacks."""
+    """Index of a study (hash, name, design, columns); the study is added if missing."""
     hashed, *about = study
     with connection:
         connection.execute(
@@ -221,18 +221,18 @@ def _begun(connection: sqlite3.Connection, path: Path, study: tuple[str, str, st
                 (*about, study_checksum(*study), number),
             )
     elif kept[-1] != about[-1]:
-        raise refused(path, "holds other columns of this study", "name another file")
+        raise refused(path, "has other columns for this study", "name another file")
     return int(number)
 
 
 def study_checksum(*about: object) -> bytes:
-    """The checksum of a study: of its hash, name, design and columns."""
+    """Checksum of a study: of its hash, name, design and columns."""
     text = json.dumps(about, default=repr)
     return hashlib.blake2b(text.encode(), digest_size=CHECK).digest()
 
 
 def _patiently(act: Callable[[], None]) -> None:
-    """Do what SQLite refuses while another process opens the file: it waits for rows alone."""
+    """Retry what SQLite refuses while another process opens the file."""
     end = time.monotonic() + BUSY
     while True:
         try:
@@ -244,7 +244,7 @@ def _patiently(act: Callable[[], None]) -> None:
 
 
 def _require_ours(connection: sqlite3.Connection, path: Path, version: str) -> None:
-    """Make the tables of a new file; refuse what is not ours."""
+    """Create the tables of a new file; refuse a foreign database."""
     tables = {row[0] for row in connection.execute("SELECT name FROM sqlite_master")}
     if tables and not tables >= OURS:
         raise refused(path, "is another program's database", "name another file")
@@ -269,37 +269,37 @@ def require_version(connection: sqlite3.Connection, path: Path, version: str, re
     if meta.get("format") != str(FORMAT):
         message = f"has the format {meta.get('format')}, not {FORMAT}"
         if meta.get("format") == "1":
-            message = "was written without checksums, by which damaged rows are noticed (format 1)"
+            message = "has no checksums to detect damaged rows (format 1)"
         raise refused(path, message, remedy)
     if meta.get("version") != version:
-        message = f"holds rows of the models {meta.get('version')}, these are {version}"
+        message = f"has rows of model version {meta.get('version')}, not {version}"
         raise refused(path, message, remedy)
 
 
 def refused(path: Path, message: str, remedy: str) -> InputError:
-    """What is wrong with a database, in one line."""
+    """A one-line error about a database."""
     return InputError(Diagnostic(message, remedy, str(path)))
 
 
 def damaged(path: Path) -> InputError:
-    """A file that SQLite cannot read whole, in one line."""
-    return refused(path, "is a damaged database", "run its sweep again, with another --store")
+    """A one-line error about a file that SQLite cannot read completely."""
+    return refused(path, "is a damaged database", "run the sweep again with another --store")
 
 
 @contextmanager
 def _diagnosed(path: Path) -> Iterator[None]:
-    """Say in one line what SQLite or the file system refuses."""
+    """Explain in one line what SQLite or the file system refuses."""
     try:
         yield
-    except UnicodeDecodeError:  # of the message in which SQLite says what is malformed
+    except UnicodeDecodeError:  # part of SQLite's message about a malformed file
         raise damaged(path) from None
     except sqlite3.DatabaseError as error:
         text = str(error)
         if "not a database" in text:
-            raise refused(path, "is no database of sweeps", "name another file") from None
+            raise refused(path, "is not a database of sweeps", "name another file") from None
         if "malformed" in text or "UTF-8" in text:
             raise damaged(path) from None
-        remedy = "rows kept so far stay; make room, or name a file where you may write"
+        remedy = "stored rows are kept; free disk space, or name a writable file"
         if "unable to open" in text:
-            remedy = "name a file in a folder that is there and where you may write"
+            remedy = "name a file in an existing, writable folder"
         raise refused(path, f"cannot be written: {text}", remedy) from None

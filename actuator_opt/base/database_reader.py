@@ -1,4 +1,4 @@
-"""Reading the database of a sweep: nothing is made, changed or locked."""
+"""Read-only access to the database of a sweep: nothing is created, changed or locked."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ MAGIC = b"SQLite format 3\0"
 """First bytes of every SQLite file."""
 
 SOME = 4096
-"""Rows read at once."""
+"""Rows per query."""
 
 _SELECT = "SELECT key, numbers, failure, checksum FROM rows WHERE study = ?"
 
 
 class StoredRows(NamedTuple):
-    """One study of a database; `texts` are those that its rows may take, by PATH."""
+    """Stored rows of one study; `texts` lists the text values they may use, by PATH."""
 
     number: int
     hash: str
@@ -37,9 +37,9 @@ class StoredRows(NamedTuple):
     design: str
     columns: tuple[Column, ...]
     rows: int
-    """Whole or damaged."""
+    """Number of stored rows, intact or damaged."""
     failures: dict[str, int]
-    """How often each reason made a design fail."""
+    """Number of failed designs by reason."""
     texts: dict[str, tuple[str, ...]]
 
 
@@ -50,35 +50,35 @@ class Reader:
         self.connection, self.path = connection, path
 
     def study(self, number: int | None = None) -> StoredRows:
-        """The study of a number, or the newest.
+        """The study with this number, or the newest study.
 
         Raises
         ------
         InputError
-            no such study, or one without rows
+            no such study, or the study has no rows
         """
         select = "SELECT id, hash, name, design, columns, checksum FROM studies ORDER BY id"
         every = self.connection.execute(select).fetchall()
         if not every:
-            raise refused(self.path, "holds no study", "run `sweep --store` on it first")
+            raise refused(self.path, "has no study", "fill it with `sweep --store` first")
         found = [one for one in every if number in (None, one[0])]
         if not found:
             have = ", ".join(f"{one[0]} ({one[2]})" for one in every[-8:])
-            raise refused(self.path, f"has no study {number}", f"--study is one of {have}")
+            raise refused(self.path, f"has no study {number}", f"choose --study from {have}")
         number, hashed, name, design, columns, checksum = found[-1]
         if checksum != study_checksum(hashed, name, design, columns):
             message = f"study {number} is damaged"
-            raise refused(self.path, message, "run its sweep again with --store")
+            raise refused(self.path, message, "run the sweep again with --store")
         told = self._columns(columns)
-        count = "SELECT count(*) FROM rows NOT INDEXED WHERE study = ?"  # an index may lack some
+        count = "SELECT count(*) FROM rows NOT INDEXED WHERE study = ?"  # an index may lack rows
         rows = self.connection.execute(count, (number,)).fetchone()[0]
         if not rows:
-            raise refused(self.path, f"study {number} has no rows yet", "let its sweep run first")
+            raise refused(self.path, f"study {number} has no rows yet", "run its sweep first")
         failures = self._failures(number, Seals(hashed, len(told)))
         return StoredRows(number, hashed, name, design, told, rows, failures, self._texts(number))
 
     def _failures(self, number: int, seals: Seals) -> dict[str, int]:
-        """How often each reason made a design fail, the commonest first, by rows that are whole."""
+        """Number of failed designs by reason, the most frequent first; damaged rows are ignored."""
         select = f"{_SELECT} AND failure IS NOT NULL"
         reasons = Counter(
             row[2] for row in self.connection.execute(select, (number,)) if seals.fits(*row)
@@ -86,16 +86,16 @@ class Reader:
         return dict(sorted(reasons.items(), key=lambda one: (-one[1], one[0])))
 
     def number(self, hashed: str) -> int:
-        """The number of the study of a hash.
+        """Number of the study with a hash.
 
         Raises
         ------
         InputError
-            none has it
+            no study has this hash
         """
         row = self.connection.execute("SELECT id FROM studies WHERE hash = ?", (hashed,)).fetchone()
         if row is None:
-            message = "holds no such sweep: it was made anew, or materials or metrics have changed"
+            message = "does not contain this sweep: file, materials or metrics have changed"
             raise refused(self.path, message, "run the sweep again with --store")
         return int(row[0])
 
@@ -107,7 +107,7 @@ class Reader:
         if not isinstance(told, list) or not all(
             isinstance(one, list) and len(one) == len(Column._fields) for one in told
         ):
-            raise refused(self.path, "names no columns of its rows", "run the sweep again")
+            raise refused(self.path, "does not name the columns of its rows", "run the sweep again")
         return tuple(Column(*one) for one in told)
 
     def _texts(self, number: int) -> dict[str, tuple[str, ...]]:
@@ -121,10 +121,10 @@ class Reader:
         return found
 
     def rows(self, study: StoredRows) -> Iterator[tuple[list[bytes], Array]]:
-        """Keys and numbers of the rows that did not fail, some at once, by their key.
+        """Keys and numbers of the successful rows, in batches, ordered by key.
 
-        A key is a hash, so that every n-th row is an even sample of the study. Damaged rows are
-        left out.
+        Keys are hashes: every n-th row gives an even sample of the study. Damaged rows are left
+        out.
         """
         select = f"{_SELECT} AND failure IS NULL ORDER BY key"
         cursor = self.connection.execute(select, (study.number,))
@@ -139,16 +139,16 @@ class Reader:
 
 @contextmanager
 def reading(path: Path, version: str) -> Iterator[Reader]:
-    """Open the database of sweeps to read it.
+    """Open a database of sweeps for reading.
 
     Raises
     ------
     InputError
-        no such file, none of ours, rows of other models, or not to be read
+        no such file, another format, rows of other models, or not readable
     """
     kinds = (".db", ".sqlite", ".sqlite3")
     if read_bytes(path, most=len(MAGIC), kinds=kinds, what="database of sweeps") != MAGIC:
-        raise refused(path, "is no database of sweeps", "name the file of `sweep --store`")
+        raise refused(path, "is not a database of sweeps", "name a file written by `sweep --store`")
     try:
         connection = _connected(path)
         try:
@@ -157,17 +157,17 @@ def reading(path: Path, version: str) -> Iterator[Reader]:
             yield Reader(connection, path)
         finally:
             connection.close()
-    except UnicodeDecodeError:  # of the message in which SQLite says what is malformed
+    except UnicodeDecodeError:  # part of SQLite's message about a malformed file
         raise damaged(path) from None
     except sqlite3.DatabaseError as error:
         if "malformed" in str(error) or "UTF-8" in str(error):
             raise damaged(path) from None
-        remedy = "name the file of `sweep --store`, whole"
+        remedy = "name a complete file written by `sweep --store`"
         raise InputError(Diagnostic(f"cannot be read: {error}", remedy, str(path))) from None
 
 
 def _connected(path: Path) -> sqlite3.Connection:
-    """A connection that only reads; where no lock can be kept beside the file, it stands still."""
+    """A read-only connection; immutable where no lock file can be created beside the database."""
     name = f"file:{quote(os.fsencode(path.resolve()))}?mode=ro"
     connection = sqlite3.connect(name, uri=True, timeout=BUSY)
     try:
@@ -184,4 +184,4 @@ def _connected(path: Path) -> sqlite3.Connection:
 def _require_tables(connection: sqlite3.Connection, path: Path) -> None:
     tables = {row[0] for row in connection.execute("SELECT name FROM sqlite_master")}
     if not tables >= OURS:
-        raise refused(path, "is no database of sweeps", "name the file of `sweep --store`")
+        raise refused(path, "is not a database of sweeps", "name a file written by `sweep --store`")

@@ -1,9 +1,8 @@
-"""What can go wrong, said in one line each: where, what, what to do.
+"""Errors of the program, one line each: place, fault, remedy.
 
-Every failure a user can cause leaves the program as a `UsageError` (exit 2), an `InputError`
-(exit 3) or an `Unsolvable` (exit 4); any other exception is a fault of the program (exit 70). They
-carry `Diagnostic` records, which the terminal prints as plain lines
-and ``--json`` prints as objects.
+Every failure that a user can cause is a `UsageError` (exit 2), an `InputError` (exit 3) or an
+`Unsolvable` (exit 4); any other exception is a fault of the program (exit 70). These errors carry
+`Diagnostic` records, which the terminal prints as plain lines and ``--json`` prints as objects.
 """
 
 from __future__ import annotations
@@ -15,11 +14,11 @@ from enum import IntEnum
 from .suggest import shown
 
 _LONGEST = 400
-"""Letters of a file's name that a line repeats."""
+"""Characters of a file name that a message shows."""
 
 
 class ExitCode(IntEnum):
-    """Exit statuses of every command (CONTRACT: stable)."""
+    """Exit codes of every command; they never change between releases."""
 
     MET = 0
     MISSED = 1
@@ -27,7 +26,7 @@ class ExitCode(IntEnum):
     BAD_INPUT = 3
     SOLVER_FAILED = 4
     FAULT = 70
-    """EX_SOFTWARE of sysexits.h: an error of the program itself."""
+    """EX_SOFTWARE of sysexits.h: an internal error."""
     INTERRUPTED = 130
 
 
@@ -40,20 +39,20 @@ EXIT_CODES = {
     ExitCode.FAULT: "a fault of the program (`--debug` shows its traceback)",
     ExitCode.INTERRUPTED: "interrupted",
 }
-"""Exit codes as help and README list them."""
+"""Exit codes as listed in the help and the README."""
 
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One fault of one input, with its place and its remedy.
+    """One fault of an input, with its place and its remedy.
 
     Parameters
     ----------
     message : what is wrong, without a final full stop
     remedy : what to do about it
-    file, line, column : place in the source, 1-based; None where there is no source text
+    file, line, column : place in the source, 1-based; None without source text
     path : PATH of the value inside the design (``barrel.layup[1].thickness``)
-    source : the source line itself, for the caret display
+    source : the source line, shown above the caret
     """
 
     message: str
@@ -65,7 +64,7 @@ class Diagnostic:
     source: str | None = None
 
     def to_dict(self) -> dict[str, object]:
-        """The JSON form: file, line, column, path, message, remedy."""
+        """JSON form: file, line, column, path, message, remedy."""
         fields = asdict(self)
         del fields["source"]
         return fields
@@ -84,9 +83,9 @@ class Diagnostic:
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """A fault by its place in the tree of a file; `at_key` points at the key instead of the value.
+    """A fault with its place in the tree of a file; `at_key` marks the key instead of the value.
 
-    What is missing has the place it would have; the message then stands at its block.
+    A missing key has the place it would have; the message then points at its block.
     """
 
     loc: tuple[str | int, ...]
@@ -96,7 +95,7 @@ class Fault:
 
 
 class ActuatorError(Exception):
-    """Base of every error the library raises on purpose."""
+    """Base class of the errors that the library raises on purpose."""
 
     exit_code = ExitCode.BAD_INPUT
 
@@ -110,7 +109,7 @@ class ActuatorError(Exception):
 
 
 class InputError(ActuatorError):
-    """A file, a value or a path that cannot be used (exit 3)."""
+    """A file, value or PATH that cannot be used (exit 3)."""
 
 
 class UsageError(ActuatorError):
@@ -120,6 +119,6 @@ class UsageError(ActuatorError):
 
 
 class Unsolvable(ActuatorError):
-    """The solver could not produce a usable answer (exit 4)."""
+    """The solver found no usable solution (exit 4)."""
 
     exit_code = ExitCode.SOLVER_FAILED

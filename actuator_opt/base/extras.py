@@ -1,4 +1,4 @@
-"""Optional libraries, loaded when a format needs them: the core works without."""
+"""Optional libraries, imported only by the formats that need them."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from typing import Any
 from .errors import ActuatorError, Diagnostic
 
 EXTRAS = {"ezdxf": ("DXF", "cad"), "openpyxl": ("XLSX", "excel"), "pyarrow": ("Parquet", "parquet")}
-"""Format and extra of every library."""
+"""Format and package extra of every optional library."""
 
 
 def library(name: str) -> Any:
-    """A module of an optional library; one clear line where its extra is not installed.
+    """Import a module of an optional library; a one-line error where it is not installed.
 
     Raises
     ------
-    ActuatorError : it is missing
+    ActuatorError : not installed
     """
     try:
         return import_module(name)

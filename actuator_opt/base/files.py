@@ -1,4 +1,4 @@
-"""Where files of this package lie: data shipped in the wheel, or the folders of a checkout."""
+"""Locating and writing files: data shipped in the wheel or in a checkout, and the user's files."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ _CREATE = (
     os.O_WRONLY
     | os.O_CREAT
     | os.O_EXCL
-    | getattr(os, "O_NOFOLLOW", 0)  # neither is known everywhere
+    | getattr(os, "O_NOFOLLOW", 0)  # not available on every system
     | getattr(os, "O_BINARY", 0)
 )
 _PRIVATE = 0o600
-"""Permissions of what is the user's own."""
+"""Permissions of private files."""
 DIGITS = 19
-"""Letters of a whole number in JSON, at most: counts, seeds and times have fewer."""
+"""Most digits of a whole number in JSON: counts, seeds and times have fewer."""
 
 
 def data_folder(name: str, *, package: Path = _PACKAGE) -> Path:
-    """Folder of shipped data (``materials``, ``designs``): packaged data first, else the checkout.
+    """Folder of shipped data (``materials``, ``designs``): packaged data first, then the checkout.
 
     Parameters
     ----------
@@ -40,14 +40,14 @@ def data_folder(name: str, *, package: Path = _PACKAGE) -> Path:
 
     Raises
     ------
-    InputError : neither place has the folder
+    InputError : the folder is missing in both places
 
     Notes
     -----
     A wheel carries the folder as ``_data/NAME`` inside the package. A folder beside the package
-    counts only where ``pyproject.toml`` shows a checkout: site-packages may hold a stranger's
-    ``materials``. Plain paths, because importing ``importlib.resources`` would cost more than
-    reading the files does.
+    is used only where ``pyproject.toml`` shows a checkout: site-packages may contain an unrelated
+    ``materials``. Plain paths are used because importing ``importlib.resources`` takes longer than
+    reading the files.
     """
     packaged = package / "_data" / name
     if packaged.is_dir():
@@ -60,18 +60,18 @@ def data_folder(name: str, *, package: Path = _PACKAGE) -> Path:
 
 
 def read_bytes(source: str | Path, *, most: int, kinds: tuple[str, ...], what: str) -> bytes:
-    """The first `most` bytes of a file that a person named.
+    """The first `most` bytes of a file named by the user.
 
     Parameters
     ----------
-    source : of the file, as the person wrote it; ``"-"`` for standard input
-    most : bytes to read
-    kinds : endings of such files, to suggest one of a near name
-    what : such a file is, in words
+    source : path as the user wrote it; ``"-"`` for standard input
+    most : largest number of bytes to read
+    kinds : suffixes of such files, to suggest a similar name
+    what : kind of file, in words
 
     Raises
     ------
-    InputError : it is not there, a folder, or not to be read
+    InputError : the file is missing, a folder, or not readable
     """
     path, name = Path(source), str(source)
     if name == "-":
@@ -110,11 +110,11 @@ def _near(path: Path, kinds: tuple[str, ...]) -> str:
 
 
 def read_json(text: bytes | str) -> object:
-    """The JSON of a stranger: finite numbers alone, whole ones of at most `DIGITS` digits.
+    """Parse untrusted JSON: finite numbers only, whole numbers of at most `DIGITS` digits.
 
     Raises
     ------
-    ValueError : it is none, or nested without end
+    ValueError : not JSON, or nested too deeply
     """
     import json
 
@@ -133,16 +133,16 @@ def _whole(text: str) -> int:
 def _finite(text: str) -> float:
     found = float(text)
     if not isfinite(found):
-        raise ValueError("no finite number")
+        raise ValueError("not a finite number")
     return found
 
 
 def require_writable(path: Path) -> None:
-    """Refuse a file that cannot be written, before the work that would fill it.
+    """Refuse an unwritable file before the work that would fill it.
 
     Raises
     ------
-    InputError : a folder stands there, its own folder is missing, or permission is; or it is "-"
+    InputError : it is a folder or "-", its folder is missing, or permission is denied
     """
     with writing(path):
         reason = _unwritable_file(path)
@@ -151,14 +151,14 @@ def require_writable(path: Path) -> None:
 
 
 def _unwritable_file(path: Path) -> str:
-    """Why a file cannot be written; "" where it can. Raises `OSError`."""
+    """Why a file cannot be written; "" if it can. Raises `OSError`."""
     folder, reason = path.parent, ""
     if str(path) == "-":
         reason = "is standard output, which carries the results"
     elif path.is_dir():
         reason = "is a folder"
     elif path.exists() and not path.is_file():
-        reason = "is no regular file"
+        reason = "is not a regular file"
     elif not folder.is_dir():
         reason = "its folder does not exist"
     elif not os.access(path if path.exists() else folder, os.W_OK):
@@ -167,11 +167,11 @@ def _unwritable_file(path: Path) -> str:
 
 
 def require_folder(folder: Path) -> None:
-    """Refuse a folder that cannot be made or written, before the work that would fill it.
+    """Refuse a folder that cannot be created or written, before the work that would fill it.
 
     Raises
     ------
-    InputError : a file stands in the way, or permission is missing
+    InputError : a file has this name, or permission is denied
     """
     place = folder
     with writing(folder, "choose a folder with --out"):
@@ -186,14 +186,14 @@ def require_folder(folder: Path) -> None:
 
 
 def _nearest(folder: Path) -> Path:
-    """The folder, or the nearest one above it that is there; raises `OSError`."""
+    """The folder, or its nearest existing parent; raises `OSError`."""
     while not folder.exists() and folder != folder.parent:
         folder = folder.parent
     return folder
 
 
 def require_apart(target: Path, *sources: str) -> None:
-    """Refuse to write over a file that is read.
+    """Refuse to overwrite a file that is read.
 
     Raises
     ------
@@ -202,14 +202,14 @@ def require_apart(target: Path, *sources: str) -> None:
     for source in sources:
         with contextlib.suppress(OSError, ValueError):
             if target.samefile(source):
-                message = "would be written over what is read"
+                message = "is an input and would be overwritten"
                 raise InputError(Diagnostic(message, "choose another file", str(target)))
 
 
 def write_text(path: Path, text: str) -> Path:
-    """Write a text file whole: aside first, then renamed; no partial file on failure.
+    """Write a text file atomically: to a temporary file, then renamed; no partial file on failure.
 
-    A link stays one: what it points at is written.
+    A symbolic link is kept: its target is written.
     """
     with aside(path) as stream:
         stream.write(text)
@@ -218,11 +218,11 @@ def write_text(path: Path, text: str) -> Path:
 
 @contextlib.contextmanager
 def aside(path: Path) -> Iterator[TextIO]:
-    """A text file to write piece by piece, aside; it is in place once all is written.
+    """Temporary text file for piecewise writing; renamed to its final name once complete.
 
     Raises
     ------
-    InputError : it cannot be written; nothing partial is left
+    InputError : not writable; no partial file is left
     """
     with _part(path) as part, open(part, "w", encoding="utf-8", closefd=False) as stream:
         yield stream
@@ -230,17 +230,17 @@ def aside(path: Path) -> Iterator[TextIO]:
 
 @contextlib.contextmanager
 def aside_bytes(path: Path) -> Iterator[BinaryIO]:
-    """As `aside`, of bytes."""
+    """As `aside`, for bytes."""
     with _part(path) as part, open(part, "wb", closefd=False) as stream:
         yield stream
 
 
 @contextlib.contextmanager
 def _part(path: Path) -> Iterator[int]:
-    """Descriptor of a file aside; it is renamed once that is written, and gone if it is not."""
+    """Descriptor of a temporary file: renamed once complete, otherwise deleted."""
     path = path.resolve() if path.is_symlink() else path
     if path.exists() and not path.is_file():
-        message = "is a folder" if path.is_dir() else "is no regular file"
+        message = "is a folder" if path.is_dir() else "is not a regular file"
         raise InputError(Diagnostic(message, "choose another file or folder", str(path)))
     with writing(path), private_part(path.parent) as (file, part):
         yield file.fileno()
@@ -250,15 +250,14 @@ def _part(path: Path) -> Iterator[int]:
 
 @contextlib.contextmanager
 def private_part(folder: Path) -> Iterator[tuple[FileIO, Path]]:
-    """A new file in a folder, open for writing; it is gone afterwards unless it was renamed.
+    """A new private file in a folder, open for writing; deleted afterwards unless renamed.
 
-    Nobody but the user can read it, nobody can guess its name, and it is never a file or a link
-    that stands there already: in a shared folder, others can neither read nor divert what is
-    written.
+    Only the user can read it, its name cannot be guessed, and it is never an existing file or
+    link: in a shared folder, others can neither read nor redirect the content.
 
     Raises
     ------
-    OSError : it cannot be made
+    OSError : it cannot be created
     """
     part = folder / f".{os.urandom(16).hex()}.part"
     file = FileIO(os.open(part, _CREATE, _PRIVATE), "w")
@@ -271,13 +270,13 @@ def private_part(folder: Path) -> Iterator[tuple[FileIO, Path]]:
 
 
 def make_private(path: Path) -> None:
-    """Make an empty file that is the user's own, where there is none; a link stays one."""
-    with contextlib.suppress(OSError):  # whoever opens it says what is wrong
+    """Create an empty private file if none exists; a symbolic link is kept."""
+    with contextlib.suppress(OSError):  # opening it reports the error
         os.close(os.open(os.path.realpath(path), _CREATE, _PRIVATE))
 
 
 def _publish(file: FileIO) -> None:
-    """Give a file the permissions that new files of this process have (its umask); close it."""
+    """Set the permissions that new files of this process have (its umask), and close the file."""
     mask = os.umask(0o077)
     os.umask(mask)
     if sys.platform != "win32":
@@ -288,7 +287,7 @@ def _publish(file: FileIO) -> None:
 
 @contextlib.contextmanager
 def writing(path: Path, remedy: str = "choose another file or folder") -> Iterator[None]:
-    """Say in one line why a file cannot be written; raises `InputError`."""
+    """Explain in one line why a file cannot be written; raises `InputError`."""
     try:
         yield
     except OSError as error:
@@ -297,17 +296,17 @@ def writing(path: Path, remedy: str = "choose another file or folder") -> Iterat
 
 
 def write_all(folder: Path, contents: Mapping[str, bytes], *, what: str = "the report") -> None:
-    """Write every file of a folder aside, then rename all: whole or not at all.
+    """Write all files of a folder to temporary files, then rename them: all or none.
 
     Parameters
     ----------
-    folder : where to; made if missing
-    contents : of every file, by name
-    what : the files are, in words
+    folder : target; created if missing
+    contents : content of every file by name
+    what : kind of files, in words
 
     Raises
     ------
-    InputError : the folder cannot be written, or a folder stands in a file's way
+    InputError : the folder is not writable, or a folder has a file's name
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -321,7 +320,7 @@ def write_all(folder: Path, contents: Mapping[str, bytes], *, what: str = "the r
                 _publish(file)
             for _, target in parts:
                 if target.is_dir():
-                    raise IsADirectoryError(errno.EISDIR, "a folder stands in the way", str(target))
+                    raise IsADirectoryError(errno.EISDIR, "a folder has this name", str(target))
             for part, target in parts:
                 part.replace(target)
     except OSError as error:
@@ -331,9 +330,9 @@ def write_all(folder: Path, contents: Mapping[str, bytes], *, what: str = "the r
 
 
 def unwritable(folder: Path) -> str:
-    """Why nothing can be written into a folder, by trying it; "" where it can.
+    """Why a folder cannot be written, found by a trial; "" if it can.
 
-    A folder that is missing is judged by the nearest one above it that is there.
+    For a missing folder, its nearest existing parent is tested.
     """
     try:
         place = _nearest(folder.absolute())

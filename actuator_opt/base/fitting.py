@@ -1,4 +1,4 @@
-"""Least squares within bounds, and how well a fit knows each parameter: bounds, and a verdict."""
+"""Least squares within bounds, with confidence bounds and a verdict for each parameter."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ import numpy as np
 from .numeric import Array
 
 CONFIDENCE = 0.95
-"""Share of repeated tests whose bounds would hold the true value."""
+"""Confidence level of the bounds."""
 NORMAL = 1.959964
-"""Standard errors of bounds of `CONFIDENCE` of a normal distribution, its quantile of 0.975."""
+"""Half width of a `CONFIDENCE` interval of a normal distribution in standard errors."""
 WEAK = 0.3
-"""A parameter is known when its bounds lie within this share of its value."""
+"""A parameter is identifiable if its bounds lie within this share of its value."""
 ROUNDING = 1e-6
-"""Bounds within this share of a parameter's size are near enough: an exponent of 0 is known too."""
+"""Bounds within this share of a parameter's size are close enough, even for an exponent of 0."""
 RANK = 1e-7
-"""Least ratio of singular values: below it a residual in double precision does not see a step."""
+"""Least ratio of singular values: below it a double-precision residual cannot resolve a step."""
 SEEN = 1e-4
-"""Share of a parameter's step that may lie in directions the points do not see."""
+"""Largest share of a parameter's step that may lie in directions the points do not resolve."""
 
 Verdict = Literal["identifiable", "weakly identifiable", "not identifiable"]
 
 
 class Minimum(NamedTuple):
-    """Where a sum of squares is least, and half of it there."""
+    """Minimum of a sum of squares: parameters, and half the sum."""
 
     x: Array
     cost: float
@@ -51,14 +51,14 @@ def solve(
     Parameters
     ----------
     residuals : weighted residuals (points,) of parameters (n,)
-    start : parameters (n,), moved inside the bounds
-    bounds : least and greatest parameters (n,); may be infinite
-    slopes : of the residuals (points, n), or by central differences
-    sizes : of the parameters (n,), or by the slopes
-    room : least distance of the start from the bounds, as the method starts inside
-    cost_tolerance, step_tolerance, slope_tolerance : relative change of the sum, relative step, and
-        scaled slope at which it ends
-    most : evaluations; default: 100 a parameter
+    start : initial parameters (n,), moved inside the bounds
+    bounds : lower and upper bounds (n,); may be infinite
+    slopes : Jacobian of the residuals (points, n); default: central differences
+    sizes : scales of the parameters (n,); default: from the Jacobian
+    room : least distance of the start from the bounds, since the method starts inside them
+    cost_tolerance, step_tolerance, slope_tolerance : convergence limits of the relative change of
+        the sum, the relative step and the scaled gradient
+    most : largest number of evaluations; default: 100 per parameter
     """
     from scipy.optimize import least_squares  # slow to import, rarely needed
 
@@ -78,7 +78,7 @@ def solve(
 
 
 class Parameter(NamedTuple):
-    """A fitted value with its bounds, SI; the bounds are infinite where nothing bounds it."""
+    """A fitted value with its confidence bounds, SI; infinite bounds where it is undetermined."""
 
     value: float
     lower: float
@@ -89,14 +89,14 @@ class Parameter(NamedTuple):
 
     @property
     def verdict(self) -> Verdict:
-        """Identifiable; weakly so while the bounds keep the value's sign; else not."""
+        """Identifiable; weakly identifiable while the bounds exclude a change of sign; else not."""
         if self.identifiable:
             return "identifiable"
         signed = self.lower > 0 or self.upper < 0
         return "weakly identifiable" if signed else "not identifiable"
 
     def to_dict(self) -> dict[str, Any]:
-        """As plain data for JSON, SI; an infinite bound is null."""
+        """Plain data for JSON, SI; an infinite bound is null."""
         return {
             "value": self.value,
             "lower": self.lower if isfinite(self.lower) else None,
@@ -107,23 +107,23 @@ class Parameter(NamedTuple):
 
 
 def rated(value: float, lower: float, upper: float, standard_error: float) -> Parameter:
-    """A value with its bounds, judged: identifiable within `WEAK` of it."""
+    """A value with its bounds and verdict: identifiable within `WEAK` of the value."""
     near = max(value - lower, upper - value) <= WEAK * abs(value)
     return Parameter(value, lower, upper, standard_error, bool(near))
 
 
 class Known(NamedTuple):
-    """Parameters of a fit with their covariance; infinite where the points leave one open."""
+    """Fitted parameters and their covariance; infinite variance for undetermined parameters."""
 
     parameters: dict[str, Parameter]
     covariance: Array
     rank: int
     quantile: float
-    """Student's t of the bounds; infinite without spare points."""
+    """Student's t of the bounds; infinite without degrees of freedom."""
 
 
 def quantile(spare: float) -> float:
-    """Student's t that holds 95 % between -t and t; infinite without a spare point."""
+    """Student's t that has 95 % between -t and t; infinite without degrees of freedom."""
     from scipy.special import stdtrit  # slow to import, rarely needed
 
     return float(stdtrit(spare, (1 + CONFIDENCE) / 2)) if spare > 0 else np.inf
@@ -139,20 +139,20 @@ def known(
 ) -> Known:
     """Bounds of the linearised model with Student's t [SeberWild1989].
 
-    Covariance s^2 (J^T J)^-1, s^2 = sum r^2/(n - p), in the directions that the points see; a
-    parameter with a part outside them is open.
+    Covariance s^2 (J^T J)^-1, s^2 = sum r^2/(n - p), in the directions that the points resolve; a
+    parameter with a component outside them is undetermined.
 
     Parameters
     ----------
     values : least-squares parameters by name
-    slopes : of the weighted model by the parameters (points, parameters)
-    residuals : weighted (points)
-    sizes : step of each parameter that matters (parameters): its size, or more where it may be 0
-    spare : points beyond those the parameters take; default: n - p
+    slopes : Jacobian of the weighted model (points, parameters)
+    residuals : weighted residuals (points)
+    sizes : relevant step of each parameter (parameters): its size, or more where it may be 0
+    spare : degrees of freedom; default: n - p
 
     Returns
     -------
-    what is known
+    parameters, covariance and rank
     """
     count = len(values)
     free = residuals.size - count if spare is None else spare

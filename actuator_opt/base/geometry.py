@@ -1,4 +1,4 @@
-"""Impossible sizes give NaN: one rule for every pure model, by the names of its arguments."""
+"""Impossible sizes give NaN: one rule for every model, based on its argument names."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ PAIRS = (
     ("radius", "hole_radius"),
     ("edge_radius", "hub_radius"),
 )
-"""The greater size and the lesser: a wall has a thickness, a rod leaves an annulus."""
+"""Pairs of a larger and a smaller size: walls have a thickness, rods leave an annulus."""
 
 
 def sizes(function: Callable[..., object]) -> tuple[str, ...]:
@@ -41,11 +41,11 @@ def sizes(function: Callable[..., object]) -> tuple[str, ...]:
 
 
 def geometry(function: Callable[P, T]) -> Callable[P, T]:
-    """Make a model NaN where a size is negative or what lies inside is not smaller.
+    """Make a model return NaN where a size is negative or an inner size is not the smaller.
 
-    Other elements of an array keep their values. The thicknesses of `layers` are looked at too.
-    Symbols, and arrays of libraries other than NumPy, are not looked at: they are traced once for
-    many values, which the design's own checks and limits keep possible.
+    Other elements of an array keep their values. The thicknesses of `layers` are checked too.
+    Symbols and arrays of other libraries than NumPy are not checked: they are traced once for many
+    values, which the checks and limits of the design keep possible.
     """
     names = sizes(function)
     pairs = [pair for pair in PAIRS if pair[0] in names and pair[1] in names]
@@ -78,7 +78,7 @@ def geometry(function: Callable[P, T]) -> Callable[P, T]:
 
 
 def _possible(value: Any) -> bool:
-    """Whether a size is known to hold nothing negative: the common case, kept short."""
+    """Whether no value of a size is negative; the common case, kept fast."""
     if isinstance(value, float):
         return not value < 0
     if type(value) is np.ndarray and value.dtype.kind in "fc":
@@ -87,7 +87,7 @@ def _possible(value: Any) -> bool:
 
 
 def _checked(value: Any) -> tuple[Any, Any]:
-    """A size, or several, with NaN for negative ones; where one is."""
+    """A size, or several, with NaN for negative values; and a mask of these values."""
     if not isinstance(value, tuple | list):
         return _kept(real(value) < 0, value)
     kept = [_checked(one) for one in value]
@@ -96,7 +96,7 @@ def _checked(value: Any) -> tuple[Any, Any]:
 
 
 def _kept(impossible: Any, value: Any) -> tuple[Any, Any]:
-    """A value with NaN where it is impossible; where that is. Symbols stay as they are."""
+    """A value with NaN where it is impossible, and a mask of these; symbols are unchanged."""
     if impossible is False:
         return value, False
     if impossible is True:
@@ -109,7 +109,7 @@ def _kept(impossible: Any, value: Any) -> tuple[Any, Any]:
 
 
 def _spoiled(result: Any, wrong: Any) -> Any:
-    """A result with NaN for each of its numbers, where the geometry cannot be."""
+    """A result with NaN for each number whose geometry is impossible."""
     if isinstance(result, tuple | list):
         parts = [_spoiled(part, wrong) for part in result]
         return type(result)(*parts) if hasattr(result, "_fields") else type(result)(parts)

@@ -1,7 +1,7 @@
-"""A registry of kinds: seal types, friction laws and whatever else a design file names by a word.
+"""Registry of kinds, such as seal types and friction laws: choices that a design file names.
 
-Each kind is one module with one frozen dataclass; the registry lists them. Words, help, JSON
-Schema, faults and tests read the registry, so that nothing else names a kind.
+Each kind is one module with one frozen dataclass; the registry lists them. Choices, help, JSON
+Schema, faults and tests read the registry, so a kind is named nowhere else.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ _WORD = re.compile(r"[a-z][a-z0-9_]*")
 
 
 class Kind(Protocol):
-    """What the registry reads of a kind; every kind is a frozen dataclass."""
+    """Fields that every kind has; a kind is a frozen dataclass."""
 
     @property
     def name(self) -> str:
-        """Word in a design file."""
+        """Name in a design file."""
 
     @property
     def help(self) -> str:
-        """Meaning of the word, in half a sentence."""
+        """Meaning of the name, as a short phrase."""
 
 
 K = TypeVar("K", bound=Kind)
@@ -35,7 +35,7 @@ V = TypeVar("V")
 
 
 class UnknownKind(KeyError):
-    """A word that names no kind."""
+    """A name that is not in the registry."""
 
     def __str__(self) -> str:
         return str(self.args[0])
@@ -50,7 +50,7 @@ class Kinds(dict[str, K]):
         for entry in entries:
             _complete(what, entry)
             if entry.name in self:
-                raise ValueError(f'{what} "{entry.name}": there are two of this name')
+                raise ValueError(f'{what} "{entry.name}": duplicate name')
             self[entry.name] = entry
 
     def __missing__(self, name: str) -> K:
@@ -68,18 +68,18 @@ class Kinds(dict[str, K]):
 
 
 def kinds(what: str, *entries: K) -> Kinds[K]:
-    """A registry of complete kinds.
+    """A registry of kinds, checked for completeness.
 
     Parameters
     ----------
-    what : what they are, in the singular
+    what : common noun of the kinds, singular
     entries : frozen dataclasses with `name` and `help`
 
     Raises
     ------
     ValueError
-        two of one name, a name that is no word in lower case, a piece that is None, empty text or
-        no function where its annotation has none of these
+        duplicate name, name not a lower-case word, or a field that is None, empty text or not a
+        function against its annotation
 
     Examples
     --------
@@ -99,18 +99,18 @@ def kinds(what: str, *entries: K) -> Kinds[K]:
 
 
 def kinds_in(what: str, package: str, name: str, *modules: str) -> Kinds[Any]:
-    """A registry of the kinds that modules of a package declare under one name.
+    """Registry of the kinds that the modules of a package declare.
 
     Parameters
     ----------
-    what : what they are, in the singular
-    package : of the modules
-    name : under which each declares its kind
-    modules : in the order of lists; each is the name of its kind
+    what : common noun of the kinds, singular
+    package : package of the modules
+    name : attribute of each module that is its kind
+    modules : modules in listing order; each has the name of its kind
 
     Raises
     ------
-    ValueError : as `kinds`, a module that declares none, or one of another name
+    ValueError : as `kinds`; or a module without a kind, or with a kind of another name
     """
     found = []
     for module in modules:
@@ -124,7 +124,7 @@ def kinds_in(what: str, package: str, name: str, *modules: str) -> Kinds[Any]:
 
 
 def per_kind(registry: Mapping[str, Any], functions: Mapping[str, V]) -> Mapping[str, V]:
-    """What a higher layer adds to every kind of a registry: one entry each, no other.
+    """Data that a higher layer adds to every kind of a registry: exactly one entry each.
 
     Raises
     ------
@@ -139,16 +139,18 @@ def per_kind(registry: Mapping[str, Any], functions: Mapping[str, V]) -> Mapping
     lacking = [name for name in registry if name not in functions]
     unknown = [name for name in functions if name not in registry]
     if lacking or unknown:
-        words = [f"{name}: no entry" for name in lacking] + [f"{name}: no kind" for name in unknown]
+        words = [f"{name}: no entry" for name in lacking] + [
+            f"{name}: not a kind" for name in unknown
+        ]
         raise ValueError("; ".join(words))
     return MappingProxyType(dict(functions))
 
 
 def _complete(what: str, entry: Any) -> None:
-    """Refuse an entry that lacks a piece."""
+    """Refuse an incomplete entry."""
     label = f'{what} "{getattr(entry, "name", "")}"'
     if not _WORD.fullmatch(entry.name):
-        raise ValueError(f"{label}: its name is no word of small letters, digits and _")
+        raise ValueError(f"{label}: the name must consist of lower-case letters, digits and _")
     for field in fields(entry):
         value, kind = getattr(entry, field.name), str(field.type)
         optional = "None" in kind
@@ -157,4 +159,4 @@ def _complete(what: str, entry: Any) -> None:
         if isinstance(value, str) and not value.strip():
             raise ValueError(f"{label}: {field.name} is empty")
         if kind.startswith("Callable") and not (callable(value) or (optional and value is None)):
-            raise ValueError(f"{label}: {field.name} is no function")
+            raise ValueError(f"{label}: {field.name} is not a function")

@@ -1,9 +1,9 @@
-"""Small numerical helpers that every model shares.
+"""Small numerical helpers for all models.
 
-Models are written once for floats, NumPy arrays, arrays of any array-API namespace, and complex
-numbers: the derivative of a model is its imaginary part under a tiny imaginary step
-[Squire1998]. The functions here are the ones whose NumPy counterparts are silently wrong or
-refuse complex input; every comparison is made on real parts.
+Models accept floats, NumPy arrays, arrays of any array-API namespace, and complex numbers: the
+derivative of a model is its imaginary part under a tiny imaginary step [Squire1998]. These
+functions replace NumPy functions that are silently wrong for complex input or refuse it; every
+comparison uses real parts.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ Array: TypeAlias = Any
 _PLAIN = (float, int, complex, np.generic)
 
 STEP = 1e-30
-"""Imaginary step of the complex-step derivative: far below rounding, so the error is O(1e-60)."""
+"""Imaginary step of the complex-step derivative: so small that its error is O(1e-60)."""
 
 
 def namespace(*values: Array) -> Any:
-    """The array-API namespace of the arguments: NumPy unless an array brings its own."""
+    """Array-API namespace of the arguments: NumPy unless an array has another."""
     for value in values:
         if type(value) is not np.ndarray and not isinstance(value, _PLAIN):
             return value.__array_namespace__()
@@ -40,41 +40,41 @@ def real(value: Array) -> Array:
 
 def where(condition: Array, yes: Array, no: Array) -> Array:
     """Elementwise choice; `condition` must come from real parts."""
-    if type(condition) is np.ndarray:  # the common case, kept short: models call this most
+    if type(condition) is np.ndarray:  # the common case, kept fast: models call this most
         found: Any = np.where(condition, yes, no)
-        return found.item() if found.dtype.hasobject else found  # a traced value stands alone
+        return found.item() if found.dtype.hasobject else found  # a traced value is a scalar
     if isinstance(condition, (bool, np.bool_)):
         return yes if condition else no
     return namespace(condition, yes, no).where(condition, yes, no)
 
 
 def absolute(value: Array) -> Array:
-    """|value| with the derivative sign(value); `abs` of a complex step is silently wrong."""
+    """|value| with derivative sign(value); `abs` is silently wrong under a complex step."""
     return where(real(value) >= 0, value, -value)
 
 
 def maximum(first: Array, second: Array) -> Array:
-    """The larger by real part (the derivative of the larger one)."""
+    """The larger value by real part, with its derivative."""
     return where(real(first) >= real(second), first, second)
 
 
 def minimum(first: Array, second: Array) -> Array:
-    """The smaller by real part (the derivative of the smaller one)."""
+    """The smaller value by real part, with its derivative."""
     return where(real(first) <= real(second), first, second)
 
 
 def clip(value: Array, lower: Array, upper: Array) -> Array:
-    """`value` limited to [lower, upper]: only for a physical limit, never to hide a fault."""
+    """`value` limited to [lower, upper]; for physical limits only, never to hide a fault."""
     return minimum(maximum(value, lower), upper)
 
 
 def positive(value: Array) -> Array:
-    """`value` where its real part is positive, NaN elsewhere: guards a domain without raising."""
+    """`value` where its real part is positive, else NaN: guards a domain without raising."""
     return where(real(value) > 0, value, np.nan)
 
 
 def sqrt(value: Array) -> Array:
-    """Square root that stays NaN for a negative real part, also under a complex step."""
+    """Square root; NaN for a negative real part, also under a complex step."""
     xp = namespace(value)
     negative = real(value) < 0
     root = xp.sqrt(where(negative, 0 * value + 1, value))
@@ -82,7 +82,7 @@ def sqrt(value: Array) -> Array:
 
 
 def magnitude(first: Array, second: Array) -> Array:
-    """sqrt(first^2 + second^2), of two parts that may each carry a complex step."""
+    """sqrt(first^2 + second^2); both arguments may carry a complex step."""
     return sqrt(first * first + second * second)
 
 
@@ -114,7 +114,7 @@ def log1p_quotient(value: Array) -> Array:
 
 
 def together(values: Sequence[Array], axis: int = 0) -> Array:
-    """Arrays of one namespace on a new axis, broadcast to one shape where they differ."""
+    """Stack arrays on a new axis after broadcasting them."""
     xp = namespace(*values)
     if len({value.shape for value in values}) > 1:
         values = xp.broadcast_arrays(*values)
@@ -124,7 +124,7 @@ def together(values: Sequence[Array], axis: int = 0) -> Array:
 
 
 def stacked(rows: Sequence[Sequence[Array]]) -> list[Array]:
-    """Each row of layer values as an array (layers, ...); batches stand on one number of axes."""
+    """Layer values as an array (layers, ...), broadcast to a common batch shape."""
     xp = namespace(*(value for row in rows for value in row))
     result = []
     for row in rows:
@@ -137,7 +137,7 @@ def stacked(rows: Sequence[Sequence[Array]]) -> list[Array]:
 
 
 def lifted(value: Array, dims: int) -> Array:
-    """A layer array (layers, ...) with its batch moved to the last of `dims` batch axes."""
+    """A layer array (layers, ...) with its batch axis moved to the last of `dims` batch axes."""
     missing = dims + 1 - value.ndim
     if missing <= 0:
         return value

@@ -1,4 +1,4 @@
-"""JSON text as the standard has it: NaN and infinity become null, with the reason beside them."""
+"""Standard JSON text: NaN and infinity become null, with the reason beside them."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from typing import Any
 from .errors import Diagnostic, InputError
 
 LOST = "not_finite"
-"""Key under which an object names its numbers that are null for lack of a finite value."""
+"""Key that lists the numbers of an object that are null because they are not finite."""
 
 
 def encoded(data: Mapping[str, Any], **style: Any) -> str:
-    """The JSON text of an object.
+    """JSON text of an object.
 
     Parameters
     ----------
     data : plain data
-    style : of `json.dumps` (``indent``, ``separators``, ``sort_keys``, ``ensure_ascii``)
+    style : options of `json.dumps` (``indent``, ``separators``, ``sort_keys``, ``ensure_ascii``)
 
     Raises
     ------
-    InputError : it is nested too deeply
+    InputError : nested too deeply
 
     Notes
     -----
@@ -42,7 +42,7 @@ def encoded(data: Mapping[str, Any], **style: Any) -> str:
                 raise
             return json.dumps(finite | {LOST: lost}, allow_nan=False, **style)
     except RecursionError:
-        raise InputError(Diagnostic("the data is nested too deeply", "mend its source")) from None
+        raise InputError(Diagnostic("the data is nested too deeply", "reduce its depth")) from None
 
 
 def _finite(value: Any, path: str, lost: dict[str, str]) -> Any:

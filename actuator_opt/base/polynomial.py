@@ -1,9 +1,9 @@
 """Real polynomials in s as tuples of coefficients, lowest power first.
 
-Coefficients are floats or arrays that broadcast. A coefficient that is the number 0 is known to
-vanish and costs nothing, so that one formula serves circuits with and without a line or a valve.
-Everything but `roots` is plain arithmetic: it works under a complex step, and frequency responses
-come in two parts (real, imaginary) for the same reason.
+Coefficients are floats or arrays that broadcast. A coefficient that is the number 0 costs
+nothing, so one formula serves circuits with and without a line or a valve. Everything but `roots`
+is plain arithmetic and works under a complex step. For the same reason, frequency responses have
+separate real and imaginary parts.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ Polynomial: TypeAlias = tuple[Array, ...]
 
 
 class Parts(NamedTuple):
-    """A complex number in two real (or complex-stepped) parts."""
+    """A complex number as two parts, each real or with a complex step."""
 
     real: Array
     imaginary: Array
 
     @property
     def complex(self) -> Array:
-        """As one complex number, where no complex step is carried."""
+        """As a complex number; any complex step is dropped."""
         return self.real + 1j * self.imaginary
 
 
@@ -36,7 +36,7 @@ def _vanishes(coefficient: Array) -> bool:
 
 
 def trimmed(polynomial: Polynomial) -> Polynomial:
-    """Without leading coefficients that are the number 0."""
+    """The polynomial without leading coefficients that are the number 0."""
     size = len(polynomial)
     while size and _vanishes(polynomial[size - 1]):
         size -= 1
@@ -81,12 +81,12 @@ def multiply(*factors: Polynomial) -> Polynomial:
 
 
 def scale(polynomial: Polynomial, factor: Array) -> Polynomial:
-    """A polynomial times a number."""
+    """Product of a polynomial and a number."""
     return multiply(polynomial, (factor,))
 
 
 def at_frequency(polynomial: Polynomial, angular_frequency: Array) -> Parts:
-    """Value at s = i omega, by Horner in omega^2 for each part.
+    """Value at s = i omega, by Horner's scheme in omega^2 for each part.
 
     >>> at_frequency((1.0, 2.0, 3.0), 2.0)
     Parts(real=-11.0, imaginary=4.0)
@@ -122,9 +122,9 @@ def square_of_magnitude(polynomial: Polynomial) -> Polynomial:
 def roots(polynomial: Polynomial) -> np.ndarray:
     """All roots, (..., degree) complex: eigenvalues of the scaled companion matrix, or a cubic's.
 
-    Real parts of the coefficients count. Columns like the one before along the last axis (the
-    copies of a design under a complex step) are solved once. A leading coefficient of zero in an
-    array leaves a root at minus infinity; coefficients that are not finite make every root NaN.
+    Only real parts of the coefficients are used. Equal neighbours along the last axis (copies of a
+    design under a complex step) are solved once. A zero leading coefficient in an array gives a
+    root at minus infinity; coefficients that are not finite make every root NaN.
     """
     if len(polynomial) < 2:
         shape = np.shape(real(polynomial[0])) if polynomial else ()
@@ -142,7 +142,7 @@ def roots(polynomial: Polynomial) -> np.ndarray:
 
 
 def _scaled_roots(coefficients: np.ndarray) -> np.ndarray:
-    """Roots of polynomials (..., degree + 1) whose variable is scaled to mean magnitude one."""
+    """Roots of polynomials (..., degree + 1), with the variable scaled to mean magnitude 1."""
     degree = coefficients.shape[-1] - 1
     lead = coefficients[..., -1]
     with np.errstate(all="ignore"):
@@ -170,7 +170,7 @@ def _scaled_roots(coefficients: np.ndarray) -> np.ndarray:
 
 
 def root_motion(polynomial: Polynomial, root: Array) -> Array:
-    """Motion of a simple root with the imaginary steps of the coefficients: -dP(root)/P'(root)."""
+    """Complex step of a simple root due to those of the coefficients: -dP(root)/P'(root)."""
     change: Array = 0.0
     slope: Array = 0.0
     for power in range(len(polynomial) - 1, -1, -1):
@@ -182,10 +182,10 @@ def root_motion(polynomial: Polynomial, root: Array) -> Array:
 
 
 def positive_root(polynomial: Polynomial, start: Array) -> Array:
-    """A real root near `start`, polished by Newton; carries the step of the coefficients.
+    """A real root near `start`, refined by Newton; carries the complex step of the coefficients.
 
-    The last Newton step is taken in the arithmetic of the coefficients, which by the
-    implicit-function theorem gives the root its exact derivative. A constant has no root: `start`.
+    The last Newton step uses the arithmetic of the coefficients: by the implicit-function theorem
+    the root gets its exact derivative. For a constant, which has no root, `start` is returned.
     """
     value = start
     if len(polynomial) < 2:

@@ -1,4 +1,4 @@
-"""How far a long piece of work is, for whoever watches: the terminal, or nobody."""
+"""Progress of long computations, reported to the terminal or to nobody."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from contextvars import ContextVar
 from typing import TypeVar
 
 Watch = Callable[[str, float | None], None]
-"""Takes what is done and its share, 0 to 1; None where that is not known."""
+"""Receives the current task and its completed share, 0 to 1, or None if unknown."""
 _watch: ContextVar[Watch | None] = ContextVar("watch", default=None)
 _One = TypeVar("_One")
 
 
 @contextmanager
 def watched(watch: Watch | None) -> Iterator[None]:
-    """Tell this one from here on; None tells nobody."""
+    """Send reports to this function from now on; None switches them off."""
     token = _watch.set(watch)
     try:
         yield
@@ -24,7 +24,7 @@ def watched(watch: Watch | None) -> Iterator[None]:
 
 
 def tell(what: str, share: float | None = None) -> None:
-    """Say how far a piece of work is."""
+    """Report the progress of a task."""
     watch = _watch.get()
     if watch is not None:
         watch(what, share)
@@ -32,17 +32,17 @@ def tell(what: str, share: float | None = None) -> None:
 
 @contextmanager
 def whole(what: str, share: float | None = None) -> Iterator[None]:
-    """A piece of work that is told as one: what works inside is not."""
+    """A task reported as a whole: reports from inside are suppressed."""
     tell(what, share)
     with watched(None):
         yield
 
 
 def steps(what: str, items: Sequence[_One]) -> Iterator[_One]:
-    """Each of some items, told as shares of the work.
+    """Iterate over items and report the completed share.
 
     >>> with watched(lambda what, share: print(f"{what} {share:.0%}")):
-    ...     for one in steps("counting", "ab"):
+    ...     for letter in steps("counting", "ab"):
     ...         tell("inside", 0.5)
     counting 0%
     counting 50%

@@ -1,8 +1,7 @@
-"""Every quantity of the project, declared once: name, symbol, dimension, display unit, label, range.
+"""All quantities, each declared once: name, symbol, dimension, display unit, range, label.
 
-The parser, the help, tables, JSON, reports and the JSON Schema all read this table. `INPUTS` are
-what a person writes in a design or a materials file. What an evaluation computes stands in
-`metrics.table`.
+The parser, help, tables, JSON, reports and the JSON Schema all read this table. `INPUTS` are the
+quantities of design and material files. Computed quantities are in `metrics.table`.
 """
 
 from __future__ import annotations
@@ -13,13 +12,13 @@ from typing import Literal
 from . import units
 
 Sense = Literal["min", "max"]
-"""Of limits: at least, at most. Of several values of a metric: the smallest, the largest."""
+"""Senses: limits of at least or at most; the smallest or largest of several values."""
 
 INFINITY = float("inf")
 
 
 def short(value: float, digits: int = 4, *, full: bool = False) -> str:
-    """A number of so many digits; with `full` their zeros too.
+    """A number with this many digits; with `full`, trailing zeros are kept.
 
     >>> short(20000.0), short(7.9, 3), short(7.9, 3, full=True)
     ('20000', '7.9', '7.90')
@@ -34,7 +33,7 @@ def short(value: float, digits: int = 4, *, full: bool = False) -> str:
 class Quantity:
     """A named physical quantity; limits in SI, `lower` and `upper` included.
 
-    `worst` says which of a metric's values over load cases and places is the worst.
+    `worst` states which value of a metric over load cases and places is the worst.
     """
 
     name: str
@@ -52,7 +51,7 @@ class Quantity:
         return units.BASE[self.dimension]
 
     def to_display(self, value: float) -> float:
-        """SI value in the unit people read."""
+        """SI value in the display unit."""
         return units.unit(self.unit, self.dimension).from_si(value) if self.unit else value
 
     def text(self, value: float, digits: int = 4) -> str:
@@ -227,7 +226,7 @@ RECORDS = _table("""
  pressure_lag         | tau    | time        | ms     | -100  | 100    | time by which the pressures come late
  span                 | L      | length      | mm     | 1     | 20000  | span between the supports
 """)
-"""What a command states about a test record; magnitudes but for a force and a time."""
+"""Settings of a test record; only forces and times are signed."""
 
 SCENARIOS = _table("""
  duration             | T      | time        | s      | 1e-5  | 100000 | simulated time
@@ -272,7 +271,7 @@ SCENARIOS = _table("""
  damping_factor       | -      | ratio       | -      | 0     | 10     | damping of a stop over sqrt(K m)
  cycles_per_window    | n      | count       | -      | 1     | 1000   | cycles in a window
 """)
-"""What a scenario states beside a design: coordinates of signals are signed, all else is not."""
+"""Inputs of a scenario beyond its design; only coordinates of signals are signed."""
 
 RESULTS = _table("""
  rise_time            | t_r    | time        | ms     | | | time from 10 to 90 % of the step
@@ -290,4 +289,4 @@ RESULTS = _table("""
  dynamic_stiffness    | k_dyn  | stiffness   | kN/mm  | | | dynamic stiffness at the frequency of the load
  dynamic_phase        | phi    | angle       | deg    | -180 | 180 | phase by which the force leads
 """)
-"""What a simulation tells; a scenario's requirements name them."""
+"""Results of a simulation, which the requirements of a scenario name."""

@@ -1,9 +1,9 @@
-"""Records of runs: one file each in a folder of the person's own, written whole or not at all.
+"""Records of runs: one file each in the user's folder, written completely or not at all.
 
-A record is a file of two lines of JSON: a short head, by which records are listed, and the rest.
-Each line ends with the checksum of what stands before it, so that damage is noticed. It is no
-signature: whoever writes a record can write its checksum. Nothing here knows what a run is;
-nothing is ever deleted unless asked.
+A record is a file of two lines of JSON: a short head for lists, and the body. Each line ends with
+the checksum of its preceding text, which reveals damage. The checksum is no signature: whoever
+writes a record can also write its checksum. This module does not interpret runs, and deletes only
+on request.
 """
 
 from __future__ import annotations
@@ -22,77 +22,77 @@ from .files import private_part, read_json
 from .suggest import shown
 
 FOLDER, SWITCH = "ACTUATOR_OPT_RUNS", "ACTUATOR_OPT_NO_RECORD"
-"""Environment variables: where records go, and that none are made (any text but "0")."""
+"""Environment variables: folder of the records, and a switch that disables them (not "0")."""
 FORMAT = 2
-"""Of the files; a newer one is refused by name. Files of format 1 have no checksums."""
+"""Version of the files; newer files are refused by name. Format 1 has no checksums."""
 SUFFIX = ".run"
 _ID = re.compile(r"[0-9]{8}-[0-9]{6}-[0-9a-f]{6}")
 _BEGINNING = re.compile(r"[0-9]{4,8}(-[0-9]{0,6}(-[0-9a-f]{0,6})?)?")
 _MOST = 200_000_000
-"""Bytes of a record, at most: a choice far above what a run leaves."""
+"""Largest size of a record in bytes: far above that of any run."""
 _HEAD = 4_000_000
-"""Bytes of its first line, at most: twice what a command line may be."""
+"""Largest size of the first line in bytes: twice the longest command line."""
 _SEAL = "blake2b"
-"""Key of a line's checksum, the last of its object."""
+"""Key of a line's checksum, the last key of its object."""
 
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """A record as listed: its file and its head."""
+    """A listed record: its file and its head."""
 
     path: Path
     head: Mapping[str, Any]
 
     @property
     def id(self) -> str:
-        """What it is called by: its file's name."""
+        """Id of the record: the name of its file."""
         return self.path.name.removesuffix(SUFFIX)
 
 
 def folder() -> Path | None:
-    """Where records go: ACTUATOR_OPT_RUNS, else the person's data folder; None: switched off.
+    """Folder of the records: ACTUATOR_OPT_RUNS, else the user's data folder; None: disabled.
 
     Raises
     ------
-    InputError : it names a home folder that nobody has
+    InputError : it names the home folder of an unknown user
     """
     if os.environ.get(SWITCH, "") not in ("", "0"):
         return None
     stated = os.environ.get(FOLDER, "")
     try:
         return Path(stated).expanduser() if stated else _data() / "actuator-opt" / "runs"
-    except RuntimeError:  # nobody of that name, or a person without a home
-        message = f"{FOLDER}: {shown(stated) or 'unset'}, and no home folder is known for it"
+    except RuntimeError:  # unknown user, or a user without a home folder
+        message = f"{FOLDER}: {shown(stated) or 'unset'}, and the home folder is unknown"
         raise InputError(
-            Diagnostic(message, f"set {FOLDER} to a folder by its full path")
+            Diagnostic(message, f"set {FOLDER} to the full path of a folder")
         ) from None
 
 
 def _data() -> Path:
-    """Folder of a person's own data by the custom of the system."""
+    """Data folder of the user by the convention of the system."""
     if sys.platform == "win32":
         local = os.environ.get("LOCALAPPDATA", "")
         return Path(local) if local else Path.home() / "AppData" / "Local"
     if sys.platform == "darwin":
         return Path.home() / "Library" / "Application Support"
     stated = os.environ.get("XDG_DATA_HOME", "")
-    if Path(stated).is_absolute():  # others are to be ignored, says the standard
+    if Path(stated).is_absolute():  # the standard requires relative paths to be ignored
         return Path(stated)
     return Path.home() / ".local" / "share"
 
 
 def write(place: Path, started: str, head: Mapping[str, Any], body: Mapping[str, Any]) -> Path:
-    """Write a record aside, then give it a name that no other has.
+    """Write a record to a temporary file, then rename it to a unique name.
 
     Parameters
     ----------
-    place : folder, made where missing
+    place : folder; created if missing
     started : ``20261122-104500``, the beginning of its id
-    head, body : plain data; the head is what lists show
+    head, body : plain data; lists show the head
 
     Raises
     ------
-    InputError : it cannot be written; nothing is left
+    InputError : not writable; no file is left
     """
     from .plain_json import encoded
 
@@ -116,24 +116,24 @@ def write(place: Path, started: str, head: Mapping[str, Any], body: Mapping[str,
 
 
 def _random(size: int) -> str:
-    """Hexadecimal digits of random bytes."""
+    """Random hexadecimal digits."""
     return os.urandom(size).hex()
 
 
 def _claim(part: Path, path: Path) -> None:
-    """Give a written file its name; FileExistsError where another has it."""
+    """Rename a written file; FileExistsError if the name is taken."""
     try:
         os.link(part, path)
     except FileExistsError:
         raise
-    except OSError:  # a file system without links
+    except OSError:  # a file system without hard links
         if path.exists():
             raise FileExistsError(path) from None
         part.replace(path)
 
 
 def entries(place: Path) -> tuple[list[Entry], list[Diagnostic]]:
-    """The records of a folder, newest first, and what is wrong with those that cannot be read."""
+    """Records of a folder, newest first, and the faults of unreadable records."""
     found: list[tuple[int, str, Entry]] = []
     faults = []
     try:
@@ -150,7 +150,7 @@ def entries(place: Path) -> tuple[list[Entry], list[Diagnostic]]:
             with path.open("rb") as stream:
                 line, written = stream.readline(_HEAD), os.fstat(stream.fileno()).st_mtime_ns
             entry = Entry(path, _parsed(line, path)[0])
-        except FileNotFoundError:  # deleted meanwhile
+        except FileNotFoundError:  # deleted in the meantime
             continue
         except OSError as error:
             reason = f"cannot be read: {error.strerror or type(error).__name__}"
@@ -164,16 +164,16 @@ def entries(place: Path) -> tuple[list[Entry], list[Diagnostic]]:
 
 
 def is_record(path: Path) -> bool:
-    """Whether a file is called as records are."""
+    """Whether a file name is that of a record."""
     return path.suffix == SUFFIX and _ID.fullmatch(path.stem) is not None
 
 
 def _parsed(line: bytes, path: Path, *, sealed: bool = False) -> tuple[dict[str, Any], bool]:
-    """A line of a record as an object, and whether a checksum vouches for it.
+    """A line of a record as an object, and whether its checksum is intact.
 
     Raises
     ------
-    InputError : it is none, its checksum is another, or it is `sealed` no longer
+    InputError : not an object, wrong checksum, or the checksum is missing although `sealed`
     """
     line = line.rstrip()
     try:
@@ -188,7 +188,7 @@ def _parsed(line: bytes, path: Path, *, sealed: bool = False) -> tuple[dict[str,
         if whole:
             return data, sealed
     remedy = "delete the file and repeat the run"
-    raise InputError(Diagnostic("is no record of a run, or a damaged one", remedy, str(path)))
+    raise InputError(Diagnostic("is not a record of a run, or is damaged", remedy, str(path)))
 
 
 def _sealed(line: bytes) -> bytes:
@@ -201,12 +201,12 @@ def _sealed(line: bytes) -> bytes:
 
 
 def _bare(line: bytes) -> bytes:
-    """A line as it was before its checksum."""
+    """A line without its checksum."""
     return line.rpartition(f'"{_SEAL}":'.encode())[0].removesuffix(b",") + b"}"
 
 
 def is_name(text: str) -> bool:
-    """Whether a text names a run, and no design file of that name is there."""
+    """Whether a text names a run and not an existing design file."""
     if Path(text).suffix == SUFFIX:
         return True
     named = text == "last" or _BEGINNING.fullmatch(text) is not None
@@ -214,11 +214,11 @@ def is_name(text: str) -> bool:
 
 
 def find(place: Path | None, name: str) -> Path:
-    """The file of a record: by id, the beginning of one, ``last``, or the path of a file.
+    """File of a record: by id, beginning of an id, ``last``, or path.
 
     Raises
     ------
-    InputError : none, or several
+    InputError : no match, or several matches
     """
     path = Path(name)
     if path.suffix == SUFFIX or os.sep in name:
@@ -228,7 +228,9 @@ def find(place: Path | None, name: str) -> Path:
     if name == "last":
         known, _ = entries(place)
         if not known:
-            raise InputError(Diagnostic("no run is recorded yet", "run e.g. optimise", str(place)))
+            raise InputError(
+                Diagnostic("no run is recorded yet", "run a command such as optimise", str(place))
+            )
         return known[0].path
     found = [one for one in _named(place) if one.name.startswith(name)] if name else []
     if len(found) == 1:
@@ -237,7 +239,9 @@ def find(place: Path | None, name: str) -> Path:
     if found:
         ids = ", ".join(one.stem for one in found[:3])
         more = f" and {len(found) - 3} more" if len(found) > 3 else ""
-        raise InputError(Diagnostic(f"{what} begins several runs: {ids}{more}", "write more of it"))
+        raise InputError(
+            Diagnostic(f"several runs begin with {what}: {ids}{more}", "add more characters")
+        )
     raise InputError(Diagnostic(f"no run {what}", "see: actuator-opt runs list", str(place)))
 
 
@@ -253,7 +257,7 @@ def read(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
 
     Raises
     ------
-    InputError : no such file, no record, a damaged or a newer one
+    InputError : no such file, not a record, damaged, or of a newer format
     """
     from .files import read_bytes
 
@@ -263,18 +267,18 @@ def read(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
     known = head.get("record")
     if isinstance(known, int) and known > FORMAT:
         version = shown(str(head.get("version", "")))
-        message = f"was written by actuator-opt {version}, in a newer form"
-        raise InputError(Diagnostic(message, "install that version, or a later one", str(path)))
+        message = f"was written by actuator-opt {version}, in a newer format"
+        raise InputError(Diagnostic(message, "install that version or a later release", str(path)))
     body, _ = _parsed(lines[1] if len(lines) > 1 else b"", path, sealed=sealed)
     return head, body
 
 
 def delete(path: Path) -> bool:
-    """Delete a record; False where it is gone already.
+    """Delete a record; False if it no longer exists.
 
     Raises
     ------
-    InputError : it cannot be
+    InputError : it cannot be deleted
     """
     try:
         path.unlink()

@@ -1,4 +1,4 @@
-"""Did you mean …? Close names for a word that is not one of the names expected."""
+"""Suggestions for misspelt names, and text made safe for a terminal."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 
 def closest(word: str, names: Iterable[str]) -> str | None:
-    """The name nearest to `word`: equal but for case first, then the fewest changes.
+    """The most similar name: equal but for case, else with the fewest edits.
 
     >>> closest("Bore", ["stroke", "bore"])
     'bore'
@@ -19,14 +19,14 @@ def closest(word: str, names: Iterable[str]) -> str | None:
     for name in candidates:
         if name.casefold() == folded:
             return name
-    import difflib  # only a faulty input pays for it
+    import difflib  # slow to import, needed for faults only
 
     found = difflib.get_close_matches(word, candidates, n=1, cutoff=0.6)
     return found[0] if found else None
 
 
 def remedy(word: str, names: Iterable[str], limit: int = 12) -> str:
-    """``did you mean "x"?``, else the names there are.
+    """``did you mean "x"?``, else a list of the valid names.
 
     >>> remedy("strok", ["stroke", "bore"])
     'did you mean "stroke"?'
@@ -42,17 +42,17 @@ def remedy(word: str, names: Iterable[str], limit: int = 12) -> str:
 
 
 CONTROLS = r"\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff"
-"""Characters, as in a regular expression, that move a terminal's cursor or turn text round."""
+"""Characters, as in a regular expression, that move the cursor or reverse the text direction."""
 _CONTROL = rf"\r(?!\n)|(?!\r)[{CONTROLS}]"
 
 
 def escaped(text: str, own: str = "") -> str:
-    r"""Text that a terminal only prints: control characters spelt out, but for tabs and new lines.
+    r"""Text with control characters escaped, except tabs and new lines.
 
     Parameters
     ----------
-    text : to print
-    own : sequences that stay as they are, as a regular expression without groups
+    text : text to print
+    own : sequences to keep, as a regular expression without groups
 
     >>> print(escaped("\x1b[2J\u202e" "a\tb"))
     \x1b[2J\u202ea	b
@@ -62,7 +62,7 @@ def escaped(text: str, own: str = "") -> str:
 
 
 def shown(text: object, limit: int = 60) -> str:
-    r"""Text fit for one line of a message: control characters escaped, long text cut.
+    r"""Text for one line of a message: control characters escaped, long text shortened.
 
     >>> shown("two\nlines")
     'two\\nlines'
@@ -74,7 +74,7 @@ def shown(text: object, limit: int = 60) -> str:
 
 
 def article(words: str) -> str:
-    """Words with their indefinite article, by their first letter.
+    """A noun with its indefinite article, by its first letter.
 
     >>> article("oil volume"), article("bore")
     ('an oil volume', 'a bore')

@@ -1,8 +1,8 @@
 """A costly smooth function as a Chebyshev polynomial in a box, with its own derivative.
 
-Inputs along which the box has an extent are axes of a tensor of Chebyshev polynomials [Boyd2001];
-the others enter to the first order, by the slopes the function itself tells. Evaluation is plain
-arithmetic, so that complex steps pass through it.
+Inputs with an extent in the box are axes of a tensor of Chebyshev polynomials [Boyd2001]; the
+other inputs enter to first order, by the slopes that the function returns. Evaluation is plain
+arithmetic and supports complex steps.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from .numeric import Array, clip
 
 @dataclass(frozen=True, slots=True)
 class Interpolation:
-    """What the costly function tells at one point.
+    """Result of the costly function at one point.
 
     Parameters
     ----------
     values : outputs (m,)
-    slopes : their derivatives (m,) by the logarithm of inputs; those of axes are not used, and
-        an input that is neither here nor an axis moves nothing
-    why : why there is none; values and slopes are then not used
+    slopes : their derivatives (m,) by the logarithm of inputs; those of axes are unused, and an
+        input that is neither here nor an axis has no effect
+    why : reason for a failed evaluation; values and slopes are then unused
     """
 
     values: np.ndarray
@@ -36,9 +36,9 @@ class Interpolation:
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """An input the polynomial runs along, in its logarithm: 0 < lower < upper, and the nodes.
+    """An axis of the polynomial in the logarithm of an input: 0 < lower < upper, and its nodes.
 
-    With `hermite` the function's own slopes along the axis are met too, by twice as many terms.
+    With `hermite` the fit also matches the slopes along the axis, with twice as many terms.
     """
 
     name: str
@@ -49,17 +49,17 @@ class Axis:
 
     @property
     def terms(self) -> int:
-        """Polynomials along the axis."""
+        """Number of polynomials along the axis."""
         return 2 * self.nodes if self.hermite else self.nodes
 
     @property
     def points(self) -> list[float]:
-        """The nodes: roots of the Chebyshev polynomial of their number, in the input's unit."""
+        """Nodes in the unit of the input: the roots of the Chebyshev polynomial."""
         middle, half = 0.5 * log(self.lower * self.upper), 0.5 * log(self.upper / self.lower)
         return [exp(middle + half * cos(pi * (k + 0.5) / self.nodes)) for k in range(self.nodes)]
 
     def basis(self, value: Array) -> Array:
-        """Chebyshev polynomials (..., terms) at an input, which is held at the ends of the axis."""
+        """Chebyshev polynomials (..., terms) at an input, limited to the axis."""
         low, high = log(self.lower), log(self.upper)
         held = clip(value, self.lower, self.upper)
         x = (2 * np.log(held) - low - high) / (high - low)
@@ -90,11 +90,11 @@ class Surrogate:
 
     Parameters
     ----------
-    axes : inputs it runs along
-    base : every input as it was where the box has no extent
+    axes : inputs with an extent
+    base : reference value of every input
     coefficients : (terms of axis 1, terms of axis 2, ..., outputs, 1 + first-order inputs)
     linear : inputs that enter to the first order
-    failed : why points of the box had no answer; they are left out of the fit
+    failed : reasons of failed points, which are left out of the fit
     """
 
     axes: tuple[Axis, ...]
@@ -104,9 +104,9 @@ class Surrogate:
     failed: tuple[str, ...] = ()
 
     def __call__(self, inputs: Mapping[str, Array], slope: str | None = None) -> Array:
-        """Outputs (m, ...) at inputs that broadcast with each other; missing ones at the base.
+        """Outputs (m, ...) at inputs that broadcast; missing inputs have their base value.
 
-        With `slope`, their derivatives by the logarithm of that axis instead.
+        With `slope`, derivatives by the logarithm of that axis instead.
         """
         point = {name: np.asarray(inputs.get(name, value)) for name, value in self.base.items()}
         names = [axis.name for axis in self.axes] + list(self.linear)
@@ -134,17 +134,16 @@ def surrogate(
     base: Mapping[str, float],
     axes: Sequence[Axis],
 ) -> Surrogate | None:
-    """Fit a surrogate at the Chebyshev nodes of the axes; None where too few points have answers.
+    """Fit a surrogate at the Chebyshev nodes of the axes; None if too many points failed.
 
     Parameters
     ----------
-    function : tells the answer at a point (every input of `base`), walked in an order in which
-        neighbours follow each other
-    base : positive inputs
+    function : evaluates a point (every input of `base`); successive points are neighbours
+    base : reference values of all inputs, positive
     axes : inputs with an extent
 
-    Points without an answer are left out; the rest is fitted by least squares, and refused where
-    more than one in ten is missing.
+    Failed points are left out and the others fitted by least squares; the fit is refused if more
+    than a tenth of the points failed.
     """
     points, answers, failed = [], [], []
     grids = [axis.points for axis in axes]
@@ -180,7 +179,7 @@ def _fitted(
     values: Sequence[np.ndarray],
     answers: Sequence[Interpolation],
 ) -> np.ndarray:
-    """Coefficients (terms of every axis, outputs) that meet values, and slopes where asked."""
+    """Coefficients (terms of every axis, outputs) that match the values, and slopes if given."""
     rows, told = [_basis(axes, points)], [np.array(values)]
     for axis in axes:
         if axis.hermite:
@@ -203,7 +202,7 @@ def _basis(
 
 
 def _back_and_forth(index: tuple[int, ...], sizes: Sequence[int]) -> tuple[int, ...]:
-    """The index walked like a ploughman, so that one point is beside the next."""
+    """Indices in back-and-forth order, so that successive points are neighbours."""
     turned, parity = [], 0
     for i, size in zip(index, sizes, strict=True):
         turned.append(i if parity % 2 == 0 else size - 1 - i)

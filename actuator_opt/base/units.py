@@ -1,4 +1,4 @@
-"""Units: text with a unit in, SI out, and back. Knows no field names (see `quantities`)."""
+"""Units: conversion between text with a unit and SI. Knows no field names (see `quantities`)."""
 
 from __future__ import annotations
 
@@ -188,13 +188,13 @@ _OFFSETS = {"degC": 273.15, "°C": 273.15, "degF": 459.67 * 5 / 9, "°F": 459.67
 _INVERSES = {float(f"1e-{n}"): float(f"1e{n}") for n in range(1, 16)}
 
 _DECIMAL_DIGITS = 12
-"""Scales of at most as many characters are decimal by definition (1e-2, 0.0254, 101325)."""
+"""Scales of at most this many characters are exact decimals (1e-2, 0.0254, 101325)."""
 
 _SYNONYMS = (("**", "^"), ("²", "^2"), ("³", "^3"), ("·", "*"), ("⋅", "*"), ("⁻¹", "^-1"))
 
 
 class UnitError(ValueError):
-    """A text that is not a value with a fitting unit: `message` says what, `remedy` what to do."""
+    """A text that is not a value with a suitable unit: `message` is the fault."""
 
     def __init__(self, message: str, remedy: str) -> None:
         super().__init__(f"{message}; {remedy}")
@@ -204,7 +204,7 @@ class UnitError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """A unit of one dimension: SI = value · scale + offset."""
+    """A unit of a dimension: SI = value · scale + offset."""
 
     name: str
     dimension: str
@@ -217,16 +217,16 @@ class Unit:
         return (value * self.scale if inverse is None else value / inverse) + self.offset
 
     def text_to_si(self, number: str) -> float:
-        """SI value of a number as it is written: 1.1 cm and 11 mm are the same to the last bit."""
+        """SI value of a number as written: 1.1 cm and 11 mm agree to the last bit."""
         digits = repr(self.scale)
         if len(digits) > _DECIMAL_DIGITS:
             return self.to_si(float(number))
         return float(Decimal(number) * Decimal(digits)) + self.offset
 
     def from_si(self, value: float) -> float:
-        """A value in this unit of an SI value."""
+        """Value in this unit from an SI value."""
         inverse = _INVERSES.get(self.scale)
-        moved = value - self.offset  # not in place: it may be an array of the caller's
+        moved = value - self.offset  # not in place: the caller may own the array
         return moved / self.scale if inverse is None else moved * inverse
 
 
@@ -246,7 +246,7 @@ def units_of(dimension: str) -> tuple[str, ...]:
 
 
 def unit(name: str, dimension: str) -> Unit:
-    """The unit `name` of `dimension`; raises `UnitError` saying what the name is instead."""
+    """The unit `name` of `dimension`; raises `UnitError` with the actual meaning of the name."""
     table = _SCALES[dimension]
     for candidate in (name.strip(), _normalise(name)):
         if candidate in table:
@@ -273,7 +273,7 @@ def _article(dimension: str) -> str:
 
 
 def split(text: str) -> tuple[float, str]:
-    """Split ``"12.5 mm"`` into 12.5 and ``"mm"``; raises `UnitError` on anything else."""
+    """Split ``"12.5 mm"`` into 12.5 and ``"mm"``; raises `UnitError` for other texts."""
     number, name = _split(text)
     return float(number), name
 
@@ -291,7 +291,7 @@ def _split(text: str) -> tuple[str, str]:
 def parse(text: str, dimension: str) -> float:
     """SI value of a text such as ``"210 bar"`` (pressure) or ``"40 degC"`` (temperature, K).
 
-    Ratios and counts may be bare; 0 may be bare except for temperatures.
+    Ratios and counts need no unit; neither does 0, except for temperatures.
 
     >>> parse("210 bar", "pressure")
     21000000.0
@@ -308,7 +308,7 @@ def parse(text: str, dimension: str) -> float:
 
 
 def whole(text: str) -> int | None:
-    """A whole number as a person writes it, at most 15 digits; None for anything else.
+    """A whole number of at most 15 digits from text; None for anything else.
 
     >>> whole(" 12 "), whole("-1"), whole("9" * 5000)
     (12, None, None)

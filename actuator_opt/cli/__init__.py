@@ -1,8 +1,8 @@
-"""The terminal: read arguments, call the library, print. No physics."""
+"""The command line: read arguments, call the library, print. No physics."""
 
 try:
     from .app import command_line, main
-except KeyboardInterrupt:  # before there is a command to interrupt
+except KeyboardInterrupt:  # before any command that could be interrupted
     import sys
 
     print("interrupted", file=sys.stderr)

@@ -1,7 +1,7 @@
-"""The command line: its commands, and how every one of them ends.
+"""The command line: its commands, and the way each of them ends.
 
-stdout carries data, stderr messages; ``--json`` prints one SI object, faults included. Only the
-module of the command asked for is imported, and heavy modules inside the command that needs them.
+stdout has data, stderr has messages; ``--json`` prints one SI object, including faults. Only the
+module of the given command is imported, and heavy modules only inside the commands that need them.
 """
 
 from __future__ import annotations
@@ -43,10 +43,10 @@ COMMANDS = {
     "materials": "materials",
     "runs": "runs",
 }
-"""Every command, in the order of the help, with the module whose function of that name it is."""
+"""All commands in the order of the help, each with the module of its function."""
 
 HIDDEN = {"optimize"}
-"""Other spellings, which the help leaves out."""
+"""Alternative spellings, which the help does not list."""
 
 
 def _main(
@@ -55,7 +55,7 @@ def _main(
         bool,
         typer.Option(
             "--debug",
-            help=f"Show tracebacks of faults of the program (or set {faults.DEBUG}=1).",
+            help=f"Show tracebacks of internal errors (or set {faults.DEBUG}=1).",
         ),
     ] = False,
 ) -> None:
@@ -65,14 +65,14 @@ def _main(
 
 
 def _leave(code: ExitCode | None, **options: object) -> None:
-    """End by the exit code that a command returns; an interrupted one has said so itself."""
+    """Exit with the code of a command; an interrupted command has already reported it."""
     sys.exit(code or ExitCode.MET)
 
 
 def command_line(arguments: Sequence[str] = ()) -> Any:
-    """The command line, in which every command takes ``--debug``.
+    """The command line, with ``--debug`` for every command.
 
-    Where the first argument names a command, only that one is there: the others cost time.
+    If the first argument names a command, only this command is imported, to save time.
     """
     app = typer.Typer(
         name="actuator-opt",
@@ -105,7 +105,7 @@ def command_line(arguments: Sequence[str] = ()) -> Any:
 
 
 def _misunderstood(error: TyperException) -> ExitCode:
-    """Say what the command line lacks; without arguments, the help."""
+    """Report a misused command line; without arguments, print the help."""
     context = getattr(error, "ctx", None)
     message = error.format_message()
     if message.startswith("Usage:"):
@@ -117,11 +117,11 @@ def _misunderstood(error: TyperException) -> ExitCode:
 
 
 def _answered() -> int:
-    """Run the command line; its exit code, and faults of the input as lines."""
+    """Run the command line; returns the exit code and prints input faults as lines."""
     try:
         command = command_line(sys.argv[1:])
         code: int = command(prog_name="actuator-opt", standalone_mode=False) or ExitCode.MET
-        if code == ExitCode.INTERRUPTED:  # what typer makes of Ctrl-C
+        if code == ExitCode.INTERRUPTED:  # how typer reports Ctrl-C
             raise KeyboardInterrupt
     except ActuatorError as error:
         code = streams.faults(error.diagnostics, error.exit_code)
@@ -129,22 +129,22 @@ def _answered() -> int:
         code = _misunderstood(error)
     except SystemExit as leaving:
         code = leaving.code if isinstance(leaving.code, int) else ExitCode.FAULT
-        if code == ExitCode.INTERRUPTED:  # the command has said so
+        if code == ExitCode.INTERRUPTED:  # already reported by the command
             return code
-    if streams.interrupted():  # heard, and lost on the way here
+    if streams.interrupted():  # noticed, but lost on the way here
         raise KeyboardInterrupt
     return code
 
 
 def main() -> None:
-    """Run the command line; every fault leaves as a line and an exit code, never a traceback."""
+    """Run the command line; every fault gives a line and an exit code, never a traceback."""
     streams.prepare()
     try:
         code = _answered()
     except KeyboardInterrupt:
         code = streams.faults([Diagnostic("interrupted")], ExitCode.INTERRUPTED)
     except Exception as error:
-        if streams.interrupted():  # it broke what ran
+        if streams.interrupted():  # the interrupt caused the exception
             code = streams.faults([Diagnostic("interrupted")], ExitCode.INTERRUPTED)
         else:
             code = streams.faults(*faults.unexpected(error))

@@ -15,18 +15,32 @@ from ..base.errors import Diagnostic, ExitCode, UsageError
 from ..base.suggest import shown
 from . import streams
 from .job import Job
-from .options import REPORTS, Date, DesignFile, Json, Out, PluginFile, Quiet, Report, Seed, Set
+from .options import (
+    REPORTS,
+    AllPages,
+    Date,
+    DesignFile,
+    Json,
+    Out,
+    PluginFile,
+    Quiet,
+    Report,
+    Seed,
+    Set,
+)
 
 if TYPE_CHECKING:
     from ..api import Restored
 
 
 def _named_file(name: str) -> tuple[str, Path]:
-    """Title and file that `init NAME` promises: ``"left knee"`` is written to left_knee.yaml."""
+    """Title and file for `init NAME`: ``"left knee"`` is written to left_knee.yaml."""
     folder, base = os.path.split(name)
     title = base.removesuffix(".yaml").removesuffix(".yml")
     if base and not title.strip(". "):
-        raise UsageError(Diagnostic(f"NAME: {shown(name)} names no file", "write e.g. left_knee"))
+        raise UsageError(
+            Diagnostic(f"NAME: {shown(name)} is not a file name", "write e.g. left_knee")
+        )
     stem = re.sub(r"[^\w.+-]+", "_", title).strip("_.")
     return title, Path(folder, f"{stem or 'actuator'}.yaml")
 
@@ -41,22 +55,24 @@ def init(
         ),
     ] = None,
     source: Annotated[
-        str | None, typer.Option("--from", metavar="DESIGN", help="Start from this design.")
+        str | None, typer.Option("--from", metavar="DESIGN", help="Copy this design.")
     ] = None,
     scenario: Annotated[
         str | None,
-        typer.Option("--scenario", metavar="DESIGN", help="A scenario around this design instead."),
+        typer.Option(
+            "--scenario", metavar="DESIGN", help="Write a scenario for this design instead."
+        ),
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option("--out", metavar="FILE", help="Another file to write; - prints the text."),
+        typer.Option("--out", metavar="FILE", help="Output file; - prints the text."),
     ] = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
     """Write a commented start file for a design or a scenario."""
     if scenario is not None and source is not None:
-        raise UsageError(Diagnostic("--from and --scenario", "give one of them"))
+        raise UsageError(Diagnostic("--from and --scenario", "use only one of them"))
     given = {}
     if name is not None:
         given["name"], file = _named_file(name)
@@ -78,7 +94,7 @@ def init(
 def _start_text(
     source: str | None, scenario: str | None, out: Path | None, given: dict[str, str]
 ) -> str:
-    """The start file of a design, or of a scenario that is to stand at `out`."""
+    """Start file of a design, or of a scenario to be written to `out`."""
     from ..design import read_design
     from ..design.kinds import ValueFault
     from ..design.scenario.template import scenario_text
@@ -105,7 +121,7 @@ def check(
     out: Annotated[Path, typer.Option("--out", hidden=True)] = REPORTS,
     seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
 ) -> ExitCode:
-    """Name every fault of design and scenario files."""
+    """List all faults of design and scenario files."""
     from .. import api as verbs
 
     job = Job(sets=sets, as_json=as_json, quiet=quiet)
@@ -130,16 +146,17 @@ def evaluate(
     report: Report = False,
     out: Out = REPORTS,
     date: Date = None,
+    all_pages: AllPages = False,
     seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Every metric, requirement and check of a design."""
+    """Compute all metrics, requirements and checks of a design."""
     from .. import api as verbs
 
     job = Job(
         design, sets=sets, plugins=plugin, report=report, out=out, date=date,
-        as_json=as_json, quiet=quiet,
+        all_pages=all_pages, as_json=as_json, quiet=quiet,
     )  # fmt: skip
     return job.deliver(job.run(verbs.evaluate, seed=seed if report else None))
 
@@ -147,22 +164,23 @@ def evaluate(
 def report(
     design: Annotated[
         str,
-        typer.Argument(metavar="DESIGN", help="Design file, - for stdin, or a run (id, last)."),
+        typer.Argument(metavar="DESIGN", help="Design file, - for stdin, or a run (id or last)."),
     ],
     sets: Set = None,
     out: Out = REPORTS,
     date: Date = None,
+    all_pages: AllPages = False,
     seed: Seed = 0,
     plugin: PluginFile = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Write the report of a design as it is, or of a run."""
+    """Write the report of an unchanged design, or of a run."""
     from .. import api as verbs
 
     job = Job(
         design, sets=sets, plugins=plugin, report=True, out=out, date=date,
-        as_json=as_json, quiet=quiet,
+        all_pages=all_pages, as_json=as_json, quiet=quiet,
     )  # fmt: skip
     recorded = run_store.is_name(design)
     result: Any = _restored(job) if recorded else job.run(verbs.evaluate, seed=seed)
@@ -174,11 +192,11 @@ def report(
 
 
 def _restored(job: Job) -> Restored:
-    """A recorded run; what differs from then is said."""
+    """A recorded run; differences from the time of the run are reported."""
     from .. import api as verbs
 
     if job.sets:
-        raise UsageError(Diagnostic("--set: a run is reported as it was", "name a design instead"))
+        raise UsageError(Diagnostic("--set: not allowed with a run", "name a design instead"))
     restored = verbs.restore(job.design, plugins=job.plugins or [])
     for doubt in restored.doubts:
         streams.err(doubt)
@@ -188,25 +206,27 @@ def _restored(job: Job) -> Restored:
 def compare(
     designs: Annotated[
         list[str],
-        typer.Argument(metavar="DESIGN", help="Two or more design files or runs (id, last)."),
+        typer.Argument(metavar="DESIGN", help="Two or more design files or runs (id or last)."),
     ],
     sets: Set = None,
     plugin: PluginFile = None,
     out: Annotated[
         Path | None,
         typer.Option(
-            "--out", metavar="DIR", help="Draw mass, compliance and friction into this folder."
+            "--out",
+            metavar="DIR",
+            help="Write figures of mass, compliance and friction to this folder.",
         ),
     ] = None,
     optimise: Annotated[
         bool,
-        typer.Option("--optimise", help="Optimise each design first; runs and optima stay."),
+        typer.Option("--optimise", help="Optimise each design first; runs and optima are kept."),
     ] = False,
     seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """What differs between designs, and which parts decide."""
+    """Compare designs: what differs, and which parts matter."""
     from .. import api as verbs
 
     if out is not None:
@@ -222,18 +242,16 @@ def export(
     design: DesignFile,
     formats: Annotated[
         list[str] | None,
-        typer.Option("--format", metavar="step|dxf|xlsx", help="File to write. Repeatable."),
+        typer.Option("--format", metavar="step|dxf|xlsx", help="File format. Repeatable."),
     ] = None,
     sets: Set = None,
-    out: Annotated[
-        Path, typer.Option("--out", metavar="DIR", help="Folder of the files.")
-    ] = REPORTS,
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Output folder.")] = REPORTS,
     date: Annotated[
         str | None,
         typer.Option(
             "--date",
             metavar="YYYY-MM-DD",
-            help="Date to write into the files; default: none, or that of SOURCE_DATE_EPOCH.",
+            help="Date in the files; default: none, or SOURCE_DATE_EPOCH.",
         ),
     ] = None,
     seed: Seed = 0,
@@ -241,7 +259,7 @@ def export(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Write the design for CAD (STEP, DXF) or Excel (XLSX)."""
+    """Export the design for CAD (STEP, DXF) or Excel (XLSX)."""
     from .. import api as verbs
     from ..exports import require_formats
 
@@ -259,9 +277,9 @@ def export(
 
 def schema(
     scenario: Annotated[
-        bool, typer.Option("--scenario", help="Of scenario files, not of designs.")
+        bool, typer.Option("--scenario", help="Schema of scenario files, not of designs.")
     ] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="As always: it is JSON.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="No effect: the schema is JSON.")] = False,
 ) -> None:
     """Print the JSON Schema of design or scenario files."""
     from ..base.quantities import RESULTS

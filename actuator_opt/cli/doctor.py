@@ -1,4 +1,4 @@
-"""`doctor`: what this installation has, lacks and may write."""
+"""`doctor`: check the installation, its optional libraries and its folders."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .options import REPORTS, Json, Out, Quiet
 
 
 def doctor(out: Out = REPORTS, as_json: Json = False, quiet: Quiet = False) -> ExitCode:
-    """What this installation has, lacks and may write."""
+    """Check the installation, its optional libraries and its folders."""
     from .. import api as verbs
 
     found = verbs.doctor(out=out, runs=run_store.folder(), terminal=_terminal())
@@ -20,7 +20,7 @@ def doctor(out: Out = REPORTS, as_json: Json = False, quiet: Quiet = False) -> E
 
 
 def _terminal() -> str:
-    """What standard output can show, in words."""
+    """Capabilities of standard output, in words."""
     style, stream = streams.style(), sys.stdout
     encoding = "none" if stream is None else stream.encoding or "ascii"
     parts = [
@@ -28,6 +28,6 @@ def _terminal() -> str:
         "Unicode signs" if style["unicode"] else "plain ASCII signs",
         "colour" if style["colour"] else "no colour",
         f"{style['width']} columns",
-        "a terminal" if stream is not None and stream.isatty() else "no terminal",
+        "a terminal" if stream is not None and stream.isatty() else "not a terminal",
     ]
     return ", ".join(parts)

@@ -1,4 +1,4 @@
-"""What reaches the top of the command line unforeseen: one line, and an exit code of its own."""
+"""Unexpected exceptions at the top of the command line: one line, and an exit code."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from ..version import VERSION
 from . import streams
 
 DEBUG = "ACTUATOR_OPT_DEBUG"
-"""Environment variable: show tracebacks (any text but "0")."""
+"""Environment variable that enables tracebacks (any text but "0")."""
 
 _LONGEST = 300
-"""Letters of an exception that the line repeats."""
+"""Most characters of an exception that the line shows."""
 
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS}
-"""Of an operating system that takes no more data."""
+"""Error codes of the operating system for a full disk."""
 
 
 def debugging() -> bool:
-    """Whether tracebacks are asked for."""
+    """Whether tracebacks are enabled."""
     return "--debug" in sys.argv[1:] or os.environ.get(DEBUG, "") not in ("", "0")
 
 
 def unexpected(error: Exception) -> tuple[list[Diagnostic], ExitCode]:
-    """The line and the exit code of an exception that nothing foresaw."""
+    """Line and exit code of an unexpected exception."""
     if debugging():
         import traceback
 
@@ -35,25 +35,25 @@ def unexpected(error: Exception) -> tuple[list[Diagnostic], ExitCode]:
     if isinstance(error, OSError):
         return [_of_system(error)], ExitCode.BAD_INPUT
     if isinstance(error, MemoryError):
-        fault = Diagnostic("out of memory", "ask for fewer points, or free memory")
+        fault = Diagnostic("out of memory", "use fewer points, or free memory")
         return [fault], ExitCode.SOLVER_FAILED
-    from concurrent.futures import BrokenExecutor  # only a fault pays for it
+    from concurrent.futures import BrokenExecutor  # slow to import, needed for faults only
 
     if isinstance(error, BrokenExecutor):
-        message = "a worker process ended before its work was done"
-        remedy = "check the memory, or give fewer --workers; a --store goes on from its rows"
+        message = "a worker process ended before its work was complete"
+        remedy = "check the memory, or give fewer --workers; a --store resumes from its rows"
         return [Diagnostic(message, remedy)], ExitCode.SOLVER_FAILED
     said = shown(f"{type(error).__name__}: {' '.join(str(error).split())}", _LONGEST)
-    message = f"a fault of the program, actuator-opt {VERSION}: {said.removesuffix(': ')}"
+    message = f"internal error of actuator-opt {VERSION}: {said.removesuffix(': ')}"
     remedy = f"please report it{_receiver()} with the command and the traceback (add --debug)"
     return [Diagnostic(message, remedy)], ExitCode.FAULT
 
 
 def _of_system(error: OSError) -> Diagnostic:
-    """What the operating system refused."""
+    """An error of the operating system."""
     reason = error.strerror or type(error).__name__
     if error.filename is not None:
-        remedy = "make room, or write elsewhere" if error.errno in _FULL else "check the file"
+        remedy = "free disk space, or write elsewhere" if error.errno in _FULL else "check the file"
         return Diagnostic(f"cannot be used: {reason}", remedy, str(error.filename))
     try:
         os.getcwd()
@@ -64,7 +64,7 @@ def _of_system(error: OSError) -> Diagnostic:
 
 
 def _receiver() -> str:
-    """Who takes reports, by the installed package's own metadata; "" where it names nobody."""
+    """Address for bug reports from the package metadata; "" if it has none."""
     from importlib import metadata
 
     try:

@@ -1,4 +1,4 @@
-"""One command from its targets to its exit code: check, read, run, write, answer, record."""
+"""A command from its arguments to its exit code: check, read, run, write, answer, record."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 
 _T = TypeVar("_T")
 Files = Sequence[Mapping[str, Any]]
-"""Files as in JSON: each with its `path`."""
+"""Files as in JSON, each with its `path`."""
 
 
 @dataclass
 class Job:
-    """What a command reads, where it writes, and how it answers.
+    """Input, output and answer of a command.
 
-    Places that cannot be written are refused at once, before any work.
+    Unwritable outputs are refused before any work.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class Job:
     others : further files that are read
     sets, plugins : of the design
     csv, write : files to write; neither may be one that is read, but `write` may be the design
-    report : whether to write the report into `out`, with `date`
+    report : whether to write the report into `out`, with `date`; `all_pages`: all as images
     as_json, quiet : how to answer
     record : whether to keep a record of the run
     paper : keywords of the report besides those that every report takes
@@ -50,6 +50,7 @@ class Job:
     report: bool = False
     out: Path = REPORTS
     date: str | None = None
+    all_pages: bool = False
     as_json: bool = False
     quiet: bool = False
     record: bool = False
@@ -72,7 +73,7 @@ class Job:
 
     @property
     def set(self) -> list[tuple[str, str]]:
-        """The ``--set``, each as PATH and value."""
+        """``--set`` options as PATH and value."""
         from ..design import split_assignment
 
         return [split_assignment(text) for text in self.sets or ()]
@@ -85,7 +86,7 @@ class Job:
         return read(self.design, set=self.set, plugins=self.plugins or ())
 
     def run(self, verb: Callable[..., _T], *given: object, **options: Any) -> _T:
-        """Run a verb, of the design where nothing else is given; a terminal sees the progress."""
+        """Run a verb, on the design by default; progress is shown on a terminal."""
         given = given or (self.actuator,)
         with nullcontext() if self.quiet else streams.watching():
             return verb(*given, **options)
@@ -99,15 +100,15 @@ class Job:
         faults: Sequence[Diagnostic] = (),
         **also: Any,
     ) -> ExitCode:
-        """Write a result's files, show it, record it; the exit code.
+        """Write, show and record a result; returns the exit code.
 
         Parameters
         ----------
-        result : of a verb
-        files : written already, named in the answer
-        saved : the same, of which JSON says nothing
-        faults : what could not be done
-        also : further results by their key in JSON, shown below the first; None for none
+        result : result of a verb
+        files : files already written, listed in the answer
+        saved : the same, but not listed in JSON
+        faults : failed outputs
+        also : further results by their key in JSON, shown below the first; None: no result
         """
         from ..api import results
 
@@ -132,7 +133,7 @@ class Job:
         return next(filter(None, codes), ExitCode.MET)
 
     def written(self, result: object, **also: Any) -> list[dict[str, Any]]:
-        """Write the CSV and the report that are asked for."""
+        """Write the requested CSV and report."""
         from .. import api as verbs
         from ..api import results
 
@@ -140,11 +141,12 @@ class Job:
             return []
         files = [] if self.csv is None else [results.write_csv(result, self.csv)]
         if self.report:
-            files += verbs.report(result, **self._origin(), folder=self.out, **self.paper, **also)
+            paper = self.paper | {"folder": self.out, "all_pages": self.all_pages}
+            files += verbs.report(result, **self._origin(), **paper, **also)
         return [file.to_dict() for file in files]
 
     def keep(self, result: object, **how: Any) -> None:
-        """Record the run of a result; where that fails, one line says so and nothing is lost."""
+        """Record the run of a result; a failure gives one line and does not affect the result."""
         from ..api import results
 
         try:
@@ -152,11 +154,11 @@ class Job:
         except ActuatorError as error:
             remedy = "set ACTUATOR_OPT_RUNS to another folder, or give --no-record"
             fault = replace(error.diagnostics[0], remedy=remedy)
-            streams.err(f"the run is not recorded: {fault}")
+            streams.err(f"the run was not recorded:  {fault}")
 
     def _origin(self) -> dict[str, Any]:
-        """Where the result comes from."""
-        actuator = self.__dict__.get("actuator")  # none where the command read no design
+        """Origin of the result."""
+        actuator = self.__dict__.get("actuator")  # None if the command read no design
         return {"actuator": actuator, "command": command_line(), "date": self.date}
 
     def answer(
@@ -168,7 +170,7 @@ class Job:
         files: Files = (),
         faults: Iterable[Diagnostic] = (),
     ) -> None:
-        """Print the data as JSON, or the text; below it remarks, files and faults."""
+        """Print the data as JSON, or the text; then remarks, files and faults."""
         if self.as_json:
             streams.out_json(dict(data()))
             return
@@ -184,14 +186,14 @@ class Job:
 
 
 _TARGETS = ("--out", "--write", "--csv", "--parquet")
-"""Options that say where to write."""
+"""Options of output files and folders."""
 
-_SILENT = ("--json", "--report", "--quiet", "-q", "--no-record", "--debug")
+_SILENT = ("--json", "--report", "--all-pages", "--quiet", "-q", "--no-record", "--debug")
 """Flags that change no result."""
 
 
 def command_line() -> str:
-    """The command line without what does not change the result: same input, same bytes."""
+    """The command line without options that do not change the result: same input, same bytes."""
     import shlex
 
     kept, skip = [], False

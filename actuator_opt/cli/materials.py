@@ -1,9 +1,10 @@
-"""The commands below `actuator-opt materials`: what the library knows, with its sources."""
+"""The commands of `actuator-opt materials`: library data with their sources."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -11,6 +12,10 @@ from ..base import files as store
 from ..base.errors import Diagnostic, UsageError
 from . import streams
 from .options import Json
+
+if TYPE_CHECKING:
+    from ..design.material import Material
+    from ..rendering.blocks import Block
 
 materials = typer.Typer(
     help="Look up materials, fluids, seal compounds and adhesives.",
@@ -28,18 +33,19 @@ def list_materials(
     ] = None,
     as_json: Json = False,
 ) -> None:
-    """Every entry with its main numbers."""
+    """List all entries with their main properties."""
     from ..design.material import KINDS
-    from ..design.material_tables import list_lines, to_dict
     from ..design.materials import load_library
 
     if kind is not None and kind not in KINDS:
         raise UsageError(Diagnostic(f'--kind "{kind}"', f"use one of {', '.join(KINDS)}"))
-    found = load_library()
+    library = load_library()
     if as_json:
-        streams.out_json(to_dict(m for m in found if kind is None or m.kind == kind))
-    else:
-        streams.out("\n".join(list_lines(found, kind=kind, ascii=not streams.style()["unicode"])))
+        streams.out_json(_data(m for m in library if kind is None or m.kind == kind))
+        return
+    from ..pages.material import listing
+
+    _show(listing(library, kind=kind))
 
 
 @materials.command("show")
@@ -48,38 +54,36 @@ def show_material(
     out: Annotated[
         Path | None,
         typer.Option(
-            "--out", metavar="DIR", help="Draw a fluid into this folder (NAME.png, NAME.svg)."
+            "--out",
+            metavar="DIR",
+            help="Write a figure of a fluid to this folder (NAME.png, NAME.svg).",
         ),
     ] = None,
     as_json: Json = False,
 ) -> None:
-    """Every property of one entry, with scatter and source.
+    """Show all properties of an entry, with scatter and source.
 
-    A fluid is also shown over temperature and pressure.
+    For a fluid, also over temperature and pressure.
     """
-    from ..design.material_tables import show_lines, to_dict
     from ..design.materials import load_library
 
     material = load_library().get(name)
     if out is not None:
         if material.kind != "fluid":
             message = f"--out: {name} is a {material.kind}, only fluids have a figure"
-            raise UsageError(Diagnostic(message, "leave --out away, or name a fluid"))
+            raise UsageError(Diagnostic(message, "remove --out, or name a fluid"))
         store.require_folder(out)
-    style = streams.style()
     if as_json:
-        streams.out_json(to_dict([material]))
+        streams.out_json(_data([material]))
     else:
-        lines = show_lines(material, ascii=not style["unicode"])
-        if material.kind == "fluid":
-            from ..pages.fluid_figure import table_lines
+        from ..pages.material import blocks
 
-            lines += ["", *table_lines(material, **style)]
-        streams.out("\n".join(lines))
+        _show(blocks(material))
     if out is not None:
-        from ..pages.fluid_figure import write_figure
+        from ..pages.material import fluid_figure
+        from ..rendering.image import write_ink
 
-        for path in write_figure(material, out):
+        for path in write_ink(fluid_figure(material), out, material.name):
             streams.err(f"wrote {path}")
 
 
@@ -88,16 +92,28 @@ def compare_materials(
     names: Annotated[list[str], typer.Argument(metavar="NAME", help="Two or more entries.")],
     as_json: Json = False,
 ) -> None:
-    """Properties side by side, with ratios to the first."""
-    from ..design.material_tables import compare_lines, to_dict
+    """Compare properties side by side, with ratios to the first material."""
     from ..design.materials import load_library
 
     if len(names) < 2:
-        raise UsageError(Diagnostic("one material cannot be compared", "name two or more"))
+        raise UsageError(Diagnostic("a comparison needs two materials", "name two or more"))
 
-    found = load_library()
-    materials = [found.get(name) for name in names]
+    library = load_library()
+    materials = [library.get(name) for name in names]
     if as_json:
-        streams.out_json(to_dict(materials))
-    else:
-        streams.out("\n".join(compare_lines(materials, ascii=not streams.style()["unicode"])))
+        streams.out_json(_data(materials))
+        return
+    from ..pages.material import comparison
+
+    _show(comparison(materials))
+
+
+def _data(materials: Iterable[Material]) -> dict[str, object]:
+    """JSON form of materials, SI."""
+    return {material.name: material.to_dict() for material in materials}
+
+
+def _show(blocks: Sequence[Block]) -> None:
+    from ..rendering.terminal import blocks_text
+
+    streams.out(blocks_text(blocks, **streams.style()), end="")

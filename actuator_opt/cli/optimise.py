@@ -1,4 +1,4 @@
-"""The best designs: `optimise`, `sensitivity` and `pareto`."""
+"""Optimisation commands: `optimise`, `sensitivity` and `pareto`."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from .job import Job
 from .options import (
     REPORTS,
     Algorithm,
+    AllPages,
     Certify,
     Date,
     DesignFile,
@@ -50,9 +51,10 @@ def optimise(
     write: Write = None,
     out: Out = REPORTS,
     report: Annotated[
-        bool, typer.Option("--report", help="Write the report although --json is given.")
+        bool, typer.Option("--report", help="Write the report even with --json.")
     ] = False,
     date: Date = None,
+    all_pages: AllPages = False,
     seed: Seed = 0,
     plugin: PluginFile = None,
     no_record: NoRecord = False,
@@ -64,7 +66,7 @@ def optimise(
 
     job = Job(
         design, sets=sets, plugins=plugin, write=write, report=report or not as_json, out=out,
-        date=date, as_json=as_json, quiet=quiet, record=not no_record,
+        date=date, all_pages=all_pages, as_json=as_json, quiet=quiet, record=not no_record,
     )  # fmt: skip
     trial = None if verify is None else _scenario(verify, job.actuator)
     result = job.run(
@@ -93,11 +95,11 @@ def optimise(
 
 
 optimize = optimise
-"""The other spelling."""
+"""Alternative spelling."""
 
 
 def _scenario(file: str, actuator: Actuator) -> Trial:
-    """The scenario to verify the best design in, which must be one for it."""
+    """Scenario to verify the best design in; it must name this design."""
     from .. import api as verbs
 
     trial = verbs.read_scenario(file)
@@ -106,14 +108,14 @@ def _scenario(file: str, actuator: Actuator) -> Trial:
 
 
 def _unsaved(result: Optimisation, write: Path) -> Diagnostic | None:
-    """Why there is no best design to save; None where there is one."""
+    """Why there is no best design to save; None if there is."""
     from .. import api as verbs
 
     if verbs.exit_code(result) == ExitCode.MET or result.status == "interrupted":
         return None
     told = result if result.robust is not None else result.rounding or result
     why = "; ".join(part for part in (told.sentence, told.remedy) if part)
-    return Diagnostic(f"not written, there is no design to save: {why}", file=str(write))
+    return Diagnostic(f"not written, no design to save: {why}", file=str(write))
 
 
 def sensitivity(
@@ -123,16 +125,17 @@ def sensitivity(
     report: Report = False,
     out: Out = REPORTS,
     date: Date = None,
+    all_pages: AllPages = False,
     seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """What each requirement and parameter costs at the optimum."""
+    """Cost of each requirement and parameter at the optimum."""
     from .. import api as verbs
 
     job = Job(
         design, sets=sets, plugins=plugin, report=report, out=out, date=date,
-        as_json=as_json, quiet=quiet,
+        all_pages=all_pages, as_json=as_json, quiet=quiet,
     )  # fmt: skip
     return job.deliver(verbs.Prices(job.run(verbs.optimise, seed=seed)))
 
@@ -142,10 +145,12 @@ def pareto(
     objectives: Annotated[
         list[str] | None,
         typer.Option(
-            "--objective", metavar="METRIC:min|max", help='Twice to four times, e.g. "mass:min".'
+            "--objective",
+            metavar="METRIC:min|max",
+            help='Metric and direction, two to four times, e.g. "mass:min".',
         ),
     ] = None,
-    n: Annotated[int, typer.Option("-n", metavar="N", help="Designs of the front.")] = 50,
+    n: Annotated[int, typer.Option("-n", metavar="N", help="Number of designs on the front.")] = 50,
     checks: Annotated[
         int,
         typer.Option(
@@ -153,7 +158,7 @@ def pareto(
             min=CHECKS.least,
             max=CHECKS.most,
             metavar="N",
-            help="Full searches for what is merely local.",
+            help="Full searches to escape local optima.",
         ),
     ] = 3,
     csv: Annotated[
@@ -164,17 +169,18 @@ def pareto(
     report: Report = False,
     out: Out = REPORTS,
     date: Date = None,
+    all_pages: AllPages = False,
     seed: Seed = 0,
     no_record: NoRecord = False,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Trade two to four objectives: the Pareto front and its knee."""
+    """Trade off two to four objectives: the Pareto front and its knee."""
     from .. import api as verbs
 
     job = Job(
         design, sets=sets, plugins=plugin, csv=csv, report=report, out=out, date=date,
-        as_json=as_json, quiet=quiet, record=not no_record,
+        all_pages=all_pages, as_json=as_json, quiet=quiet, record=not no_record,
     )  # fmt: skip
     return job.deliver(
         job.run(verbs.pareto, objectives=objectives or [], n=n, seed=seed, checks=checks)

@@ -1,4 +1,4 @@
-"""The options that commands share, each declared once with its help; how their texts are read."""
+"""Options that several commands share, each declared once with its help."""
 
 from __future__ import annotations
 
@@ -30,15 +30,15 @@ Seed = Annotated[
         min=SEED.least,
         max=SEED.most,
         metavar="N",
-        help="Fixes random choices: same seed, same result.",
+        help="Random seed: same seed, same result.",
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object (SI) to stdout.")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")]
 PluginFile = Annotated[
     list[Path] | None,
     typer.Option(
-        "--plugin", metavar="FILE.py", help="Python file with metrics of your own. Repeatable."
+        "--plugin", metavar="FILE.py", help="Python file with your own metrics. Repeatable."
     ),
 ]
 Date = Annotated[
@@ -46,7 +46,7 @@ Date = Annotated[
     typer.Option(
         "--date",
         metavar="YYYY-MM-DD",
-        help="Date to print on the report; default: none, or that of SOURCE_DATE_EPOCH.",
+        help="Date on the report; default: none, or SOURCE_DATE_EPOCH.",
     ),
 ]
 Units = Annotated[
@@ -54,8 +54,8 @@ Units = Annotated[
     typer.Option(
         "--units",
         metavar="SI|FILE",
-        help="Units of columns whose header states none: SI (m, s, Pa, N, m/s, K), or a file with "
-        'a line "p1: bar" (YAML) or "p1,bar" (CSV) for each column.',
+        help="Units of columns without a unit in their header: SI (m, s, Pa, N, m/s, K), or a file "
+        'with a line "p1: bar" (YAML) or "p1,bar" (CSV) for each column.',
     ),
 ]
 Algorithm = Annotated[
@@ -71,31 +71,32 @@ Starts = Annotated[
         min=STARTS.least,
         max=STARTS.most,
         metavar="N",
-        help="Local searches from different points.",
+        help="Number of local searches from different points.",
     ),
 ]
 Write = Annotated[
     Path | None,
-    typer.Option("--write", metavar="FILE", help="Save the best design as a design file."),
+    typer.Option("--write", metavar="FILE", help="Save the best design to this file."),
 ]
 WholePlies = Annotated[
     bool,
     typer.Option(
         "--whole-plies",
-        help="Also find the best design of whole plies and allowed angles; --write saves that.",
+        help="Also find the best design with whole plies and allowed angles; --write saves it.",
     ),
 ]
 StandardSizes = Annotated[
     bool,
     typer.Option(
         "--standard-sizes",
-        help="Also find the best design of ISO 3320 bore and rod, whole plies and allowed angles.",
+        help="Also find the best design with ISO 3320 bore and rod, whole plies and "
+        "allowed angles.",
     ),
 ]
 Certify = Annotated[
     bool,
     typer.Option(
-        "--certify", help="Prove how far the best design is from the best possible (seconds)."
+        "--certify", help="Prove a bound on the gap to the best possible design (seconds)."
     ),
 ]
 Yield = Annotated[
@@ -103,7 +104,7 @@ Yield = Annotated[
     typer.Option(
         "--yield",
         metavar="P",
-        help="All limits hold with this probability while numbers scatter, e.g. 0.99.",
+        help="Probability that all limits hold under scatter, e.g. 0.99.",
     ),
 ]
 VerifyDynamics = Annotated[
@@ -111,18 +112,22 @@ VerifyDynamics = Annotated[
     typer.Option(
         "--verify-dynamics",
         metavar="SCENARIO",
-        help="Simulate the best design in this scenario: does each dynamic requirement hold?",
+        help="Verify the best design by simulation of this scenario.",
     ),
 ]
 NoRecord = Annotated[
-    bool, typer.Option("--no-record", help="Keep no record of the run (see: runs list).")
+    bool, typer.Option("--no-record", help="Do not record the run (see: runs list).")
 ]
 Report = Annotated[bool, typer.Option("--report", help="Write the report (PDF and PNG) too.")]
+AllPages = Annotated[
+    bool,
+    typer.Option("--all-pages", help="An image (PNG) of every sheet of the report, not of one."),
+]
 REPORTS = Path("reports")
 
 
 def quantity_of(option: str, text: str | None, quantity: Quantity) -> float | None:
-    """The SI number of an option in its quantity's unit."""
+    """SI number of an option in the unit of its quantity."""
     from ..design.kinds import ValueFault, read_quantity
 
     if text is None:
@@ -139,14 +144,14 @@ def named_columns(texts: list[str] | None) -> dict[str, str]:
     for text in texts or []:
         channel, equals, name = text.partition("=")
         if not equals or not channel.strip() or not name.strip():
-            message = f'--column "{text}" is no CHANNEL=NAME'
+            message = f'--column "{text}" is not CHANNEL=NAME'
             raise UsageError(Diagnostic(message, 'write e.g. "p1=Channel 3 [bar]"'))
         found[channel.strip()] = name.strip()
     return found
 
 
 def file_of_units(units: str | None) -> list[str]:
-    """The file of a ``--units``, where it names one."""
+    """The file of ``--units``, if it names a file."""
     if units is None:
         return []
     from ..identification.column_units import SI

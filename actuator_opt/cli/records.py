@@ -1,4 +1,4 @@
-"""Records of a test bench: `identify` and `calibrate`."""
+"""Test-bench records: `identify` and `calibrate`."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from ..base.quantities import RECORDS
 from .job import Job
 from .options import (
     REPORTS,
+    AllPages,
     Date,
     Json,
     Out,
@@ -31,7 +32,7 @@ RecordFile = Annotated[
     str, typer.Argument(metavar="RECORD", help="CSV file of the test record, or - for stdin.")
 ]
 Tested = Annotated[
-    str, typer.Option("--design", metavar="DESIGN", help="Design file of the actuator tested.")
+    str, typer.Option("--design", metavar="DESIGN", help="Design file of the tested actuator.")
 ]
 Columns = Annotated[
     list[str] | None,
@@ -51,12 +52,12 @@ Cutoff = Annotated[
 Order = Annotated[
     int | None,
     typer.Option(
-        "--order", min=1, max=10, metavar="N", help="Order of each of its two passes; default: 4."
+        "--order", min=1, max=10, metavar="N", help="Order of each filter pass; default: 4."
     ),
 ]
 Uncompensated = Annotated[
     bool,
-    typer.Option("--uncompensated", help="Let both passes be -6 dB at the cut-off, not -3 dB."),
+    typer.Option("--uncompensated", help="Both passes together: -6 dB at the cut-off, not -3 dB."),
 ]
 Mass = Annotated[
     str | None,
@@ -69,7 +70,7 @@ LoadForce = Annotated[
     typer.Option(
         "--load-force",
         metavar="F",
-        help='Load where no channel F_L measures it, e.g. "0 N" for a free rod.',
+        help='Load force without a channel F_L, e.g. "0 N" for a free rod.',
     ),
 ]
 PressureLag = Annotated[
@@ -77,7 +78,7 @@ PressureLag = Annotated[
     typer.Option(
         "--pressure-lag",
         metavar="T",
-        help='Lag of the pressures, e.g. "4 ms"; default: found by the reversals.',
+        help='Lag of the pressures, e.g. "4 ms"; default: from the reversals.',
     ),
 ]
 Bootstrap = Annotated[
@@ -93,7 +94,9 @@ Bootstrap = Annotated[
 
 Series = Annotated[
     Path | None,
-    typer.Option("--csv", metavar="FILE", help="Save friction, stiffness, growth over time."),
+    typer.Option(
+        "--csv", metavar="FILE", help="Save friction, stiffness and bore growth over time."
+    ),
 ]
 Span = Annotated[
     str | None,
@@ -105,7 +108,7 @@ Span = Annotated[
 ]
 BentPart = Annotated[
     str | None,
-    typer.Option("--part", metavar="rod|barrel", help="What was bent; default: rod."),
+    typer.Option("--part", metavar="rod|barrel", help="Part in the bending test; default: rod."),
 ]
 NewDesign = Annotated[
     Path | None,
@@ -113,7 +116,7 @@ NewDesign = Annotated[
 ]
 Search = Annotated[
     bool,
-    typer.Option("--optimise/--no-optimise", help="Also find the best design before and after."),
+    typer.Option("--optimise/--no-optimise", help="Also optimise the design before and after."),
 ]
 
 
@@ -137,16 +140,17 @@ def identify(
     report: Report = False,
     out: Out = REPORTS,
     date: Date = None,
+    all_pages: AllPages = False,
     seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Friction and damping from a test record, with bounds."""
+    """Identify friction and damping from a test record, with bounds."""
     from .. import api as verbs
 
     job = Job(
         design, [record, *file_of_units(units)], sets=sets, plugins=plugin, csv=csv,
-        report=report, out=out, date=date, as_json=as_json, quiet=quiet,
+        report=report, out=out, date=date, all_pages=all_pages, as_json=as_json, quiet=quiet,
     )  # fmt: skip
     _check_bootstrap(bootstrap)
     reading = {"columns": named_columns(columns), "units": units}
@@ -154,7 +158,7 @@ def identify(
     settings = _settings(cutoff, order, uncompensated, mass, load_force, pressure_lag)
     if length is None:
         if part is not None:
-            raise UsageError(Diagnostic("--part: only with --span", "add --span, or leave it out"))
+            raise UsageError(Diagnostic("--part: only with --span", "add --span, or remove it"))
         how = {"bootstrap": bootstrap, "seed": seed, **reading, **settings}
         return job.deliver(job.run(verbs.identify, record, design=job.actuator, **how))
     others = {"--report": report or None, "--csv": csv, "--bootstrap": bootstrap or None}
@@ -184,16 +188,17 @@ def calibrate(
     report: Report = False,
     out: Out = REPORTS,
     date: Date = None,
+    all_pages: AllPages = False,
     seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Put a record's friction into its design; say what changes."""
+    """Update a design with a record's friction; show the effects."""
     from .. import api as verbs
 
     job = Job(
         design, [record, *file_of_units(units)], sets=sets, plugins=plugin, write=write,
-        report=report, out=out, date=date, as_json=as_json, quiet=quiet,
+        report=report, out=out, date=date, all_pages=all_pages, as_json=as_json, quiet=quiet,
     )  # fmt: skip
     _check_bootstrap(bootstrap)
     settings = _settings(cutoff, order, uncompensated, mass, load_force, pressure_lag)
@@ -213,19 +218,19 @@ def calibrate(
 
 
 def _only_bending(asked: Mapping[str, object]) -> None:
-    """Refuse options that a bending test has no use for."""
+    """Refuse options that a bending test does not use."""
     options = [name for name, one in asked.items() if one is not None]
     if options:
-        message = f"{', '.join(options)}: not with --span, a bending test gives a modulus alone"
-        raise UsageError(Diagnostic(message, "leave out --span, or these"))
+        message = f"{', '.join(options)}: not with --span: a bending test gives a modulus only"
+        raise UsageError(Diagnostic(message, "remove --span, or these"))
 
 
 def _check_bootstrap(count: int) -> None:
     from ..identification.bootstrap import FEWEST
 
     if 0 < count < FEWEST:
-        message = f"--bootstrap {count}: too few to have a tail of 2.5 %"
-        raise UsageError(Diagnostic(message, f"take {FEWEST} or more, 200 as a rule"))
+        message = f"--bootstrap {count}: too few for a 2.5 % tail"
+        raise UsageError(Diagnostic(message, f"use {FEWEST} or more, usually 200"))
 
 
 _OPTIONS = {
@@ -236,7 +241,7 @@ _OPTIONS = {
     "load_force": "--load-force",
     "pressure_lag": "--pressure-lag",
 }
-"""Options of the settings by their name."""
+"""Options of the settings by name."""
 
 
 def _settings(
@@ -247,7 +252,7 @@ def _settings(
     load_force: str | None,
     pressure_lag: str | None,
 ) -> dict[str, Any]:
-    """How a record is read, SI: what was stated."""
+    """Stated settings for reading a record, SI."""
     found = {
         "cutoff": quantity_of("--cutoff", cutoff, RECORDS["cutoff"]),
         "order": order,

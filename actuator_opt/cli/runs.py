@@ -1,4 +1,4 @@
-"""Recorded runs: the commands below `runs`, and `rerun` of a report."""
+"""Recorded runs: the commands of `runs`, and `rerun` of a report."""
 
 from __future__ import annotations
 
@@ -11,30 +11,31 @@ from ..base import files as store, runs as run_store
 from ..base.errors import Diagnostic, ExitCode, UsageError
 from . import streams
 from .job import Job
-from .options import REPORTS, Json, NoRecord, PluginFile, Quiet
+from .options import REPORTS, AllPages, Json, NoRecord, PluginFile, Quiet
 
 runs = typer.Typer(
-    help="Recorded runs: list, show, delete, prune. Each optimise, pareto and sweep leaves one.",
+    help="Recorded runs: list, show, delete, prune. Each optimise, pareto and sweep is recorded.",
     no_args_is_help=True,
 )
 RunName = Annotated[
     str,
-    typer.Argument(metavar="RUN", help="Id of a run, the beginning of one, last, or its file."),
+    typer.Argument(metavar="RUN", help="Id of a run, beginning of an id, last, or a file."),
 ]
 
 
 @runs.command("list")
 def list_runs(
     design: Annotated[
-        str | None, typer.Option("--design", metavar="NAME", help="Only of this design or file.")
+        str | None,
+        typer.Option("--design", metavar="NAME", help="Only runs of this design or file."),
     ] = None,
     command: Annotated[
-        str | None, typer.Option("--command", metavar="NAME", help="Only of this command.")
+        str | None, typer.Option("--command", metavar="NAME", help="Only runs of this command.")
     ] = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Recorded runs, the newest first."""
+    """List recorded runs, newest first."""
     from .. import api as verbs
 
     found, faults = verbs.runs(design=design, command=command)
@@ -42,9 +43,10 @@ def list_runs(
     told = [{"id": name} | head for name, head in rows]
 
     def text() -> str:
-        from ..pages.runs_text import runs_table
+        from ..pages.runs import listing
+        from ..rendering.terminal import blocks_text
 
-        return runs_table(rows, **streams.style())
+        return blocks_text([listing(rows)], **streams.style())
 
     job = Job(as_json=as_json, quiet=quiet)
     if not as_json:
@@ -60,8 +62,8 @@ def list_runs(
 def _nothing(design: str | None, command: str | None) -> str:
     place = run_store.folder()
     if place is None:
-        return f"no runs are recorded: {run_store.SWITCH} is set"
-    what = " like that" if design or command else ""
+        return f"runs are not recorded: {run_store.SWITCH} is set"
+    what = " of this selection" if design or command else ""
     return f"no runs{what} are recorded in {place}"
 
 
@@ -70,12 +72,14 @@ def show_run(
     name: RunName,
     out: Annotated[
         Path | None,
-        typer.Option("--out", metavar="DIR", help="Draw its convergence into this folder."),
+        typer.Option(
+            "--out", metavar="DIR", help="Write a figure of the convergence to this folder."
+        ),
     ] = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """What was asked, what came out, how the search went."""
+    """Show input, result and convergence of a run."""
     from .. import api as verbs
 
     if out is not None:
@@ -91,19 +95,19 @@ def delete_run(name: RunName, as_json: Json = False, quiet: Quiet = False) -> No
     from .. import api as verbs
 
     if name == "last":
-        raise UsageError(Diagnostic('"last" is not deleted', "write the id of the run"))
+        raise UsageError(Diagnostic('"last" cannot be deleted', "write the id of the run"))
     _say_deleted([verbs.delete_run(name)], as_json=as_json, quiet=quiet)
 
 
 @runs.command("prune")
 def prune_runs(
     keep: Annotated[
-        int, typer.Option("--keep", min=0, metavar="N", help="Keep the newest N runs.")
+        int, typer.Option("--keep", min=0, metavar="N", help="Number of newest runs to keep.")
     ],
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Delete all recorded runs but the newest."""
+    """Delete all recorded runs except the newest."""
     from .. import api as verbs
 
     _say_deleted(verbs.prune_runs(keep=keep), as_json=as_json, quiet=quiet)
@@ -115,22 +119,25 @@ def _say_deleted(found: list[str], *, as_json: bool, quiet: bool) -> None:
 
 
 def rerun(
-    report: Annotated[str, typer.Argument(metavar="REPORT.pdf", help="Report of actuator-opt.")],
+    report: Annotated[
+        str, typer.Argument(metavar="REPORT.pdf", help="Report written by actuator-opt.")
+    ],
     plugin: PluginFile = None,
     out: Annotated[
         Path | None,
-        typer.Option("--out", metavar="DIR", help="Write the report into this folder again."),
+        typer.Option("--out", metavar="DIR", help="Write the report again, to this folder."),
     ] = None,
+    all_pages: AllPages = False,
     no_record: NoRecord = False,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Run the command of a report again, from the input it carries."""
+    """Repeat the command of a report from its embedded input."""
     from .. import api as verbs
 
     job = Job(
-        report=out is not None, out=out or REPORTS, as_json=as_json, quiet=quiet,
-        record=not no_record,
+        report=out is not None, out=out or REPORTS, all_pages=all_pages,
+        as_json=as_json, quiet=quiet, record=not no_record,
     )  # fmt: skip
     if out is not None:
         store.require_apart(out / f"{Path(report).stem}.pdf", report)

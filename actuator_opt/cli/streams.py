@@ -1,7 +1,7 @@
-"""What the shell gives and gets: standard streams, their width and colour, faults as lines or JSON.
+"""Standard streams: width, colour, progress, and faults as lines or JSON.
 
-A closed pipe ends the printing, not the command: the exit status stays the command's own. Data
-goes out in one piece: Ctrl-C waits until it is written.
+A closed pipe ends the output but not the command, which keeps its exit status. Data is written in
+one piece: Ctrl-C waits until then.
 """
 
 from __future__ import annotations
@@ -26,19 +26,19 @@ if TYPE_CHECKING:
     from ..rendering.console import Style
 
 NARROWEST, WIDEST, USUAL, TERMINAL = 40, 1000, 100, 80
-"""Columns: at least, at most, where the output is no terminal, where a terminal does not say."""
+"""Widths in columns: minimum, maximum, without a terminal, terminal of unknown width."""
 PATIENCE, PAUSE = 1.0, 0.2
-"""Seconds before progress is told, and between two tellings."""
+"""Seconds before the first progress report, and between reports."""
 
 
 @dataclass(slots=True)
 class _Progress:
-    """What this command has done and met so far."""
+    """State of the streams during a command."""
 
     printed: bool = False
     """Whether standard output has data already: a second JSON object must not follow."""
     held: bool = False
-    """Whether Ctrl-C waits."""
+    """Whether Ctrl-C is delayed."""
     interrupted: bool = False
 
 
@@ -46,12 +46,12 @@ _now = _Progress()
 
 
 def interrupted() -> bool:
-    """Whether Ctrl-C was pressed during this command, whatever became of the exception."""
+    """Whether Ctrl-C was pressed during this command, even if the exception was lost."""
     return _now.interrupted
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C. Python ends itself by the signal where a plain one passed the text of an `exec`."""
+    """Ctrl-C. A plain KeyboardInterrupt through an `exec` would make Python exit by signal."""
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:
@@ -61,9 +61,9 @@ def _interrupt(number: int, frame: FrameType | None) -> None:
 
 
 def prepare() -> None:
-    """Begin a command: remember Ctrl-C, and replace letters that an encoding lacks."""
+    """Start a command: handle Ctrl-C, and replace characters that an encoding lacks."""
     _now.printed = _now.held = _now.interrupted = False
-    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # not where it is ignored
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # unless it is ignored
         with suppress(ValueError):  # not the main thread
             signal.signal(signal.SIGINT, _interrupt)
     for stream in (sys.stdout, sys.stderr):
@@ -72,7 +72,7 @@ def prepare() -> None:
 
 
 def style() -> Style:
-    """What standard output can show."""
+    """Capabilities of standard output."""
     stream: TextIO | None = sys.stdout
     if stream is None:
         return {"colour": False, "unicode": False, "width": USUAL}
@@ -90,11 +90,11 @@ def style() -> Style:
 
 
 def out(text: str, *, end: str = "\n") -> None:
-    """Print data to standard output; control characters but our own colours are spelt out.
+    """Print data to standard output; control characters are escaped, except our own colours.
 
     Raises
     ------
-    InputError : the disk behind it is full, or the like; a reader who left is no fault
+    InputError : not writable, such as a full disk; a closed pipe is not a fault
     """
     stream: TextIO | None = sys.stdout
     if stream is None:
@@ -111,11 +111,11 @@ def out(text: str, *, end: str = "\n") -> None:
     except OSError as error:
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
         reason = f"cannot write to standard output: {error.strerror or type(error).__name__}"
-        raise InputError(Diagnostic(reason, "make room, or write elsewhere")) from None
+        raise InputError(Diagnostic(reason, "free disk space, or write elsewhere")) from None
 
 
 def _write(stream: TextIO, text: str) -> None:
-    """Write all of a text, also where a signal or an unbuffered stream makes a write short."""
+    """Write a text completely, even if a signal or an unbuffered stream interrupts the write."""
     buffer = getattr(stream, "buffer", None)
     if buffer is None:
         stream.write(text)
@@ -130,7 +130,7 @@ def _write(stream: TextIO, text: str) -> None:
 
 @contextmanager
 def _whole() -> Iterator[None]:
-    """Hold Ctrl-C back while data is written; it counts afterwards."""
+    """Delay Ctrl-C while data is written."""
     before, _now.held = _now.interrupted, True
     try:
         yield
@@ -141,20 +141,20 @@ def _whole() -> Iterator[None]:
 
 
 def err(text: str) -> None:
-    """Print a message to standard error, where there is one; control characters are spelt out."""
+    """Print a message to standard error, if any; control characters are escaped."""
     stream: TextIO | None = sys.stderr
     if stream is None:
         return
     try:
         stream.write(escaped(text) + "\n")
         stream.flush()
-    except OSError:  # nowhere left to say it
+    except OSError:  # no stream left for the message
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 @contextmanager
 def watching() -> Iterator[None]:
-    """Tell long work on standard error, where that is a terminal; nothing of it stays."""
+    """Show progress on standard error if it is a terminal; the line is removed at the end."""
     stream: TextIO | None = sys.stderr
     if stream is None or not stream.isatty() or os.environ.get("TERM") == "dumb":
         yield
@@ -166,7 +166,7 @@ def watching() -> Iterator[None]:
         nonlocal piece, last, shown, done
         now = monotonic()
         if share is not None:
-            piece, done = (now if share < done else piece), share  # a new piece of work begins
+            piece, done = (now if share < done else piece), share  # a new task begins
         if now < begin + PATIENCE or now < last + PAUSE:
             return
         left = f", {(now - piece) * (1 / share - 1):.0f} s left" if share else ""
@@ -192,21 +192,21 @@ def out_json(data: dict[str, Any]) -> None:
 
 
 def as_json() -> bool:
-    """Whether the command line asks for JSON, readable or not."""
+    """Whether the command line has ``--json``, even if it is otherwise invalid."""
     return "--json" in sys.argv[1:]
 
 
 def faults(found: Iterable[Diagnostic], code: ExitCode) -> ExitCode:
-    """Print faults as lines, or as one JSON object under ``--json``; returns `code`.
+    """Print faults as lines, or as a JSON object with ``--json``; returns `code`.
 
-    Where standard output has data already, or takes none, they are lines on standard error.
+    If standard output already has data, or fails, they are lines on standard error.
     """
     lines = list(found)
     if as_json() and not _now.printed:
         try:
             out_json({"errors": [fault.to_dict() for fault in lines]})
             return code
-        except InputError as error:  # standard output is what fails
+        except InputError as error:  # standard output itself fails
             lines += error.diagnostics
     for fault in lines:
         err(str(fault))

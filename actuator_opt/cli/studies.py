@@ -1,4 +1,4 @@
-"""Closer looks at one design: `uncertainty`, `seal` and `simulate`."""
+"""Studies of a single design: `uncertainty`, `seal` and `simulate`."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from ..base.quantities import INPUTS
 from .job import Job
 from .options import (
     REPORTS,
+    AllPages,
     Date,
     DesignFile,
     Json,
@@ -29,11 +30,14 @@ from .options import (
 )
 
 Draws = Annotated[
-    int, typer.Option("-n", "--samples", metavar="N", help="Draws of the yield, 20 to 10 million.")
+    int,
+    typer.Option(
+        "-n", "--samples", metavar="N", help="Number of samples of the yield, 20 to 10 million."
+    ),
 ]
 Quasi = Annotated[
     bool,
-    typer.Option("--quasi", help="Draw scrambled Sobol points, 16 times: narrower bounds."),
+    typer.Option("--quasi", help="Use 16 scrambled Sobol sequences: narrower bounds."),
 ]
 Rows = Annotated[
     int,
@@ -42,7 +46,7 @@ Rows = Annotated[
         min=0,
         max=1_000_000,
         metavar="N",
-        help="Rows behind the indices, inputs + 2 evaluations each; 0 for none.",
+        help="Rows for the indices, inputs + 2 evaluations each; 0: no indices.",
     ),
 ]
 Metrics = Annotated[
@@ -50,7 +54,7 @@ Metrics = Annotated[
     typer.Option(
         "--metric",
         metavar="METRIC",
-        help="Follow this metric too; default: those of the objective. Repeatable.",
+        help="Also analyse this metric; default: the objective. Repeatable.",
     ),
 ]
 
@@ -63,23 +67,24 @@ def uncertainty(
     metric: Metrics = None,
     csv: Annotated[
         Path | None,
-        typer.Option("--csv", metavar="FILE", help="Save draws: inputs, margins, what held."),
+        typer.Option("--csv", metavar="FILE", help="Save the samples: inputs, margins, verdicts."),
     ] = None,
     sets: Set = None,
     plugin: PluginFile = None,
     report: Report = False,
     out: Out = REPORTS,
     date: Date = None,
+    all_pages: AllPages = False,
     seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Yield, indices and tornado from scatter and tolerances."""
+    """Compute yield, Sobol indices and tornado from scatter and tolerances."""
     from .. import api as verbs
 
     job = Job(
         design, sets=sets, plugins=plugin, csv=csv, report=report, out=out, date=date,
-        as_json=as_json, quiet=quiet,
+        all_pages=all_pages, as_json=as_json, quiet=quiet,
     )  # fmt: skip
     how = {"count": count, "seed": seed, "quasi_random": quasi, "rows": rows}
     return job.deliver(job.run(verbs.uncertainty, metrics=metric or [], **how))
@@ -88,12 +93,12 @@ def uncertainty(
 def seal(
     design: DesignFile,
     place: Annotated[
-        str, typer.Option("--seal", metavar="piston|rod", help="The seal to look at.")
+        str, typer.Option("--seal", metavar="piston|rod", help="The seal to analyse.")
     ],
     speed: Annotated[
         str | None,
         typer.Option(
-            "--speed", metavar="V", help='Sliding speed, e.g. "0.1 m/s"; default: of a case.'
+            "--speed", metavar="V", help='Sliding speed, e.g. "0.1 m/s"; default: from a load case.'
         ),
     ] = None,
     pressure: Annotated[
@@ -103,19 +108,21 @@ def seal(
         ),
     ] = None,
     mapped: Annotated[
-        bool, typer.Option("--map", help="Also fill a map over speed and pressure (and its CSV).")
+        bool,
+        typer.Option("--map", help="Also compute a map over speed and pressure (and its CSV)."),
     ] = False,
     finite_elements: Annotated[
         bool,
         typer.Option(
             "--finite-elements",
-            help="Compute the contact of an O-ring or step ring (extra fem; some seconds).",
+            help="Compute the contact of an O-ring or step ring by finite elements (extra fem; "
+            "seconds).",
         ),
     ] = False,
     write: Annotated[
         Path | None,
         typer.Option(
-            "--write", metavar="FILE", help="Save the design with the contact profiles used."
+            "--write", metavar="FILE", help="Save the design with these contact profiles."
         ),
     ] = None,
     sets: Set = None,
@@ -123,18 +130,19 @@ def seal(
     report: Report = False,
     out: Out = REPORTS,
     date: Date = None,
+    all_pages: AllPages = False,
     seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Contact, oil film, friction and leakage of one seal."""
+    """Analyse contact, oil film, friction and leakage of a seal."""
     from .. import api as verbs
 
     if place not in ("piston", "rod"):
         raise UsageError(Diagnostic(f'--seal "{place}"', "write piston or rod"))
     job = Job(
         design, sets=sets, plugins=plugin, write=write, report=report or mapped, out=out,
-        date=date, as_json=as_json, quiet=quiet, paper={"sheet": report},
+        date=date, all_pages=all_pages, as_json=as_json, quiet=quiet, paper={"sheet": report},
     )  # fmt: skip
     study = job.run(
         verbs.seal,
@@ -155,7 +163,7 @@ ScenarioFile = Annotated[
 ]
 Verify = Annotated[
     bool,
-    typer.Option("--verify", help="Integrate again by Radau and tell the largest difference."),
+    typer.Option("--verify", help="Integrate again by Radau and show the largest difference."),
 ]
 Fast = Annotated[
     bool, typer.Option("--fast", help='Integrate by CVODES (pip install "actuator-opt[fast]").')
@@ -165,14 +173,14 @@ SignalsFile = Annotated[
 ]
 MeasuredFile = Annotated[
     str | None,
-    typer.Option("--measured", metavar="F.csv", help="Overlay a record, with its residuals."),
+    typer.Option("--measured", metavar="F.csv", help="Compare with a record; shows residuals."),
 ]
 Fitted = Annotated[
     list[str] | None,
     typer.Option(
         "--fit",
         metavar="NAME",
-        help="Fit a parameter to the record, with bounds (e.g. air_content, valve_capacity, "
+        help="Fit a parameter to the record, with bounds (e.g.  air_content, valve_capacity, "
         "piston_leakage, coulomb). Repeatable.",
     ),
 ]
@@ -187,7 +195,7 @@ RecordColumns = Annotated[
 ]
 Sensitivity = Annotated[
     bool,
-    typer.Option("--sensitivity", help="Rank the parameters by what they change in the results."),
+    typer.Option("--sensitivity", help="Rank the parameters by their effect on the results."),
 ]
 
 
@@ -205,11 +213,12 @@ def simulate(
     report: Report = False,
     out: Out = REPORTS,
     date: Date = None,
+    all_pages: AllPages = False,
     as_json: Json = False,
     quiet: Quiet = False,
     seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
 ) -> ExitCode:
-    """A scenario over time: servo, pressures, energy."""
+    """Simulate a scenario: servo, pressures, energy."""
     from .. import api as verbs
 
     for name, given in (("--fit", fit), ("--column", columns)):
@@ -217,11 +226,11 @@ def simulate(
             raise UsageError(Diagnostic(f"{name}: only with --measured", "name the record"))
     job = Job(
         scenario, [*filter(None, [measured]), *file_of_units(units)], sets=sets, csv=csv,
-        report=report, out=out, date=date, as_json=as_json, quiet=quiet,
+        report=report, out=out, date=date, all_pages=all_pages, as_json=as_json, quiet=quiet,
     )  # fmt: skip
     trial = verbs.read_scenario(scenario, set=job.set, units=units)
     if units is not None and measured is None and not trial.records:
-        raise UsageError(Diagnostic("--units: no record is read", "leave it out"))
+        raise UsageError(Diagnostic("--units: only with a record", "remove it"))
     if csv is not None:
         require_apart(csv, *map(str, trial.files))
     job.paper["scenario"] = trial

@@ -1,4 +1,4 @@
-"""Many variants of a design: `sweep` and `explore`."""
+"""Commands for many variants of a design: `sweep` and `explore`."""
 
 from __future__ import annotations
 
@@ -25,42 +25,47 @@ Vary = Annotated[
     typer.Option(
         "--vary",
         metavar="PATH=A..B:N",
-        help="A range with its steps, or a list: PATH=a,b,c. Repeatable.",
+        help="A range with steps, or a list: PATH=a,b,c. Repeatable.",
     ),
 ]
 Way = Annotated[
     str,
     typer.Option("--method", help="grid (every combination), sobol or lhs (Latin hypercube)."),
 ]
-Count = Annotated[int | None, typer.Option("-n", metavar="N", help="Points of sobol and lhs.")]
+Count = Annotated[
+    int | None, typer.Option("-n", metavar="N", help="Number of points of sobol and lhs.")
+]
 Store = Annotated[
     Path | None,
-    typer.Option("--store", metavar="F.db", help="Keep every row here; a later run goes on."),
+    typer.Option("--store", metavar="F.db", help="Store every row here; a later run resumes."),
 ]
-Csv = Annotated[Path | None, typer.Option("--csv", metavar="F.csv", help="Write every row here.")]
+Csv = Annotated[
+    Path | None, typer.Option("--csv", metavar="F.csv", help="Write all rows to this file.")
+]
 Parquet = Annotated[
     Path | None,
     typer.Option(
-        "--parquet", metavar="F.parquet", help="The same as Apache Parquet (extra parquet)."
+        "--parquet", metavar="F.parquet", help="Write all rows as Apache Parquet (extra parquet)."
     ),
 ]
 Reduce = Annotated[
     str | None,
-    typer.Option("--reduce", metavar="best:K", help="Keep the K best alone, nothing else."),
+    typer.Option("--reduce", metavar="best:K", help="Keep only the K best designs."),
 ]
 Workers = Annotated[
-    int | None, typer.Option("--workers", metavar="N", help="Processes; default: every core.")
+    int | None,
+    typer.Option("--workers", metavar="N", help="Number of processes; default: all cores."),
 ]
 Scheduler = Annotated[
     str | None,
-    typer.Option("--scheduler", metavar="ADDRESS", help="Work on this Dask cluster instead."),
+    typer.Option("--scheduler", metavar="ADDRESS", help="Run on this Dask cluster instead."),
 ]
 Figures = Annotated[
     list[str] | None,
     typer.Option(
         "--figure",
         metavar="KIND",
-        help=f"Draw {', '.join([*SWEEP_FIGURES][:-1])} or {[*SWEEP_FIGURES][-1]} "
+        help=f"Draw {', '.join(SWEEP_FIGURES[:-1])} or {SWEEP_FIGURES[-1]} "
         "as PNG and SVG. Repeatable.",
     ),
 ]
@@ -69,15 +74,13 @@ Show = Annotated[
     typer.Option(
         "--show",
         metavar="METRIC",
-        help="A metric of the figures; default: the objective and requirements. Repeatable.",
+        help="Metric of the figures; default: objective and requirements. Repeatable.",
     ),
 ]
-Yes = Annotated[
-    bool, typer.Option("--yes", help="Evaluate a million points in full without asking.")
-]
+Yes = Annotated[bool, typer.Option("--yes", help="Allow a million or more full evaluations.")]
 Screening = Annotated[
     str,
-    typer.Option("--engine", help="What --reduce screens with: numpy, or jax (extra gpu)."),
+    typer.Option("--engine", help="Library for --reduce: numpy, or jax (extra gpu)."),
 ]
 Folder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder of the figures.")]
 
@@ -110,7 +113,7 @@ def sweep(
 
     keep = _kept(reduce)
     if show and not figures:
-        raise UsageError(Diagnostic("--show without --figure", "add --figure parallel, say"))
+        raise UsageError(Diagnostic("--show without --figure", "add e.g. --figure parallel"))
     job = Job(
         design, sets=sets, plugins=plugin, report=bool(figures), out=out,
         as_json=as_json, quiet=quiet,
@@ -123,7 +126,7 @@ def sweep(
     with _kept_rows(store, quiet):
         found = job.run(verbs.sweep, **asked, **how)
     if found.study.engine != engine and not quiet:
-        streams.err("JAX is missing (pip install 'actuator-opt[gpu]'): NumPy did its work")
+        streams.err("JAX not installed (pip install 'actuator-opt[gpu]'); used NumPy")
     if not no_record:
         job.keep(found, **asked)
     files, faults = _drawn(found, asked["figures"], asked["show"], out)
@@ -133,19 +136,19 @@ def sweep(
 
 @contextmanager
 def _kept_rows(store: Path | None, quiet: bool) -> Iterator[None]:
-    """Where Ctrl-C ends a sweep with a store, say how it goes on."""
+    """If Ctrl-C ends a sweep with a store, explain how to resume."""
     try:
         yield
     except KeyboardInterrupt:
         if store is not None and not quiet:
-            streams.err(f"{store} keeps the rows so far; the same command goes on from there")
+            streams.err(f"{store} has the rows so far; the same command resumes from there")
         raise
 
 
 def _drawn(
     found: Swept, figures: list[str], show: list[str], out: Path
 ) -> tuple[list[dict[str, str]], list[Diagnostic]]:
-    """The files of figures, and the faults of the others, told once the sweep's results are."""
+    """Files of the figures, and faults of failed figures, reported after the results."""
     from .. import api as verbs
 
     files: list[dict[str, str]] = []
@@ -161,7 +164,7 @@ def _drawn(
 
 
 def _kept(reduce: str | None) -> int:
-    """How many of the best to keep."""
+    """Number of best designs to keep."""
     if reduce is None:
         return 10
     name, _, number = reduce.partition(":")
@@ -176,26 +179,27 @@ def explore(
     store: Annotated[
         str,
         typer.Argument(
-            metavar="RUN|F.db", help="Run of sweep or pareto (id, last), or a sweep's database."
+            metavar="RUN|F.db",
+            help="Run of sweep or pareto (id or last), or the database of a sweep.",
         ),
     ],
     study: Annotated[
         int | None,
-        typer.Option("--study", metavar="N", help="Which of its studies; default: the newest."),
+        typer.Option("--study", metavar="N", help="Study of the database; default: the newest."),
     ] = None,
     rows: Annotated[
         int,
-        typer.Option("--rows", metavar="N", help="Most designs shown; of more, an even sample."),
+        typer.Option("--rows", metavar="N", help="Most designs shown; beyond it, an even sample."),
     ] = 5000,
     out: Annotated[
-        Path, typer.Option("--out", metavar="FILE", help="The page (.html), or a folder for it.")
+        Path, typer.Option("--out", metavar="FILE", help="File (.html) or folder of the page.")
     ] = REPORTS,
     plugin: PluginFile = None,
     as_json: Json = False,
     quiet: Quiet = False,
     seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
 ) -> None:
-    """Write a kept sweep or a front as one offline HTML page."""
+    """Write a stored sweep or a front as one offline HTML page."""
     from .. import api as verbs
 
     found = verbs.explore(store, out=out, study=study, rows=rows, plugins=plugin or [])

@@ -1,4 +1,4 @@
-"""The design file: what a person writes, read into a `Design` in SI, every place kept."""
+"""The design file: read into a `Design` in SI, with the place of every value kept."""
 
 from __future__ import annotations
 

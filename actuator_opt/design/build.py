@@ -1,4 +1,4 @@
-"""A tree of texts or numbers to a `Design` or another root section, or to all of its faults."""
+"""Build a `Design`, or another root section, from a tree; or list all of its faults."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _TABLE_KEYS = {
     "uncertainty": "PATHs such as cylinder.bore, each with a distribution",
     "set": "PATHs of the design such as cylinder.bore, each with its value",
 }
-"""What the keys of the tables of free names are."""
+"""Contents of the tables whose keys are free names."""
 
 
 Root = TypeVar("Root", bound=Section)
@@ -41,7 +41,7 @@ Root = TypeVar("Root", bound=Section)
 
 @dataclass(frozen=True, slots=True)
 class Built:
-    """What became of a tree: a design, or faults."""
+    """Result of a build: a design, or faults."""
 
     design: Design | None
     faults: tuple[Fault, ...]
@@ -49,7 +49,7 @@ class Built:
 
 @dataclass(frozen=True, slots=True)
 class Checked(Generic[Root]):
-    """A tree in SI, as far as its values are good, the section it makes, and its faults."""
+    """A tree in SI where its values are valid, the section built from it, and its faults."""
 
     tree: dict[str, Any]
     section: Root | None
@@ -63,14 +63,14 @@ def build(
     metrics: Mapping[str, Quantity] | None = None,
     contradictions: bool = True,
 ) -> Built:
-    """The design a tree describes, or every fault it has.
+    """The design that a tree describes, or all of its faults.
 
     Parameters
     ----------
     tree : dicts, lists, texts with units and SI numbers, in the shape of the design file
     materials : names and kinds of the library; None leaves material names unchecked
     metrics : metrics that requirements and the objective may name; default: `metrics.METRICS`
-    contradictions : whether values that contradict each other are faults
+    contradictions : whether contradictory values are faults
     """
     metrics = METRICS if metrics is None else metrics
     checked = check(tree, Design, metrics, cross_field if contradictions else None)
@@ -87,14 +87,14 @@ def check(
     metrics: Mapping[str, Quantity],
     cross: Callable[[Any], Iterable[Fault]] | None = None,
 ) -> Checked[Root]:
-    """The section of the type `root` a tree describes, or every fault it has.
+    """The section of type `root` that a tree describes, or all of its faults.
 
     Parameters
     ----------
     tree : dicts, lists, texts with units and SI numbers, in the shape of the file
-    root : the section a whole file of this kind makes
+    root : section type of the whole file
     metrics : metrics that requirements may name
-    cross : finds the faults between values of a tree in SI
+    cross : checks values of a tree in SI against each other
     """
     copy: dict[str, Any] = copy_tree(tree)
     faults = list(_nothing(copy, ()))
@@ -113,14 +113,14 @@ def check(
 
 
 def copy_tree(node: Any) -> Any:
-    """Dicts and lists of a tree anew, its values as they are."""
+    """A copy of a tree: new dicts and lists, the same values."""
     if isinstance(node, Mapping):
         return {key: copy_tree(value) for key, value in node.items()}
     return [copy_tree(item) for item in node] if isinstance(node, (list, tuple)) else node
 
 
 def _nothing(node: Any, loc: Loc) -> Iterator[Fault]:
-    """Keys and list entries that stand there without a value."""
+    """Keys and list entries without a value."""
     pairs = node.items() if isinstance(node, dict) else enumerate(node)
     for key, value in pairs:
         if value is None:
@@ -130,7 +130,7 @@ def _nothing(node: Any, loc: Loc) -> Iterator[Fault]:
 
 
 def _to_si(tree: dict[str, Any], root: type[Section]) -> None:
-    """Turn every good value of a known key into SI; faulty ones stay as they are written."""
+    """Convert every valid value of a known key to SI; invalid values stay as written."""
     for loc, entry, value in list(leaves(tree, root)):
         if entry.kind is None or not isinstance(value, str):
             continue
@@ -142,7 +142,7 @@ def _to_si(tree: dict[str, Any], root: type[Section]) -> None:
 
 
 def _unless_known(faults: Iterable[Fault], known: Sequence[Fault]) -> list[Fault]:
-    """Faults at places where, and above which, none is known yet; the first of each place."""
+    """Faults whose place, and the places above it, have no known fault; the first of each place."""
     faulty = {fault.loc for fault in known}
     new = []
     for fault in faults:
@@ -153,7 +153,7 @@ def _unless_known(faults: Iterable[Fault], known: Sequence[Fault]) -> list[Fault
 
 
 def _section_at(root: type[Section], loc: Loc) -> tuple[type[Section] | None, Entry | None]:
-    """The section and the entry of the model at a place (None inside tables)."""
+    """Section and entry of the model at a place (None inside tables)."""
     section: type[Section] | None = root
     entry: Entry | None = None
     for key in loc:
@@ -167,11 +167,11 @@ def _section_at(root: type[Section], loc: Loc) -> tuple[type[Section] | None, En
 
 
 def _translate(error: ValidationError, root: type[Section]) -> Iterator[Fault]:
-    """Faults of the model's shape in the words of the file."""
+    """Faults of the model's structure in the terms of the file."""
     for item in error.errors(include_url=False):
         loc: Loc = tuple(item["loc"])
         kind, value = item["type"], item["input"]
-        if kind == "default_factory_not_called":  # only echoes another fault
+        if kind == "default_factory_not_called":  # only repeats another fault
             continue
         section, entry = _section_at(root, loc)
         if kind == "value":
@@ -182,12 +182,14 @@ def _translate(error: ValidationError, root: type[Section]) -> Iterator[Fault]:
             yield _unknown_key(loc, root)
         elif kind == "literal_error" and entry is not None:
             word = value if isinstance(value, str) else ""
-            message = f'"{suggest.shown(word)}" is not a choice' if word else "need one word"
+            message = (
+                f'"{suggest.shown(word)}" is not a choice' if word else "a single word is required"
+            )
             yield Fault(loc, message, suggest.remedy(word, entry.choices))
         elif kind in ("too_short", "too_long"):
             few = kind == "too_short"
             if few and value:
-                continue  # entries there are, with faults of their own
+                continue  # the entries exist and have their own faults
             limit = item["ctx"]["min_length" if few else "max_length"]
             remedy = 'add one, starting with "- "' if few else f"keep at most {limit}"
             yield Fault(loc, "the list is empty" if few else "too many entries", remedy)
@@ -237,7 +239,7 @@ def how_to_add(name: str, entry: Entry | None) -> str:
 
 
 def to_tree(section: Section) -> dict[str, Any]:
-    """A design, or a section of one, as dicts, lists, texts and SI numbers; unset values absent."""
+    """A design, or a section, as dicts, lists, texts and SI numbers; unset values are absent."""
 
     def plain(value: Any) -> Any:
         if isinstance(value, Section):
@@ -259,15 +261,15 @@ def with_values(
     metrics: Mapping[str, Quantity] | None = None,
     contradictions: bool = True,
 ) -> Design:
-    """The design with other values: PATH to SI number or text with a unit; checked again.
+    """The design with changed values: PATH to SI number or text with a unit; checked again.
 
-    A variable whose start was the old value starts from the new one. Without `contradictions`
-    values may contradict each other, as at the least bad point of a search that found no good one.
+    A variable that started at the old value starts at the new value. Without `contradictions`
+    values may contradict each other, as at the least infeasible point of a search.
 
     Raises
     ------
     InputError
-        a PATH that names no value, a value that does not fit, or a contradiction it causes
+        a PATH without a value, an unsuitable value, or a resulting contradiction
     """
     tree = to_tree(design)
     diagnostics = []

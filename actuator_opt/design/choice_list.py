@@ -1,9 +1,8 @@
-"""What the optimiser may choose among: PATHs, each with a list of allowed values (`choices`).
+"""Discrete choices of the optimiser: PATHs, each with a list of allowed values (`choices`).
 
-The values stand in the notation of what they replace: numbers with their unit, counts, names of
-materials, words. `recheck` turns their texts into what a design holds, in place, and yields the
-faults it finds; values that contradict others only do so in some combinations, which are left
-out when the design is optimised.
+The values have the notation of the value they replace: numbers with their unit, counts, names of
+materials, words. `recheck` converts their texts to values of a design, in place, and yields their
+faults. Values may contradict each other in some combinations; the optimiser skips these.
 """
 
 from __future__ import annotations
@@ -25,17 +24,17 @@ from .view import Materials
 from .wishes import in_faulty_block
 
 Value: TypeAlias = float | bool | str | Fraction
-"""An allowed value: an SI number, a yes or no, a name or word, a share of the stroke."""
+"""An allowed value: SI number, boolean, name or word, or share of the stroke."""
 
 MOST_VALUES = 50
-"""Largest number of values of one PATH."""
+"""Most values of one PATH."""
 
 MOST_COMBINATIONS = 1000
-"""Largest number of combinations of all the choices, as every one of them is tried."""
+"""Most combinations of all choices; every combination is tried."""
 
 
 def recheck(tree: dict[str, Any]) -> Iterator[Fault]:
-    """Known PATHs that are no variables, each with good values that differ; not too many in all."""
+    """Check the choices: known PATHs other than variables, distinct valid values, not too many."""
     block = tree.get("choices")
     if not isinstance(block, dict):
         return
@@ -43,7 +42,7 @@ def recheck(tree: dict[str, Any]) -> Iterator[Fault]:
     for path, values in block.items():
         loc = ("choices", path)
         if in_faulty_block(path, tree):
-            block[path] = [0.0]  # the block's fault is enough
+            block[path] = [0.0]  # the fault of the block is enough
             continue
         try:
             target = choosable(path, tree)
@@ -74,21 +73,21 @@ def recheck(tree: dict[str, Any]) -> Iterator[Fault]:
 
 
 def choosable(path: str, tree: Any) -> Target:
-    """The value a choice sets; raises `ValueFault`."""
+    """The value that a choice sets; raises `ValueFault`."""
     try:
         target = resolve(path, tree)
     except ValueFault as fault:
         raise ValueFault(fault.message.removeprefix(f"{path}: "), fault.remedy) from None
     remedy = "name a number, a material or a word of a part"
     if target.entry is None or target.entry.shape == "list" or len(target.loc) == 1:
-        raise ValueFault("is no value of a part of the actuator", remedy)
+        raise ValueFault("is not a value of an actuator part", remedy)
     if isinstance(target.entry.kind, Text) and not isinstance(target.entry.kind, MaterialName):
-        raise ValueFault("is free text, which no model reads", remedy)
+        raise ValueFault("is free text, which has no effect", remedy)
     if target.path != path:
         raise ValueFault("is not the canonical PATH", f"write {target.path}")
     variables = tree.get("variables") if isinstance(tree, dict) else None
     if isinstance(variables, dict) and path in variables:
-        raise ValueFault("is a variable too", "keep it in variables or in choices")
+        raise ValueFault("is also a variable", "keep it in variables or in choices")
     return target
 
 
@@ -100,12 +99,12 @@ def _example(target: Target) -> str:
 
 
 def _values(loc: tuple[str, str], values: list[Any], target: Target) -> Iterator[Fault]:
-    """Turn every value into what a design holds; faults of bad ones and of equals."""
+    """Convert every value to that of a design; yields faults of invalid and duplicate values."""
     assert target.entry is not None
     good: list[tuple[int, Value]] = []
     for index, raw in enumerate(values):
         if raw is None:
-            continue  # a fault already
+            continue  # already a fault
         try:
             value = values[index] = _read(raw, target.entry)
         except ValueFault as fault:
@@ -119,12 +118,14 @@ def _values(loc: tuple[str, str], values: list[Any], target: Target) -> Iterator
 
 
 def _read(raw: Any, entry: Entry) -> Value:
-    """A value as the field it is meant for would read it; raises `ValueFault`."""
+    """A value as its target field reads it; raises `ValueFault`."""
     if entry.choices:
         if raw in entry.choices:
             return str(raw)
         word = raw if isinstance(raw, str) else ""
-        message = f'"{suggest.shown(word)}" is not a choice' if word else "need one word"
+        message = (
+            f'"{suggest.shown(word)}" is not a choice' if word else "a single word is required"
+        )
         raise ValueFault(message, suggest.remedy(word, entry.choices))
     assert entry.kind is not None
     value: Value = entry.kind.validate(raw)
@@ -132,7 +133,7 @@ def _read(raw: Any, entry: Entry) -> Value:
 
 
 def same(one: Value, other: Value) -> bool:
-    """Whether two allowed values are one; numbers to rounding, as units differ.
+    """Whether two allowed values are equal; numbers up to rounding, as units differ.
 
     >>> same(2.62e-3, 0.262 * 0.01), same("nbr_70", "nbr_90")
     (True, False)
@@ -144,7 +145,7 @@ def same(one: Value, other: Value) -> bool:
 
 
 def material_faults(tree: Any, materials: Materials) -> Iterator[Fault]:
-    """Unknown materials, and materials that can never stand where they are to be chosen."""
+    """Unknown materials, and materials that do not suit their place."""
     block = tree.get("choices")
     for path, values in block.items() if isinstance(block, dict) else ():
         try:
@@ -160,7 +161,7 @@ def material_faults(tree: Any, materials: Materials) -> Iterator[Fault]:
                 continue
             loc = ("choices", path, index)
             if name not in materials:
-                message = f'"{suggest.shown(name)}": no such material'
+                message = f'"{suggest.shown(name)}": unknown material'
                 yield Fault(loc, message, suggest.remedy(name, fitting))
             else:
                 message = f"{name}: its kind ({materials.kind(name)}) does not suit this place"
@@ -179,13 +180,13 @@ def combinations(design: Design) -> Iterator[dict[str, Value]]:
 
 
 def quantity_of_choice(path: str, value: object, tree: Any) -> Quantity | None:
-    """The quantity of an allowed number, None for names and words."""
+    """Quantity of an allowed number; None for names and words."""
     entry = resolve(path, tree).entry
     return None if entry is None or number_of(value) is None else entry.quantity(value)
 
 
 def plain(value: Value) -> float | bool | str:
-    """An allowed value as JSON has it: numbers in SI, a share of the stroke as it is written.
+    """An allowed value for JSON: numbers in SI, a share of the stroke as written.
 
     >>> plain(0.00178), plain(Fraction(0.5))
     (0.00178, '50 %')
@@ -194,7 +195,7 @@ def plain(value: Value) -> float | bool | str:
 
 
 def shown(path: str, value: Value, tree: Any) -> str:
-    """An allowed value as people read it, in the unit of its quantity."""
+    """An allowed value for display, in the unit of its quantity."""
     quantity, number = quantity_of_choice(path, value, tree), number_of(value)
     if quantity is None or number is None:
         return str(value).lower() if isinstance(value, bool) else str(value)
@@ -202,12 +203,12 @@ def shown(path: str, value: Value, tree: Any) -> str:
 
 
 def left_out(design: Design) -> tuple[str, ...]:
-    """A remark for each PATH whose value in the file is not among its own choices."""
+    """A remark for each PATH whose own value is not among its choices."""
     found = []
     block: Mapping[str, Sequence[Value]] = design.choices
     for path, values in block.items():
         own = value_at(design, resolve(path, design).loc)
         if own is None or not any(same(own, value) for value in values):
             said = "" if own is None else f" ({shown(path, own, design)})"
-            found.append(f"{path}: what the file states{said} is not among the choices")
+            found.append(f"{path}: the value in the file{said} is not among the choices")
     return tuple(found)

@@ -1,6 +1,6 @@
-"""The words a design file may choose from: one type each, with what every word means.
+"""Choices of a design file: one type each, with the meaning of every word.
 
-Words of kinds (seal types, friction laws, laws of contact and hardness) come from their registry.
+Words for kinds (seal types, friction laws, laws of contact and hardness) come from registries.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .kinds import Choice, choice_of
 Paper: TypeAlias = Annotated[
     Literal["ElAsswad2018", "AaltoThesis", "Huang2017"] | None,
     Choice(
-        "the paper whose cylinder this is: reports set its published numbers beside ours; "
+        "paper that describes this cylinder: reports compare its published numbers with ours; "
         "ElAsswad2018: composite knee cylinder of a humanoid robot; "
         "AaltoThesis: 40/25-220 test cylinder of a paper machine's actuator; "
         "Huang2017: 110/80-560 servo cylinder and 125 mm plunger, damping of their seals"
@@ -28,15 +28,15 @@ Paper: TypeAlias = Annotated[
 BulkModulusLaw: TypeAlias = Annotated[
     str | None,
     choice_of(
-        "how the oil stiffens with pressure (default: linear where the oil states its slope, "
-        "else constant)",
+        "how the bulk modulus of the oil rises with pressure "
+        "(default: linear if the oil states its slope, else constant)",
         BULK_MODULUS_LAWS,
     ),
 ]
 ViscosityLaw: TypeAlias = Annotated[
     str | None,
     choice_of(
-        "how the oil thickens with pressure (default: roelands where the oil states its "
+        "how the viscosity of the oil rises with pressure (default: roelands if the oil states its "
         "coefficient, else none)",
         VISCOSITY_LAWS,
     ),
@@ -44,7 +44,7 @@ ViscosityLaw: TypeAlias = Annotated[
 Mount: TypeAlias = Annotated[
     Literal["cap_clevis", "head_flange", "head_trunnion", "cap_flange"],
     Choice(
-        "what holds the cylinder; cap_clevis: an eye at the cap end, free to swing; "
+        "how the cylinder is mounted;  cap_clevis: an eye at the cap end, free to swing; "
         "head_flange: bolted at the head; head_trunnion: pivots at the head, free to swing; "
         "cap_flange: bolted at the cap end"
     ),
@@ -52,8 +52,8 @@ Mount: TypeAlias = Annotated[
 EndStop: TypeAlias = Annotated[
     Literal["internal", "external"],
     Choice(
-        "what ends the travel; internal: the piston runs onto cap or head and pulls at the barrel; "
-        "external: a stop outside the actuator, before the piston touches"
+        "what limits the travel; internal: the piston hits cap or head and loads the barrel; "
+        "external: a stop outside the actuator, reached before the piston touches"
     ),
 ]
 WallModel: TypeAlias = Annotated[
@@ -66,9 +66,11 @@ WallModel: TypeAlias = Annotated[
         "as_published: isotropic, but the bore grows as [ElAsswad2018] prints it"
     ),
 ]
-Criterion: TypeAlias = Annotated[str, choice_of("when a ply of barrel or rod fails", CRITERIA)]
+Criterion: TypeAlias = Annotated[
+    str, choice_of("failure criterion for the plies of barrel and rod", CRITERIA)
+]
 RetentionType: TypeAlias = Annotated[
-    str, choice_of("what holds cap and head to the barrel", JOINTS)
+    str, choice_of("how cap and head are joined to the barrel", JOINTS)
 ]
 SealType: TypeAlias = Annotated[
     str,
@@ -77,13 +79,13 @@ SealType: TypeAlias = Annotated[
 BackUp: TypeAlias = Annotated[
     Literal["none", "one", "both"],
     Choice(
-        "back-up rings that close the gap behind the seal; none: no ring; "
-        "one: a ring on the side without pressure; both: a ring on either side"
+        "back-up rings that close the extrusion gap; none: no ring; "
+        "one: a ring on the low-pressure side; both: a ring on each side"
     ),
 ]
 FrictionModel: TypeAlias = Annotated[
     str,
-    choice_of("how the friction of the seal follows", FRICTION_LAWS),
+    choice_of("friction model of the seal", FRICTION_LAWS),
 ]
 SealLaw: TypeAlias = Annotated[
     str,
@@ -96,15 +98,15 @@ HardnessModel: TypeAlias = Annotated[
 Direction: TypeAlias = Annotated[
     Literal["push", "pull"],
     Choice(
-        "which way the actuator drives its load; push: the rod moves out, chamber A (cap side) is "
-        "driven; pull: the rod moves in, chamber B (rod side) is driven"
+        "direction of the actuator's force; push: the rod extends, chamber A (cap side) is "
+        "driven; pull: the rod retracts, chamber B (rod side) is driven"
     ),
 ]
 Topology: TypeAlias = Annotated[
     Literal["per_chamber", "aalto_as_published", "elasswad_as_published"],
     Choice(
-        "how oil, walls and lines combine; "
-        "per_chamber: the parts of each chamber in series, both chambers side by side; "
+        "how the stiffness of oil, walls and lines combines; "
+        "per_chamber: the parts of each chamber in series, both chambers in parallel;  "
         "aalto_as_published: totals of oil, walls and lines in series, as [AaltoThesis] prints it; "
         "elasswad_as_published: oil and wall in series, as [ElAsswad2018] prints it"
     ),
@@ -112,26 +114,26 @@ Topology: TypeAlias = Annotated[
 SealState: TypeAlias = Annotated[
     Literal["sliding", "sticking"],
     Choice(
-        "whether the seals add stiffness; sliding: no; "
-        "sticking: a spring beside the oil, until they break away"
+        "stiffness contribution of the seals; sliding: none; "
+        "sticking: a spring parallel to the oil, until breakaway"
     ),
 ]
 Chamber: TypeAlias = Annotated[
-    Literal["a", "b"], Choice("the chamber it belongs to; a: cap side; b: rod side")
+    Literal["a", "b"], Choice("chamber that the line feeds; a: cap side; b: rod side")
 ]
 LineType: TypeAlias = Annotated[
     Literal["pipe", "hose"],
     Choice(
-        "where the stiffness budget counts its wall (the material says how far it gives); "
-        "pipe: a stiff tube; hose: a flexible one"
+        "item of the stiffness budget for its wall compliance (which follows from the material); "
+        "pipe: a rigid tube; hose: a flexible hose"
     ),
 ]
 End: TypeAlias = Annotated[
     Literal["closed", "valve", "constant_pressure", "reducing_valve"],
     Choice(
-        "what ends both lines while the load shakes the actuator; closed: blocked; "
-        "valve: the valve of this file, its spool where it holds the load; "
-        "constant_pressure: a port that holds its pressure; "
-        "reducing_valve: a pressure reducing valve, as ports.reducing_valve states it"
+        "end of both lines while the load excites the actuator; closed: blocked; "
+        "valve: the valve of this file, with the spool position that holds the load; "
+        "constant_pressure: a port at constant pressure; "
+        "reducing_valve: the pressure reducing valve of ports.reducing_valve"
     ),
 ]

@@ -1,4 +1,4 @@
-"""Hydraulics about the cylinder: lines, valve, line ends, position loop."""
+"""Hydraulic circuit of the cylinder: lines, valve, line ends, position loop."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .section import Section
 
 
 class Line(Section):
-    """A pipe or hose of one chamber (a: cap side, b: rod side), in order from its port on."""
+    """A pipe or hose of one chamber (a: cap side, b: rod side), in order from the port."""
 
     chamber: choices.Chamber
     type: choices.LineType = "pipe"
@@ -20,30 +20,32 @@ class Line(Section):
     inner_diameter: Annotated[float, Of("diameter", "inner diameter")]
     outer_diameter: Annotated[float, Of("diameter", "outer diameter")]
     material: Annotated[str, MaterialName("isotropic")]
-    rigid: Annotated[bool, Flag("count only its oil: the wall does not give")] = False
-    beyond_throttle: Annotated[bool, Flag("lies between the throttle and the line's end")] = False
+    rigid: Annotated[bool, Flag("rigid wall: only the oil is compliant")] = False
+    beyond_throttle: Annotated[
+        bool, Flag("the line is between the throttle and the line's end")
+    ] = False
 
 
 class Valve(Section):
-    """A proportional or servo valve of four edges, linear in the signal."""
+    """A proportional or servo valve with four edges, linear in the signal."""
 
-    rated_flow: Annotated[float, Of("rated_flow", "flow through one edge at full signal")]
+    rated_flow: Annotated[float, Of("rated_flow", "flow through one metering edge at full signal")]
     rated_drop: Annotated[
-        float, Of("pressure_drop", "pressure drop over that edge at rated flow")
+        float, Of("pressure_drop", "pressure drop across the edge at rated flow")
     ] = 35e5
     leakage_flow: Annotated[
-        float, Of("leakage_flow", "flow through one edge, spool centred: half of the valve's")
+        float, Of("leakage_flow", "leakage of one edge with centred spool: half of the valve's")
     ] = 0.0
     leakage_drop: Annotated[
-        float, Of("pressure_drop", "pressure drop over that edge at the leakage flow")
+        float, Of("pressure_drop", "pressure drop across the edge at the leakage flow")
     ] = 50e5
     tank_leakage_drop: Annotated[
         float | None,
-        Of("pressure_drop", "the same over an edge to the tank; default: leakage_drop"),
+        Of("pressure_drop", "the same across an edge to tank; default: leakage_drop"),
     ] = None
     rated_viscosity: Annotated[
         float | None,
-        Of("oil_viscosity", "oil viscosity at the rated flow; default: none, flow as rated"),
+        Of("oil_viscosity", "oil viscosity at rated flow; default: rated flow for any oil"),
     ] = None
     offset: Annotated[float, Of("signal_offset", "signal that centres the spool")] = 0.0
     signal: Annotated[float, Of("signal", "signal of the fully open spool")] = 10.0
@@ -52,29 +54,29 @@ class Valve(Section):
 
 
 class Throttle(Section):
-    """One-way flow-control valves that throttle what leaves; linear about the flow of each case."""
+    """One-way flow-control valves that throttle the outflow; linear about the flow of each case."""
 
     area: Annotated[float, Of("orifice_area", "area of the fully open needle")]
     opening: Annotated[float, Of("opening", "opening of the needle")] = 1.0
     check_area: Annotated[float, Of("orifice_area", "area of the open check valve")]
     cracking_pressure: Annotated[
-        float, Of("pressure_drop", "pressure difference that opens the check valve")
+        float, Of("pressure_drop", "opening pressure of the check valve")
     ] = 0.4e5
 
 
 class ReducingValve(Section):
-    """A pressure reducing valve as a second-order line end (small signals)."""
+    """A pressure reducing valve as a second-order line end, for small signals."""
 
-    conductance: Annotated[float, Of("conductance", "flow per pressure it regulates with, slowly")]
+    conductance: Annotated[float, Of("conductance", "static regulating conductance")]
     passive_conductance: Annotated[
-        float, Of("conductance", "flow per pressure of its opening, at any frequency")
+        float, Of("conductance", "conductance of the valve opening, at any frequency")
     ] = 0.0
     natural_frequency: Annotated[float, Of("frequency", "natural frequency of the valve")]
     damping_ratio: Annotated[float, Of("damping_ratio", "damping ratio of the valve")]
 
 
 class Accumulator(Section):
-    """A gas accumulator on the line of one chamber; its gas follows fluid.polytropic_index."""
+    """A gas accumulator on the line of one chamber; the gas has fluid.polytropic_index."""
 
     chamber: choices.Chamber
     gas_volume: Annotated[float, Of("gas_volume", "gas volume at the precharge")]
@@ -84,7 +86,7 @@ class Accumulator(Section):
 
 
 class Ports(Section):
-    """What ends both lines while the load shakes the actuator, the position loop open."""
+    """End of both lines while the load excites the actuator, with the position loop open."""
 
     end: choices.End = "closed"
     throttle: Throttle | None = None

@@ -1,4 +1,4 @@
-"""Faults between the values of lines, valve, ports and position loop."""
+"""Contradictions between values of lines, valve, ports and position loop."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .view import View, length_text
 
 
 def lines(view: View) -> Iterator[Fault]:
-    """Every line has a wall; a line beyond the throttle needs the throttle."""
+    """Every line has a wall; a line beyond the throttle requires a throttle."""
     for index in range(len(view.items("lines"))):
         inner = view.number("lines", index, "inner_diameter")
         outer = view.number("lines", index, "outer_diameter")
@@ -26,7 +26,7 @@ def lines(view: View) -> Iterator[Fault]:
             yield Fault(
                 ("lines", index, "beyond_throttle"),
                 "no throttle stated",
-                "add ports.throttle, or leave beyond_throttle out",
+                "add ports.throttle, or remove beyond_throttle",
             )
 
 
@@ -34,9 +34,9 @@ ENDS = get_args(get_args(choices.End)[0])
 
 
 def ports(view: View) -> Iterator[Fault]:
-    """What ends the lines is described."""
+    """The selected end of the lines is described."""
     end = view.text("ports", "end")
-    if end not in ENDS:  # itself a fault, told where it stands
+    if end not in ENDS:  # a separate fault, reported at its place
         return
     needed = {"valve": ("valve",), "reducing_valve": ("ports", "reducing_valve")}.get(end or "")
     if needed is not None and not view.has(*needed):
@@ -49,20 +49,20 @@ def ports(view: View) -> Iterator[Fault]:
         yield Fault(
             ("ports", "reducing_valve"),
             "does not end the lines",
-            'write "end: reducing_valve", or leave it out',
+            'write "end: reducing_valve", or remove it',
             at_key=True,
         )
     if end == "constant_pressure" and view.items("ports", "accumulators"):
         yield Fault(
             ("ports", "accumulators"),
-            "without effect where the line's pressure is constant",
-            "leave them out, or write another end",
+            "has no effect at constant line pressure",
+            "remove it, or write another end",
             at_key=True,
         )
 
 
 def valve(view: View) -> Iterator[Fault]:
-    """The centred valve leaks less than the open one passes, at one pressure drop."""
+    """The centred valve leaks less than the open valve passes, at the same pressure drop."""
     numbers = [
         view.number("valve", name)
         for name in ("rated_flow", "rated_drop", "leakage_flow", "leakage_drop")
@@ -75,32 +75,32 @@ def valve(view: View) -> Iterator[Fault]:
         text = quantities.INPUTS["leakage_flow"].text
         yield Fault(
             ("valve", "leakage_flow"),
-            f"{text(leakage)}: the centred valve passes as much as the open one",
+            f"{text(leakage)}: the leakage reaches the flow of the open valve",
             f"write less than {text(most)}",
         )
 
 
 def stiffness(view: View) -> Iterator[Fault]:
-    """The published totals have no place for sticking seals."""
+    """The published topologies do not include sticking seals."""
     published = view.text("stiffness", "topology") != "per_chamber"
     if published and view.text("stiffness", "seals") == "sticking":
         yield Fault(
             ("stiffness", "seals"),
-            "sticking: the published topologies have no seals",
+            "sticking: the published topologies do not include seals",
             'write "topology: per_chamber", or "seals: sliding"',
         )
 
 
 def control(view: View) -> Iterator[Fault]:
-    """A position loop needs the valve it drives."""
+    """A position loop needs a valve."""
     if view.has("control") and not view.has("valve"):
         yield Fault(
-            ("control",), "no valve to drive", "add valve, or leave control out", at_key=True
+            ("control",), "no valve to control", "add valve, or remove control", at_key=True
         )
 
 
 def held_pressures(view: View) -> Iterator[Fault]:
-    """Held pressures are stated for both chambers or for none."""
+    """Held pressures are given for both chambers or for neither."""
     for index in range(len(view.items("load_cases"))):
         loc = ("load_cases", index)
         a, b = view.has(*loc, "pressure_a"), view.has(*loc, "pressure_b")

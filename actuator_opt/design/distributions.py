@@ -1,7 +1,7 @@
-"""Entries of ``uncertainty``: their quantities, and how far each distribution reaches.
+"""Entries of ``uncertainty``: quantities of their keys, and ranges of the distributions.
 
-Distributions stand about the design's own value, and everything but absolute bounds moves with it,
-so that an optimiser may move it.
+Distributions are centred on the value in the design and move with it, except absolute bounds. An
+optimiser can therefore vary the value.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from .kinds import ValueFault
 from .tolerances import class_limits
 
 Stated = Mapping[str, Any]
-"""The keys of an entry, numbers in SI."""
+"""Keys of an entry, numbers in SI."""
 
 KEYS: dict[str, tuple[tuple[str, ...], ...]] = {
     "normal": (("deviation",), ("cv",)),
@@ -26,7 +26,7 @@ KEYS: dict[str, tuple[tuple[str, ...], ...]] = {
     "triangular": (("half_width",), ("tolerance",), ("lower", "upper")),
     "fixed": ((),),
 }
-"""What each distribution takes: one of these groups of keys."""
+"""Key groups of each distribution, of which an entry uses exactly one group."""
 
 VARIATION = replace(
     INPUTS["coefficient"], name="variation", symbol="CV", unit="%", upper=1.0,
@@ -36,14 +36,14 @@ FACTOR = replace(
     INPUTS["coefficient"], name="factor", symbol="f", lower=1.0, upper=1e3, label="factor"
 )
 NUMBERS = ("lower", "upper", "deviation", "half_width", "cv", "factor")
-"""Keys whose values are numbers."""
+"""Keys with numeric values."""
 
 REACH = 5.0
-"""Standard deviations to which a normal or lognormal distribution is drawn: beyond lie 6e-7."""
+"""Truncation of normal and lognormal samples in standard deviations: 6e-7 lie beyond."""
 
 
 def quantity_of_entry(key: str, quantity: Quantity) -> Quantity | None:
-    """The quantity of a key of an entry whose PATH has this quantity; None for a text."""
+    """Quantity of a key of an entry, from the quantity of its PATH; None for a text."""
     if key in ("lower", "upper"):
         return quantity
     if key == "cv":
@@ -60,13 +60,13 @@ def quantity_of_entry(key: str, quantity: Quantity) -> Quantity | None:
 
 
 def limits(shape: str, entry: Stated, value: float) -> tuple[float, float]:
-    """Least and largest value (SI) that is ever drawn; raises `ValueFault` for a tolerance class.
+    """Smallest and largest sample (SI); raises `ValueFault` for a tolerance class.
 
     Parameters
     ----------
-    shape : of the distribution
-    entry : its keys, SI
-    value : of the design
+    shape : name of the distribution
+    entry : keys of the entry, SI
+    value : value in the design
     """
     if shape == "fixed":
         return value, value
@@ -86,7 +86,7 @@ def limits(shape: str, entry: Stated, value: float) -> tuple[float, float]:
 
 
 def ratio(shape: str, entry: Stated) -> float:
-    """Largest value over the design's own, of a distribution in logarithms."""
+    """Largest value over the value in the design, for a logarithmic distribution."""
     if shape == "loguniform":
         return float(entry["factor"])
     return exp(REACH * log_deviation(entry))
@@ -99,7 +99,7 @@ def log_deviation(entry: Stated) -> float:
 
 
 def misfit(shape: str, entry: Stated, value: float, quantity: Quantity) -> tuple[str, str]:
-    """What is wrong with a distribution about a value, and the remedy; empty where nothing is."""
+    """Fault and remedy of a distribution about a value; empty if valid."""
     try:
         low, high = limits(shape, entry, value)
     except ValueFault as fault:
@@ -109,17 +109,19 @@ def misfit(shape: str, entry: Stated, value: float, quantity: Quantity) -> tuple
         return f"bounds reversed: upper {text(high)} is below lower {text(low)}", "swap them"
     if entry.get("lower") is not None and not low <= value <= high:
         return (
-            f"the design's own {text(value)} lies outside {text(low)} to {text(high)}",
+            f"the value in the design, {text(value)}, is outside {text(low)} to {text(high)}",
             "widen the bounds, or change the value",
         )
     if low <= 0 and shape in ("lognormal", "loguniform"):
         return f"a {shape} distribution needs values above 0", "use another distribution"
     if low < quantity.lower or high > quantity.upper:
         remedy = (
-            "less scatter" if shape == "lognormal" else "less scatter, or a lognormal distribution"
+            "reduce the scatter"
+            if shape == "lognormal"
+            else "reduce the scatter, or use a lognormal distribution"
         )
         return (
-            f"draws from {text(low)} to {text(high)} leave the valid range ({quantity.label})",
+            f"samples from {text(low)} to {text(high)} leave the valid range ({quantity.label})",
             f"stay within {quantity.range_text()}: {remedy}",
         )
     return "", ""

@@ -1,9 +1,9 @@
-"""Faults that only show when two values are read together, each at the place of one of them.
+"""Contradictions between values of a design, each reported at one of the values.
 
-Every check is a small function of a `View`; it yields nothing where a value it needs is missing
-or already faulty, so the checks also run on a file with other faults. Those of the walls of
-barrel and rod are in `wall_faults`, of the joints of caps and head in `retention_faults`, of the
-seals in `seal_faults`, of a robot's joint in `linkage_faults`.
+Every check is a small function of a `View`. It yields nothing if a required value is missing or
+already faulty, so the checks also run on a file with other faults. More checks are in
+`wall_faults` (barrel and rod), `retention_faults` (joints of caps and head), `seal_faults` and
+`linkage_faults` (robot joints).
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def _smaller(
 
 
 def rod(view: View) -> Iterator[Fault]:
-    """The rod fits the bore, its own bore fits the rod, its thread fits on it."""
+    """The rod fits the bore, its bore and its thread fit the rod."""
     yield from _smaller(view, ("rod", "outer_diameter"), ("cylinder", "bore"))
     yield from _smaller(view, ("rod", "inner_diameter"), ("rod", "outer_diameter"))
     yield from _smaller(view, ("cylinder", "port_diameter"), ("cylinder", "bore"))
@@ -63,12 +63,12 @@ def rod(view: View) -> Iterator[Fault]:
             (owner, "thread", "pitch"),
             (owner, "thread", "diameter"),
             factor=0.5,
-            why=": no core is left",
+            why=": no core remains",
         )
 
 
 def barrel_length(view: View) -> Iterator[Fault]:
-    """The barrel holds stroke, piston and head."""
+    """The barrel has room for stroke, piston and head."""
     length = view.number("barrel", "length")
     parts = [
         view.number("cylinder", "stroke"),
@@ -80,12 +80,12 @@ def barrel_length(view: View) -> Iterator[Fault]:
         yield Fault(
             ("barrel", "length"),
             f"{length_text(length)}: shorter than stroke + piston + head ({length_text(needed)})",
-            f"write at least {length_text(needed)}, or leave it out",
+            f"write at least {length_text(needed)}, or remove it",
         )
 
 
 def supply(view: View) -> Iterator[Fault]:
-    """Supply above return, proof not below working pressure."""
+    """The supply exceeds the return; proof is not below supply pressure."""
     pressure, back = view.number("supply", "pressure"), view.number("supply", "return_pressure")
     ratio = view.number("supply", "proof_ratio")
     text = quantities.INPUTS["pressure"].text
@@ -104,7 +104,7 @@ def supply(view: View) -> Iterator[Fault]:
 
 
 def environment(view: View) -> Iterator[Fault]:
-    """Coldest below hottest."""
+    """The coldest temperature is below the hottest."""
     low = view.number("environment", "temperature_min")
     high = view.number("environment", "temperature_max")
     text = quantities.INPUTS["temperature"].text
@@ -117,7 +117,7 @@ def environment(view: View) -> Iterator[Fault]:
 
 
 def _case_pressure(view: View, index: int) -> Iterator[Fault]:
-    """The driven port of a case lies above the return and not above the supply."""
+    """The driven port of a case has at least return and at most supply pressure."""
     loc = ("load_cases", index, "pressure")
     pressure, supply = view.number(*loc), view.number("supply", "pressure")
     back = view.number("supply", "return_pressure")
@@ -133,7 +133,7 @@ def _case_pressure(view: View, index: int) -> Iterator[Fault]:
 
 
 def load_cases(view: View) -> Iterator[Fault]:
-    """Unique names; force, or torque on a lever arm or linkage; pressures, positions in range."""
+    """Names are unique; force or torque with its lever; pressures and positions are in range."""
     seen: dict[str, int] = {}
     stroke = view.number("cylinder", "stroke")
     for index, case in enumerate(view.items("load_cases")):
@@ -171,7 +171,7 @@ def _case_force(loc: Loc, case: dict[str, Any], *, linked: bool) -> Iterator[Fau
         yield Fault((*loc, "lever_arm"), "missing: joint_torque needs it, or a linkage", remedy)
     elif arm and not torque:
         remedy = 'add e.g. "joint_torque: 120 N*m"'
-        yield Fault((*loc, "joint_torque"), "missing: lever_arm needs it", remedy)
+        yield Fault((*loc, "joint_torque"), "missing: required with lever_arm", remedy)
     elif not force and not torque:
         remedy = 'add e.g. "force: 3 kN", or joint_torque with lever_arm or linkage'
         yield Fault((*loc, "force"), "missing", remedy)
@@ -194,7 +194,7 @@ CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
 
 
 def cross_field(tree: Any) -> Iterator[Fault]:
-    """Every fault between values of a tree in SI."""
+    """All contradictions between values of a tree in SI."""
     view = View(tree)
     for check in CHECKS:
         yield from check(view)
@@ -205,7 +205,7 @@ def _a(word: str | None) -> str:
 
 
 def material_faults(tree: Any, materials: Materials) -> Iterator[Fault]:
-    """Every fault that shows when the library is asked."""
+    """All faults that depend on the material library."""
     yield from _material_names(tree, materials)
     yield from wall_faults.of_materials(tree, materials)
     yield from retention_faults.of_materials(tree, materials)
@@ -214,7 +214,7 @@ def material_faults(tree: Any, materials: Materials) -> Iterator[Fault]:
 
 
 def _material_names(tree: Any, materials: Materials) -> Iterator[Fault]:
-    """Unknown materials, and materials of a kind that cannot stand where they are named."""
+    """Unknown materials, and materials that do not suit their place."""
     joint = retention_faults.joint_of(View(tree))
     for loc, entry, name in leaves(tree):
         if not isinstance(entry.kind, MaterialName) or not isinstance(name, str):
@@ -228,7 +228,7 @@ def _material_names(tree: Any, materials: Materials) -> Iterator[Fault]:
             continue
         fitting = [other for other in materials.names() if materials.kind(other) in fits]
         if name not in materials:
-            message = f'"{suggest.shown(name)}": no such material'
+            message = f'"{suggest.shown(name)}": unknown material'
             yield Fault(loc, message, suggest.remedy(name, fitting))
         else:
             message = f"{name} is {_a(materials.kind(name))}, need {_a(' or '.join(fits))}"
@@ -236,6 +236,6 @@ def _material_names(tree: Any, materials: Materials) -> Iterator[Fault]:
     changed = child(tree, "materials")
     for name in changed if isinstance(changed, Mapping) else ():
         if name not in materials:
-            message = f'"{suggest.shown(name)}": no such material'
+            message = f'"{suggest.shown(name)}": unknown material'
             remedy = suggest.remedy(name, materials.names())
             yield Fault(("materials", name), message, remedy, at_key=True)

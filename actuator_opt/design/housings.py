@@ -1,7 +1,7 @@
-"""Housings of seals, guides and wipers, limits of extrusion and the check of a gland, as data.
+"""Standard housings of seals, guides and wipers, extrusion limits, and the check of a gland.
 
 ISO 5597 (lip seals), ISO 7425-1 and -2 (sliding rings with an O-ring behind), ISO 10766 (guides),
-ISO 6195 (wipers). Lengths are in m, pressures in Pa. Every row knows its source and confidence.
+ISO 6195 (wipers). Lengths are in m, pressures in Pa. Every row states source and confidence.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ Place: TypeAlias = Literal["rod", "piston"]
 Points: TypeAlias = tuple[tuple[float, float], ...]
 
 _NEAR = 1e-6
-"""Relative difference below which two diameters are the same."""
+"""Relative difference up to which two diameters count as equal."""
 
 
 @dataclass(frozen=True, slots=True)
 class Housing:
-    """Groove of one series of a standard, for a range of rod or bore diameters.
+    """Groove of a standard series, for a range of rod or bore diameters.
 
-    `sizes` are the nominal diameters; empty where every diameter of the range is one. `section`
-    is that of the O-ring behind a sliding ring, or the thickness of a guide; 0 without a ring.
-    `gaps` are the largest radial gaps behind the seal over pressure; `gap` that of a guide, or 0.
+    `sizes` are the nominal diameters; empty if every diameter of the range is nominal. `section`
+    is the O-ring section behind a sliding ring, or the thickness of a guide; 0 without a ring.
+    `gaps` are the largest radial gaps behind the seal by pressure; `gap` is that of a guide, or 0.
     """
 
     standard: str
@@ -45,12 +45,12 @@ class Housing:
     source: str
 
     def fits(self, diameter: float) -> bool:
-        """Whether the diameter lies in the range."""
+        """Whether the diameter is in the range."""
         low, high = self.diameter_min * (1 - _NEAR), self.diameter_max * (1 + _NEAR)
         return low <= diameter <= high
 
     def is_nominal(self, diameter: float) -> bool:
-        """Whether the standard names this diameter."""
+        """Whether the diameter is a nominal size."""
         if not self.sizes:
             return self.fits(diameter)
         return any(abs(size - diameter) <= _NEAR * size for size in self.sizes)
@@ -58,7 +58,7 @@ class Housing:
 
 @dataclass(frozen=True, slots=True)
 class ExtrusionTable:
-    """Largest radial gaps without back-up ring: rows of hardness (Shore A) and its points."""
+    """Largest radial gaps without back-up ring, by hardness (Shore A)."""
 
     name: str
     rows: tuple[tuple[float, Points], ...]
@@ -68,7 +68,7 @@ class ExtrusionTable:
 
 @dataclass(frozen=True, slots=True)
 class Deviation:
-    """A dimension of a gland outside its limits; `excess` is by how much, with a sign."""
+    """A gland dimension outside its limits; `excess` is the signed distance."""
 
     what: str
     value: float
@@ -78,13 +78,13 @@ class Deviation:
 
     @property
     def excess(self) -> float:
-        """Distance to the limit passed: above it > 0, below it < 0."""
+        """Signed distance to the violated limit: positive above it, negative below."""
         return self.value - (self.upper if self.value > self.upper else self.lower)
 
 
 @functools.cache
 def housings(element: str, place: Place) -> tuple[Housing, ...]:
-    """Housings of an element in a place, in the order of the standard."""
+    """Housings of an element at a place, in the order of the standard."""
     return tuple(
         _housing(group, row)
         for group in tables()["housings"]
@@ -115,7 +115,7 @@ def _housing(group: Mapping[str, Any], row: Mapping[str, Any]) -> Housing:
 
 
 def housings_for(element: str, place: Place, diameter: float) -> tuple[Housing, ...]:
-    """Housings whose range has a rod or bore diameter, those that name it first.
+    """Housings whose range includes a diameter, nominal sizes first.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ def housings_for(element: str, place: Place, diameter: float) -> tuple[Housing, 
 
 @functools.cache
 def extrusion_tables() -> Mapping[str, ExtrusionTable]:
-    """Tables of extrusion limits by name; ``sealanddesign`` is the one that was verified."""
+    """Tables of extrusion limits by name; ``sealanddesign`` is the verified table."""
     return {
         group["table"]: ExtrusionTable(
             group["table"],
@@ -170,18 +170,18 @@ def gland_deviations(
     stretch: float,
     back_up_rings: int = 0,
 ) -> tuple[Deviation, ...]:
-    """What of a groove lies outside its standard gland; empty where nothing does.
+    """Dimensions of a groove that violate its standard gland; empty if none.
 
-    The squeeze range is that of the gland's depths and the ring's tolerance.
+    The squeeze range follows from the depth limits of the gland and the tolerance of the ring.
 
     Parameters
     ----------
-    gland : of the ring's section (`standards.gland`)
-    squeeze_min, squeeze_max : of the groove, over its tolerances
-    width : of the groove, m
-    fill : largest share of the groove that the ring fills
-    stretch : of the ring in place
-    back_up_rings : beside the ring
+    gland : standard gland of the ring's section (`standards.gland`)
+    squeeze_min, squeeze_max : squeeze limits of the groove with its tolerances
+    width : width of the groove, m
+    fill : largest fill of the groove by the ring
+    stretch : stretch of the installed ring
+    back_up_rings : number of back-up rings
 
     Raises
     ------

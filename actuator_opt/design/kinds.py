@@ -1,7 +1,7 @@
-"""What a value of the design file can be: a quantity, a material's name, a text, a position.
+"""Kinds of values in a design file: quantity, material name, text, position and others.
 
-Each kind is an annotation of a field in `model`. It validates (pydantic calls it), and the
-reader, the PATHs, the writer and the JSON Schema read it: one declaration serves them all.
+Each kind annotates a field in `model`: pydantic calls it to validate values, and the reader, PATHs,
+writer and JSON Schema read it. One declaration serves them all.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ EXAMPLES = {
     "part_factor": "0.5", "oil_volume": "80 ml", "inertia": "0.013 kg*m^2",
     "stribeck_exponent": "2", "margin": "2", "cycles_per_window": "5",
 }  # fmt: skip
-"""One good value of every input quantity, for messages, the schema and the start file."""
+"""A valid example of every input quantity, for messages, the schema and the start file."""
 
 
 MATERIAL_EXAMPLES = {
@@ -65,11 +65,11 @@ MATERIAL_EXAMPLES = {
     "seal": "nbr_70",
     "fastening": "epoxy_structural",
 }
-"""One library entry that can stand in each role."""
+"""An example material for each role."""
 
 
 class ValueFault(ValueError):
-    """A value that cannot be used: `message` says what, `remedy` what to do about it."""
+    """An unusable value: `message` states the fault, `remedy` the cure."""
 
     def __init__(self, message: str, remedy: str) -> None:
         super().__init__(f"{message}; {remedy}")
@@ -78,7 +78,7 @@ class ValueFault(ValueError):
 
 
 def example(quantity: Quantity) -> str:
-    """A good value of a quantity, as text."""
+    """An example value of a quantity, as text."""
     if quantity.name in EXAMPLES:
         return EXAMPLES[quantity.name]
     value = max(quantity.lower, 0.0) if quantity.lower > -quantities.INFINITY else 0.0
@@ -99,7 +99,7 @@ def _range_fault(shown_value: str, number: float, quantity: Quantity) -> ValueFa
 
 
 def check_range(number: float, quantity: Quantity, shown_value: str | None = None) -> float:
-    """`number` (SI) if it lies in the quantity's range; the last few bits are forgiven."""
+    """`number` (SI) if in the range of the quantity; the last few bits are forgiven."""
     slack = 1e-12
     lower = quantity.lower - slack * abs(quantity.lower)
     upper = quantity.upper + slack * abs(quantity.upper)
@@ -113,7 +113,7 @@ def check_range(number: float, quantity: Quantity, shown_value: str | None = Non
 
 
 def _unit_fault(text: str, quantity: Quantity, error: units.UnitError) -> ValueFault:
-    """The same fault, said with this quantity's own unit and example."""
+    """The same fault with the unit and the example of this quantity."""
     name, message, remedy = shown(text.strip()), shown(error.message, 160), error.remedy
     if _DECIMAL_COMMA.match(text):
         return ValueFault(f'"{name}": decimal comma', f'write "{name.replace(",", ".", 1)}"')
@@ -130,7 +130,7 @@ def _unit_fault(text: str, quantity: Quantity, error: units.UnitError) -> ValueF
 
 
 def read_quantity(value: object, quantity: Quantity) -> float:
-    """SI value of what a person (text with a unit) or a script (an SI number) wrote.
+    """SI value from text with a unit (a file) or an SI number (a script).
 
     Raises
     ------
@@ -154,7 +154,7 @@ def read_quantity(value: object, quantity: Quantity) -> float:
 
 
 def what(value: object) -> str:
-    """A value's shape in words."""
+    """Shape of a value in words."""
     if value is None:
         return "nothing"
     if isinstance(value, dict):
@@ -165,13 +165,13 @@ def what(value: object) -> str:
 
 
 class Kind:
-    """A kind of value; `help` says what it means in the field it annotates."""
+    """A kind of value; `help` is the meaning of its field."""
 
     help: str = ""
     example: str = "…"
 
     def validate(self, value: Any) -> Any:
-        """The value as the design holds it; raises `ValueFault`."""
+        """The value for the design; raises `ValueFault`."""
         raise NotImplementedError
 
     def _call(self, value: Any) -> Any:
@@ -189,7 +189,7 @@ class Kind:
 
 
 class Of(Kind):
-    """A float: the quantity it is. Text must carry its unit, a Python number is SI."""
+    """A float of a stated quantity: text needs its unit, a Python number is SI."""
 
     def __init__(self, quantity: str, help: str = "") -> None:
         self.quantity = (quantities.INPUTS | quantities.SCENARIOS)[quantity]
@@ -203,7 +203,7 @@ class Of(Kind):
 
 @dataclass(frozen=True, slots=True)
 class Fraction:
-    """A position as a fraction of the stroke: it moves with the stroke."""
+    """A position as a fraction of the stroke: it scales with the stroke."""
 
     value: float
 
@@ -217,7 +217,7 @@ class PositionKind(Kind):
     fraction = quantities.INPUTS["fraction"]
 
     def quantity_of(self, value: object) -> Quantity:
-        """The quantity a position is written in."""
+        """Quantity of a position as written."""
         is_share = isinstance(value, Fraction) or (isinstance(value, str) and "%" in value)
         return self.fraction if is_share else self.length
 
@@ -239,7 +239,7 @@ class PositionKind(Kind):
 
 
 Position: TypeAlias = Literal["worst"] | float | Fraction
-"""Where the piston stands in a load case."""
+"""Piston position in a load case."""
 
 
 def position_at(position: Position, stroke: Array) -> Array | None:
@@ -265,7 +265,7 @@ class Text(Kind):
             raise ValueFault(f"need a text, not {what(value)}", "write one value")
         bad = [c for c in value if not (c.isprintable() or (self.multiline and c in "\n\t"))]
         if bad:
-            raise ValueFault(f'"{shown(value)}": has unprintable characters', "remove them")
+            raise ValueFault(f'"{shown(value)}": contains unprintable characters', "remove them")
         if len(value) > self.longest:
             raise ValueFault(
                 f'"{shown(value)}": {len(value)} characters are too many',
@@ -277,7 +277,7 @@ class Text(Kind):
 
 
 class Flag(Kind):
-    """Yes or no."""
+    """A boolean."""
 
     example = "false"
     words: Final = {
@@ -290,7 +290,7 @@ class Flag(Kind):
 
     def validate(self, value: Any) -> bool:
         """True or False."""
-        if value in (0, 1):  # booleans, and the numbers a script may set
+        if value in (0, 1):  # booleans, and numbers set by a script
             return bool(value)
         if isinstance(value, str) and value.strip().lower() in self.words:
             return self.words[value.strip().lower()]
@@ -299,12 +299,12 @@ class Flag(Kind):
 
 
 class Choice(Kind):
-    """One of a few words; `help` says what each means.
+    """A word from a short list; `help` states the meaning of each word.
 
     Parameters
     ----------
-    help : for the JSON Schema
-    words : those there are; none: those of the field's `Literal`
+    help : text for the JSON Schema
+    words : allowed words; if empty: those of the field's `Literal`
     """
 
     def __init__(self, help: str, words: tuple[str, ...] = ()) -> None:
@@ -325,12 +325,12 @@ class Choice(Kind):
 
 
 def choice_of(help: str, registry: kinds.Kinds[Any]) -> Choice:
-    """One word of a registry of kinds, with the meaning of each."""
+    """A choice from a registry of kinds, with the meaning of each."""
     return Choice(f"{help}; {registry.help}", registry.names)
 
 
 class CaseName(Text):
-    """Name of a load case: usable inside a PATH, ``load_cases[NAME].force``."""
+    """Name of a load case, valid inside a PATH: ``load_cases[NAME].force``."""
 
     example = "stance"
 
@@ -339,20 +339,20 @@ class CaseName(Text):
         text = super().validate(value)
         if _NAME.fullmatch(text) is None:
             raise ValueFault(
-                f'"{shown(text)}": not a usable name',
+                f'"{shown(text)}": not a valid name',
                 "start with a letter; use letters, digits, space, _ . + -",
             )
         return text
 
 
 class MaterialName(Text):
-    """Name of a library entry; `role` says which kinds of material can stand here."""
+    """Name of a library material; `role` states which kinds suit this place."""
 
     def __init__(
         self, role: Literal["structural", "isotropic", "fluid", "seal", "fastening"]
     ) -> None:
         article = "an" if role[0] in "aeiou" else "a"
-        super().__init__(f"name of {article} {role} material of the library")
+        super().__init__(f"name of {article} {role} material from the library")
         self.role = role
         self.example = MATERIAL_EXAMPLES[role]
 
@@ -360,20 +360,20 @@ class MaterialName(Text):
 class Sizes(Kind):
     """The sizes of a variable: a series by name, or a list."""
 
-    help = "sizes it may take: a series such as iso_3320, or a list of values"
+    help = "allowed sizes: a series such as iso_3320, or a list of values"
     example = "iso_3320"
 
     def validate(self, value: Any) -> str | tuple[float, ...]:
         """The name, or the values in SI."""
         if isinstance(value, str):
             return value
-        if not isinstance(value, (list, tuple)):  # faults of entries are found where units are
+        if not isinstance(value, (list, tuple)):  # entries are checked where units are known
             raise ValueFault(f"need sizes, not {what(value)}", "write a series, or a list")
         return tuple(value)
 
 
 class Goal(Kind):
-    """A metric, or a block of metrics with weights above zero."""
+    """A metric, or a block of metrics with positive weights."""
 
     help = "a metric, or several with weights (each is divided by its value in the design)"
     example = "mass"
@@ -386,5 +386,5 @@ class Goal(Kind):
             raise ValueFault(f"need a metric, not {what(value)}", "write e.g. mass")
         for name, weight in value.items():
             if not isinstance(weight, (int, float)) or not 0 < weight < math.inf:
-                raise ValueFault(f"{name}: need a weight above zero", "write e.g. mass: 1")
+                raise ValueFault(f"{name}: the weight must be > 0", "write e.g. mass: 1")
         return {str(name): float(weight) for name, weight in value.items()}

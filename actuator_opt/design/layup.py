@@ -1,12 +1,12 @@
-"""Compact lay-up notation: ``plies: "[90_4 / +-25_2 / 0]s"`` for the layers it means.
+"""Compact lay-up notation: ``plies: "[90_4 / +-25_2 / 0]s"`` in place of a list of layers.
 
 Angles are in degrees from the tube axis, layers from the inside outwards::
 
     layup = item {"/" item}
     item  = angle ["_" n]  |  "+-" angle ["_" n]  |  "[" layup "]" ["_" n] ["s"]
 
-``+-25`` (or ±25) is a balanced pair, two plies; 25 alone is one ply at that signed angle, 0 and
-90 have no sign. ``_n`` repeats, ``s`` mirrors a group; neighbours of one angle become one layer.
+``+-25`` (or ±25) is a balanced pair of plies; 25 alone is one ply at that signed angle, 0 and
+90 have no sign. ``_n`` repeats, ``s`` mirrors a group; neighbours of equal angle form one layer.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ _TOKEN = re.compile(
     r"|(?P<mark>[\[\]/_sS])|(?P<odd>[^\W\d_]+|\S))"
 )
 _OWN_KEYS = ("plies", "ply_thickness", "angle", "thickness", "balanced")
-"""Keys that say what the layers are; the others stay as they are written."""
+"""Keys that define the layers; other keys are kept as written."""
 
 
 class NotationFault(ValueFault):
-    """What is wrong with a notation, and at which of its characters."""
+    """A fault of a notation, with the position of its character."""
 
     def __init__(self, offset: int, message: str, remedy: str) -> None:
         super().__init__(message, remedy)
@@ -47,7 +47,7 @@ class NotationFault(ValueFault):
 
 
 class Layer(NamedTuple):
-    """Neighbouring plies of one angle; `offset` is where the notation says so."""
+    """Neighbouring plies of one angle; `offset` is their position in the notation."""
 
     angle: str
     balanced: bool
@@ -55,12 +55,12 @@ class Layer(NamedTuple):
     offset: int
 
     def same(self, other: Layer) -> bool:
-        """Whether two layers differ in nothing but their plies."""
+        """Whether two layers are equal but for their number of plies."""
         return (float(self.angle), self.balanced) == (float(other.angle), other.balanced)
 
 
 def read_notation(text: str, most: int = MOST_LAYERS) -> tuple[Layer, ...]:
-    """The layers a notation means, from the inside outwards.
+    """Layers of a notation, from the inside outwards.
 
     Raises
     ------
@@ -84,7 +84,7 @@ def read_notation(text: str, most: int = MOST_LAYERS) -> tuple[Layer, ...]:
 
 
 def _joined(layers: Sequence[Layer]) -> list[Layer]:
-    """Layers with neighbours of one angle made one."""
+    """Layers with neighbours of equal angle merged."""
     joined: list[Layer] = []
     for layer in layers:
         if joined and joined[-1].same(layer):
@@ -95,7 +95,7 @@ def _joined(layers: Sequence[Layer]) -> list[Layer]:
 
 
 class _Parser:
-    """Recursive descent over the tokens of a notation."""
+    """Recursive-descent parser of a notation."""
 
     def __init__(self, tokens: Sequence[tuple[str, str, int]], most: int) -> None:
         self.tokens = tokens
@@ -115,10 +115,10 @@ class _Parser:
         return self.tokens[self.at][2]
 
     def unexpected(self, wanted: str) -> NotationFault:
-        """The present token is not what the grammar wants here."""
+        """The current token violates the grammar."""
         text, remedy = self.text, f'write e.g. "{EXAMPLE}"'
         if self.kind == "end":
-            return NotationFault(self.offset, f"the lay-up ends where {wanted} belongs", remedy)
+            return NotationFault(self.offset, f"the lay-up ends where {wanted} is expected", remedy)
         if text in ",;|":
             remedy = 'separate plies by "/"'
         elif text in ("deg", "°", "rad"):
@@ -127,7 +127,7 @@ class _Parser:
             remedy = f"s mirrors a group in brackets, {remedy}"
         elif text == "]":
             remedy = 'remove it, or open a "["'
-        return NotationFault(self.offset, f'"{shown(text)}" where {wanted} belongs', remedy)
+        return NotationFault(self.offset, f'"{shown(text)}" where {wanted} is expected', remedy)
 
     def layup(self, depth: int) -> list[Layer]:
         """Items between slashes."""
@@ -138,7 +138,7 @@ class _Parser:
         return self.limited(layers)
 
     def limited(self, layers: Sequence[Layer]) -> list[Layer]:
-        """Neighbours made one; not more layers than fit a wall."""
+        """Neighbours merged; at most the allowed number of layers."""
         joined = _joined(layers)
         if len(joined) > self.most:
             message = f"more than {self.most} layers"
@@ -167,7 +167,7 @@ class _Parser:
         return layers
 
     def repeats(self) -> int:
-        """The count after an underscore; 1 without."""
+        """The count after an underscore; 1 without an underscore."""
         if self.text != "_":
             return 1
         self.at += 1
@@ -201,10 +201,10 @@ class _Parser:
 
 
 def expanded(document: Document) -> Document:
-    """The document with the layers each compact entry means, every place still in the text.
+    """The document with all compact entries expanded into layers; every place stays in the text.
 
-    Faults of an entry are added to the document's; a faulty one stays a single layer without
-    thickness, of which nothing more is said.
+    Faults of an entry are added to the document. A faulty entry stays a single layer without
+    thickness and is not checked further.
     """
     for wall in lists_of(Ply):
         items = child_at(document.data, wall)
@@ -214,7 +214,7 @@ def expanded(document: Document) -> Document:
 
 
 def _in_full(document: Document, wall: Loc, items: Sequence[Any]) -> Document:
-    """One list entry by entry; what stood at an index then stands at `starts[index]`."""
+    """Expand a list entry by entry; the old index i becomes `starts[i]`."""
     whole: list[Any] = []
     starts: list[int] = []
     places: dict[Loc, Span] = {}
@@ -242,7 +242,7 @@ def _in_full(document: Document, wall: Loc, items: Sequence[Any]) -> Document:
         shorthands.append(Shorthand(wall, first, len(layers), _extent(document, loc)))
         for number, layer in enumerate(layers):
             places |= _places(document, loc, (*wall, first + number), layer)
-    if faults:  # PATHs to layers that are not there yet would only echo them
+    if faults:  # PATHs to layers that do not exist yet would only repeat them
         variables = child(document.data, "variables")
         named = variables if isinstance(variables, dict) else ()
         unusable |= {("variables", path) for path in named if path.startswith(f"{spell(wall)}[")}
@@ -265,12 +265,12 @@ def _in_full(document: Document, wall: Loc, items: Sequence[Any]) -> Document:
 
 
 def _with(node: Any, loc: Loc, value: Any) -> Any:
-    """A tree with another value at a place; the tree itself stays."""
+    """A copy of a tree with another value at one place."""
     return value if not loc else {**node, loc[0]: _with(node[loc[0]], loc[1:], value)}
 
 
 class _Wrong(NamedTuple):
-    """A fault of a compact entry: at a key, at its value, or at a character of the value."""
+    """A fault of a compact entry: at a key, its value, or a character of the value."""
 
     key: str
     message: str
@@ -280,15 +280,15 @@ class _Wrong(NamedTuple):
 
 
 def _wrong(item: Mapping[str, Any]) -> Iterator[_Wrong]:
-    """Every fault of a compact entry but those of its material."""
+    """All faults of a compact entry except those of its material."""
     for key in ("angle", "thickness", "balanced"):
         if key in item:
-            message = f"{key} and plies in one entry: plies says it"
+            message = f"{key} and plies in one entry: plies already defines it"
             yield _Wrong(key, message, "keep one of them", at_key=True)
     thickness = quantities.INPUTS["ply_thickness"]
     if "ply_thickness" not in item:
         remedy = f'add e.g. "ply_thickness: {example(thickness)}"'
-        yield _Wrong("ply_thickness", "missing: plies needs it", remedy)
+        yield _Wrong("ply_thickness", "missing: required with plies", remedy)
     for key in ("plies", "ply_thickness"):
         value = item.get(key, "")
         try:
@@ -308,7 +308,7 @@ def _wrong(item: Mapping[str, Any]) -> Iterator[_Wrong]:
 
 
 def _diagnostic(document: Document, loc: Loc, wrong: _Wrong, now: Loc) -> Diagnostic:
-    """A fault of the compact entry at `loc`, whose first layer stands at `now`."""
+    """A fault of the compact entry at `loc`, whose first layer is now at `now`."""
     at = (*loc, wrong.key)
     span = document.keys.get(at) if wrong.at_key else document.values.get(at)
     if wrong.offset is not None:
@@ -318,7 +318,7 @@ def _diagnostic(document: Document, loc: Loc, wrong: _Wrong, now: Loc) -> Diagno
 
 
 def _character(document: Document, loc: Loc, offset: int) -> Span | None:
-    """Place of one character of a text; of the text where it is folded or has escapes."""
+    """Place of a character of a text; of the whole text if it is folded or has escapes."""
     span, value = document.values.get(loc), child_at(document.data, loc)
     if span is None or not isinstance(value, str):
         return span
@@ -331,7 +331,7 @@ def _character(document: Document, loc: Loc, offset: int) -> Span | None:
 
 
 def _entries(item: Mapping[str, Any], layers: Sequence[Layer]) -> Iterator[dict[str, Any]]:
-    """The entries of the list form; keys nobody knows stay in the first."""
+    """Entries in list form; unknown keys stay in the first."""
     number, unit = units.split(item["ply_thickness"])
     for layer in layers:
         thickness = (Decimal(repr(number)) * layer.plies).normalize()
@@ -345,7 +345,7 @@ def _entries(item: Mapping[str, Any], layers: Sequence[Layer]) -> Iterator[dict[
 
 
 def _places(document: Document, loc: Loc, now: Loc, layer: Layer) -> dict[Loc, Span]:
-    """Where the values of a layer stand: those of the notation at its angle."""
+    """Places of the values of a layer: those of the notation at its angle."""
     said = _character(document, (*loc, "plies"), layer.offset)
     found = {now: said} | {(*now, key): said for key in ("angle", "thickness", "balanced")}
     found |= {
@@ -355,10 +355,10 @@ def _places(document: Document, loc: Loc, now: Loc, layer: Layer) -> dict[Loc, S
 
 
 def _extent(document: Document, loc: Loc) -> Span:
-    """Place of a compact entry, from its first key to the end of its last value."""
+    """Extent of a compact entry: from its first key to the end of its last value."""
     span = document.values[loc]
     if document.text.startswith("{", span.start):
         return span
     below = [at for place, at in document.values.items() if place[: len(loc)] == loc != place]
-    end = max(at.end for at in below)  # a block scalar's is on the next line
+    end = max(at.end for at in below)  # the end of a block scalar is on the next line
     return span._replace(end=len(document.text[:end].rstrip()))

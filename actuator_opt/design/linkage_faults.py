@@ -1,4 +1,4 @@
-"""Faults of the linkage, and of load cases that work through it."""
+"""Contradictions of the linkage and of load cases that use it."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from .structure import Loc
 from .view import View, length_text
 
 _ROUND = math.radians(0.01)
-"""Joint angles in remedies are rounded inwards to this (rad): a person can write them."""
+"""Joint angles in remedies are rounded inwards to this step (rad), for short numbers."""
 
 
 class _Reach(NamedTuple):
-    """The actuator between its stops, and the linkage."""
+    """Pin-to-pin range of the actuator, and the linkage."""
 
     closed: float
     stroke: float
@@ -29,7 +29,7 @@ class _Reach(NamedTuple):
 
 
 def _closed(view: View) -> float | None:
-    """Length pin to pin of the retracted actuator; None where a part of it is not known."""
+    """Pin-to-pin length of the retracted actuator; None if a part is unknown."""
     stroke, piston = view.number("cylinder", "stroke"), view.number("piston", "length")
     head = view.number("head", "length") if view.has("head") else piston
     barrel = view.number("barrel", "length")
@@ -63,7 +63,7 @@ def _reach(view: View) -> _Reach | None:
 
 
 def linkage(view: View) -> Iterator[Fault]:
-    """No dead point lies on the actuator's way: |a - r| < l < a + r from stop to stop."""
+    """No dead point between the stops: |a - r| < l < a + r."""
     found = _reach(view)
     if found is None:
         return
@@ -71,7 +71,7 @@ def linkage(view: View) -> Iterator[Fault]:
     if stroke >= 2 * pin:
         yield Fault(
             ("linkage", "crank_radius"),
-            f"{length_text(pin)}: a stroke of {length_text(stroke)} takes the joint past a dead "
+            f"{length_text(pin)}: a stroke of {length_text(stroke)} moves the joint past a dead "
             "point",
             f"write more than {length_text(stroke / 2)}, or a shorter cylinder.stroke",
         )
@@ -81,13 +81,13 @@ def linkage(view: View) -> Iterator[Fault]:
         yield Fault(
             ("linkage", "base_radius"),
             f"{length_text(base)}: the actuator, {length_text(closed)} to "
-            f"{length_text(closed + stroke)} from pin to pin, takes the joint past a dead point",
+            f"{length_text(closed + stroke)} from pin to pin, moves the joint past a dead point",
             f"write more than {length_text(least)} and less than {length_text(most)}",
         )
 
 
 def inertia(view: View) -> Iterator[Fault]:
-    """A joint turns only with a linkage."""
+    """A joint speed, torque or inertia needs a linkage."""
     if view.number("load", "inertia") and not view.has("linkage"):
         yield _no_linkage(("load", "inertia"), "load.mass")
 
@@ -98,7 +98,7 @@ def _no_linkage(loc: Loc, instead: str) -> Fault:
 
 
 def load_cases(view: View) -> Iterator[Fault]:
-    """A case is placed by angle or position, moves at one speed, and stays within the joint."""
+    """A case has an angle or a position, one speed, and stays within the range of the joint."""
     for index, case in enumerate(view.items("load_cases")):
         if not isinstance(case, dict):
             continue
@@ -113,7 +113,7 @@ def load_cases(view: View) -> Iterator[Fault]:
 
 
 def _angle(view: View, loc: Loc) -> Iterator[Fault]:
-    """The joint angle of a case lies between those of both stops."""
+    """The joint angle of a case is between those of both stops."""
     angle, found = view.number(*loc, "angle"), _reach(view)
     if angle is None or found is None:
         return
@@ -134,7 +134,7 @@ def _angle(view: View, loc: Loc) -> Iterator[Fault]:
     inner = [_ROUND * math.ceil(low / _ROUND), _ROUND * math.floor(high / _ROUND)]
     yield Fault(
         (*loc, "angle"),
-        f"{text(angle)}: the joint turns from {text(low)} to {text(high)}",
+        f"{text(angle)}: the range of the joint is {text(low)} to {text(high)}",
         f"write {text(inner[0], 7)} to {text(inner[1], 7)}, or change linkage.angle_offset",
     )
 

@@ -1,7 +1,7 @@
-"""What a library knows of one material: properties with source, scatter, confidence and basis.
+"""Material data: properties with source, scatter, confidence and basis.
 
 All values are SI. A property may be a table over temperature or pressure; its `value` is then
-the one at the reference point, and scaling it scales the table.
+the value at the reference point, and scaling it scales the table.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ KINDS: Final = ("metal", "ply", "polymer", "fluid", "seal", "adhesive")
 CONFIDENCES: Final = ("verified", "secondary", "unverified", "derived")
 BASES: Final = ("typical", "mean", "A", "B", "S", "minimum", "maximum", "limit", "nominal")
 FAMILIES: Final = ("mineral", "ester", "phosphate_ester", "water_glycol")
-"""Fluid families; a seal's `suits` lists those its compound withstands."""
+"""Fluid families; a seal's `suits` lists those that its compound withstands."""
 ROLES: Final[Mapping[str, tuple[str, ...]]] = {
     "structural": ("metal", "ply", "polymer"),
     "isotropic": ("metal", "polymer"),
@@ -26,7 +26,7 @@ ROLES: Final[Mapping[str, tuple[str, ...]]] = {
     "seal": ("seal",),
     "fastening": ("metal", "adhesive"),
 }
-"""Which kinds of material can stand where a design names one."""
+"""Kinds of material for each role in a design."""
 
 REQUIRED: Final[Mapping[str, tuple[str, ...]]] = {
     "metal": ("density", "youngs_modulus", "poissons_ratio"),
@@ -52,12 +52,12 @@ _FIBRE = ("strength_1_tension", "strength_1_compression")
 
 @dataclass(frozen=True, slots=True)
 class Spread:
-    """Scatter as a number.
+    """Scatter of a value.
 
     Parameters
     ----------
     kind : ``cv`` standard deviation over mean, ``tolerance`` half width over value, ``factor``
-        the value may be that many times larger or smaller
+        largest over nominal value, and nominal over smallest value
     size : relative, or the factor
     """
 
@@ -67,7 +67,7 @@ class Spread:
 
 @dataclass(frozen=True, slots=True)
 class Property:
-    """One property of one material; `points` where it is a table over `argument`."""
+    """A property of a material; `points` if tabulated over `argument`."""
 
     quantity: Quantity
     value: float
@@ -87,7 +87,7 @@ class Property:
 
     @property
     def text(self) -> str:
-        """The value in the unit people read."""
+        """Value in its display unit."""
         return self.quantity.text(self.value)
 
     @property
@@ -101,12 +101,12 @@ class Property:
         return tuple(value for _, value in self.points)
 
     def at(self, argument: Array, *, value: Array | None = None) -> Array:
-        """Linear interpolation of the table, held at its ends; the value itself without a table.
+        """Linear interpolation of the table, constant beyond its ends; the value if not tabulated.
 
         Parameters
         ----------
         argument : temperature (K) or pressure (Pa, gauge), as `argument` says
-        value : replaces `value` and scales the table with it
+        value : replaces `value` and scales the table
         """
         reference = self.value if value is None else value
         if not self.points:
@@ -134,7 +134,7 @@ class Property:
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """A named entry of a library: what it is and what is known of it."""
+    """A named library entry with its properties."""
 
     name: str
     kind: str
@@ -155,14 +155,14 @@ class Material:
 
     @property
     def isotropic(self) -> bool:
-        """Whether one modulus describes it (metals, polymers, apparent values)."""
+        """Whether a single modulus describes it (metals, polymers, apparent values)."""
         return "youngs_modulus" in self.properties and "youngs_modulus_1" not in self.properties
 
     @property
     def unverified(self) -> tuple[str, ...]:
-        """Names of the properties whose value nobody checked against its source.
+        """Names of the properties that nobody has checked against their source.
 
-        Nominal values are stated conditions (a test temperature, a cycle count), not findings.
+        Nominal values are stated conditions (a test temperature, a cycle count), not measurements.
         """
         return tuple(
             name
@@ -176,7 +176,7 @@ class Material:
         return self.properties["kinematic_viscosity"].points
 
     def stating(self, stated: Mapping[str, float]) -> Material:
-        """The material with properties that a design states beyond the library's; SI."""
+        """The material with the properties that a design adds or replaces; SI."""
         new = {name: value for name, value in stated.items() if name not in self.properties}
         if not new:
             return self
@@ -189,7 +189,7 @@ class Material:
         return replace(self, properties=properties)
 
     def completed(self) -> dict[str, Property]:
-        """Stated properties and the ply constants that follow from them, marked ``derived``."""
+        """Stated properties and the derived ply constants, marked ``derived``."""
         properties = dict(self.properties)
         if self.kind not in ROLES["structural"]:
             return properties
@@ -212,19 +212,20 @@ class Material:
 
 
 def compatible(fluid: Material, seal: Material) -> bool | None:
-    """Whether a compound withstands a fluid; None where the library does not say."""
+    """Whether a compound withstands a fluid; None if the library does not state it."""
     if not fluid.family or not seal.suits:
         return None
     return fluid.family in seal.suits
 
 
 def ply_constants(numbers: Mapping[str, Array]) -> dict[str, Array]:
-    """Complete the elastic constants of a ply; ply strengths too for isotropic materials.
+    """Complete elastic constants of a ply; for isotropic materials also ply strengths.
 
     Missing ply constants follow transverse isotropy: E3 = E2, nu13 = nu12, G13 = G12,
     G23 = E2/(2(1 + nu23)), nu23 = 0.40. A material with one modulus becomes a ply with equal
-    constants, G = E/(2(1 + nu)) unless given, its yield (else ultimate) strength in tension and
-    compression, and that over sqrt(3) in shear (von Mises). Elementwise; complex-step safe.
+    constants, G = E/(2(1 + nu)) unless given. Its strength in tension and compression is the yield
+    (else ultimate) strength, in shear that over sqrt(3) (von Mises). Elementwise, complex-step
+    safe.
 
     Parameters
     ----------
@@ -271,10 +272,10 @@ def _isotropic_ply(numbers: Mapping[str, Array]) -> dict[str, Array]:
 
 
 def compliance_determinant(constants: Mapping[str, float]) -> float:
-    """Stability of a ply: its compliance is positive definite where this is positive.
+    """Stability of a ply: positive if its compliance is positive definite.
 
-    1 - nu12 nu21 - nu23 nu32 - nu13 nu31 - 2 nu21 nu32 nu13 [Lempriere1968]; the smallest of it
-    and the three factors 1 - nu_ij nu_ji is returned.
+    The smallest of 1 - nu12 nu21 - nu23 nu32 - nu13 nu31 - 2 nu21 nu32 nu13 [Lempriere1968] and
+    the three factors 1 - nu_ij nu_ji.
     """
     e1, e2, e3 = (constants[f"youngs_modulus_{i}"] for i in (1, 2, 3))
     nu12, nu13, nu23 = (constants[f"poissons_ratio_{i}"] for i in (12, 13, 23))
@@ -285,16 +286,16 @@ def compliance_determinant(constants: Mapping[str, float]) -> float:
 def allowable_factor(
     numbers: Mapping[str, Array], name: str, *, basis: str, temperature: Array, wet: bool = False
 ) -> Array:
-    """Share left of a strength: temperature x moisture x basis x process knock-downs.
+    """Remaining share of a strength: temperature x moisture x basis x process knock-down.
 
-    The temperature factor is linear from 1 at 23 degC to the stated knock-down at
-    `knockdown_temperature` and continues beyond it, at least 0.05; an absent knock-down is 1.
+    The temperature factor falls linearly from 1 at 23 degC to the stated knock-down at
+    `knockdown_temperature` and beyond, but not below 0.05; a missing knock-down is 1.
 
     Parameters
     ----------
     numbers : properties of the material, SI
     name : the strength (``yield_strength``, ``strength_2_tension``, ``bond_strength``, ...)
-    basis : basis of its value; ``typical`` and ``mean`` are brought to the allowable basis
+    basis : basis of its value; ``typical`` and ``mean`` are reduced to the allowable basis
     temperature : K
     wet : saturated with moisture
     """

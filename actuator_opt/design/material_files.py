@@ -1,7 +1,7 @@
-"""Library files: YAML entries to `Material`, every fault with its file and line.
+"""Library files: YAML entries to `Material`, each fault with file and line.
 
-A file is a block of names. It is cut at its top-level keys and only the entries asked for are
-parsed, so a large library costs nothing at start-up.
+A file maps names to entries. It is split at its top-level keys and only requested entries are
+parsed, so a large library does not slow the start.
 """
 
 from __future__ import annotations
@@ -34,36 +34,36 @@ _ENTRY_KEYS = (
 )  # fmt: skip
 _PROPERTY_KEYS = ("value", "points", "note", *_META)
 _ARGUMENTS = {"temperature": 313.15, "pressure": float("inf")}
-"""Arguments of tables, and where each has its reference point (the nearest one)."""
+"""Arguments of tables and their reference values (the nearest point is used)."""
 
 Parent: TypeAlias = Callable[[str], Material | None]
-"""Finds the material an ``inherit:`` names; None where there is none."""
+"""Returns the material of an ``inherit:``; None if unknown."""
 
 
 @dataclass(slots=True, eq=False)
 class MaterialFile:
-    """One library file, cut into entries."""
+    """A library file, split into entries."""
 
     path: str
     text: str
     places: dict[str, tuple[int, int, int]] = field(default_factory=dict)
-    """Name to (start, end, line) of its text."""
+    """Start, end and line of each entry's text by name."""
     faults: list[Diagnostic] = field(default_factory=list)
     """Faults of the file as a whole."""
     _sources: dict[str, str] | None = None
 
     def names(self) -> list[str]:
-        """Entries of the file, templates (leading underscore) included."""
+        """Entries of the file, including templates (leading underscore)."""
         return [name for name in self.places if name != "sources"]
 
     def kind(self, name: str) -> str | None:
-        """Kind that an entry states, without parsing it."""
+        """Kind of an entry, read without parsing it."""
         start, end, _ = self.places[name]
         match = _KIND.search(self.text, start, end)
         return match[1] if match else None
 
     def document(self, name: str) -> yaml_source.Document:
-        """Parse the text of one entry; its lines count in the whole file."""
+        """Parse the text of an entry; its line numbers are those of the file."""
         start, end, line = self.places[name]
         return yaml_source.parse("\n" * (line - 1) + self.text[start:end], self.path)
 
@@ -80,18 +80,18 @@ class MaterialFile:
         return self._sources
 
     def fault(self, name: str, message: str, advice: str = "") -> Diagnostic:
-        """Fault at the head of an entry."""
+        """A fault at the head of an entry."""
         _, _, line = self.places[name]
         return Diagnostic(message, advice, self.path, line, 1, name, f"{name}:")
 
 
 def read_file(path: Path) -> MaterialFile:
-    """Read and cut a library file into entries; cached until the file changes."""
+    """Read a library file and split it into entries; cached until the file changes."""
     try:
         state = path.stat()
     except OSError:
         raise InputError(
-            Diagnostic("no such material library", "check the path", str(path))
+            Diagnostic("the material library does not exist", "check the path", str(path))
         ) from None
     return _read_file(str(path), state.st_mtime_ns, state.st_size)
 
@@ -124,12 +124,12 @@ def _read_file(path: str, changed: int, size: int) -> MaterialFile:
 
 
 def read_entry(file: MaterialFile, name: str, parent: Parent) -> Material:
-    """One entry as a `Material`; raises `InputError` with all of its faults.
+    """An entry as a `Material`; raises `InputError` with all of its faults.
 
     Parameters
     ----------
-    file, name : which entry
-    parent : finds the material an ``inherit:`` names
+    file, name : file and name of the entry
+    parent : returns the material of an ``inherit:``
     """
     reader = _Reader(file, name)
     found = reader.entry(parent)
@@ -139,7 +139,7 @@ def read_entry(file: MaterialFile, name: str, parent: Parent) -> Material:
 
 
 class _Reader:
-    """Reads one entry and collects its faults."""
+    """Reads an entry and collects its faults."""
 
     def __init__(self, file: MaterialFile, name: str) -> None:
         self.file = file
@@ -148,14 +148,14 @@ class _Reader:
         self.faults = list(self.document.faults)
 
     def fault(self, loc: tuple[str | int, ...], message: str, advice: str = "") -> None:
-        """Note a fault at a key or value of the entry."""
+        """Add a fault at a key or value of the entry."""
         spans = self.document.values
         span = spans.get((self.name, *loc)) or self.document.keys.get((self.name, *loc))
         path = ".".join([self.name, *(str(k) for k in loc if k not in ("properties", "value"))])
         self.faults.append(self.document.diagnostic(span, message, advice, path))
 
     def entry(self, parent: Parent) -> Material | None:
-        """Material of the entry, or None where it is no block."""
+        """Material of the entry, or None if it is not a block."""
         data = self.document.data.get(self.name)
         if not isinstance(data, dict):
             self.fault((), f"need a block of keys, not {what(data)}", "see: materials show")
@@ -251,7 +251,7 @@ class _Reader:
             keys = set(row) - {"value"} if isinstance(row, dict) else set()
             if len(keys) != 1 or "value" not in row or not keys <= set(_ARGUMENTS):
                 advice = "write {temperature: ..., value: ...} or {pressure: ..., value: ...}"
-                self.fault((*loc, index), "not a point of a table", advice)
+                self.fault((*loc, index), "not a table point", advice)
                 return None, ()
             (key,) = keys
             argument = argument or key
@@ -347,7 +347,7 @@ class _Reader:
                 self.fault((*loc, key), f'unknown key "{shown(key)}"', remedy(key, allowed))
 
     def _complete(self, found: Material) -> None:
-        """Faults of the entry as a whole: what is missing, what cannot be."""
+        """Faults of the entry as a whole: missing or impossible properties."""
         required = material.REQUIRED[found.kind]
         if found.kind == "ply" and not found.isotropic:
             required += material.PLY_REQUIRED
@@ -363,7 +363,11 @@ class _Reader:
         vapour = found.properties.get("vapour_pressure")
         if vapour is not None and vapour.points and min(vapour.values) <= 0:
             loc = ("properties", "vapour_pressure")
-            self.fault(loc, "a table of vapour pressures needs values above zero", "remove the 0")
+            self.fault(
+                loc,
+                "a table of vapour pressures needs values above zero",
+                "remove the point with value 0",
+            )
             return
         constants = material.ply_constants(found.numbers)
         if constants and material.compliance_determinant(constants) <= 0:

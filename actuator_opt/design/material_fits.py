@@ -1,10 +1,10 @@
-"""Least-squares fits of a secant damping over speed, and how well each parameter is known.
+"""Least-squares fits of a secant damping over speed, with bounds for each parameter.
 
 Both fits minimise sum w (B - B_fit)^2 over the measured points; equal weights unless weights are
-given (1/B^2 fits relative errors). Parameters that enter linearly are eliminated, so that only
-exponents are searched [GolubPereyra1973], from every start of a grid. Bounds are those of the
-linearised model with Student's t [SeberWild1989]: they take the points for independent, so for
-points of a smooth curve they say how far the law misfits it, not how it scatters.
+given (1/B^2 fits relative errors). Linear parameters are eliminated, so only exponents are
+searched [GolubPereyra1973], from every start of a grid. Bounds are those of the linearised model
+with Student's t [SeberWild1989]. They assume independent points: for points of a smooth curve they
+show the misfit of the law, not scatter.
 """
 
 from __future__ import annotations
@@ -21,32 +21,32 @@ from ..base.numeric import STEP, Array
 from ..models import damping as laws
 
 FASTEST = 10.0
-"""Largest decay of an exponential between neighbouring points: beyond it only one point sees it."""
+"""Largest decay of an exponential between neighbouring points: beyond it only one point counts."""
 LARGEST_POWER = 300.0
-"""Largest exponent that an amplitude extrapolated to rest may carry, far from overflow."""
+"""Largest exponent of an amplitude extrapolated to rest, far from overflow."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Fit:
     """A fitted law B(v), SI.
 
-    `r_squared` is 1 - sum w (B - B_fit)^2/sum w (B - mean)^2; None where all points are equal.
+    `r_squared` is 1 - sum w (B - B_fit)^2/sum w (B - mean)^2; None if all points are equal.
     """
 
     name: str
     law: Callable[..., Array]
     parameters: Mapping[str, Parameter]
     covariance: Array
-    """Of the parameters in their order; infinite where they are not determined together."""
+    """Covariance of the parameters in their order; infinite if not determined together."""
     speed: Array
     damping: Array
     residuals: Array
-    """Measured less fitted [N s/m]."""
+    """Measured minus fitted damping [N s/m]."""
     r_squared: float | None
     quantile: float
-    """Student's t of the bounds; infinite without spare points."""
+    """Student's t of the bounds; infinite without degrees of freedom."""
     doubts: tuple[str, ...]
-    """Why parameters are not determined; empty where all are."""
+    """Reasons for undetermined parameters; empty if all are determined."""
 
     @property
     def values(self) -> dict[str, float]:
@@ -60,7 +60,7 @@ class Fit:
 
     @property
     def largest_error(self) -> float:
-        """Largest |B_fit/B - 1| over the points."""
+        """Largest |B_fit/B - 1| of all points."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return float(np.max(np.abs(self.residuals / self.damping)))
 
@@ -69,9 +69,9 @@ class Fit:
         return self.law(speed=speed, **self.values)
 
     def bounds(self, speed: Array) -> tuple[Array, Array]:
-        """Lower and upper bound of the fitted curve (its mean, not a single point) at speeds.
+        """Confidence bounds of the fitted curve (mean value, not a single point) at speeds.
 
-        Infinite where the points leave a parameter without any bound.
+        Infinite where the points leave a parameter unbounded.
         """
         slopes = _slopes(self.law, self.values, speed)
         with np.errstate(invalid="ignore"):
@@ -148,7 +148,7 @@ def fit_double_exponential(speed: Array, damping: Array, weights: Array | None =
         "rate_2": float(found[1][1]),
     }
     at_limit = [one for one in rates if abs(one) > 0.999 * steepest]
-    doubts = ("an exponential so steep that one point alone sees it",) if at_limit else ()
+    doubts = ("an exponential so steep that only one point affects it",) if at_limit else ()
     least = dict.fromkeys(("rate_1", "rate_2"), 1 / float(v[-1]))
     law = laws.double_exponential
     return assess("double exponential", law, values, v, b, w, least=least, doubts=doubts)
@@ -165,17 +165,17 @@ def assess(
     least: Mapping[str, float] | None = None,
     doubts: tuple[str, ...] = (),
 ) -> Fit:
-    """The record of a law at its least-squares values: bounds, R-squared, what is not determined.
+    """Fitted law from least-squares values: bounds, R-squared, undetermined parameters.
 
     Parameters
     ----------
-    name : of the law
-    law : B of `speed` and the values, safe under a complex step
+    name : name of the law
+    law : function B(speed, values), safe under a complex step
     values : least-squares parameters by name, SI
     speed, damping, weights : the points
-    least : sizes of parameters that may be near 0, the step that reshapes the curve; of the others
-        the value is the size
-    doubts : what the search has already found undetermined
+    least : sizes of parameters that may be near 0, as steps that matter to the curve; the size of
+        other parameters is their value
+    doubts : parameters that the search already left undetermined
 
     Returns
     -------
@@ -189,7 +189,9 @@ def assess(
     spare = speed.size - len(values)
     reasons = list(doubts)
     if spare == 0:
-        reasons.append(f"{speed.size} points leave none to judge {len(values)} parameters by")
+        reasons.append(
+            f"{speed.size} points leave no degree of freedom for {len(values)} parameters"
+        )
     elif found.rank < len(values):
         reasons.append(f"the points determine {found.rank} of {len(values)} parameters")
     else:
@@ -229,17 +231,17 @@ def _r_squared(damping: Array, fitted: Array, weights: Array) -> float | None:
 
 
 def _reference(rate: float, abscissa: Array) -> float:
-    """Where an exponential is largest over the points."""
+    """Argument at which an exponential is largest over the points."""
     return float(abscissa[0] if rate < 0 else abscissa[-1])
 
 
 def _shifted(rate: float, abscissa: Array) -> Array:
-    """e^(rate x) over its largest value over the points: never overflows."""
+    """e^(rate x) over its largest value at the points: never overflows."""
     return np.exp(rate * (abscissa - _reference(rate, abscissa)))
 
 
 def _both_signs(least: float, most: float, count: int) -> list[float]:
-    """A grid of rates of both signs, equal in ratio."""
+    """A geometric grid of rates of both signs."""
     half = np.geomspace(least, most, count)
     return [float(one) for one in (*-half[::-1], *half)]
 
@@ -251,9 +253,9 @@ def _projected(
     basis: Callable[[float], Array],
     steepest: float,
 ) -> tuple[Array, Array]:
-    """Rates and amplitudes of least squares: amplitudes by linear least squares at every rate.
+    """Least-squares rates and amplitudes: amplitudes by linear least squares for every rate.
 
-    The best few of the starts, apart from each other, are refined within +-steepest.
+    The best distinct starts are refined within +-steepest.
     """
     root = np.sqrt(weights / np.sum(weights))
     scale = float(np.max(np.abs(damping))) or 1.0
@@ -287,7 +289,7 @@ def _projected(
 
 
 def _apart(starts: Sequence[tuple[float, ...]], costs: list[float], count: int = 6) -> Array:
-    """The cheapest starts that differ from each other by more than a third in a rate."""
+    """Starts of least cost that differ from each other by more than a third in a rate."""
     chosen: list[tuple[float, ...]] = []
     for k in np.argsort(costs):
         start = np.array(starts[k])
@@ -301,12 +303,14 @@ def _apart(starts: Sequence[tuple[float, ...]], costs: list[float], count: int =
 def _points(
     speed: Array, damping: Array, weights: Array | None, *, parameters: int
 ) -> tuple[Array, Array, Array]:
-    """The points in order of speed, as arrays; one clear line where they cannot be fitted."""
+    """Points in order of speed, as arrays; raises a one-line error if unusable."""
     v, b = (np.atleast_1d(np.asarray(one, dtype=float)) for one in (speed, damping))
     w = np.ones(v.shape) if weights is None else np.atleast_1d(np.asarray(weights, dtype=float))
     if v.ndim != 1 or v.shape != b.shape or v.shape != w.shape:
         sizes = ", ".join(str(one.shape) for one in (v, b, w))
-        raise _fault(f"speed, damping and weights have shapes {sizes}", "give one of each a point")
+        raise _fault(
+            f"speed, damping and weights have shapes {sizes}", "give one value of each per point"
+        )
     for name, one in (("speed", v), ("damping", b), ("weight", w)):
         broken = np.flatnonzero(~np.isfinite(one))
         if broken.size:
@@ -314,13 +318,13 @@ def _points(
     for name, one in (("speed", v), ("weight", w)):
         low = np.flatnonzero(one <= 0)
         if low.size:
-            reason = "a secant damping has no value at rest and " if name == "speed" else ""
+            reason = "secant damping is undefined at rest and " if name == "speed" else ""
             fault = f"{name} of point {low[0]} is {one[low[0]]:g}; {reason}must be above 0"
             raise _fault(fault, "leave the point out")
     different = np.unique(v).size
     if different < parameters:
-        fault = f"{different} different speeds for a law of {parameters} parameters"
-        raise _fault(fault, f"give {parameters} or more, one more to have bounds")
+        fault = f"{different} different speeds for a law with {parameters} parameters"
+        raise _fault(fault, f"give at least {parameters}; bounds need one more")
     order = np.argsort(v, kind="stable")
     return v[order], b[order], w[order]
 

@@ -1,4 +1,4 @@
-"""Laws of an oil: which one a design means, and what each needs the library to know."""
+"""Laws of an oil: the selected law, and the library data that each law needs."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ _GOOD = {
     "bulk_modulus_slope": "6", "pressure_viscosity": "18 1/GPa", "tait_modulus": "8.4 GPa",
     "tait_decay": "0.0058 1/K", "tait_coefficient": "11.9",
 }  # fmt: skip
-"""One good value of each, of mineral oil, for messages."""
+"""An example of each property, for mineral oil, for messages."""
 
 
 def bulk_modulus_law(stated: str | None, known: Container[str]) -> str:
-    """The stated law, else linear where the slope is among the known properties, else constant."""
+    """The stated law; else linear if the slope is a known property, else constant."""
     return stated or ("linear" if "bulk_modulus_slope" in known else "constant")
 
 
 def viscosity_law(stated: str | None, known: Container[str]) -> str:
-    """The stated law, else Roelands where its coefficient is among the known properties."""
+    """The stated law; else Roelands if its coefficient is a known property."""
     return stated or ("roelands" if "pressure_viscosity" in known else "none")
 
 
 def of_fluid(tree: Any, materials: Materials) -> Iterator[Fault]:
-    """Laws of the oil whose data neither the library nor the design states."""
+    """Stated laws of the oil without the data they need in library or design."""
     view = View(tree)
     name = view.text("fluid", "material")
     if name is None or not isinstance(materials, Properties) or materials.kind(name) != "fluid":
@@ -37,7 +37,7 @@ def of_fluid(tree: Any, materials: Materials) -> Iterator[Fault]:
     own = child_at(tree, ("materials", name))
     try:
         known = {*materials.numbers(name), *(own if isinstance(own, Mapping) else ())}
-    except InputError:  # a faulty entry is told elsewhere
+    except InputError:  # a faulty entry is reported elsewhere
         return
     for key, laws, instead in (
         ("bulk_modulus_law", BULK_MODULUS_LAWS, bulk_modulus_law(None, known)),
@@ -49,7 +49,7 @@ def of_fluid(tree: Any, materials: Materials) -> Iterator[Fault]:
             stated = f'"{missing[0]}: {_GOOD[missing[0]]}"'
             yield Fault(
                 ("fluid", key),
-                f"{law}: {name} states no {', '.join(missing)}",
+                f"{law}: {name} has no {', '.join(missing)}",
                 f"write {instead}, or add e.g. {stated} under materials.{name}",
             )
 

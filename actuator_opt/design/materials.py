@@ -1,4 +1,4 @@
-"""The material libraries: shipped entries, a person's own files over them, look-up by name."""
+"""Material libraries: shipped entries, overridden by the user's files; look-up by name."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ __all__ = [
 
 
 class Library:
-    """Materials by name; later files override earlier ones. Entries are read when asked for."""
+    """Materials by name; later files override earlier files. Entries are read on demand."""
 
     def __init__(self, files: Iterable[MaterialFile]) -> None:
         self._files = tuple(files)
@@ -37,7 +37,7 @@ class Library:
         self._check_clashes()
 
     def _check_clashes(self) -> None:
-        """Refuse the same name in two files of one folder; another folder may override."""
+        """Refuse a duplicate name in files of the same folder; other folders may override."""
         first: dict[tuple[Path, str], MaterialFile] = {}
         for file in self._files:
             for name in file.names():
@@ -48,7 +48,7 @@ class Library:
                 first[key] = file
 
     def names(self, *, kind: str | None = None, role: str | None = None) -> list[str]:
-        """Names in alphabetical order, of one kind or of the kinds that suit a role."""
+        """Names in alphabetical order, of a kind or of the kinds that suit a role."""
         kinds = ROLES[role] if role else (kind,) if kind else None
         return sorted(
             name
@@ -57,7 +57,7 @@ class Library:
         )
 
     def kind(self, name: str) -> str | None:
-        """Kind of an entry; None where there is none of that name."""
+        """Kind of an entry; None if the name is unknown."""
         if name not in self:
             return None
         return self._files[self._home[name]].kind(name) or self.get(name).kind
@@ -72,17 +72,17 @@ class Library:
         return len(self.names())
 
     def get(self, name: str, *, role: str | None = None) -> Material:
-        """Material of that name.
+        """Material with this name.
 
         Parameters
         ----------
-        name : of the entry
-        role : ``structural``, ``fluid``, ``seal`` or ``fastening``: what it is to be used as
+        name : name of the entry
+        role : ``structural``, ``fluid``, ``seal`` or ``fastening``: intended use
 
         Raises
         ------
-        InputError : no such name (with the nearest ones), a kind that does not suit the role, or
-            a faulty entry (with file and line of every fault)
+        InputError : unknown name (with similar names), unsuitable kind, or a faulty entry (with
+            file and line of every fault)
         """
         if name not in self:
             raise InputError(self._unknown(name, role))
@@ -94,7 +94,7 @@ class Library:
         return found
 
     def numbers(self, name: str) -> dict[str, float]:
-        """Every stated property of a material, SI; a table counts by its reference value."""
+        """Stated properties of a material, SI; a table is represented by its reference value."""
         return dict(self.get(name).numbers)
 
     def check(self) -> list[Diagnostic]:
@@ -115,7 +115,9 @@ class Library:
             return self._read_already[key]
         file = self._files[index]
         if key in self._open:
-            raise InputError(file.fault(name, "inherits from itself", "break the circle"))
+            raise InputError(
+                file.fault(name, "inherits from itself", "remove one inherit: of the circle")
+            )
         self._open.append(key)
         try:
             found = read_entry(file, name, functools.partial(self._parent, index))
@@ -125,10 +127,10 @@ class Library:
         return found
 
     def _parent(self, index: int, name: str) -> Material | None:
-        """Find what `inherit: name` means in file `index`.
+        """The material that `inherit: name` refers to in file `index`.
 
-        An entry of the same file first (unless it is the one being read), then of the files
-        below, last of the other files of its folder.
+        Searched in the same file first (except the entry being read), then in overridden files,
+        last in the other files of its folder.
         """
         folder = Path(self._files[index].path).parent
         order = [index, *range(index - 1, -1, -1)]
@@ -139,7 +141,7 @@ class Library:
         return self._read(name, (others or homes)[0]) if homes else None
 
     def _unknown(self, name: str, role: str | None) -> Diagnostic:
-        import difflib  # only a faulty name pays for it
+        import difflib  # slow, needed for faults only
 
         names = self.names(role=role)
         folded = name.casefold().replace("-", "_").replace(" ", "_")
@@ -151,12 +153,12 @@ class Library:
 
 
 def load_library(extra: Iterable[str | Path] = ()) -> Library:
-    """Load the shipped library, with a person's own files over it.
+    """Load the shipped library, overridden by the user's files.
 
     Parameters
     ----------
-    extra : library files; their entries replace shipped ones of the same name and may inherit
-        from them. All their faults are raised at once.
+    extra : library files; their entries replace shipped entries of the same name and may inherit
+        from them. All their faults are raised together.
 
     Raises
     ------

@@ -1,7 +1,7 @@
-"""The Design: what a person writes, in SI, as typed sections.
+"""The Design: contents of a design file in SI, as typed sections.
 
-Every number carries the name of its quantity (`Of`), so that parsing, range checks, the JSON
-Schema and reports read one declaration (`quantities.INPUTS`). Sections hold no physics.
+Every number names its quantity (`Of`): parsing, range checks, the JSON Schema and reports read one
+declaration (`quantities.INPUTS`). Sections contain no physics.
 """
 
 from __future__ import annotations
@@ -23,25 +23,28 @@ from .variable import Measured, Uncertain, Variable
 
 
 class FluidSection(Section):
-    """The oil and its state."""
+    """The oil and its condition."""
 
     material: Annotated[str, MaterialName("fluid")]
     temperature: Annotated[
-        float, Of("temperature", "oil temperature where a load case states none")
+        float, Of("temperature", "oil temperature, unless a load case states its own")
     ] = 313.15
     air_content: Annotated[
         float, Of("air_content", "entrained air at atmospheric pressure, by volume")
     ] = 0.005
     polytropic_index: Annotated[
         float,
-        Of("polytropic_index", "of entrained air and accumulators: 1.4 fast (adiabatic), 1 slow"),
+        Of(
+            "polytropic_index",
+            "polytropic index of entrained air and accumulators: 1.4 fast (adiabatic), 1 slow",
+        ),
     ] = 1.4
     bulk_modulus_law: choices.BulkModulusLaw = None
     viscosity_pressure: choices.ViscosityLaw = None
 
 
 class Supply(Section):
-    """Pressures at the actuator's ports, gauge."""
+    """Gauge pressures at the ports of the actuator."""
 
     pressure: Annotated[float, Of("working_pressure", "gauge pressure at the driven port")]
     return_pressure: Annotated[float, Of("pressure", "gauge pressure at the other port")] = 0.0
@@ -49,16 +52,16 @@ class Supply(Section):
 
 
 class Environment(Section):
-    """Temperatures the actuator must survive (trapped oil, thermal mismatch, service limits)."""
+    """Environmental temperatures (trapped oil, thermal mismatch, service limits)."""
 
-    temperature_min: Annotated[float, Of("temperature", "coldest the actuator gets")]
-    temperature_max: Annotated[float, Of("temperature", "hottest the actuator gets")]
+    temperature_min: Annotated[float, Of("temperature", "lowest temperature of the actuator")]
+    temperature_max: Annotated[float, Of("temperature", "highest temperature of the actuator")]
     assembly_temperature: Annotated[
-        float, Of("temperature", "temperature at which the parts are joined and filled")
+        float, Of("temperature", "temperature at assembly and oil filling")
     ] = 293.15
-    wet: Annotated[bool, Flag("whether the laminate has taken up moisture")] = True
+    wet: Annotated[bool, Flag("whether the laminate is saturated with moisture")] = True
     trapped_rise: Annotated[
-        float | None, Of("temperature_rise", "warming of the oil while the ports are blocked")
+        float | None, Of("temperature_rise", "temperature rise of the oil with blocked ports")
     ] = None
     cure_temperature: Annotated[
         float | None, Of("temperature", "temperature at which the laminate is stress-free")
@@ -66,72 +69,74 @@ class Environment(Section):
 
 
 class Cylinder(Section):
-    """The main dimensions and how the actuator is held."""
+    """Main dimensions and mounting."""
 
     bore: Annotated[float, Of("bore", "inner diameter of the barrel")]
     stroke: Annotated[float, Of("stroke", "travel of the piston")]
     mount: choices.Mount = "cap_clevis"
     end_stop: choices.EndStop = "internal"
     dead_volume_a: Annotated[
-        float, Of("volume", "oil volume of the cap side at zero stroke, ports included")
+        float, Of("volume", "dead oil volume of the cap side at zero stroke, including ports")
     ] = 0.0
     dead_volume_b: Annotated[
-        float, Of("volume", "oil volume of the rod side at full stroke, ports included")
+        float, Of("volume", "dead oil volume of the rod side at full stroke, including ports")
     ] = 0.0
     port_diameter: Annotated[float | None, Of("diameter", "inner diameter of both ports")] = None
     stop_travel: Annotated[
         float,
-        Of("stop_travel", "travel over which an internal end stop takes supply pressure's force"),
+        Of(
+            "stop_travel",
+            "deflection of an internal end stop under the force of the supply pressure",
+        ),
     ] = 0.2e-3
-    mount_stiffness: Annotated[
-        float | None, Of("stiffness", "axial stiffness of what holds the actuator")
-    ] = None
+    mount_stiffness: Annotated[float | None, Of("stiffness", "axial stiffness of the mounting")] = (
+        None
+    )
 
 
 class Ply(Section):
     """One layer of a tube wall, from the inside outwards.
 
-    In the file several layers may stand as one entry in compact notation (`layup`).
+    In the file, an entry in compact notation (`layup`) may give several layers.
     """
 
     material: Annotated[str, MaterialName("structural")]
     thickness: Annotated[float, Of("wall_thickness", "thickness of the layer")]
     angle: Annotated[
-        float, Of("winding_angle", "winding angle from the tube axis; signed where not balanced")
+        float, Of("winding_angle", "winding angle from the tube axis; signed if not balanced")
     ] = 0.0
     balanced: Annotated[
         bool,
         Flag(
-            "an angle is a balanced +-angle pair; false: one ply at that signed angle, "
-            "the wall may twist"
+            "true: a balanced +-angle pair; false: one ply at the signed angle, the wall may twist"
         ),
     ] = True
     ply_thickness: Annotated[
         float | None,
         Of(
             "ply_thickness",
-            "cured thickness of one ply; thickness must be whole plies when the design is rounded",
+            "cured thickness of one ply; rounding a design gives a whole number of plies",
         ),
     ] = None
 
 
 MOST_LAYERS = 24
-"""Largest number of layers of a wall."""
+"""Most layers of a wall."""
 
 
 class Barrel(Section):
-    """The pressure tube; one isotropic layer is a metal barrel."""
+    """The pressure tube; a single isotropic layer is a metal barrel."""
 
     layup: Annotated[tuple[Ply, ...], Field(min_length=1, max_length=MOST_LAYERS)]
     model: choices.WallModel = "auto"
     criterion: choices.Criterion = "max_stress"
     autofrettage_pressure: Annotated[
         float | None,
-        Of("autofrettage_pressure", "pressure that yields the metal liner once, before use"),
+        Of("autofrettage_pressure", "pressure that yields the metal liner once before use"),
     ] = None
     allowed_angles: Annotated[
         tuple[
-            Annotated[float, Of("allowed_angle", "winding angle the shop can make, for rounding")],
+            Annotated[float, Of("allowed_angle", "feasible winding angle, for rounding")],
             ...,
         ]
         | None,
@@ -152,12 +157,15 @@ class Thread(Section):
 class RetentionThread(Section):
     """Metric thread of tie rods, or of caps screwed onto the barrel's outside.
 
-    The barrel is turned down to the diameter of the caps' thread; left out, it is the outside.
+    The barrel is turned down to the diameter of the caps' thread; default: its outer diameter.
     """
 
     diameter: Annotated[
         float | None,
-        Of("thread_diameter", "nominal diameter (default: the barrel's outside; of tie rods none)"),
+        Of(
+            "thread_diameter",
+            "nominal diameter (default: barrel outer diameter; tie rods: no default)",
+        ),
     ] = None
     pitch: Annotated[float, Of("thread_pitch", "pitch")]
 
@@ -168,25 +176,26 @@ class Fitting(Section):
     material: Annotated[str | None, MaterialName("isotropic")] = None
     """Default: the rod's material."""
     adhesive: Annotated[str, MaterialName("fastening")]
-    length: Annotated[float, Of("part_length", "overlap of fitting and tube, inside the tube")]
+    length: Annotated[float, Of("part_length", "overlap with the tube, inside it")]
     wall: Annotated[
-        float | None, Of("wall_thickness", "wall of the fitting in the overlap; default: solid")
+        float | None,
+        Of("wall_thickness", "wall thickness of the fitting in the overlap; default: solid"),
     ] = None
 
 
 class Rod(Section):
-    """The piston rod; `extension` is what shows outside the head when retracted.
+    """The piston rod; `extension` is its length outside the head when retracted.
 
-    A laminated rod has a `layup`, whose outer diameter is `outer_diameter`; `material` then is
-    the metal of its end fittings, and its bore follows from the layers.
+    A laminated rod has a `layup` with the outer diameter `outer_diameter`. Its bore follows from
+    the layers, and `material` is the metal of its end fittings.
     """
 
     material: Annotated[str, MaterialName("isotropic")]
-    outer_diameter: Annotated[float, Of("rod_diameter", "diameter through the rod seal")]
+    outer_diameter: Annotated[float, Of("rod_diameter", "diameter in the rod seal")]
     inner_diameter: Annotated[
         float, Of("rod_inner_diameter", "bore of a hollow rod; 0 is solid")
     ] = 0.0
-    extension: Annotated[float, Of("length", "what shows outside the head when retracted")] = 0.0
+    extension: Annotated[float, Of("length", "length outside the head when retracted")] = 0.0
     thread: Thread | None = None
     layup: Annotated[tuple[Ply, ...], Field(max_length=MOST_LAYERS)] = ()
     fitting: Fitting | None = None
@@ -198,19 +207,23 @@ class Piston(Section):
     material: Annotated[str, MaterialName("structural")]
     length: Annotated[float, Of("part_length", "axial length of the piston")]
     bearing: Annotated[str | None, MaterialName("structural")] = None
-    clearance: Annotated[float, Of("radial_clearance", "radial clearance piston to bore")] = 3e-5
+    clearance: Annotated[
+        float, Of("radial_clearance", "radial clearance between piston and bore")
+    ] = 3e-5
     leakage_conductance: Annotated[
-        float, Of("conductance", "leakage across the piston over the pressure difference")
+        float, Of("conductance", "leakage across the piston per pressure difference")
     ] = 0.0
 
 
 class Head(Section):
-    """Rod-end head: carries rod bearing, rod seal and wiper over `length` inside the barrel."""
+    """Rod-end head: contains rod bearing, rod seal and wiper over `length` inside the barrel."""
 
     material: Annotated[str, MaterialName("structural")]
     length: Annotated[float, Of("part_length", "axial length inside the barrel")]
     bearing: Annotated[str | None, MaterialName("structural")] = None
-    clearance: Annotated[float, Of("radial_clearance", "radial clearance rod to head")] = 3e-5
+    clearance: Annotated[float, Of("radial_clearance", "radial clearance between rod and head")] = (
+        3e-5
+    )
 
 
 class Caps(Section):
@@ -221,10 +234,10 @@ class Caps(Section):
 
 
 class _Retention(Section):
-    """How caps and head are held: a skirt over the barrel's outside (bond, thread), or tie rods.
+    """Joint of caps and head: skirts over the barrel (bond, thread), or tie rods.
 
-    `length` is the overlap of skirt and barrel, `wall` the skirt's thickness, `material` the
-    adhesive or the tie-rod metal; a thread is cut into the barrel's and the caps' own metal.
+    `length` is the overlap of skirt and barrel, `wall` the thickness of the skirt, `material` the
+    adhesive or the tie-rod metal. A thread is cut into the metal of barrel and caps.
     """
 
     type: choices.RetentionType
@@ -239,12 +252,12 @@ class _Retention(Section):
 
 
 def _own_fields() -> dict[str, Any]:
-    """The keys that single joints add, each with its quantity."""
+    """Keys that only some joints have, each with its quantity."""
     own = {
         field.key: field for joint in JOINTS.values() for field in joint.fields if field.quantity
     }
     for key in own.keys() & _Retention.model_fields.keys():
-        raise ValueError(f"joint field {key}: every joint has it, so it states no quantity")
+        raise ValueError(f"joint field {key}: shared by all joints, must not state a quantity")
     return {
         key: (Annotated[float | None, Of(field.quantity, field.help)], None)
         for key, field in own.items()
@@ -253,7 +266,7 @@ def _own_fields() -> dict[str, Any]:
 
 if TYPE_CHECKING:
     Retention: TypeAlias = _Retention
-else:  # with the keys that single joints add
+else:  # with the keys that only some joints have
     Retention = create_model(
         "Retention",
         __base__=_Retention,
@@ -271,37 +284,37 @@ class Clevis(Section):
 
 
 class Stiffness(Section):
-    """What counts in the axial stiffness, and how it combines."""
+    """Contributions to the axial stiffness, and their combination."""
 
     topology: choices.Topology = "per_chamber"
     seals: choices.SealState = "sliding"
     seal_deflection: Annotated[
         float, Of("breakaway_travel", "travel at which sticking seals break away")
     ] = 1e-4
-    load_cell: Annotated[
-        float | None, Of("stiffness", "stiffness of the load cell of a test rig")
-    ] = None
+    load_cell: Annotated[float | None, Of("stiffness", "stiffness of a test rig's load cell")] = (
+        None
+    )
 
 
 class LoadCase(Section):
-    """One duty: a force (or a joint torque), a direction, a speed, a place.
+    """A duty: force or joint torque, direction, speed, position.
 
-    A joint torque works on its own lever arm, or through the linkage.
+    A joint torque acts on the stated lever arm, or through the linkage.
     """
 
-    name: Annotated[str, CaseName("how reports and PATHs call the case")]
+    name: Annotated[str, CaseName("name of the case in reports and PATHs")]
     direction: choices.Direction
     force: Annotated[float | None, Of("force", "axial force to deliver")] = None
     joint_torque: Annotated[float | None, Of("torque", "joint torque, instead of a force")] = None
     lever_arm: Annotated[
-        float | None, Of("lever_arm", "lever arm of the joint torque; default: of the linkage")
+        float | None, Of("lever_arm", "lever arm of the joint torque; default: from the linkage")
     ] = None
     angle: Annotated[
         float | None, Of("joint_angle", "joint angle of the linkage, instead of a position")
     ] = None
     speed: Annotated[float, Of("speed", "piston speed")] = 0.0
     joint_speed: Annotated[
-        float | None, Of("joint_speed", "speed of the joint of the linkage, instead of speed")
+        float | None, Of("joint_speed", "joint speed of the linkage, instead of speed")
     ] = None
     position: Annotated[Position, PositionKind()] = "worst"
     pressure: Annotated[
@@ -310,77 +323,77 @@ class LoadCase(Section):
     temperature: Annotated[
         float | None, Of("temperature", "oil temperature; default: fluid.temperature")
     ] = None
-    side_load: Annotated[float, Of("force", "force across the rod end")] = 0.0
+    side_load: Annotated[float, Of("force", "lateral force at the rod end")] = 0.0
     frequency: Annotated[
-        float | None, Of("frequency", "frequency at which the load shakes the held actuator")
+        float | None, Of("frequency", "excitation frequency of the load on the held actuator")
     ] = None
     pressure_a: Annotated[
         float | None,
         Of(
             "pressure",
-            "gauge pressure in the held chamber A; "
-            "default: as a critical-centre valve holds the force",
+            "gauge pressure in chamber A while holding; "
+            "default: that of a critical-centre valve that holds the force",
         ),
     ] = None
     pressure_b: Annotated[
         float | None,
         Of(
             "pressure",
-            "gauge pressure in the held chamber B; "
-            "default: as a critical-centre valve holds the force",
+            "gauge pressure in chamber B while holding; "
+            "default: that of a critical-centre valve that holds the force",
         ),
     ] = None
 
     @property
     def through_linkage(self) -> bool:
-        """Whether a joint torque is asked that works through the linkage."""
+        """Whether a joint torque acts through the linkage."""
         return self.joint_torque is not None and self.lever_arm is None
 
     @property
     def moves(self) -> bool:
-        """Whether the piston or the joint has a speed."""
+        """Whether the case states a speed of piston or joint."""
         return self.speed > 0 or (self.joint_speed or 0.0) > 0
 
 
 class Limit(Section):
-    """Limits of a metric (SI); in the file, units by the metric."""
+    """Limits of a metric (SI); the file uses units of the metric."""
 
     min: float | None = None
     max: float | None = None
 
 
 class Objective(Section):
-    """One metric, or several with weights (each divided by its value in the file's design)."""
+    """A metric, or several with weights (each divided by its value in the original design)."""
 
     minimise: Annotated[str | dict[str, float] | None, Goal()] = None
     maximise: Annotated[str | dict[str, float] | None, Goal()] = None
 
     @property
     def aim(self) -> Sense:
-        """Whether small ("min") or large values are wanted."""
+        """Whether small ("min") or large values are better."""
         return "max" if self.minimise is None else "min"
 
     @property
     def metrics(self) -> tuple[str, ...]:
-        """The metrics it is made of."""
+        """Metrics of the objective."""
         stated = self.maximise if self.minimise is None else self.minimise
         return (stated,) if isinstance(stated, str) else tuple(stated or ())
 
 
 def _like_the_piston(stated: dict[str, Any]) -> Head:
-    """A head of the piston's material and length, where the file states none."""
+    """A head with the piston's material and length, if the file has none."""
     piston = stated.get("piston")
-    if piston is None:  # itself a fault; this only keeps the others readable
+    if piston is None:  # a missing piston is a separate fault
         return Head.model_construct(material="", length=0.0)
     return Head(material=piston.material, length=piston.length)
 
 
 PLAIN_CAP = 0.25
-"""Thickness over bore of the end plates where the file states none."""
+"""Default thickness over bore of the end plates."""
 
 
 def _plain_caps(stated: dict[str, Any]) -> Caps:
-    """End plates of the piston's material and a quarter of the bore, where none are stated."""
+    """End plates of the piston's material and a quarter of the bore, if the file has none."""
     piston, cylinder = stated.get("piston"), stated.get("cylinder")
     if piston is None or cylinder is None:
         return Caps.model_construct(material="", thickness=0.0)
@@ -388,7 +401,7 @@ def _plain_caps(stated: dict[str, Any]) -> Caps:
 
 
 class Design(Section):
-    """A hydraulic actuator with its duties, its freedom and its requirements."""
+    """A hydraulic actuator with its duties, variables and requirements."""
 
     name: Annotated[str, Text("title of the design")]
     notes: Annotated[str, Text("free text for the report", 20000, multiline=True)] = ""
@@ -418,9 +431,9 @@ class Design(Section):
     requirements: dict[str, Limit] = {}  # noqa: RUF012 (pydantic copies it)
     waivers: dict[str, Annotated[str, Text("why the check does not apply")]] = {}  # noqa: RUF012 (pydantic copies it)
     measured: dict[str, Measured] = {}  # noqa: RUF012 (pydantic copies it)
-    """Bounds of values that a test record gave, by PATH."""
+    """Bounds of values from a test record, by PATH."""
     uncertainty: dict[str, Uncertain] = {}  # noqa: RUF012 (pydantic copies it)
-    """How values scatter, by PATH, beyond what libraries and practice say."""
+    """Scatter of values by PATH, in addition to the scatter of libraries and practice."""
     materials: dict[str, dict[str, float]] = {}  # noqa: RUF012 (pydantic copies it)
-    """Properties (SI) that replace the library's in this design, by material name."""
+    """Properties (SI) that replace those of the library in this design, by material name."""
     objective: Objective = Objective(minimise="mass")

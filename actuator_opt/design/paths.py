@@ -1,10 +1,10 @@
-"""PATHs: how files, `--set`, scripts and reports name one value of a design.
+"""PATHs: names of single values of a design in files, `--set`, scripts and reports.
 
 ``cylinder.bore`` · ``barrel.layup[1].thickness`` · ``load_cases[stance].force`` ·
 ``requirements.stiffness_min.min`` · ``variables.cylinder.bore.upper`` ·
-``materials.NAME.PROPERTY``. A load case may be named or counted from 0; its canonical PATH names
-it. Everything here takes a `Design` or the tree of dicts and lists it is built from; `resolve`
-also takes those of another root.
+``materials.NAME.PROPERTY``. A load case is given by name or by its index from 0; the canonical PATH
+uses the name. All functions accept a `Design` or its tree of dicts and lists; `resolve` also
+accepts other roots.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ _TABLES = (*_ENDS, *_TEXTS, "requirements", "materials", "objective")
 
 
 class _Token(NamedTuple):
-    """One step of a PATH: a key, or what stands in brackets."""
+    """One step of a PATH: a key, or the text in brackets."""
 
     text: str
     bracket: bool
@@ -45,7 +45,7 @@ class _Token(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """What a PATH names: its canonical spelling, its place in the tree, its quantity if a number.
+    """Target of a PATH: canonical spelling, place in the tree, quantity of a number.
 
     `entry` is None for values of tables (variables, requirements, materials, …).
     """
@@ -57,7 +57,7 @@ class Target:
 
 
 def spell(loc: Loc, tree: Any = None) -> str:
-    """The canonical PATH of a place; load cases by name where `tree` knows a unique one.
+    """The canonical PATH of a place; load cases by name if the name is unique in `tree`.
 
     >>> spell(("barrel", "layup", 1, "thickness"))
     'barrel.layup[1].thickness'
@@ -87,12 +87,12 @@ def resolve(
     metrics: Mapping[str, Quantity] | None = None,
     root: type[Section] = Design,
 ) -> Target:
-    """What `path` names in a section of the type `root` or in its tree.
+    """The target of `path` in a section of type `root` or in its tree.
 
     Raises
     ------
     ValueFault
-        malformed, unknown (with the nearest name), or a block instead of a value
+        malformed, unknown (with the most similar name), or a block instead of a value
     """
     path = path.strip()
     if len(path) > 200 or _PATH.fullmatch(path) is None:
@@ -117,7 +117,7 @@ def _resolve_section(
     section: type[Section],
     loc: Loc,
 ) -> Target:
-    """Follow `tokens` from one section of the whole tree, whose node may be unset (None)."""
+    """Follow `tokens` from a section of the tree; the section may be unset (None)."""
     known, tree = entries(section), whole[0]
     if not tokens:
         raise _not_a_value(path, list(known))
@@ -145,7 +145,7 @@ def _resolve_section(
 
 
 def _index(path: str, text: str, node: Any, loc: Loc) -> int:
-    """Index of a list entry given by number or, in load cases, by name."""
+    """Index of a list entry given by number or, for load cases, by name."""
     items = node if isinstance(node, (list, tuple)) else ()
     names = [child(item, "name") for item in items]
     if text in names:
@@ -159,7 +159,7 @@ def _index(path: str, text: str, node: Any, loc: Loc) -> int:
 
 
 def _resolve_table(head: str, rest: str, tree: Any, metrics: Mapping[str, Quantity]) -> Target:
-    """A value of a table: its name is free (a PATH, a metric, a material)."""
+    """A value of a table, whose names are free (a PATH, a metric, a material)."""
     path = f"{head}.{rest}"
     name, _, last = rest.rpartition(".")
     if head in _TEXTS:
@@ -170,7 +170,7 @@ def _resolve_table(head: str, rest: str, tree: Any, metrics: Mapping[str, Quanti
         return Target(path, (head, rest), None)
     if head in _ENDS:
         if not name or last not in _ENDS[head]:
-            raise ValueFault(f"{path}: no such PATH", f"end it with .{', .'.join(_ENDS[head])}")
+            raise ValueFault(f"{path}: unknown PATH", f"end it with .{', .'.join(_ENDS[head])}")
         target = resolve(name, tree, metrics)
         quantity = None if last in ("record", "sizes") else target.quantity
         if head == "uncertainty" and target.quantity is not None:
@@ -178,13 +178,13 @@ def _resolve_table(head: str, rest: str, tree: Any, metrics: Mapping[str, Quanti
         return Target(f"{head}.{target.path}.{last}", (head, target.path, last), quantity)
     if head == "requirements":
         if last not in _LIMITS or not name:
-            raise ValueFault(f"{path}: no such PATH", f"end it with .{' or .'.join(_LIMITS)}")
+            raise ValueFault(f"{path}: unknown PATH", f"end it with .{' or .'.join(_LIMITS)}")
         known: Mapping[str, Quantity] = metrics
         key = name
     else:
         known, key = quantities.MATERIAL_PROPERTIES, last
         if not name:
-            raise ValueFault(f"{path}: no such PATH", "write materials.NAME.PROPERTY")
+            raise ValueFault(f"{path}: unknown PATH", "write materials.NAME.PROPERTY")
     if key not in known:
         what = "metric" if head == "requirements" else "material property"
         raise ValueFault(f'{path}: "{key}" is not a {what}', suggest.remedy(key, known))
@@ -196,16 +196,16 @@ def _not_a_value(path: str, below: Sequence[str]) -> ValueFault:
 
 
 def _no_such(path: str, every: Sequence[str]) -> ValueFault:
-    return ValueFault(f"{path}: no such PATH", suggest.remedy(path, dict.fromkeys(every), 6))
+    return ValueFault(f"{path}: unknown PATH", suggest.remedy(path, dict.fromkeys(every), 6))
 
 
 def canonical(path: str, design: Design) -> str:
-    """The one spelling of a PATH that results and records use; raises `InputError`."""
+    """Canonical spelling of a PATH, as used in results and records; raises `InputError`."""
     return _target(path, design).path
 
 
 def quantity_of(path: str, design: Design) -> Quantity:
-    """The quantity of the number a PATH names; raises `InputError` for a text or no such PATH."""
+    """Quantity of the number at a PATH; raises `InputError` for a text or an unknown PATH."""
     target = _target(path, design)
     if target.quantity is None:
         raise InputError(
@@ -215,7 +215,7 @@ def quantity_of(path: str, design: Design) -> Quantity:
 
 
 def get(design: Design, path: str) -> float | str | None:
-    """The value at a PATH: SI number, text, or None where an optional value is not set."""
+    """Value at a PATH: SI number, text, or None if an optional value is not set."""
     node = child_at(design, _target(path, design).loc)
     number = number_of(node)
     return node if number is None else number
@@ -230,10 +230,9 @@ def _target(path: str, design: Design) -> Target:
 
 
 def numbers(design: Design) -> dict[str, float]:
-    """Every number of a design in SI by canonical PATH; optional values that are not set: absent.
+    """All numbers of a design in SI by canonical PATH; unset optional values are absent.
 
-    Positions given as a fraction of the stroke are the fraction; bounds of variables are not
-    among them.
+    Positions stated as a fraction of the stroke stay fractions; bounds of variables are left out.
     """
     found: dict[str, float] = {}
     for loc, _, value in leaves(design):
@@ -265,15 +264,15 @@ def split_assignment(text: str) -> tuple[str, str]:
 
 
 def put(tree: dict[str, Any], target: Target, value: object) -> None:
-    """Set a value in a tree of dicts and lists, adding the blocks on its way.
+    """Set a value in a tree of dicts and lists; missing blocks are added.
 
-    A number on a position written as a fraction of the stroke stays a fraction; a new objective
-    replaces the one there is.
+    A number set on a position written as a fraction of the stroke stays a fraction; a new
+    objective replaces the existing objective.
 
     Raises
     ------
     ValueFault
-        something else stands where a block belongs
+        a value where a block is needed
     """
     node: Any = tree
     for depth, key in enumerate(target.loc):
@@ -284,10 +283,10 @@ def put(tree: dict[str, Any], target: Target, value: object) -> None:
             node = child(node, above)
         if not isinstance(node, list if isinstance(key, int) else dict):
             message = f"{spell(target.loc[:depth])} is not a block"
-            raise ValueFault(message, "mend it in the file first")
+            raise ValueFault(message, "correct it in the file first")
     key = target.loc[-1]
     if target.loc[0] == "objective":
-        node.clear()  # a design has one objective: the new one replaces it
+        node.clear()  # a design has a single objective: the new objective replaces it
     if isinstance(value, float) and target.quantity is not None and target.entry is not None:
         is_share = target.quantity.name == "fraction"
         value = Fraction(value) if is_share and target.entry.name == "position" else value

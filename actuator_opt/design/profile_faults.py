@@ -1,4 +1,4 @@
-"""Faults of stated contact profiles: order, lengths, reach, and that they hold the pressure."""
+"""Faults of stated contact profiles: order, lengths, range, and sealing of the pressure."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def elements(view: View) -> Iterator[Loc]:
 
 
 def profiles(view: View) -> Iterator[Fault]:
-    """Stated contact pressures: positions from 0 upwards, one stress each, pressures in order."""
+    """Stated contact pressures: positions increase from 0, one stress each, sorted by pressure."""
     for loc in elements(view):
         last = -1.0
         for index, _ in enumerate(view.items(*loc, "contact")):
@@ -31,7 +31,7 @@ def profiles(view: View) -> Iterator[Fault]:
             if pressure is not None and pressure <= last:
                 yield Fault(
                     (*at, "pressure"),
-                    f"{INPUTS['pressure'].text(pressure)}: not above the profile before",
+                    f"{INPUTS['pressure'].text(pressure)}: not above the previous profile",
                     "sort the profiles by pressure, each once",
                 )
             last = last if pressure is None else pressure
@@ -41,8 +41,8 @@ def profiles(view: View) -> Iterator[Fault]:
                 yield Fault(
                     (*at, "stresses"),
                     f"nowhere above the sealed pressure ({INPUTS['pressure'].text(pressure)}): "
-                    "this contact holds nothing",
-                    "state contact pressures, the sealed pressure included",
+                    "this contact does not seal",
+                    "state contact pressures that include the sealed pressure",
                 )
             if len(positions) != len(stresses):
                 yield Fault(
@@ -56,12 +56,12 @@ def profiles(view: View) -> Iterator[Fault]:
                 yield Fault(
                     (*at, "positions"),
                     "not from 0 upwards",
-                    "begin with 0 mm at the sealed side, every next one larger",
+                    "begin with 0 mm at the sealed side, then increase",
                 )
 
 
 def reach(view: View) -> Iterator[Fault]:
-    """Stated profiles reach from no pressure to the supply's."""
+    """Stated profiles extend from zero pressure to the supply pressure."""
     supply, text = view.number("supply", "pressure"), INPUTS["pressure"].text
     for loc in elements(view):
         count = len(view.items(*loc, "contact"))
@@ -70,8 +70,8 @@ def reach(view: View) -> Iterator[Fault]:
         if first is not None and first > 0:
             yield Fault(
                 (*loc, "contact", 0, "pressure"),
-                f"{text(first)}: the contact without pressure is not stated",
-                "add the profile at 0 bar before it",
+                f"{text(first)}: the profile without pressure is missing",
+                "add a profile at 0 bar before it",
             )
         if last is not None and supply is not None and last < supply * (1 - 1e-9):
             yield Fault(

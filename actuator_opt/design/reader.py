@@ -1,6 +1,6 @@
-"""Design files: read, checked in one pass, every fault at its line and column.
+"""Design files: read and checked in one pass, each fault with line and column.
 
-`load` reads files of another root section with the same care.
+`load` reads files of other root sections in the same way.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ SET: Final = "--set"
 
 
 class Override(NamedTuple):
-    """A value that replaces a file's; `file` and `loc` say where, if another file states it."""
+    """A value that replaces a file's value; `file` and `loc` give its origin in another file."""
 
     path: str
     value: str
@@ -40,7 +40,7 @@ class Override(NamedTuple):
     def diagnostic(
         self, message: str, remedy: str, path: str | None, *, at_key: bool = False
     ) -> Diagnostic:
-        """A fault this value causes."""
+        """A fault caused by this value."""
         if self.file is None:
             return Diagnostic(message, remedy, SET, path=path)
         spans = self.file.keys if at_key else self.file.values
@@ -49,28 +49,28 @@ class Override(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Where a file's values stand, for faults found later (by an evaluation, a plug-in)."""
+    """Places of the values of a file, for later faults (from an evaluation or a plug-in)."""
 
     document: Document
     overrides: Mapping[Loc, Override] = field(default_factory=dict)
-    """Places set from outside the file."""
+    """Values set from outside the file."""
     root: type[Section] = Design
-    """What the file describes."""
+    """Section type of the file."""
     metrics: Mapping[str, Quantity] | None = None
-    """Metrics its requirements may name; default: `metrics.METRICS`."""
+    """Metrics that requirements may name; default: `metrics.METRICS`."""
 
     @property
     def file(self) -> str:
-        """Name of the file, as the person wrote it."""
+        """Name of the file as the user wrote it."""
         return self.document.file
 
     @property
     def text(self) -> str:
-        """The file's text."""
+        """Text of the file."""
         return self.document.text
 
     def diagnostic(self, path: str, message: str, remedy: str = "") -> Diagnostic:
-        """A fault of the value at a PATH; a PATH the file does not hold gets its block's place."""
+        """A fault of the value at a PATH; for a PATH that the file lacks, at its block."""
         try:
             loc = resolve(path, self.document.data, self.metrics, self.root).loc
         except ValueFault:
@@ -82,7 +82,7 @@ class Source:
         return self.at(Fault(("variables", path), message, remedy, at_key=True), path)
 
     def at(self, fault: Fault, path: str | None = None) -> Diagnostic:
-        """A fault as a person reads it."""
+        """A fault as a diagnostic."""
         if path is None:
             path = spell(fault.loc, self.document.data) or None
         if path is not None:
@@ -98,7 +98,7 @@ class Source:
         return found[:2] if isinstance(found, Span) else (0, 0)
 
     def _find(self, fault: Fault) -> Span | Override | None:
-        """The nearest place in the text at or above the fault's own, or what replaced it."""
+        """Nearest place in the text at or above a fault, or the value that replaced it."""
         for depth in range(len(fault.loc), -1, -1):
             loc = fault.loc[:depth]
             if loc in self.overrides:
@@ -107,7 +107,7 @@ class Source:
             if span is None:
                 for other, override in self.overrides.items():
                     if other[:depth] == loc:
-                        return override  # the block itself came from outside
+                        return override  # the block itself was set from outside
             if fault.at_key or depth < len(fault.loc):
                 span = self.document.keys.get(loc) or span
             if span is not None:
@@ -117,7 +117,7 @@ class Source:
 
 @dataclass(frozen=True, slots=True)
 class LoadedDesign:
-    """A design and where it was read."""
+    """A design and its source."""
 
     design: Design
     source: Source
@@ -130,20 +130,20 @@ def read_design(
     materials: Materials | None = None,
     metrics: Mapping[str, Quantity] | None = None,
 ) -> LoadedDesign:
-    """Read a design file, or the text of one.
+    """Read a design file, or its text.
 
     Parameters
     ----------
     source : path, ``"-"`` for standard input, or a text of several lines
-    overrides : (PATH, value) pairs that replace values before anything is checked; a bare
-        number is SI, but for those that another file states
+    overrides : (PATH, value) pairs that replace values before all checks; a bare number is SI,
+        unless another file states it
     materials : names and kinds of materials; default: the library
     metrics : metrics that may be named; default: `metrics.METRICS`
 
     Raises
     ------
     InputError
-        with every fault, in the order of the file's lines
+        with all faults, in line order
     """
     text, file = opened(source)
     return read_document(
@@ -158,7 +158,7 @@ def read_document(
     materials: Materials | None = None,
     metrics: Mapping[str, Quantity] | None = None,
 ) -> LoadedDesign:
-    """The design of a parsed YAML document; parameters as `read_design`."""
+    """The design of a parsed YAML document; parameters as for `read_design`."""
 
     def made(tree: dict[str, Any]) -> tuple[Design | None, Sequence[Fault]]:
         known = library() if materials is None else materials
@@ -175,20 +175,20 @@ def load(
     overrides: Iterable[Override | tuple[str, str]] = (),
     metrics: Mapping[str, Quantity] | None = None,
 ) -> tuple[Root, Source]:
-    """The section a document describes, and where its values stand.
+    """The section that a document describes, and the places of its values.
 
     Parameters
     ----------
     document : parsed YAML
-    root : the section a whole file of this kind makes
-    made : makes it of a tree, or finds the tree's faults
-    overrides : values that replace the document's, as of `read_design`
+    root : section type of the whole file
+    made : builds the section from a tree, or lists the faults of the tree
+    overrides : values that replace those of the document, as for `read_design`
     metrics : metrics that may be named; default: `metrics.METRICS`
 
     Raises
     ------
     InputError
-        with every fault, in the order of the file's lines
+        with all faults, in line order
     """
     _require_kind(document)
     tree = copy_tree(document.data)
@@ -214,20 +214,20 @@ def load(
 
 
 _MARKS = {"design": "cylinder", "scenario": "design"}
-"""A key that every such file has, and no other."""
+"""Key that identifies the kind of file."""
 
 
 def is_scenario(source: str | Path) -> bool:
-    """Whether a file, or a text of several lines, looks like a scenario."""
+    """Whether a file, or a text of several lines, is a scenario."""
     data = parse(*opened(source, "design")).data
     return _MARKS["scenario"] in data and _MARKS["design"] not in data
 
 
 def _require_kind(document: Document) -> None:
-    """Refuse a scenario in a design's place, or a design in a scenario's, in one line."""
+    """Refuse a scenario in place of a design, or a design in place of a scenario."""
     for kind, mark in _MARKS.items():
         if mark in document.data and _MARKS[document.what] not in document.data:
-            remedy = "give the design it names"
+            remedy = "give the design file that it names"
             if kind == "design":
                 remedy = f'name it in a scenario: "design: {Path(document.file).name}"'
             message = f"the file is a {kind}, not a {document.what}"
@@ -239,7 +239,7 @@ def _unusable(fault: Fault, document: Document) -> bool:
 
 
 def _once(faults: Sequence[Fault], document: Document) -> list[Fault]:
-    """Faults that the layers of one compact entry share, said at the first of them."""
+    """Faults that the layers of a compact entry share, reported once."""
     found, said = [], set()
     for fault in faults:
         shorthand = document.shorthand(fault.loc)
@@ -255,22 +255,22 @@ def _once(faults: Sequence[Fault], document: Document) -> list[Fault]:
 def _in_order(
     source: Source, said: Sequence[Diagnostic], found: Sequence[Fault]
 ) -> list[Diagnostic]:
-    """Faults by line and column, at most `MOST_FAULTS` and a line that counts the rest.
+    """Faults by line and column, at most `MOST_FAULTS`, with the number of omitted faults.
 
-    Those of other files and of the command line stand first.
+    Faults of other files and of the command line come first.
     """
     first = sorted(found, key=source.place)[:MOST_FAULTS]
     everything = [*said, *(source.at(fault) for fault in first)]
     everything.sort(key=lambda f: (f.file == source.file, f.line or 0, f.column or 0))
     left = len(said) + len(found) - MOST_FAULTS
     if left > 0:
-        more = Diagnostic(f"and {left} more faults", "mend these first", source.file)
+        more = Diagnostic(f"and {left} more faults", "correct these first", source.file)
         everything = [*everything[:MOST_FAULTS], more]
     return everything
 
 
 def _bare_is_si(value: str, quantity: Quantity | None) -> str:
-    """`value` with the SI unit where it is a bare number."""
+    """`value` with the SI unit if it is a bare number."""
     if quantity is None:
         return value
     try:
@@ -292,7 +292,7 @@ def opened(source: str | Path, what: str = "design") -> tuple[str, str]:
 
 
 def library() -> Materials:
-    """The shipped material library; imported when a design is read."""
+    """The shipped material library, loaded when a design is read."""
     from .materials import load_library
 
     return load_library()

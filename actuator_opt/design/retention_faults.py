@@ -1,6 +1,6 @@
-"""Faults of `retention`: keys that its joint needs or does not use, and what the joint itself says.
+"""Faults of `retention`: missing or unused keys, and faults that the joint reports.
 
-What a joint needs, uses and refuses stands in its own module in `joints`.
+Each joint declares its keys and checks in its module in `joints`.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ _TYPE = ("retention", "type")
 
 
 def joint_of(view: View) -> Joint | None:
-    """The joint that a file names; None where it names none that there is."""
+    """The joint of a file; None if unknown."""
     return JOINTS.get(view.text(*_TYPE) or "")
 
 
 def keys(view: View) -> Iterator[Fault]:
-    """Keys that the joint needs are stated, and no others."""
+    """All keys that the joint needs are stated, and no others."""
     joint = joint_of(view)
     if joint is None:
         return
@@ -38,7 +38,7 @@ def keys(view: View) -> Iterator[Fault]:
 
 
 def _unused(view: View, joint: Joint) -> Iterator[Fault]:
-    """Keys that neither the joint nor one among the choices uses; a default is no statement."""
+    """Keys that neither the joint nor an alternative among the choices uses, except defaults."""
     offered = [JOINTS.get(name) for name in view.items("choices", ".".join(_TYPE))]
     used = _keys(one for one in (joint, *offered) if one is not None)
     for name, entry in entries(Retention).items():
@@ -55,7 +55,7 @@ def _unused(view: View, joint: Joint) -> Iterator[Fault]:
 
 
 def _keys(joints: Iterable[Joint]) -> set[str]:
-    """Keys of `retention` that some joints use."""
+    """Keys of `retention` that only some joints use."""
     return {field.key.partition(".")[0] for joint in joints for field in joint.fields}
 
 
@@ -76,38 +76,38 @@ def skirts(view: View) -> Iterator[Fault]:
     if overlap is not None and length is not None and 2 * overlap > length * (1 + 1e-9):
         yield Fault(
             ("retention", "length"),
-            f"{length_text(overlap)}: the skirts of both ends overlap on the barrel, which is "
+            f"{length_text(overlap)}: the skirts of both ends meet on the barrel, which is "
             f"{length_text(length)} long",
             f"write at most {length_text(length / 2)}",
         )
 
 
 def values(view: View) -> Iterator[Fault]:
-    """What the joint says of the values of the file."""
+    """Faults that the joint reports for the values of the file."""
     joint = joint_of(view)
     if joint is not None:
         yield from joint.faults(view)
 
 
 class _Known:
-    """The library, with the design's own properties over it."""
+    """The library, overridden by the properties that the design states."""
 
     def __init__(self, view: View, materials: Materials) -> None:
         self._view, self._materials = view, materials
 
     def kind(self, name: str) -> str | None:
-        """Kind of a material; None where there is none of this name."""
+        """Kind of a material; None if the name is unknown."""
         return self._materials.kind(name) if name in self._materials else None
 
     def properties(self, name: str) -> Iterable[str]:
-        """Names of its stated properties; none where they cannot be read."""
+        """Names of the stated properties; empty if unreadable."""
         if isinstance(self._materials, Properties):
             return known_numbers(self._view, self._materials, name)
         return ()
 
 
 def of_materials(tree: Any, materials: Materials) -> Iterator[Fault]:
-    """What the joint says when the library is asked."""
+    """Faults of the joint that depend on the material library."""
     view = View(tree)
     joint = joint_of(view)
     if joint is not None:

@@ -1,8 +1,8 @@
-"""JSON Schema (draft-07) of the files people write, for completion, hover and checks in an editor.
+"""JSON Schema (draft-07) of input files, for completion, hover and checks in an editor.
 
-Generated from the same declarations the reader uses: sections of `model`, quantities, units and
-metrics. Texts carry what yaml-language-server and VS Code show: `description` on hover,
-`patternErrorMessage` where a unit is wrong, `examples` and `defaultSnippets` on completion.
+Generated from the declarations that the reader uses: sections of `model`, quantities, units and
+metrics. yaml-language-server and VS Code show `description` on hover, `patternErrorMessage` for a
+wrong unit, `examples` and `defaultSnippets` on completion.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ from .view import Materials
 
 _REFERENCE = str.maketrans({"/": "_per_", "^": "", "*": "_", "%": "percent"})
 _LISTED = {"barrel.layup": 6, "rod.layup": 4, "lines": 2}
-"""How many entries of a list have their PATHs offered by name under `variables`."""
+"""Number of entries of a list whose PATHs are listed by name under `variables`."""
 _OF_TABLES = (
     r"^(name|notes|(objective|requirements|variables|measured|uncertainty|materials|waivers)\..+)$"
 )
-"""PATHs that `set` takes beside those of the parts."""
+"""PATHs that `set` accepts besides those of the parts."""
 
 
 def json_schema(
@@ -41,13 +41,13 @@ def json_schema(
     materials: Materials | None = None,
     metrics: Mapping[str, Quantity] | None = None,
 ) -> Schema:
-    """The schema of a design file, or of a file that describes another root section.
+    """JSON Schema of a design file, or of a file with another root section.
 
     Parameters
     ----------
-    root : what the file describes
-    materials : library whose names are offered; None takes any name
-    metrics : metrics that may be named; default: `metrics.METRICS`
+    root : section type of the file
+    materials : library whose names are offered; None accepts any name
+    metrics : allowed metrics; default: `metrics.METRICS`
     """
     metrics = METRICS if metrics is None else metrics
     definitions: Schema = {}
@@ -75,7 +75,7 @@ def json_schema(
 
 
 def _of_parts(section: type[Section] = Design, prefix: str = "") -> dict[str, Entry]:
-    """PATH of every value of a part, ``[*]`` standing for the index of a list."""
+    """PATHs of all values of a part; ``[*]`` is the index of a list."""
     found: dict[str, Entry] = {}
     for name, entry in entries(section).items():
         path = f"{prefix}.{name}" if prefix else name
@@ -87,7 +87,7 @@ def _of_parts(section: type[Section] = Design, prefix: str = "") -> dict[str, En
 
 
 def _by_path(schemas: Mapping[str, Schema]) -> Schema:
-    """Properties by PATH; those with an index as patterns, the first ones of a list by name."""
+    """Properties by PATH; indexed PATHs as patterns, the first entries of a list by name."""
     properties: Schema = {}
     patterns: Schema = {}
     for path, schema in schemas.items():
@@ -127,12 +127,12 @@ def _variables(definitions: Schema) -> Schema:
             movable[path] = bounds = _bounds(entry.kind, path, definitions)
             bounds["not"] = {"required": ["sizes", "step"]}
             bounds["properties"] |= _start_and_sizes(entry.kind.quantity, path)
-    help = "What the optimiser may move: PATH with lower and upper bound."
+    help = "Variables of the optimisation: PATH with lower and upper bound."
     return {"description": help} | _by_path(movable)
 
 
 def _start_and_sizes(quantity: Quantity, path: str) -> Schema:
-    """What a variable may state beside its bounds."""
+    """Keys of a variable besides its bounds."""
     value = {"$ref": f"#/definitions/{quantity.name}"}
     suited = [s for s in SERIES.values() if s.paths.fullmatch(path.replace("[*]", "[0]"))]
     some = {"type": "array", "minItems": 1, "maxItems": MOST_SIZES, "uniqueItems": True}
@@ -141,7 +141,10 @@ def _start_and_sizes(quantity: Quantity, path: str) -> Schema:
     options = [series] if suited else []
     return {
         "start": value,
-        "step": {"description": "the variable takes multiples of it", "allOf": [value]},
+        "step": {
+            "description": "step of the variable, which takes its multiples",
+            "allOf": [value],
+        },
         "sizes": {"description": Sizes.help, "anyOf": [*options, some | {"items": value}]},
     }
 
@@ -154,9 +157,9 @@ def _measured(definitions: Schema) -> Schema:
             bounds["required"] = [*bounds["required"], "record"]
             bounds["properties"]["record"] = {
                 "type": "string",
-                "description": "the record, as a report names it",
+                "description": "name of the record in a report",
             }
-    help = "What a test record says of values above: PATH with 95 % bounds and the record's name."
+    help = "Values from a test record: PATH with 95 % bounds and the name of the record."
     return {"description": help} | _by_path(known)
 
 
@@ -171,12 +174,12 @@ def _uncertainty(definitions: Schema) -> Schema:
     for name in quantities.MATERIAL_PROPERTIES:
         pattern = rf"^materials\.[^.]+\.{name}$"
         schema["patternProperties"][pattern] = known[f"materials.[*].{name}"]
-    help = "How values scatter beyond what libraries and practice say: PATH with a distribution."
+    help = "Scatter of values beyond that of libraries and practice: PATH with a distribution."
     return {"description": help} | schema
 
 
 def _distribution(title: str, quantity: Quantity, definitions: Schema) -> Schema:
-    """One entry of `uncertainty`; those of one quantity share a definition."""
+    """An entry of `uncertainty`; entries of the same quantity share a definition."""
     name = f"uncertainty_{quantity.name}"
     if name not in definitions:
         definitions[name] = _shared(quantity, definitions)
@@ -192,7 +195,7 @@ def _shared(quantity: Quantity, definitions: Schema) -> Schema:
     for key in NUMBERS:
         own = quantity_of_entry(key, quantity)
         assert own is not None
-        if key in ("deviation", "half_width"):  # alike for all quantities of a unit
+        if key in ("deviation", "half_width"):  # equal for all quantities of a unit
             words = key.replace("_", " ")
             kind = f"{key}_{own.dimension}_{own.unit}".translate(_REFERENCE)
             own = replace(own, name=kind, label=words, symbol=own.unit or "-", upper=1e20)
@@ -215,7 +218,7 @@ def _set(materials: Materials | None, definitions: Schema) -> Schema:
         known[path]["title"] = path
     schema = _by_path(known)
     schema["patternProperties"][_OF_TABLES] = {"type": ["string", "number"]}
-    return {"description": "Values of the design that are other here, by PATH."} | schema
+    return {"description": "Changed values of the design, by PATH."} | schema
 
 
 def _choices() -> Schema:
@@ -234,7 +237,7 @@ def _choices() -> Schema:
             "uniqueItems": True,
             "items": {"$ref": f"#/properties/{place}"},
         }
-    help = "What the optimiser may choose among: PATH with a list of allowed values."
+    help = "Choices of the optimiser: PATH with a list of allowed values."
     return {"description": help} | _by_path(lists)
 
 
@@ -285,7 +288,7 @@ def _objective(metrics: Mapping[str, Quantity]) -> Schema:
 
 def _waivers(metrics: Mapping[str, Quantity]) -> Schema:
     return {
-        "description": "Checks that do not apply: METRIC with the reason, which is printed.",
+        "description": "Checks that do not apply: METRIC with the reason, which reports print.",
         "additionalProperties": False,
         "properties": {
             name: {"type": "string", "title": metric.label, "description": "why it does not apply"}
@@ -304,7 +307,7 @@ def _materials(materials: Materials | None) -> Schema:
         },
     }
     schema: Schema = {
-        "description": "Properties that replace the library's in this design, by material name.",
+        "description": "Properties that replace those of the library, by material name.",
         "additionalProperties": changed,
     }
     if materials is not None:

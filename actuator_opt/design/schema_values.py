@@ -1,4 +1,4 @@
-"""What the JSON Schema says of single values and of the sections they stand in."""
+"""JSON Schema of single values and of their sections."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _NUMBER = r"(\d[\d_]*\.?\d*|\.\d+)([eE][+-]?\d+)?"
 
 
 def text_of(help: str, quantity: Quantity | None = None) -> str:
-    """Hover text: what it is, its symbol, range, units and an example."""
+    """Hover text: meaning, symbol, range, units and an example."""
     if quantity is None:
         return help
     names = ", ".join(units.units_of(quantity.dimension)) or "none (a bare number)"
@@ -36,7 +36,7 @@ def text_of(help: str, quantity: Quantity | None = None) -> str:
 
 
 def _unit_pattern(name: str) -> str:
-    """A unit in every spelling the reader takes: N*m, N·m, N m, Nm; m^3, m³, m3, m**3."""
+    """Pattern of a unit in every accepted spelling: N*m, N·m, N m, Nm; m^3, m³, m3, m**3."""
     pattern = re.escape(name).replace(r"\ ", " ").replace(r"\-", "-").replace(r"\*", "[*·⋅ ]?")
     for power, raised in (("2", "²"), ("3", "³")):
         pattern = pattern.replace(rf"\^{power}", rf"(\^|\*\*)?{power}".join(("(", f"|{raised})")))
@@ -44,7 +44,7 @@ def _unit_pattern(name: str) -> str:
 
 
 def quantity_schema(quantity: Quantity, help: str = "") -> Schema:
-    """A value of a quantity: text with one of its units; bare where the reader takes it bare."""
+    """Schema of a quantity: text with a unit; a bare number where the reader accepts it."""
     names = sorted(units.units_of(quantity.dimension), key=len, reverse=True)
     bare = quantity.dimension in ("ratio", "count")
     sign = "[+-]?" if quantity.lower < 0 or quantity.dimension == "temperature" else r"\+?"
@@ -86,7 +86,7 @@ def _takes(kind: Kind, text: str) -> bool:
 
 
 def value_schema(kind: Kind | None, materials: Materials | None) -> Schema:
-    """A single value of a kind."""
+    """Schema of a single value."""
     if isinstance(kind, Of):
         return quantity_schema(kind.quantity, kind.help)
     if isinstance(kind, PositionKind):
@@ -112,9 +112,9 @@ def value_schema(kind: Kind | None, materials: Materials | None) -> Schema:
         schema |= {"title": "material", "examples": [kind.example]}
         if materials is not None:
             names = [n for n in materials.names() if materials.kind(n) in ROLES[kind.role]]
-            schema |= {"enum": names, "errorMessage": "no such material of a fitting kind"}
+            schema |= {"enum": names, "errorMessage": "unknown material, or unsuitable kind"}
         return schema
-    # names such as 12 or true are texts for the reader, numbers or booleans for an editor
+    # names such as 12 or true are text to the reader, but numbers or booleans to an editor
     schema["type"] = ["string", "number", "boolean"]
     if isinstance(kind, CaseName):
         schema["type"] = "string"
@@ -125,7 +125,7 @@ def value_schema(kind: Kind | None, materials: Materials | None) -> Schema:
 
 
 def entry_schema(entry: Entry, materials: Materials | None) -> Schema:
-    """What stands under one key of a section."""
+    """Schema of the value of a section's key."""
     if entry.shape == "choice":
         help = entry.kind.help if entry.kind is not None else ""
         schema: Schema = {"description": help, "type": "string", "enum": list(entry.choices)}
@@ -148,7 +148,7 @@ def entry_schema(entry: Entry, materials: Materials | None) -> Schema:
 
 
 def section_schema(section: type[Section], materials: Materials | None) -> Schema:
-    """A block of keys; those a person must write are offered as a snippet."""
+    """A block of keys; the required keys are offered as a snippet."""
     known = entries(section)
     schema: Schema = {
         "description": (section.__doc__ or "").split("\n\n")[0].replace("\n    ", " "),
@@ -165,11 +165,11 @@ def section_schema(section: type[Section], materials: Materials | None) -> Schem
 
 
 def _with_notation(schema: Schema) -> Schema:
-    """A layer, or several of them in compact notation."""
+    """A layer, or several layers in compact notation."""
     said = [{"required": [key]} for key in ("angle", "thickness", "balanced")]
     schema["properties"]["plies"] = {
         "title": "lay-up in compact notation",
-        "description": "Several layers, from the inside outwards: angles in degrees, +-25 a "
+        "description": "Several layers, from the inside outwards: angles in degrees, +-25 is a "
         "balanced pair of plies, 25 one ply at that angle, _n repeats, s mirrors a group",
         "type": ["string", "number"],
         "pattern": r"^[-+±0-9./_\[\]sS\s]+$",

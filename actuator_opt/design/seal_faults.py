@@ -1,6 +1,6 @@
-"""Faults of the seals: what a type needs, room for the grooves, squeeze, films.
+"""Faults of the seals: sizes of the type, room for the grooves, squeeze, films.
 
-Those of stated contact profiles are in `profile_faults`.
+Checks of stated contact profiles are in `profile_faults`.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from .view import Materials, Properties, View, length_text
 
 
 def fields(view: View) -> Iterator[Fault]:
-    """Every type states what it is made of, and nothing else; a piston has no wiper."""
+    """Every seal has the sizes of its type, and no others; a piston has no wiper."""
     for loc in elements(view):
         kind = _kind(view, loc)
         if kind is not None:
@@ -34,43 +34,45 @@ def fields(view: View) -> Iterator[Fault]:
     if view.has("seals", "piston", "wiper"):
         yield Fault(
             ("seals", "piston", "wiper"),
-            "a piston has no wiper: there is no dirt inside",
+            "a piston has no wiper: it is not exposed to dirt",
             "remove the block",
             at_key=True,
         )
 
 
 def _kind(view: View, loc: Loc) -> SealType | None:
-    """The seal type of an element; None of a word that names none."""
+    """Seal type of an element; None if unknown."""
     return TYPES.get(view.text(*loc, "type") or "")
 
 
 def _sizes(view: View, loc: Loc, kind: SealType) -> Iterator[Fault]:
-    """Sizes a type needs and has not; sizes it does not have. Any type has a groove's width."""
+    """Missing and superfluous sizes of a type; every type accepts a groove width."""
     for size in SIZES:
         if size.key in kind.needed and not view.has(*loc, size.key):
             yield Fault(
                 (*loc, size.key),
-                f"missing: {article(kind.name)} needs it",
+                f"missing: required by {article(kind.name)}",
                 f'add e.g. "{size.key}: {size.example}"',
             )
     for size in SIZES:
         if size.key not in (*kind.keys, GROOVE_WIDTH.key) and view.has(*loc, size.key):
             yield Fault(
                 (*loc, size.key),
-                f"{article(kind.name)} has none",
+                f"not a size of {article(kind.name)}",
                 "remove the line, or write another type",
                 at_key=True,
             )
 
 
 def _back_ups(view: View, loc: Loc) -> Iterator[Fault]:
-    """Back-up rings state material and thickness; without them nothing does."""
+    """Back-up rings need material and thickness, which have no effect without rings."""
     stated = view.text(*loc, "back_up") != "none"
     for field, example in (("back_up_material", "back_up_ptfe"), ("back_up_thickness", "1.4 mm")):
         if stated and not view.has(*loc, field):
             yield Fault(
-                (*loc, field), "missing: a back-up ring needs it", f'add e.g. "{field}: {example}"'
+                (*loc, field),
+                "missing: required by a back-up ring",
+                f'add e.g. "{field}: {example}"',
             )
         elif not stated and view.has(*loc, field):
             yield Fault(
@@ -82,7 +84,7 @@ def _back_ups(view: View, loc: Loc) -> Iterator[Fault]:
 
 
 def widths(view: View) -> Iterator[Fault]:
-    """What lies in a groove fits its width; a land is no wider than its ring."""
+    """The parts in a groove fit its width; a land is not wider than its ring."""
     for loc in elements(view):
         kind = _kind(view, loc)
         if kind is None:
@@ -113,7 +115,7 @@ def widths(view: View) -> Iterator[Fault]:
 
 
 def _grooves(view: View, seal: str) -> Iterator[tuple[Loc, float, float]]:
-    """Place to blame, depth at nominal squeeze and least width of every groove of a seal."""
+    """Place of a fault, depth at nominal squeeze and least width of every groove of a seal."""
     for loc in elements(view):
         if loc[1] != seal:
             continue
@@ -154,9 +156,9 @@ def grooves(view: View) -> Iterator[Fault]:
         if length is not None and width >= length:
             yield Fault(
                 found[0][0],
-                f"grooves outside the {part}: they take at least {length_text(width)} of "
+                f"grooves outside the {part}: they need at least {length_text(width)} of "
                 f"{part}.length {length_text(length)}",
-                f"lengthen {part}.length or use smaller rings",
+                f"increase {part}.length or use smaller rings",
             )
         deep = (*place[:-1], "thickness" if place[-2] == "guide" else "section")
         if bore is None or rod_diameter is None:
@@ -167,7 +169,7 @@ def grooves(view: View) -> Iterator[Fault]:
             if core < bore and left <= core:
                 yield Fault(
                     deep,
-                    f"groove too deep: {length_text(max(left, 0.0))} core left in the piston, "
+                    f"groove too deep: {length_text(max(left, 0.0))} core remains in the piston, "
                     f"the rod needs {length_text(core)}",
                     "use a smaller section, a larger bore or a rod thread that fits",
                 )
@@ -181,7 +183,7 @@ def grooves(view: View) -> Iterator[Fault]:
 
 
 def clearances(view: View) -> Iterator[Fault]:
-    """The gap behind a ring is less deep than its groove: else nothing holds the ring."""
+    """The gap behind a ring is smaller than the groove depth, or the ring is not held."""
     for seal, part in (("piston", "piston"), ("rod", "head")):
         gap = view.number(part, "clearance")
         found = [(depth, loc) for loc, depth, _ in _grooves(view, seal)]
@@ -192,14 +194,14 @@ def clearances(view: View) -> Iterator[Fault]:
             ring = ".".join(str(key) for key in loc[:-1])
             yield Fault(
                 (part, "clearance"),
-                f"{length_text(gap)}: no groove is left, that of {ring} is {length_text(depth)} "
-                "deep from the other part",
+                f"{length_text(gap)}: no groove remains: that of {ring} is {length_text(depth)} "
+                "deep, measured from the mating part",
                 f"write less than {length_text(depth)}, e.g. 0.03 mm",
             )
 
 
 def squeeze(view: View) -> Iterator[Fault]:
-    """The nominal squeeze of an O-ring lies where its law holds; that of the others is not none."""
+    """The nominal squeeze of an O-ring is in the range of its law; others have squeeze > 0."""
     for loc in elements(view):
         value, kind = view.number(*loc, "squeeze"), _kind(view, loc)
         if value is None or kind is None:
@@ -221,7 +223,7 @@ def squeeze(view: View) -> Iterator[Fault]:
 
 
 def shapes(view: View) -> Iterator[Fault]:
-    """What a ring is made of fits inside it."""
+    """Inner dimensions of a ring fit its section."""
     for loc in elements(view):
         kind = _kind(view, loc)
         if kind is not None:
@@ -251,7 +253,7 @@ def _said(loc: Loc, found: Iterable[SizeFault]) -> Iterator[Fault]:
 
 
 def films(view: View) -> Iterator[Fault]:
-    """Both elements of a pair have one friction law; a film is known of single rings."""
+    """Both elements of a pair have the same friction law; a film needs a single ring or a pair."""
     for name in ("piston", "rod"):
         both: list[Loc] = [("seals", name)]
         if view.has("seals", name, "secondary"):
@@ -261,7 +263,7 @@ def films(view: View) -> Iterator[Fault]:
             yield Fault(
                 (*both[1], "friction"),
                 f"{models[1]}, while seals.{name}.friction is {models[0]}",
-                "write the same for both: they share the oil",
+                "write the same law for both: they share the oil",
             )
         for loc in both:
             count = view.number(*loc, "count")
@@ -269,7 +271,7 @@ def films(view: View) -> Iterator[Fault]:
             if law is not None and law.film and count is not None and count != 1:
                 yield Fault(
                     (*loc, "count"),
-                    f"{count:g} rings in a row: a film is known of one ring or of a pair",
+                    f"{count:g} rings in a row: the film model covers one ring or a pair",
                     "write count: 1, and a block secondary for the second ring",
                 )
 
@@ -278,18 +280,18 @@ CHECKS = (fields, widths, grooves, clearances, squeeze, shapes, *profile_faults.
 
 
 def _numbers(block: object) -> dict[str, float]:
-    """Properties that the design states of a material, SI."""
+    """Properties that the design states for a material, SI."""
     pairs = block.items() if isinstance(block, Mapping) else ()
     return {str(key): value for key, value in pairs if isinstance(value, float)}
 
 
 SLIDING_RING = 3.0
-"""Stated modulus over that of the hardness from which a compound has a sliding ring of plastic on
-rubber; a hard polyurethane lies near 1."""
+"""Least ratio of modulus to modulus by hardness that marks a compound as a plastic sliding ring on
+rubber; that of a hard polyurethane is about 1."""
 
 
 def sliding_rings(tree: Any, materials: Materials) -> Iterator[Fault]:
-    """A step ring's compound has a sliding ring, those of the other types have none."""
+    """A step ring needs a compound with a sliding ring; other types need a compound without."""
     view = View(tree)
     if not isinstance(materials, Properties):
         return
@@ -300,7 +302,7 @@ def sliding_rings(tree: Any, materials: Materials) -> Iterator[Fault]:
         try:
             own = child_at(tree, ("materials", name))
             known = {**materials.numbers(name), **_numbers(own)}
-        except InputError:  # a faulty entry is told elsewhere
+        except InputError:  # a faulty entry is reported elsewhere
             continue
         modulus, hardness = known.get("youngs_modulus", 0.0), known.get("hardness", 0.0)
         sliding = modulus > SLIDING_RING * float(modulus_gent(hardness=hardness))

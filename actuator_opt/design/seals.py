@@ -18,13 +18,13 @@ from .kinds import MaterialName, Of
 from .section import Section
 
 BACK_UPS = {"none": 0, "one": 1, "both": 2}
-"""Back-up rings in a groove by the word of `back_up`."""
+"""Number of back-up rings by the word of `back_up`."""
 
 
 class ContactProfile(Section):
-    """Static contact pressure of an element at one sealed pressure, as found elsewhere.
+    """Static contact pressure of an element at one sealed pressure, from another source.
 
-    Between two sealed pressures the profile is interpolated; the last reaches the supply's.
+    Profiles are interpolated between sealed pressures; the last reaches the supply pressure.
     """
 
     pressure: Annotated[float, Of("pressure", "sealed pressure of this profile, gauge")]
@@ -39,24 +39,24 @@ class ContactProfile(Section):
 
 
 class SealElement(Section):
-    """A sealing ring in a radial groove, `count` in a row.
+    """Radial sealing ring in its groove; `count` of them in a row.
 
-    `section` is the free radial height of what is squeezed: the round ring of an O-ring, the
-    O-ring behind a step ring, the lips of a U-cup, the body of a compact seal.
+    `section` is the free radial height of the squeezed part: the O-ring, the O-ring behind a step
+    ring, the lips of a U-cup, the body of a compact seal.
     """
 
     type: choices.SealType = o_ring.TYPE.name
     compound: Annotated[str, MaterialName("seal")]
     section: Annotated[float, Of("cross_section", "free cross-section of the ring")]
-    squeeze: Annotated[float, Of("squeeze", "nominal squeeze over the free section")]
+    squeeze: Annotated[float, Of("squeeze", "nominal squeeze over free section")]
     tolerance: Annotated[float, Of("tolerance", "tolerance of the gland depth")] = 0.0
     section_tolerance: Annotated[float, Of("tolerance", "tolerance of the free cross-section")] = (
         0.0
     )
     groove_width: Annotated[float | None, Of(GROOVE_WIDTH.quantity, GROOVE_WIDTH.help)] = None
     stretch: Annotated[float, Of("stretch", "stretch of the ring in its groove")] = 0.02
-    count: Annotated[float, Of("seal_count", "seals in a row")] = 1.0
-    __annotations__.update(  # one field for every size that some seal type has
+    count: Annotated[float, Of("seal_count", "number of seals in a row")] = 1.0
+    __annotations__.update(  # a field for every size of any seal type
         {
             size.key: Annotated[float | None, Of(size.quantity, size.help), Field(default=None)]
             for size in SIZES
@@ -69,12 +69,15 @@ class SealElement(Section):
     back_up: choices.BackUp = "none"
     back_up_material: Annotated[str | None, MaterialName("isotropic")] = None
     back_up_thickness: Annotated[
-        float | None, Of("part_length", "axial thickness of a back-up ring with its play")
+        float | None, Of("part_length", "axial thickness of a back-up ring including its clearance")
     ] = None
     friction: choices.FrictionModel = coefficient.LAW.name
     friction_coefficient: Annotated[
         float | None,
-        Of("friction_coefficient", "dry friction on the counterface; default: the compound's"),
+        Of(
+            "friction_coefficient",
+            "dry friction coefficient on the counterface; default: the compound's",
+        ),
     ] = None
     breakaway_ratio: Annotated[
         float | None,
@@ -100,7 +103,7 @@ class SealElement(Section):
 
     @property
     def back_ups(self) -> int:
-        """Back-up rings in the groove."""
+        """Number of back-up rings in the groove."""
         return BACK_UPS[self.back_up]
 
     def stated_sizes(self) -> dict[str, float]:
@@ -110,7 +113,7 @@ class SealElement(Section):
 
 
 class Wiper(Section):
-    """A lip that keeps dirt out: touches without pressure."""
+    """A lip that keeps dirt out; it seals no pressure."""
 
     compound: Annotated[str, MaterialName("seal")]
     section: Annotated[float, Of("cross_section", "free radial height over the lip")]
@@ -121,24 +124,28 @@ class Wiper(Section):
     hardness_model: choices.HardnessModel = "gent"
     friction_coefficient: Annotated[
         float | None,
-        Of("friction_coefficient", "dry friction on the counterface; default: the compound's"),
+        Of(
+            "friction_coefficient",
+            "dry friction coefficient on the counterface; default: the compound's",
+        ),
     ] = None
 
 
 class Guide(Section):
-    """Guide rings that carry the side load: `count` of them."""
+    """Guide rings that carry the side load."""
 
     material: Annotated[str, MaterialName("structural")]
     thickness: Annotated[float, Of("part_length", "radial thickness of a ring")]
     width: Annotated[float, Of("part_length", "axial width of a ring")]
     count: Annotated[float, Of("seal_count", "rings")] = 1.0
     friction_coefficient: Annotated[
-        float, Of("friction_coefficient", "friction of the oiled guide on the counterface")
+        float,
+        Of("friction_coefficient", "friction coefficient of the oiled guide on the counterface"),
     ] = 0.1
 
 
 class Seal(SealElement):
-    """The seals of piston or rod: the element that holds the pressure and what stands beside it."""
+    """Seals of piston or rod: the pressure-sealing element, with wiper and guides."""
 
     counterface_roughness: Annotated[
         float, Of("rms_roughness", "RMS roughness of the rod or the bore")
@@ -149,12 +156,12 @@ class Seal(SealElement):
     guide: Guide | None = None
 
     def elements(self) -> dict[str, SealElement]:
-        """The sealing elements by the tail of their PATH, from the pressure outwards."""
+        """Sealing elements by the tail of their PATH, from the pressure side outwards."""
         second = {} if self.secondary is None else {"secondary.": self.secondary}
         return {"": self, **second}
 
     def materials(self) -> list[str]:
-        """Every material these seals name."""
+        """All materials of these seals."""
         names: list[str | None] = []
         for element in self.elements().values():
             names += [element.compound, element.back_up_material]

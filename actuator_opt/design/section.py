@@ -1,4 +1,4 @@
-"""The base of every section of a design file."""
+"""Base class of all sections of a design file."""
 
 from __future__ import annotations
 
@@ -6,6 +6,6 @@ from pydantic import BaseModel, ConfigDict
 
 
 class Section(BaseModel):
-    """A block of the design file: unknown keys are faults."""
+    """A block of the design file; unknown keys are faults."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)

@@ -1,7 +1,7 @@
-"""The series a variable's `sizes` may name: standards, whole plies, the shop's angles.
+"""Series for the `sizes` of a variable: standards, whole plies, feasible angles.
 
-Each knows which PATHs it is for, whether it stands for a design, on which other variable its sizes
-hang, and the sizes themselves. Tables and their sources are in `standards`.
+A series states its PATHs, whether it applies to a design, the variable its sizes depend on, and the
+sizes themselves. Tables and their sources are in `standards`.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from .structure import child_at
 from .view import View
 
 WHOLE = 1e-6
-"""Part of a ply, and angle (rad), that counts as none."""
+"""Fraction of a ply, and angle (rad), that counts as zero."""
 
 Bounds = tuple[float, float]
 
@@ -33,10 +33,10 @@ class Series:
 
     Parameters
     ----------
-    name, label : in the file, and as reports call it
-    suits, paths : what it is for, in words and as a pattern of PATHs
-    asked : the option that asks for it where the file does not ("file": none does)
-    needs_parent : whether there are no sizes without those of the variable they hang on
+    name, label : name in the file and in reports
+    suits, paths : suitable variables, in words and as a pattern of PATHs
+    asked : option that selects it if the file does not ("file": no option)
+    needs_parent : whether its sizes require those of the parent variable
     """
 
     name: str
@@ -47,26 +47,26 @@ class Series:
     needs_parent: bool = False
 
     def fault(self, view: View, path: str) -> tuple[str, str] | None:
-        """Why the series does not stand for a variable of a design, and the remedy."""
+        """Why the series does not apply to a variable, and the remedy."""
         return None
 
     def parent(self, path: str) -> str | None:
-        """The variable that the sizes of a variable hang on."""
+        """The parent variable, on which the sizes of a variable depend."""
         return None
 
     def each(self, view: View, path: str) -> str:
-        """What one of its sizes is called."""
+        """Name of a single size."""
         return f"{self.label} size"
 
     def values(
         self, view: View, path: str, parent: float | None, bounds: Bounds
     ) -> Sequence[float]:
-        """The sizes, beside a value of the parent (None: it has none, or moves freely)."""
+        """The sizes for a value of the parent (None: no parent, or a free parent)."""
         raise NotImplementedError
 
 
 def along(angle: float) -> bool:
-    """Whether an angle is 0 or 90 degrees, where a pair is two equal plies."""
+    """Whether an angle is 0 or 90 degrees, where a balanced pair is two equal plies."""
     return abs(math.sin(2 * angle)) <= WHOLE
 
 
@@ -86,7 +86,7 @@ class _Iso3320(Series):
 
 
 class _Pairs(Series):
-    """Bore and rod of a catalogue cylinder: both, or one beside the other fixed."""
+    """Bore and rod of a catalogue cylinder: both, or either with the other fixed."""
 
     def _other(self, path: str) -> str:
         return "cylinder.bore" if path != "cylinder.bore" else "rod.outer_diameter"
@@ -96,7 +96,7 @@ class _Pairs(Series):
         variable = child_at(view.tree, ("variables", other))
         if variable is None or child_at(variable, ("sizes",)) == self.name:
             return None
-        message = f"{self.name} has pairs of bore and rod, and {other} is not of it"
+        message = f"{self.name} has pairs of bore and rod, but {other} is not of this series"
         return message, f'add "sizes: {self.name}" to {other} too'
 
     def parent(self, path: str) -> str | None:
@@ -119,12 +119,12 @@ def _same(one: float, other: float | None) -> bool:
 
 
 class _Walls(Series):
-    """Walls of drawn steel tube: a metal layer, or a rod through its hole."""
+    """Walls of drawn steel tube, of a metal layer or of a hollow rod."""
 
     def fault(self, view: View, path: str) -> tuple[str, str] | None:
         if path == "rod.inner_diameter" or _layer(view, path, "ply_thickness") is None:
             return None
-        return f"{self.name} has walls of tube, and this layer is of plies", "write whole_plies"
+        return f"{self.name} has tube walls, but this layer consists of plies", "write whole_plies"
 
     def parent(self, path: str) -> str | None:
         return "rod.outer_diameter" if path == "rod.inner_diameter" else None
@@ -141,7 +141,7 @@ class _Walls(Series):
 
 
 class _Glands(Series):
-    """Sections of O-rings, and squeeze and groove of their gland at mid-tolerance."""
+    """O-ring sections, with squeeze and groove of their gland at mid-tolerance."""
 
     def _seal(self, path: str) -> tuple[str, ...]:
         return tuple(path.split(".")[:-1])
@@ -150,7 +150,7 @@ class _Glands(Series):
         kind = TYPES.get(view.text(*self._seal(path), "type") or "")
         if kind is None or kind.o_ring_gland:
             return None
-        message = f"{self.name} has O-rings and their glands, and this is a {kind.name}"
+        message = f"{self.name} has O-rings and their glands, but this is a {kind.name}"
         return message, "list its sizes"
 
     def parent(self, path: str) -> str | None:
@@ -179,13 +179,13 @@ class _WholePlies(Series):
         if _layer(view, path, "ply_thickness") is not None:
             return None
         remedy = 'add e.g. "ply_thickness: 0.2 mm" to it; for a metal layer write a step'
-        return "the layer states no ply_thickness", remedy
+        return "the layer has no ply_thickness", remedy
 
     def parent(self, path: str) -> str | None:
         return path.removesuffix("thickness") + "angle"
 
     def _singly(self, view: View, path: str, angle: float | None) -> bool:
-        """Whether plies count singly: not balanced, or straight along or around the tube."""
+        """Whether plies count singly: not balanced, or at 0 or 90 degrees."""
         balanced = view.flag(*self._loc(path), "balanced")
         return balanced is False or (angle is not None and along(angle))
 
@@ -206,7 +206,7 @@ class _WholePlies(Series):
         one = _layer(view, path, "ply_thickness") or 0.0
         step = 1 if self._singly(view, path, parent) else 2
         counts = range(step, math.ceil(bounds[1] / one) + 3, step)
-        # in decimals, so that 26 plies of 0.125 mm are 3.25 mm to the last digit
+        # in decimals: 26 plies of 0.125 mm are exactly 3.25 mm
         return [float(count * Decimal(repr(one))) for count in counts]
 
 

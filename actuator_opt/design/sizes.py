@@ -1,8 +1,8 @@
-"""The sizes a variable may take: its own list, a step, a series of a standard, whole plies.
+"""Discrete sizes of a variable: its own list, a step, a standard series, whole plies.
 
-Some sizes hang on another variable: the rod of a catalogue cylinder on its bore, the squeeze of a
-standard gland on its ring, an odd number of plies on their angle, the hole of a rod made of tube on
-its outside. `groups` puts such variables together, as rows of the values that go together.
+Some sizes depend on another variable: the rod of a catalogue cylinder on its bore, the squeeze of a
+standard gland on its ring, an odd number of plies on their angle, the bore of a tubular rod on its
+outer diameter. `groups` joins such variables; its rows are the allowed combinations.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ from .structure import Loc, child, child_at, number_of, value_at
 from .view import View
 
 MOST_SIZES = 1000
-"""Largest number of sizes of a variable, and of rows of those that go together."""
+"""Most sizes of a variable, and rows of a group."""
 
 ROOM = 1e-9
-"""Relative distance beyond a bound that counts as on it."""
+"""Relative distance beyond a bound that counts as on the bound."""
 
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """Variables by PATH, how each gets its sizes, and the rows of values (SI) that go together."""
+    """Variables by PATH, the source of their sizes, and the allowed combinations (SI)."""
 
     paths: tuple[str, ...]
     labels: tuple[str, ...]
@@ -39,7 +39,7 @@ class Group:
 
 @dataclass(frozen=True, slots=True)
 class _Rule:
-    """How one variable gets its sizes: those of a value of `parent`, where it has one."""
+    """Rule for the sizes of a variable: given the value of `parent`, if it has a parent."""
 
     path: str
     label: str
@@ -50,9 +50,9 @@ class _Rule:
 
 
 def read(loc: Loc, bounds: dict[str, Any], quantity: Quantity) -> Iterator[Fault]:
-    """Turn `sizes` and `step` of a variable into SI, in place; the faults of what they say."""
+    """Convert `sizes` and `step` of a variable to SI, in place; yields their faults."""
     if "sizes" in bounds and "step" in bounds:
-        yield Fault((*loc, "step"), "sizes and step of one variable", "keep one", at_key=True)
+        yield Fault((*loc, "step"), "sizes and step of the same variable", "keep one", at_key=True)
     if bounds.get("step") is not None:
         yield from _read_step(loc, bounds, quantity)
     sizes = bounds.get("sizes")
@@ -62,14 +62,14 @@ def read(loc: Loc, bounds: dict[str, Any], quantity: Quantity) -> Iterator[Fault
     if isinstance(sizes, str):
         if sizes not in SERIES:
             suited = [name for name, one in SERIES.items() if one.paths.fullmatch(str(loc[-1]))]
-            message = f'"{suggest.shown(sizes)}" is no series of sizes'
+            message = f'"{suggest.shown(sizes)}" is not a series of sizes'
             remedy = suggest.remedy(sizes, suited)
             yield Fault(
                 here, message, f"{remedy}, or list them: {good}" if remedy else f"write {good}"
             )
         elif SERIES[sizes].paths.fullmatch(str(loc[-1])) is None:
             series = SERIES[sizes]
-            yield Fault(here, f"{sizes} has no sizes of {loc[-1]}", f"it is for {series.suits}")
+            yield Fault(here, f"{sizes} has no sizes for {loc[-1]}", f"it is for {series.suits}")
     elif not isinstance(sizes, list):
         yield Fault(here, f"need sizes, not {what(sizes)}", f"write {good}, or a series")
     elif not sizes:
@@ -97,9 +97,9 @@ def _read_step(loc: Loc, bounds: dict[str, Any], quantity: Quantity) -> Iterator
 
 
 def _difference(quantity: Quantity) -> Quantity:
-    """A quantity as that of a step of it: from nothing to its whole range."""
+    """Quantity of a step: from zero to the whole range."""
     if quantity.dimension == "temperature":
-        raise ValueFault("a temperature takes no step", "list its sizes")
+        raise ValueFault("a temperature has no step", "list its sizes")
     return replace(quantity, lower=0.0)
 
 
@@ -110,7 +110,7 @@ def _read_list(
     lower, upper = bounds.get("lower"), bounds.get("upper")
     for index, raw in enumerate(sizes):
         if raw is None:
-            continue  # a fault already
+            continue  # already a fault
         try:
             value = sizes[index] = read_quantity(raw, quantity)
         except ValueFault as fault:
@@ -133,18 +133,18 @@ def _read_list(
 def groups(
     tree: Any, *, plies: bool = False, standard: bool = False
 ) -> tuple[tuple[Group, ...], tuple[Fault, ...]]:
-    """The variables that only take some sizes, those that hang together in one group.
+    """Variables with discrete sizes; dependent variables share a group.
 
     Parameters
     ----------
-    tree : a design, or the tree of one in SI
-    plies : whether layers that state their ply thickness, and angles where some are allowed,
-        are asked to be whole
-    standard : whether these and all else with a standard is asked to have its size
+    tree : a design, or its tree in SI
+    plies : whether to round layers that state their ply thickness to whole plies, and angles to
+        the allowed angles
+    standard : whether to round all variables with a standard series too
 
     Returns
     -------
-    the groups, and the faults of variables that no size fits
+    the groups, and the faults of variables without a suitable size
     """
     view = View(tree)
     rules = {path: rule for path in _paths(tree) if (rule := _rule(view, path, plies, standard))}
@@ -158,14 +158,14 @@ def groups(
 
 
 class _NoSize(Exception):
-    """A variable that no size fits."""
+    """A variable without a suitable size."""
 
     def __init__(self, path: str, message: str, remedy: str) -> None:
         super().__init__(message)
         self.path, self.message, self.remedy = path, message, remedy
 
     def fault(self, tree: Any) -> Fault:
-        """At what asks for the sizes, else at the variable."""
+        """The fault at the key that requires sizes, else at the variable."""
         block: Loc = ("variables", self.path)
         for key in ("sizes", "step"):
             if child_at(tree, (*block, key)) is not None:
@@ -174,7 +174,7 @@ class _NoSize(Exception):
 
 
 def _paths(tree: Any) -> list[str]:
-    """The variables that are numbers between good bounds."""
+    """Variables that are numbers with valid bounds."""
     block = child(tree, "variables")
     good = []
     for path in block if isinstance(block, dict) else ():
@@ -191,12 +191,12 @@ def _paths(tree: Any) -> list[str]:
 
 
 def _rule(view: View, path: str, plies: bool, standard: bool) -> _Rule | None:
-    """How a variable gets its sizes: as the file says, else as is asked; None where it is free."""
+    """Rule for the sizes of a variable, by file or option; None if free."""
     sizes, step = (child_at(view.tree, ("variables", path, key)) for key in ("sizes", "step"))
     lower, upper = _bounds(view, path)
     if isinstance(step, float):
         if (upper - lower) > step * MOST_SIZES:
-            return None  # a fault already
+            return None  # already a fault
         quantity = resolve(path, view.tree).quantity
         assert quantity is not None
         return _Rule(path, f"steps of {quantity.text(step)}", f"multiple of {quantity.text(step)}",
@@ -204,7 +204,7 @@ def _rule(view: View, path: str, plies: bool, standard: bool) -> _Rule | None:
     if isinstance(sizes, (list, tuple)):
         values = sorted(value for value in sizes if isinstance(value, float))
         if not values or len(values) < len(sizes):
-            return None  # a fault already
+            return None  # already a fault
         return _Rule(path, "own list", "size of the list", lambda _: values)
     if isinstance(sizes, str):
         series = SERIES.get(sizes)
@@ -234,13 +234,13 @@ def _bounds(view: View, path: str) -> tuple[float, float]:
 
 
 def _multiples(step: float, bounds: tuple[float, float]) -> list[float]:
-    """Multiples of a step from one below the bounds to one above, in decimals."""
+    """Multiples of a step, from below to above the bounds, in decimals."""
     first, last = (int(bound // step) for bound in bounds)
     return [float(count * Decimal(repr(step))) for count in range(first - 1, last + 3)]
 
 
 def _families(rules: dict[str, _Rule]) -> Iterator[list[_Rule]]:
-    """The rules that hang together, parents first, in the order of the variables."""
+    """Dependent rules together, parents first, in the order of the variables."""
     left = dict(rules)
 
     def below(path: str) -> Iterator[_Rule]:
@@ -259,7 +259,7 @@ def _families(rules: dict[str, _Rule]) -> Iterator[list[_Rule]]:
 
 
 def _group(view: View, members: Sequence[_Rule]) -> Group:
-    """Every row of values that go together; raises `_NoSize`."""
+    """All allowed combinations of a group; raises `_NoSize`."""
     rows: list[tuple[float, ...]] = [()]
     column = {rule.path: index for index, rule in enumerate(members)}
     for rule in members:
@@ -277,7 +277,7 @@ def _group(view: View, members: Sequence[_Rule]) -> Group:
         if not wider:
             raise _none_fits(view, rule, sorted(seen))
         if len(rows) > 1 and len(wider) > MOST_SIZES:
-            message = f"{len(wider)} sizes go together with those of {rule.parent}: too many"
+            message = f"{len(wider)} combinations with the sizes of {rule.parent}: too many"
             raise _NoSize(rule.path, message, f"narrow the bounds, for at most {MOST_SIZES}")
         rows = wider
     paths, labels = tuple(rule.path for rule in members), tuple(rule.label for rule in members)
@@ -285,7 +285,7 @@ def _group(view: View, members: Sequence[_Rule]) -> Group:
 
 
 def _fixed(view: View, rule: _Rule, column: dict[str, int]) -> float | None:
-    """The value of a parent that no variable moves; None where there is none, or it is free."""
+    """Value of a parent that is not a variable; None without a parent, or if it is free."""
     if rule.parent is None or rule.parent in column:
         return None
     if child_at(view.tree, ("variables", rule.parent)) is None:
@@ -293,14 +293,14 @@ def _fixed(view: View, rule: _Rule, column: dict[str, int]) -> float | None:
     if SERIES[rule.series].needs_parent:
         raise _NoSize(
             rule.path,
-            f"its sizes hang on {rule.parent}, which moves freely",
+            f"its sizes depend on {rule.parent}, which varies continuously",
             f"give {rule.parent} sizes too, or fix it",
         )
     return None
 
 
 def _none_fits(view: View, rule: _Rule, values: Sequence[float]) -> _NoSize:
-    """No size between the bounds: says the nearest ones."""
+    """No size between the bounds: states the nearest sizes."""
     quantity = resolve(rule.path, view.tree).quantity
     assert quantity is not None
     lower, upper = _bounds(view, rule.path)
@@ -308,5 +308,5 @@ def _none_fits(view: View, rule: _Rule, values: Sequence[float]) -> _NoSize:
     near += [value for value in values if value > upper][:1]
     text = " or ".join(quantity.text(value) for value in near if value > 0)
     message = f"no {rule.each} lies between {quantity.text(lower)} and {quantity.text(upper)}"
-    remedy = f"widen the bounds to hold {text}" if text else "widen the bounds"
-    return _NoSize(rule.path, message, f"{remedy}, or ask for other sizes")
+    remedy = f"widen the bounds to include {text}" if text else "widen the bounds"
+    return _NoSize(rule.path, message, f"{remedy}, or choose other sizes")

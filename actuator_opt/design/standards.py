@@ -1,6 +1,6 @@
 """Standard sizes as data: ISO 3320 bores and rods, ISO 6020-2/6022 pairs, O-rings and glands.
 
-Lengths are in m, pressures in Pa. Every row knows its source and confidence.
+Lengths are in m, pressures in Pa. Every row states source and confidence.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Use: TypeAlias = Literal["reciprocating", "static"]
 Direction: TypeAlias = Literal["nearest", "up", "down"]
 
 _SAME = 0.005
-"""A gland row counts for sections within 0.5 % of its own; others are interpolated."""
+"""A gland row applies to sections within 0.5 % of its own; others are interpolated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +44,7 @@ class CylinderPair:
 
 @dataclass(frozen=True, slots=True)
 class ORing:
-    """A ring of a size list."""
+    """An O-ring of a size list."""
 
     inside_diameter: float
     section: float
@@ -55,10 +55,10 @@ class ORing:
 
 @dataclass(frozen=True, slots=True)
 class Gland:
-    """The groove of an O-ring: depth is the radial room of the ring, rod or bore included.
+    """Groove of an O-ring; depth is the radial space of the ring, including rod or bore.
 
-    A table without tolerances gives equal limits and no radii (0). `back_up_widths` are the least
-    and the largest width with one back-up ring and with two; empty where the table has none.
+    A table without tolerances gives equal limits and no radii (0). `back_up_widths` are the
+    smallest and largest width with one and with two back-up rings; empty if not tabulated.
     """
 
     use: str
@@ -87,11 +87,11 @@ class Gland:
         return (self.width_min + self.width_max) / 2
 
     def widths(self, back_up_rings: int = 0) -> tuple[float, float]:
-        """Least and largest width with so many back-up rings.
+        """Smallest and largest width with this number of back-up rings.
 
         Raises
         ------
-        InputError : the table has no width for that number
+        InputError : not tabulated for this number
         """
         known = ((self.width_min, self.width_max), *self.back_up_widths)
         if not 0 <= back_up_rings < len(known):
@@ -101,7 +101,7 @@ class Gland:
 
     @property
     def squeeze(self) -> float:
-        """Nominal squeeze over the section."""
+        """Nominal squeeze over section."""
         return 1 - self.depth / self.section
 
     @property
@@ -119,7 +119,7 @@ class Gland:
 
 @functools.lru_cache(maxsize=1)
 def tables() -> Mapping[str, Any]:
-    """Everything of ``standards.yaml``, numbers as text."""
+    """Contents of ``standards.yaml``, numbers as text."""
     path = store.data_folder("materials") / "standards.yaml"
     text = yaml_source.decode(path.read_bytes(), str(path))
     document = yaml_source.parse(text, str(path))
@@ -129,12 +129,12 @@ def tables() -> Mapping[str, Any]:
 
 
 def metres(text: str) -> float:
-    """Length in m of a number in mm, as exact as the decimal text."""
+    """Length in m from a decimal number in mm, exactly rounded."""
     return float(f"{text}e-3")
 
 
 def citation(key: str) -> str:
-    """Source behind a key of the tables."""
+    """Source of a key of the tables."""
     return str(tables()["sources"][key])
 
 
@@ -165,13 +165,13 @@ def rods() -> tuple[StandardSize, ...]:
 
 
 def tube_walls() -> tuple[StandardSize, ...]:
-    """Wall thicknesses of EN 10305-1 steel tube, ascending, m; not all are made at any diameter."""
+    """Wall thicknesses of EN 10305-1 steel tube, ascending, m; not all exist at every diameter."""
     return _series("tube_walls")
 
 
 @functools.cache
 def cylinder_pairs(series: str | None = None) -> tuple[CylinderPair, ...]:
-    """Bore and rod pairs of ISO 6020-2 (160 bar) and ISO 6022 (250 bar); of one series if named."""
+    """Bore and rod pairs of ISO 6020-2 (160 bar) and ISO 6022 (250 bar), or of a named series."""
     return tuple(
         CylinderPair(
             group["series"], metres(bore), metres(rod),
@@ -202,7 +202,7 @@ def ring_sections() -> tuple[float, ...]:
 
 
 def section_tolerance(section: float) -> StandardSize:
-    """Tolerance (both ways, m) of a ring's free section, m: its own of ISO 3601-1, else the band's.
+    """Tolerance (both ways, m) of a ring's free section, m: ISO 3601-1, else that of its band.
 
     Raises
     ------
@@ -221,10 +221,10 @@ def section_tolerance(section: float) -> StandardSize:
 
 @functools.cache
 def glands(use: Use, table: str | None = None) -> tuple[Gland, ...]:
-    """Tabulated glands of a use, ascending by section.
+    """Tabulated glands of an application, ascending by section.
 
-    Of the table ``as568``, ``metric`` or ``series_g`` (moving hydraulic seals only); without a
-    table of the first two.
+    From the table ``as568``, ``metric`` or ``series_g`` (moving hydraulic seals only); by default
+    from the first two.
     """
     found: list[Gland] = []
     for name in ("as568", "metric") if table is None else (table,):
@@ -255,21 +255,21 @@ def o_ring_sections(table: str | None = None) -> tuple[float, ...]:
 
 
 def gland(section: float, use: Use = "reciprocating", *, table: str | None = None) -> Gland:
-    """Gland of a section: the tabulated one, else interpolated between its neighbours.
+    """Gland of a section: tabulated, else interpolated between neighbours.
 
     Parameters
     ----------
     section : free section, m
     use : ``reciprocating`` or ``static``
-    table : ``as568``, ``metric`` or ``series_g``; default: AS568 for its own sections, else metric
+    table : ``as568``, ``metric`` or ``series_g``; default: AS568 for AS568 sections, else metric
 
     Raises
     ------
-    InputError : the section lies outside the tables, or the table has no glands of that use
+    InputError : section outside the tables, or no glands for this use
     """
     if table is not None and not glands(use, table):
         message = f"the {table} table has no {use} glands"
-        raise InputError(Diagnostic(message, "leave the table out"))
+        raise InputError(Diagnostic(message, "use the default table"))
     for rows in (glands(use, table or "as568"), glands(use, table or "metric")):
         nearest = min(rows, key=lambda row: abs(row.section - section))
         if abs(nearest.section - section) <= _SAME * nearest.section:
@@ -304,7 +304,7 @@ def _between(rows: Sequence[Gland], section: float) -> Gland:
 def nearest_standard(
     kind: Literal["bore", "rod", "section"], value: float, direction: Direction = "nearest"
 ) -> float:
-    """Find the standard size next to a value, m.
+    """The standard size next to a value, m.
 
     Parameters
     ----------

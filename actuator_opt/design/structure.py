@@ -1,6 +1,6 @@
-"""The shape of the model: which keys each section has and what kind of value each one takes.
+"""Structure of the model: keys of each section and the kind of each value.
 
-The reader, the PATHs, the writer and the JSON Schema walk this, so none of them names a field.
+The reader, PATHs, writer and JSON Schema traverse this structure, so none of them names a field.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ Shape: TypeAlias = Literal["value", "choice", "section", "list", "table"]
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """One key of a section.
+    """A key of a section.
 
-    `kind` is set for a value, a list of values or a choice, `choices` for a choice, `section` for a
-    section, a list of sections, or a table of sections under free names; a table without section
-    holds texts, numbers or tables (waivers, objective, materials).
+    `kind` is set for a value, a list of values or a choice; `choices` for a choice; `section` for a
+    section, a list of sections, or a table of sections under free names. A table without `section`
+    contains texts, numbers or tables (waivers, objective, materials).
     """
 
     name: str
@@ -40,10 +40,10 @@ class Entry:
     section: type[Section] | None = None
     least: int = 0
     most: int | None = None
-    """Least and largest number of entries of a list."""
+    """Fewest and most entries of a list."""
 
     def quantity(self, value: object = None) -> Quantity | None:
-        """The quantity of a number here; a position's depends on how it is written."""
+        """Quantity of this number; for a position it depends on the notation."""
         if isinstance(self.kind, PositionKind):
             return self.kind.quantity_of(value)
         return self.kind.quantity if isinstance(self.kind, Of) else None
@@ -51,7 +51,7 @@ class Entry:
 
 @cache
 def entries(section: type[Section]) -> Mapping[str, Entry]:
-    """Every key of a section, in file order."""
+    """All keys of a section, in file order."""
     return {name: _entry(name, info) for name, info in section.model_fields.items()}
 
 
@@ -94,7 +94,7 @@ def _options(annotation: Any) -> tuple[Any, ...]:
 
 
 def child(node: Any, key: str | int) -> Any:
-    """A node's child, None where it has none; nodes are sections, dicts, lists or None."""
+    """Child of a node, or None; nodes are sections, dicts, lists or None."""
     if isinstance(node, Mapping):
         return node.get(key)
     if isinstance(node, (list, tuple)):
@@ -103,7 +103,7 @@ def child(node: Any, key: str | int) -> Any:
 
 
 def child_at(tree: Any, loc: Loc) -> Any:
-    """The value at a place of a tree; None where there is none."""
+    """Value at a place of a tree, or None."""
     for key in loc:
         tree = child(tree, key)
     return tree
@@ -111,7 +111,7 @@ def child_at(tree: Any, loc: Loc) -> Any:
 
 @cache
 def lists_of(wanted: type[Section], section: type[Section] = Design) -> tuple[Loc, ...]:
-    """Where the model has lists of a section.
+    """Places of the lists of a section type.
 
     >>> from .model import Ply
     >>> lists_of(Ply)
@@ -129,10 +129,10 @@ def lists_of(wanted: type[Section], section: type[Section] = Design) -> tuple[Lo
 def leaves(
     node: Any, section: type[Section] = Design, loc: Loc = ()
 ) -> Iterator[tuple[Loc, Entry, Any]]:
-    """Every value and choice below a node that is present: (loc, entry, value).
+    """All present values and choices below a node: (loc, entry, value).
 
-    Tables of free names (variables, requirements, …) are not entered. A dict may be faulty:
-    what does not have the model's shape is passed over.
+    Tables of free names (variables, requirements, …) are skipped, as are parts of a faulty dict
+    that do not have the model's structure.
     """
     for name, entry in entries(section).items():
         below = child(node, name)
@@ -152,7 +152,7 @@ def leaves(
 
 
 def number_of(value: object) -> float | None:
-    """The SI number of a leaf's value; None for texts."""
+    """SI number of a leaf; None for texts."""
     if isinstance(value, Fraction):
         return value.value
     if isinstance(value, (int, float)) and not isinstance(value, bool):
@@ -161,7 +161,7 @@ def number_of(value: object) -> float | None:
 
 
 def value_at(tree: Any, loc: Loc, section: type[Section] = Design) -> Any:
-    """The value at a place of a section or its tree, else the default the model gives it there."""
+    """Value at a place of a section or its tree, else the default of the model."""
     node, default = tree, None
     for key in loc:
         node = child(node, key)

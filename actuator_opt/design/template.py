@@ -1,4 +1,4 @@
-"""The start file of `init`: a whole design, commented, every value with its unit."""
+"""The start file of `init`: a complete, commented design, every value with its unit."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from .reader import LoadedDesign
 from .writer import scalar, to_yaml
 
 _TEXT = """\
-# A hydraulic actuator: what it is, what it must do, what may change.
+# A hydraulic actuator: its design, duties, variables and requirements.
 #
-# Every physical value carries its unit (25 mm, 100 bar, 40 degC, 0.5 %); only 0, ratios and
-# counts may be bare. Any value has a PATH, e.g. cylinder.bore or barrel.layup[1].thickness,
-# which --set and the block `variables` below understand.
+# Every physical value has a unit (25 mm, 100 bar, 40 degC, 0.5 %); only 0, ratios and counts
+# may be bare. Every value has a PATH, e.g. cylinder.bore or barrel.layup[1].thickness, for --set
+# and the block `variables` below.
 #
 #   actuator-opt check FILE       all faults of this file
-#   actuator-opt evaluate FILE    every quantity and check as it stands
+#   actuator-opt evaluate FILE    all metrics and checks of this design
 #   actuator-opt optimise FILE    the lightest design that meets the requirements
 name: @NAME@
 
@@ -36,8 +36,8 @@ environment:
   temperature_min: -20 degC
   temperature_max: 80 degC
   assembly_temperature: 20 degC
-  cure_temperature: 120 degC   # where the laminate is free of stress
-  trapped_rise: 5 K            # how far blocked oil may warm up
+  cure_temperature: 120 degC   # stress-free temperature of the laminate
+  trapped_rise: 5 K            # temperature rise of trapped oil
 
 cylinder:
   bore: 25 mm
@@ -48,14 +48,14 @@ cylinder:
 barrel:
   model: auto                  # isotropic for one metal layer, else layered
   layup:                       # from the bore outwards; one isotropic layer = a metal barrel
-    - material: al_6061_t6     # liner: seals, and takes the wear of the piston seal
+    - material: al_6061_t6     # liner: leak-tight, wear surface of the piston seal
       thickness: 0.8 mm
-    - material: t700_epoxy     # hoop layer: holds the pressure
+    - material: t700_epoxy     # hoop layer: carries the pressure
       angle: 88 deg            # from the tube axis; a balanced +- pair
       thickness: 1.2 mm
-                               # or both at once: plies: "+-88_3 / +-20_2" with
+                               # or both composite layers: plies: "+-88_3 / +-20_2" and
                                # ply_thickness: 0.2 mm instead of angle and thickness
-    - material: t700_epoxy     # axial layer: holds the cap ends together
+    - material: t700_epoxy     # axial layer: carries the end forces
       angle: 20 deg
       thickness: 0.8 mm
 
@@ -63,7 +63,7 @@ rod:
   material: steel_42crmo4
   outer_diameter: 12 mm
   inner_diameter: 4 mm         # 0 = solid
-  extension: 25 mm             # what shows when retracted
+  extension: 25 mm             # length outside the head when retracted
   thread:
     diameter: 10 mm
     pitch: 1.5 mm
@@ -79,10 +79,10 @@ head:
   clearance: 0.02 mm
 
 caps:
-  material: ti_6al4v           # expands little: bonds to carbon over the temperature range
+  material: ti_6al4v           # low thermal expansion, suits carbon fibre
   thickness: 6 mm
 
-retention:                     # how caps and head are held to the barrel
+retention:                     # joint of caps and head to the barrel
   type: bond                   # or @JOINTS@
   material: epoxy_structural
   length: 20 mm
@@ -105,10 +105,10 @@ seals:
     section: 3.53 mm
     squeeze: 12 %
     tolerance: 0.05 mm
-    # friction: film           # its oil film instead of a coefficient of friction
-    # back_up: one             # a back-up ring; with back_up_material and back_up_thickness
+    # friction: film           # oil film instead of a friction coefficient
+    # back_up: one             # needs back_up_material and back_up_thickness
 
-lines:                         # between valve and chambers; leave out if there are none
+lines:                         # between valve and chambers; optional
   - chamber: a                 # a: cap side, b: rod side
     length: 0.2 m
     inner_diameter: 6 mm
@@ -120,38 +120,38 @@ lines:                         # between valve and chambers; leave out if there 
     outer_diameter: 8 mm
     material: steel_e235
 
-# valve:                       # with a valve: position loop, bandwidth and margins
+# valve:                       # optional: position loop, bandwidth and margins
 #   rated_flow: 10 l/min       # through one edge, fully open, at rated_drop
 #   rated_drop: 35 bar
 #   leakage_flow: 0.2 l/min    # through one edge, spool centred, at leakage_drop (50 bar)
 #   natural_frequency: 120 Hz
 # ports:
-#   end: valve                 # what ends the lines while the load shakes; or closed (default),
+#   end: valve                 # end of the lines under load excitation; or closed (default),
 #                              # constant_pressure, reducing_valve
 # control:
-#   gain: 500 V/m              # signal per position error; left out: half the ultimate gain
+#   gain: 500 V/m              # signal per position error; default: half the ultimate gain
 
 load:
-  mass: 20 kg                  # moved mass, reflected to the rod
-# linkage:                     # with two pivots about a joint: joint_torque without lever_arm, at
-#   base_radius: 280 mm        # an angle or at the worst of the stroke; joint_speed; load.inertia
+  mass: 20 kg                  # moving mass, reflected to the rod
+# linkage:                     # two pivots about a joint: allows joint_torque without lever_arm,
+#   base_radius: 280 mm        # joint_angle, joint_speed and load.inertia
 #   crank_radius: 70 mm        # joint axis to the crank pin
-#   angle_offset: 10 deg       # between both radii at joint angle 0; grows with the actuator
+#   angle_offset: 10 deg       # between both radii at joint angle 0; grows as it extends
 
-load_cases:                    # each requirement is met in the worst of these
+load_cases:                    # every requirement holds in the worst case
   - name: stance
     direction: push
     force: 3 kN                # or joint_torque: 120 N*m with lever_arm: 40 mm (or linkage)
     speed: 0.1 m/s
     position: worst            # or a length, or a share of the stroke (50 %)
     side_load: 20 N
-#   frequency: 20 Hz           # the load shakes the held actuator: dynamic_stiffness
+#   frequency: 20 Hz           # load excitation, for dynamic_stiffness
   - name: swing
     direction: pull
     force: 1 kN
     speed: 0.15 m/s
 
-variables:                     # what the optimiser may move; everything else is fixed
+variables:                     # dimensions that the optimiser varies; all others are fixed
   cylinder.bore:
     lower: 18 mm
     upper: 40 mm
@@ -171,7 +171,7 @@ variables:                     # what the optimiser may move; everything else is
     lower: 3 mm
     upper: 12 mm
 
-# choices:                     # what it may choose among: PATH with the values allowed; every
+# choices:                     # PATH with the values to choose from; every
 #   seals.rod.compound: [nbr_70, hnbr_75]      # combination is optimised, the best one kept
 #   seals.rod.section: [2.62 mm, 3.53 mm]
 
@@ -196,7 +196,7 @@ def init_text(name: str = "my actuator", from_design: LoadedDesign | Design | No
     Raises
     ------
     ValueFault
-        a name that cannot stand in a design file
+        an invalid name
     """
     title = Text().validate(name)
     if from_design is None:

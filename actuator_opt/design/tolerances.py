@@ -18,15 +18,15 @@ def _table() -> dict[str, Any]:
 
 
 def source() -> str:
-    """Where the table comes from, with how far it was checked."""
+    """Source of the table, with its confidence."""
     return f"{citation(_table()['source'])} ({_table()['confidence']})"
 
 
 def class_limits(name: str, size: float) -> tuple[float, float]:
     """Lower and upper deviation (m) from the nominal size (m) of a class of ISO 286-1.
 
-    Holes are written with capital, shafts with small letters: a hole's fundamental deviation is
-    the negative of the shaft's of the same letter (d to h); js and JS lie half on either side.
+    Holes have capital, shafts small letters. The fundamental deviation of a hole is the negative
+    of that of the shaft with the same letter (d to h); js and JS are symmetric.
 
     Raises
     ------
@@ -45,12 +45,12 @@ def class_limits(name: str, size: float) -> tuple[float, float]:
     grades, letters = [int(g) for g in table["grades"]], table["shafts"]
     known = letter.lower() in (*letters, "h", "js")
     if match is None or int(match[2]) not in grades or not known:
-        message = f'"{name}" is not a tolerance class known here'
+        message = f'"{name}" is not a supported tolerance class'
         ends = f"{', '.join(sorted(letters))}, h or js and {grades[0]} to {grades[-1]}"
         raise ValueFault(message, f"write e.g. H8 or f7: {ends}, capitals for holes")
     row = next((r for r in table["rows"] if size <= metres(r["to"]) * (1 + 1e-12)), None)
     if row is None or size <= 0:
-        message = f"{name}: the table of ISO 286 ends at {table['rows'][-1]['to']} mm"
+        message = f"{name}: the ISO 286 table ends at {table['rows'][-1]['to']} mm"
         raise ValueFault(message, "write half_width instead")
     width = float(row["widths"][grades.index(int(match[2]))]) * _MICRON
     if letter.lower() == "js":
@@ -60,5 +60,5 @@ def class_limits(name: str, size: float) -> tuple[float, float]:
 
 
 def _place(row: dict[str, Any]) -> int:
-    """Index of a step of sizes."""
+    """Index of a size step."""
     return [one["to"] for one in _table()["rows"]].index(row["to"])

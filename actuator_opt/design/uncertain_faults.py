@@ -15,7 +15,7 @@ from .variable import Shape
 
 
 def faults(tree: dict[str, Any]) -> Iterator[Fault]:
-    """Turn the texts of `uncertainty` into SI in place; PATHs, keys and order that do not fit."""
+    """Convert the texts of `uncertainty` to SI in place; yields faults of PATHs, keys and order."""
     block = tree.get("uncertainty")
     for path, entry in block.items() if isinstance(block, dict) else ():
         loc = ("uncertainty", path)
@@ -26,7 +26,7 @@ def faults(tree: dict[str, Any]) -> Iterator[Fault]:
             continue
         if not isinstance(entry, dict):
             if entry is not None:
-                remedy = 'write "distribution: …" and what it takes'
+                remedy = 'write "distribution: …" and its parameters'
                 yield Fault(loc, f"need a distribution, not {what(entry)}", remedy)
             continue
         found = list(_read(loc, entry, target))
@@ -34,14 +34,14 @@ def faults(tree: dict[str, Any]) -> Iterator[Fault]:
 
 
 def _number(path: str, tree: dict[str, Any]) -> Target:
-    """The number a PATH names; raises `ValueFault`."""
+    """The number at a PATH; raises `ValueFault`."""
     try:
         target = resolve(path, tree)
     except ValueFault as fault:
         raise ValueFault(fault.message.removeprefix(f"{path}: "), fault.remedy) from None
     material = target.loc[0] == "materials"
     if target.quantity is None or (target.entry is None and not material):
-        raise ValueFault("is no number of the actuator", "remove the entry")
+        raise ValueFault("is not a number of the actuator", "remove the entry")
     if target.quantity.dimension == "count":
         raise ValueFault("is a count and does not scatter", "remove the entry")
     if target.path != path:
@@ -53,7 +53,7 @@ def _number(path: str, tree: dict[str, Any]) -> Target:
 
 
 def _read(loc: tuple[str, str], entry: dict[str, Any], target: Target) -> Iterator[Fault]:
-    """Numbers to SI, in place."""
+    """Convert numbers to SI, in place."""
     assert target.quantity is not None
     for key in NUMBERS:
         quantity = quantity_of_entry(key, target.quantity)
@@ -68,7 +68,7 @@ def _read(loc: tuple[str, str], entry: dict[str, Any], target: Target) -> Iterat
 def _fit(
     loc: tuple[str, str], entry: dict[str, Any], target: Target, tree: dict[str, Any]
 ) -> Iterator[Fault]:
-    """Keys that suit the distribution, bounds about the value, nothing beyond the valid range."""
+    """The keys suit the distribution, the bounds include the value, samples stay in range."""
     shape = entry.get("distribution", "uniform" if "tolerance" in entry else None)
     if shape is None:
         yield Fault((*loc, "distribution"), "missing", 'add e.g. "distribution: normal"')
@@ -76,20 +76,26 @@ def _fit(
     entry["distribution"] = shape
     if shape not in get_args(Shape):
         word = shape if isinstance(shape, str) else ""
-        message = f'"{suggest.shown(word)}" is not a distribution' if word else "need one word"
+        message = (
+            f'"{suggest.shown(word)}" is not a distribution'
+            if word
+            else "a single word is required"
+        )
         remedy = suggest.remedy(word, get_args(Shape))
         yield Fault((*loc, "distribution"), message, remedy)
         return
     given = tuple(key for key in (*NUMBERS, "tolerance") if entry.get(key) is not None)
     if set(given) not in [set(group) for group in KEYS[shape]]:
         options = ", or ".join(" and ".join(group) for group in KEYS[shape]) or "nothing more"
-        has = f"has {' and '.join(given)}" if given else "states no size"
+        has = f"has {' and '.join(given)}" if given else "has no parameters"
         yield Fault(loc, f"{shape} {has}", f"write {options}", at_key=True)
         return
     value = number_of(value_at(tree, target.loc))
     if "lower" in given and target.path in (tree.get("variables") or {}):
-        message = "bounds that stay while the optimiser moves the value"
-        yield Fault((*loc, "lower"), message, "write half_width, factor or cv, which move with it")
+        message = "fixed bounds, while the optimiser varies the value"
+        yield Fault(
+            (*loc, "lower"), message, "write half_width, factor or cv, which follow the value"
+        )
     elif value is not None:
         assert target.quantity is not None
         message, remedy = misfit(shape, entry, value, target.quantity)

@@ -1,4 +1,4 @@
-"""What is said of values beside the value: bounds to move in, bounds of a test, scatter."""
+"""Extra data of a value: bounds of a variable, bounds of a test, scatter."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from .section import Section
 
 
 class Variable(Section):
-    """Bounds and start (SI) of a dimension the optimiser may move; in the file, units by PATH.
+    """Bounds and start (SI) of a dimension that the optimiser varies; in the file, units by PATH.
 
-    It moves freely, or takes the `sizes` of a series or a list, or multiples of `step`.
+    It varies continuously, or takes the `sizes` of a series or a list, or multiples of `step`.
     """
 
     lower: float
@@ -22,31 +22,31 @@ class Variable(Section):
 
 
 class Measured(Section):
-    """What a test record says of a value of the design: bounds that hold it with 95 %.
+    """Test result for a value of the design: its 95 % bounds.
 
     SI; in the file, units by PATH.
     """
 
     lower: float
     upper: float
-    record: Annotated[str, Text("the record, as a report names it", 200)]
+    record: Annotated[str, Text("name of the record in a report", 200)]
 
 
 Shape: TypeAlias = Literal["normal", "lognormal", "uniform", "loguniform", "triangular", "fixed"]
 
 
 class Uncertain(Section):
-    """How a value scatters; SI, in the file units by PATH."""
+    """Scatter of a value; SI, in the file units by PATH."""
 
     distribution: Annotated[
         Shape,
         Choice(
-            "how the value scatters; normal: about the value, by deviation or cv; "
-            "lognormal: the value is its median, by cv or by the factor that holds 95 %; "
+            "distribution of the value; normal:  about the value, by deviation or cv; "
+            "lognormal: the value is its median, by cv or by the factor that covers 95 %; "
             "uniform: between bounds, half_width about the value, or an ISO 286 tolerance; "
             "loguniform: uniform in its logarithm, between bounds or value/factor to value*factor; "
-            "triangular: as uniform, most likely at the value; "
-            "fixed: not at all, whatever libraries and practice say"
+            "triangular: as uniform, with the mode at the value; "
+            "fixed: no scatter, even if libraries or practice give some"
         ),
     ]
     lower: float | None = None
@@ -58,4 +58,4 @@ class Uncertain(Section):
     tolerance: Annotated[str | None, Text("ISO 286 class of a diameter or length, e.g. H8", 10)] = (
         None
     )
-    source: Annotated[str | None, Text("where it comes from, as a report names it", 200)] = None
+    source: Annotated[str | None, Text("source, as named in a report", 200)] = None

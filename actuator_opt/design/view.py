@@ -1,4 +1,4 @@
-"""A file's tree as checks read it: numbers by place, and the fault a check finds there."""
+"""View of a file's tree for checks: values by place, and faults at places."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from .structure import Loc, child_at, number_of, value_at
 
 
 class Materials(Protocol):
-    """What the input layer asks of the material library (`materials.Library` is one)."""
+    """Interface of the material library for input checks (`materials.Library` implements it)."""
 
     def __contains__(self, name: object) -> bool: ...
 
     def names(self) -> Sequence[str]:
-        """Every name."""
+        """All names."""
         ...
 
     def kind(self, name: str) -> str | None:
@@ -28,22 +28,22 @@ class Materials(Protocol):
 
 @runtime_checkable
 class Properties(Protocol):
-    """A material library that also tells what it knows of each entry."""
+    """A material library that also gives the properties of its entries."""
 
     def numbers(self, name: str) -> Mapping[str, float]:
-        """Every stated property, SI."""
+        """All stated properties, SI."""
         ...
 
 
 class View:
-    """A tree in SI, read by dotted keys, with the model's defaults; None where unusable."""
+    """A tree in SI, read by dotted keys, with the defaults of the model; None if unusable."""
 
     def __init__(self, tree: Any, root: type[Section] = Design) -> None:
         self.tree = tree
         self.root = root
 
     def value(self, *loc: str | int) -> Any:
-        """Whatever stands at a place, else its default."""
+        """Value at a place, else its default."""
         return value_at(self.tree, loc, self.root)
 
     def number(self, *loc: str | int) -> float | None:
@@ -56,7 +56,7 @@ class View:
         return value if isinstance(value, str) else None
 
     def flag(self, *loc: str | int) -> bool | None:
-        """The yes or no at a place."""
+        """The boolean at a place."""
         value = self.value(*loc)
         return value if isinstance(value, bool) else None
 
@@ -73,12 +73,12 @@ class View:
 def without_effect(
     view: View, loc: Loc, keys: Iterable[str], where: str, remedy: str = "remove the line"
 ) -> Iterator[Fault]:
-    """A fault of each of the keys below a place that the file states."""
+    """A fault for each of these keys below a place that the file states."""
     for key in keys:
         if view.has(*loc, key):
             yield Fault((*loc, key), f"without effect {where}", remedy, at_key=True)
 
 
 def length_text(value: float) -> str:
-    """A length as people read it."""
+    """A length for display."""
     return quantities.INPUTS["length"].text(value)

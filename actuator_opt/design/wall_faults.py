@@ -1,4 +1,4 @@
-"""Faults of the walls of barrel and rod: layers that cannot be, materials that cannot bear them."""
+"""Faults of the walls of barrel and rod: impossible layers, unsuitable materials."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ PLY_STRENGTHS = (
     "strength_1_tension", "strength_1_compression", "strength_2_tension",
     "strength_2_compression", "strength_12",
 )  # fmt: skip
-"""Strengths that every failure criterion needs; what else one may use has a stated default."""
+"""Strengths that every failure criterion needs; other strengths have defaults."""
 
 _WITHOUT_PLIES = ("isotropic", "as_published")
-"""Wall models that know no failure of plies."""
+"""Wall models without failure of plies."""
 
 _ELASTIC = (*PLY_CONSTANTS, "youngs_modulus", "poissons_ratio", "shear_modulus")
 
 
 def signs(view: View) -> Iterator[Fault]:
-    """A balanced pair has no sign, neither its angle nor the bounds of it."""
+    """A balanced pair has no sign, neither in its angle nor in its bounds."""
     for wall in lists_of(Ply):
         for index in range(len(view.items(*wall))):
             loc = (*wall, index, "angle")
@@ -47,18 +47,18 @@ def signs(view: View) -> Iterator[Fault]:
 
 
 def barrel_model(view: View) -> Iterator[Fault]:
-    """The isotropic wall model knows one layer."""
+    """The isotropic wall model has a single layer."""
     layers = len(view.items("barrel", "layup"))
     if view.text("barrel", "model") == "isotropic" and layers > 1:
         yield Fault(
             ("barrel", "model"),
-            f"isotropic: the layup has {layers} layers, the model takes one",
+            f"isotropic: the layup has {layers} layers, the model has one",
             "write auto, or keep one layer",
         )
 
 
 def autofrettage(view: View) -> Iterator[Fault]:
-    """The liner yields above the supply pressure, under layers that hold it."""
+    """The liner yields above the supply pressure, inside layers that contain it."""
     loc = ("barrel", "autofrettage_pressure")
     pressure, supply = view.number(*loc), view.number("supply", "pressure")
     if pressure is None:
@@ -72,23 +72,27 @@ def autofrettage(view: View) -> Iterator[Fault]:
         )
     elif len(view.items("barrel", "layup")) == 1:
         remedy = "remove the line, or wrap the liner"
-        yield Fault(loc, "the wall is one layer: nothing holds a liner", remedy, at_key=True)
+        yield Fault(
+            loc, "the wall is a single layer: nothing supports a liner", remedy, at_key=True
+        )
 
 
 def laminated_rod(view: View) -> Iterator[Fault]:
-    """The bore of a laminated rod follows from its layers, which leave one; fittings need both."""
+    """The bore of a laminated rod follows from its layers; fittings need both."""
     layers = len(view.items("rod", "layup"))
     if not layers:
         if view.has("rod", "fitting"):
             remedy = "remove it, or add the layers: rod.layup"
-            yield Fault(("rod", "fitting"), "a rod without layup has none", remedy, at_key=True)
+            yield Fault(
+                ("rod", "fitting"), "only a rod with layup has fittings", remedy, at_key=True
+            )
         return
     why = "the bore of a laminated rod follows from outer_diameter and its layers"
     if view.number("rod", "inner_diameter"):
         yield Fault(("rod", "inner_diameter"), why, "remove the line", at_key=True)
     moved = ("variables", "rod.inner_diameter")
     if child_at(view.tree, moved) is not None:
-        remedy = "remove it; move e.g. rod.layup[0].thickness"
+        remedy = "remove it; vary e.g. rod.layup[0].thickness"
         yield Fault(moved, why, remedy, at_key=True)
     outer = view.number("rod", "outer_diameter")
     parts = [view.number("rod", "layup", index, "thickness") for index in range(layers)]
@@ -99,7 +103,7 @@ def laminated_rod(view: View) -> Iterator[Fault]:
         yield Fault(
             ("rod", "layup"),
             f"layers of {length_text(sum(known))} leave no bore in a rod of {length_text(outer)}",
-            f"write less than {length_text(outer / 2)} in all, or a larger rod.outer_diameter",
+            f"write less than {length_text(outer / 2)} in total, or a larger rod.outer_diameter",
             at_key=True,
         )
         return
@@ -108,7 +112,7 @@ def laminated_rod(view: View) -> Iterator[Fault]:
         yield Fault(
             ("rod", "fitting", "wall"),
             f"{length_text(wall)}: the bore has a radius of {length_text(room)}",
-            f"write at most {length_text(room)}, or leave it out: solid",
+            f"write at most {length_text(room)}, or remove it: solid",
         )
 
 
@@ -121,7 +125,7 @@ CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
 
 
 def of_materials(tree: Any, materials: Materials) -> Iterator[Fault]:
-    """Faults of the walls that show when the library is asked."""
+    """Faults of the walls that depend on the material library."""
     view = View(tree)
     yield from _kinds(view, materials)
     if isinstance(materials, Properties):
@@ -135,13 +139,13 @@ def _names(view: View, wall: Loc) -> list[str | None]:
 
 
 def _kinds(view: View, materials: Materials) -> Iterator[Fault]:
-    """Autofrettage yields a metal liner; a laminated rod ends in metal fittings."""
+    """Autofrettage needs a metal liner; a laminated rod needs metal fittings."""
     first = next(iter(_names(view, ("barrel", "layup"))), None)
     stated = view.number("barrel", "autofrettage_pressure") is not None
     if stated and first is not None and materials.kind(first) not in (None, "metal"):
         yield Fault(
             ("barrel", "autofrettage_pressure"),
-            f"the innermost layer is {first}, no metal liner that could yield",
+            f"the innermost layer is {first}, not a metal liner that could yield",
             "remove the line, or add a metal liner",
             at_key=True,
         )
@@ -149,26 +153,26 @@ def _kinds(view: View, materials: Materials) -> Iterator[Fault]:
     if any(materials.kind(name) == "ply" for name in wound) and not view.has("rod", "fitting"):
         yield Fault(
             ("rod", "fitting"),
-            "missing: a rod of plies needs bonded end fittings",
+            "missing: a laminated rod needs bonded end fittings",
             'add a block "fitting:" with adhesive, length',
         )
 
 
 class _Known:
-    """Properties of the library with the design's own over them."""
+    """Properties of the library, overridden by the design."""
 
     def __init__(self, view: View, materials: Properties) -> None:
         self.own = child(view.tree, "materials")
         self.materials = materials
 
     def changed(self, name: str) -> dict[str, float]:
-        """What the design states itself; what is faulty is left out."""
+        """Properties that the design states; faulty values are left out."""
         own = child(self.own, name)
         pairs = own.items() if isinstance(own, Mapping) else ()
         return {key: value for key, value in pairs if isinstance(value, float)}
 
     def numbers(self, name: str) -> dict[str, float]:
-        """Every known property; none where the entry is missing or faulty (said elsewhere)."""
+        """All known properties; empty if the entry is missing or faulty (a separate fault)."""
         try:
             return {**self.materials.numbers(name), **self.changed(name)}
         except InputError:
@@ -176,12 +180,12 @@ class _Known:
 
 
 def known_numbers(view: View, materials: Properties, name: str) -> dict[str, float]:
-    """What library and design state of a material; none where the entry is missing or faulty."""
+    """Properties of a material from library and design; empty if missing or faulty."""
     return _Known(view, materials).numbers(name)
 
 
 def _strengths(view: View, known: _Known) -> Iterator[Fault]:
-    """Every ply of the barrel has the strengths of the criterion the file chooses."""
+    """Every ply of the barrel has the strengths of the selected criterion."""
     criterion = view.text("barrel", "criterion")
     if not view.has("barrel", "criterion") or view.text("barrel", "model") in _WITHOUT_PLIES:
         return
@@ -191,13 +195,13 @@ def _strengths(view: View, known: _Known) -> Iterator[Fault]:
         if "youngs_modulus_1" in numbers and missing:
             yield Fault(
                 ("barrel", "criterion"),
-                f"{criterion}: {name} states no {', '.join(missing)}",
+                f"{criterion}: {name} has no {', '.join(missing)}",
                 f'add e.g. "{missing[0]}: 60 MPa" under materials.{name}, or use another material',
             )
 
 
 def _stiffness(view: View, known: _Known) -> Iterator[Fault]:
-    """Elastic constants the design changes leave the stiffness positive definite."""
+    """Changed elastic constants keep the stiffness positive definite."""
     for name in known.own if isinstance(known.own, Mapping) else ():
         changed = [key for key in known.changed(name) if key in _ELASTIC]
         numbers = known.numbers(name) if changed else {}
@@ -209,5 +213,5 @@ def _stiffness(view: View, known: _Known) -> Iterator[Fault]:
             yield Fault(
                 ("materials", name, (ratios or changed)[-1]),
                 "these elastic constants are impossible: the stiffness is not positive definite",
-                "check the Poisson's ratios against the moduli: nu_12^2 < E_1/E_2 and alike",
+                "check the Poisson's ratios against the moduli: nu_12^2 < E_1/E_2 and similar",
             )

@@ -1,7 +1,7 @@
-"""What a person wants and knows: variables, requirements, measured values and the other tables.
+"""Tables of free names: variables, requirements, measured values and others.
 
-Their units depend on what they name (a PATH, a metric, a property). Each function turns the
-texts of its block into SI numbers in place and yields the faults it finds.
+Their units depend on their key (a PATH, a metric, a property). Each function converts the texts of
+its block to SI numbers in place and yields their faults.
 """
 
 from __future__ import annotations
@@ -26,17 +26,17 @@ _LARGEST = {
     "flow": 1e3, "damping": 1e13, "energy": 1e12, "power": 1e12, "torque": 1e10,
     "time": 1e6,
 }  # fmt: skip
-"""Limits beyond these SI values are slips, whatever the metric."""
+"""Limits beyond these SI values are typing errors, for any metric."""
 
 
 def limit_quantity(metric: Quantity) -> Quantity:
-    """A metric as the quantity of its limits: magnitudes, within what can make sense."""
+    """Quantity for the limits of a metric: signed or not, within plausible values."""
     largest = _LARGEST.get(metric.dimension, 1e15)
     return replace(metric, lower=max(metric.lower, 0.0), upper=min(metric.upper, largest))
 
 
 def _number(block: dict[str, Any], loc: Loc, quantity: Quantity) -> Fault | None:
-    """Turn the last key of `loc` into SI where it is present."""
+    """Convert the last key of `loc` to SI if present."""
     key = str(loc[-1])
     if block.get(key) is None:
         return None
@@ -48,7 +48,7 @@ def _number(block: dict[str, Any], loc: Loc, quantity: Quantity) -> Fault | None
 
 
 def requirements(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Iterator[Fault]:
-    """Known metrics, limits in the metric's unit, at least one limit, in order."""
+    """Known metrics with at least one limit, in the unit of the metric, in order."""
     block = tree.get("requirements")
     for metric, limit in block.items() if isinstance(block, dict) else ():
         loc = ("requirements", metric)
@@ -69,7 +69,7 @@ def requirements(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Itera
         low, high = limit.get("min"), limit.get("max")
         if "min" not in limit and "max" not in limit:
             remedy = f'add e.g. "min: {example(quantity)}" or "max: …"'
-            yield Fault((*loc, "min"), "missing: no limit given", remedy)
+            yield Fault((*loc, "min"), "missing: no limit stated", remedy)
         elif isinstance(low, float) and isinstance(high, float) and low > high:
             yield Fault(
                 (*loc, "max"),
@@ -79,14 +79,18 @@ def requirements(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Itera
 
 
 def variables(tree: dict[str, Any]) -> Iterator[Fault]:
-    """PATHs of numbers, bounds in their range and in order, the start between them."""
+    """PATHs of numbers with ordered bounds in range, and the start between them."""
     block = tree.get("variables")
     if not isinstance(block, dict):
         return
     for path, bounds in block.items():
         loc = ("variables", path)
         if in_faulty_block(path, tree):
-            block[path] = {"lower": 0.0, "upper": 1.0, "start": 0.0}  # the block's fault is enough
+            block[path] = {
+                "lower": 0.0,
+                "upper": 1.0,
+                "start": 0.0,
+            }  # the block has a fault
             continue
         try:
             target = _movable(path, tree)
@@ -108,7 +112,7 @@ def variables(tree: dict[str, Any]) -> Iterator[Fault]:
 
 
 def measured(tree: dict[str, Any]) -> Iterator[Fault]:
-    """PATHs of numbers that are set, bounds in their range and in order."""
+    """PATHs of numbers that are set, with ordered bounds in range."""
     block = tree.get("measured")
     if not isinstance(block, dict):
         return
@@ -124,7 +128,7 @@ def measured(tree: dict[str, Any]) -> Iterator[Fault]:
             yield Fault(loc, message, fault.remedy, at_key=True)
             continue
         if target.quantity is None or target.entry is None:
-            yield Fault(loc, "is no number of the actuator", "remove the entry", at_key=True)
+            yield Fault(loc, "is not a number of the actuator", "remove the entry", at_key=True)
             continue
         if target.path != path:
             yield Fault(loc, "is not the canonical PATH", f"write {target.path}", at_key=True)
@@ -146,7 +150,7 @@ def measured(tree: dict[str, Any]) -> Iterator[Fault]:
 
 
 def in_faulty_block(path: str, tree: dict[str, Any]) -> bool:
-    """Whether the block a PATH lies in is missing or no block: a fault of its own, said there."""
+    """Whether the block of a PATH is missing or not a block, which is a separate fault."""
     name = path.partition(".")[0]
     entry = entries(Design).get(name)
     if entry is None or entry.section is None or entry.shape == "table":
@@ -157,7 +161,7 @@ def in_faulty_block(path: str, tree: dict[str, Any]) -> bool:
 
 
 def _movable(path: str, tree: dict[str, Any]) -> Target:
-    """The number a variable moves; raises `ValueFault`."""
+    """The number that a variable varies; raises `ValueFault`."""
     try:
         target = resolve(path, tree)
     except ValueFault as fault:
@@ -165,9 +169,7 @@ def _movable(path: str, tree: dict[str, Any]) -> Target:
     if target.quantity is None:
         raise ValueFault("is text, not a number", "name a number of the design")
     if target.quantity.dimension == "count":
-        raise ValueFault(
-            "is a count and cannot be moved continuously", "fix it and compare designs"
-        )
+        raise ValueFault("is a count and cannot vary continuously", "fix it and compare designs")
     if target.entry is None or target.entry.shape == "list":
         raise ValueFault("is not a dimension of the actuator", "name a number of the design")
     if target.path != path:
@@ -178,7 +180,7 @@ def _movable(path: str, tree: dict[str, Any]) -> Target:
 def _start(
     loc: tuple[str, str], bounds: dict[str, Any], target: Target, tree: dict[str, Any]
 ) -> Iterator[Fault]:
-    """Order of the bounds; the start is `start`, else the design's own value."""
+    """Order of the bounds; the start is `start`, else the value in the design."""
     quantity = target.quantity
     assert quantity is not None
     lower, upper, start = (bounds.get(key) for key in ("lower", "upper", "start"))
@@ -187,7 +189,7 @@ def _start(
     if raw is None and target.entry is not None and not target.entry.required:
         yield Fault(
             (*loc, "start"),
-            f"{target.path} is not set, so it cannot be moved",
+            f"{target.path} is not set, so it cannot be varied",
             f'write e.g. "{target.loc[-1]}: {example(quantity)}" in its block',
         )
     if "start" not in bounds:
@@ -196,7 +198,7 @@ def _start(
     if not isinstance(lower, float) or not isinstance(upper, float):
         return
     if lower == upper:
-        message = f"bounds equal: lower and upper are {quantity.text(lower)}, so nothing may move"
+        message = f"bounds equal: lower and upper are {quantity.text(lower)}, so nothing can vary"
         remedy = f"widen them, or remove the entry and set {target.path} itself"
         yield Fault((*loc, "upper"), message, remedy)
     elif lower > upper:
@@ -209,20 +211,20 @@ def _start(
     elif isinstance(start, float) and not _between(lower, start, upper):
         yield Fault(
             place,
-            f"{quantity.text(start)}: start value outside its bounds",
+            f"{quantity.text(start)}: start value outside the bounds",
             f"write {quantity.text(lower)} to {quantity.text(upper)}, or widen "
             f"variables.{target.path}",
         )
 
 
 def _between(lower: float, start: float, upper: float) -> bool:
-    """Whether a start lies within its bounds; the last bits of a unit are forgiven."""
-    slack = 1e-12 * max(abs(lower), abs(upper))  # as of declared ranges, `kinds.check_range`
+    """Whether a start is within its bounds; the last bits of a unit are forgiven."""
+    slack = 1e-12 * max(abs(lower), abs(upper))  # as for declared ranges, see `kinds.check_range`
     return lower - slack <= start <= upper + slack
 
 
 def objective(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Iterator[Fault]:
-    """Exactly one of minimise and maximise; known metrics; weights above zero."""
+    """Exactly one of minimise and maximise; known metrics; positive weights."""
     block = tree.get("objective")
     if not isinstance(block, dict):
         return
@@ -257,7 +259,7 @@ def _weights(
             fault = Fault((*loc, metric), "0: must be > 0", "write a weight, or remove the line")
         if fault is not None:
             yield fault
-            terms[metric] = 1.0  # reported: the model need not refuse it again
+            terms[metric] = 1.0  # already reported: the model need not refuse it again
 
 
 def waivers(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Iterator[Fault]:
@@ -270,7 +272,7 @@ def waivers(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Iterator[F
 
 
 def materials(tree: dict[str, Any]) -> Iterator[Fault]:
-    """Changed properties in their own units (their material's name is checked in `faults`)."""
+    """Changed properties in their units (material names are checked in `faults`)."""
     block = tree.get("materials")
     known = quantities.MATERIAL_PROPERTIES
     for material, properties in block.items() if isinstance(block, dict) else ():
@@ -294,7 +296,7 @@ def materials(tree: dict[str, Any]) -> Iterator[Fault]:
 def recheck(
     tree: dict[str, Any], metrics: Mapping[str, Quantity], root: type[Section] = Design
 ) -> Iterator[Fault]:
-    """All of the above that a section of the type `root` has."""
+    """All of the above checks that apply to a section of type `root`."""
     checks = {
         "variables": variables(tree),
         "measured": measured(tree),

@@ -1,7 +1,7 @@
-"""A design back to YAML, exactly: reading the text again gives every number bit for bit.
+"""Write a design to YAML exactly: reading the text again gives the same numbers, bit for bit.
 
-Where the design was read from a text, only what changed is replaced in it, so comments, units and
-layout stay; a text that cannot be edited so is written anew.
+If the design was read from a text, only changed values are replaced, so comments, units and layout
+are kept. A text that cannot be edited in this way is rewritten.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _WORDS = frozenset(("y", "n", "yes", "no", "on", "off", "true", "false", "null",
 
 
 def scalar(text: str) -> str:
-    """A text as a YAML scalar that any reader takes as this text.
+    """A text as a YAML scalar that every reader parses as this text.
 
     >>> scalar("robot knee"), scalar("no"), scalar("a: b")
     ('robot knee', "'no'", "'a: b'")
@@ -46,14 +46,14 @@ def scalar(text: str) -> str:
 
 
 def exact_text(value: float, quantity: Quantity | None, unit: str | None = None) -> str:
-    """Shortest text with a unit that is read back as exactly `value` (SI).
+    """Shortest text with a unit that reads back as exactly `value` (SI).
 
     >>> exact_text(0.025, quantities.INPUTS["bore"])
     '25 mm'
     """
     if quantity is None or quantity.dimension == "count":
         return repr(int(value)) if value == int(value) else repr(value)
-    share = quantity.name == "fraction"  # a position, read as a length where it has no %
+    share = quantity.name == "fraction"  # a position without % is a length
     for name in dict.fromkeys((unit, quantity.unit, quantity.si_unit)):
         if name is None or (share and not name):
             continue
@@ -65,7 +65,7 @@ def exact_text(value: float, quantity: Quantity | None, unit: str | None = None)
 
 
 def _candidates(value: float, of: units.Unit) -> Iterator[str]:
-    """Texts in a unit of an SI value and of its nearest neighbours, shortest first."""
+    """Texts in a unit for an SI value and its nearest neighbours, shortest first."""
     low = high = of.from_si(value)
     for digits in (6, 9, 12, 15, 16, 17):
         yield f"{low:.{digits}g}"
@@ -83,13 +83,13 @@ def to_yaml(
     *,
     metrics: Mapping[str, Quantity] | None = None,
 ) -> str:
-    """The text of a design file that reads back as `design`, bit for bit.
+    """Text of a design file that reads back as `design`, bit for bit.
 
     Parameters
     ----------
-    design : what to write
-    source : text it was read from, to keep its comments
-    metrics : metrics it may name; default: `metrics.METRICS`
+    design : design to write
+    source : original text, to keep its comments
+    metrics : allowed metrics; default: `metrics.METRICS`
     """
     metrics = METRICS if metrics is None else metrics
     if source is not None:
@@ -106,11 +106,11 @@ _TABLES = (("variables",), ("requirements",), ("measured",), ("uncertainty",))
 
 
 class _CannotEdit(Exception):
-    """The text does not have the shape of the design (flow style, removed blocks, plies)."""
+    """The text does not match the design's structure (flow style, removed blocks, plies)."""
 
 
 class _Edit(NamedTuple):
-    """Replacement of ``text[start:end]`` by `new`, which stands `depth` blocks deep."""
+    """Replacement of ``text[start:end]`` by `new`, nested `depth` blocks deep."""
 
     start: int
     end: int
@@ -119,14 +119,14 @@ class _Edit(NamedTuple):
 
 
 class _Leaves:
-    """Writes the values of one design."""
+    """Writes the values of a design."""
 
     def __init__(self, design: Design, metrics: Mapping[str, Quantity]) -> None:
         self.design = design
         self.metrics = metrics
 
     def quantity(self, loc: Loc, value: object) -> Quantity | None:
-        """The quantity of the number at a place of a design file."""
+        """Quantity of the number at a place of a design file."""
         head = loc[0]
         if head in ("variables", "measured"):
             return resolve(str(loc[1]), self.design, self.metrics).quantity
@@ -148,7 +148,7 @@ class _Leaves:
         return entry.quantity(value) if entry else None
 
     def text(self, loc: Loc, value: Any, old: str | None = None) -> str:
-        """The YAML scalar of a value, in the unit of the text it replaces."""
+        """YAML scalar of a value, in the unit of the text it replaces."""
         number = number_of(value)
         if number is None:
             return str(value).lower() if isinstance(value, bool) else scalar(value)
@@ -162,7 +162,7 @@ class _Leaves:
         return exact_text(number, quantity, unit)
 
     def same(self, loc: Loc, value: Any, old: str) -> bool:
-        """Whether the text `old` already says `value`."""
+        """Whether the text `old` already has this `value`."""
         number = number_of(value)
         if isinstance(value, bool):
             return Flag.words.get(old.strip().lower()) == value
@@ -178,7 +178,7 @@ class _Leaves:
 
 
 def _is_default(key: str, value: Any, section: type[Section] | None, loc: Loc, design: Any) -> bool:
-    """Whether a value need not stand in the file."""
+    """Whether a value can be left out of the file."""
     if loc[0] == "variables" and key == "start":
         target = resolve(str(loc[1]), design)
         return bool(number_of(value_at(design, target.loc)) == number_of(value))
@@ -198,7 +198,7 @@ def _below(section: type[Section] | None, key: str) -> type[Section] | None:
 def _stated(
     node: dict[str, Any], section: type[Section] | None, design: Design, loc: Loc = ()
 ) -> dict[str, Any]:
-    """A tree without what the model would assume anyway."""
+    """A tree without values that equal the model's defaults."""
     stated: dict[str, Any] = {}
     table = loc in _TABLES
     for key, value in node.items():
@@ -240,7 +240,7 @@ def _lines(node: dict[str, Any], loc: Loc, writer: _Leaves, indent: str) -> Iter
 
 
 def _kept(design: Design, document: Document | None, metrics: Mapping[str, Quantity]) -> str:
-    """The document's text with the design's values; empty where it cannot say them."""
+    """The document's text with the design's values; empty if not editable."""
     try:
         text = "" if document is None else _edited(design, document, metrics)
     except _CannotEdit:
@@ -249,7 +249,7 @@ def _kept(design: Design, document: Document | None, metrics: Mapping[str, Quant
 
 
 def _in_list_form(document: Document) -> Document | None:
-    """The document with its compact lay-ups as lists; None where there are none to write so."""
+    """The document with its compact lay-ups as lists; None if there are none."""
     text, newline = document.text, "\r\n" if "\r\n" in document.text else "\n"
     for shorthand in sorted(document.shorthands, key=lambda s: s.entry.start, reverse=True):
         start, end = shorthand.entry.start, shorthand.entry.end
@@ -292,7 +292,7 @@ def _edited(design: Design, document: Document, metrics: Mapping[str, Quantity])
     edits: list[_Edit] = []
     _compare(to_tree(design), document.data, (), Design, document, writer, edits)
     text = document.text
-    # from the end backwards; of lines put at one place, those of inner blocks come first
+    # from the end backwards; at the same place, lines of inner blocks come first
     order = sorted(enumerate(edits), key=lambda pair: (pair[1].start, -pair[1].depth, pair[0]))
     for _, edit in reversed(order):
         text = text[: edit.start] + edit.new + text[edit.end :]
@@ -308,7 +308,7 @@ def _compare(
     writer: _Leaves,
     edits: list[_Edit],
 ) -> None:
-    """Collect the edits of one block."""
+    """Collect the edits of a block."""
     if not isinstance(old, dict) or any(key not in node for key in old):
         raise _CannotEdit
     table = loc in _TABLES
@@ -336,7 +336,7 @@ def _compare(
 def _replacement(
     value: Any, old: Any, loc: Loc, document: Document, writer: _Leaves
 ) -> Iterator[_Edit]:
-    """The edit of one value, if it changed."""
+    """Edit of a value, if it changed."""
     if not isinstance(old, str):
         raise _CannotEdit
     if writer.same(loc, value, old):

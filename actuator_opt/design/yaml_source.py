@@ -1,7 +1,7 @@
-"""YAML text to a tree of texts with places; everything YAML would guess is refused or left alone.
+"""YAML text to a tree of texts with places; ambiguous YAML is refused or kept as text.
 
-Scalars stay the text a person typed: no booleans, octals, sexagesimals, dates or floats are
-resolved. Anchors, aliases, tags and merge keys are refused, so no document grows when read.
+Scalars stay text as written: no booleans, octals, sexagesimals, dates or floats are resolved.
+Anchors, aliases, tags and merge keys are refused, so a document cannot grow when read.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from .structure import Loc
 
 try:
     from yaml.cyaml import CParser as _Parser  # type: ignore[attr-defined]
-except ImportError:  # PyYAML without libyaml: the same events, more slowly
+except ImportError:  # PyYAML without libyaml: same events, slower
     from yaml.parser import Parser
     from yaml.reader import Reader
     from yaml.scanner import Scanner
@@ -55,7 +55,7 @@ class Span(NamedTuple):
 
 
 class Shorthand(NamedTuple):
-    """Entries `first` to `first + layers - 1` of a list, which the text writes as one."""
+    """Entries `first` to `first + layers - 1` of a list, written as one compact entry."""
 
     wall: Loc
     first: int
@@ -65,7 +65,7 @@ class Shorthand(NamedTuple):
 
 @dataclass(slots=True)
 class Document:
-    """A parsed YAML file: its tree of texts, and where each key and value stands."""
+    """A parsed YAML file: its tree of texts, and the places of keys and values."""
 
     file: str
     text: str
@@ -74,16 +74,16 @@ class Document:
     keys: dict[Loc, Span] = field(default_factory=dict)
     lines: list[str] = field(default_factory=list)
     faults: list[Diagnostic] = field(default_factory=list)
-    """Faults that do not stop the reading: duplicate keys, tags, anchors."""
+    """Faults that do not stop the parser: duplicate keys, tags, anchors."""
     unusable: set[Loc] = field(default_factory=set)
-    """Places whose value could not be read (aliases)."""
+    """Places of unreadable values (aliases)."""
     shorthands: tuple[Shorthand, ...] = ()
-    """Layers in compact notation, which `layup.expanded` wrote out."""
+    """Layers in compact notation, expanded by `layup.expanded`."""
     what: str = "design"
-    """What such a file is, in words."""
+    """Kind of the file, in words."""
 
     def shorthand(self, loc: Loc) -> Shorthand | None:
-        """The compact entry that a place lies in."""
+        """The compact entry that contains a place."""
         for found in self.shorthands:
             depth = len(found.wall)
             if len(loc) > depth and loc[:depth] == found.wall:
@@ -105,12 +105,12 @@ class Document:
 
 
 def decode(data: bytes, file: str, what: str = "design") -> str:
-    """Text of a file's bytes; raises `InputError` for what is not one UTF-8 page of text."""
+    """Text of a file's bytes; raises `InputError` unless valid UTF-8 of moderate size."""
     if len(data) > MAX_BYTES:
         raise InputError(
             Diagnostic(
                 f"the file is larger than {MAX_BYTES / 1e6:.0f} MB",
-                f"a {what} file is a few kilobytes: is this the right file?",
+                f"a {what} file has a few kilobytes: is this the right file?",
                 file,
             )
         )
@@ -127,7 +127,7 @@ def decode(data: bytes, file: str, what: str = "design") -> str:
 
 
 def parse(text: str, file: str, what: str = "design") -> Document:
-    """The tree of a YAML text; raises `InputError` where the text cannot be read as one."""
+    """Tree of a YAML text; raises `InputError` if it cannot be parsed."""
     text = text.removeprefix("\ufeff")
     document = Document(file, text, lines=_BREAK.split(text), what=what)
     if len(text) > MAX_BYTES:
@@ -159,19 +159,19 @@ class _Stop(Exception):
 
 @dataclass(slots=True)
 class _Frame:
-    """An open mapping or list; `loc` None means that its content is thrown away."""
+    """An open mapping or list; `loc` None means that its content is discarded."""
 
     node: dict[str, Any] | list[Any]
     loc: Loc | None
     start: Any
     key: str | None = None
-    """The key whose value comes next; None where a key is due."""
+    """Key of the next value; None if a key is expected."""
     drop: bool = False
     """The next value belongs to a refused key."""
 
 
 class _Builder:
-    """Builds the tree from parser events, iteratively: depth and size are limited here."""
+    """Builds the tree from parser events, iteratively, with limits of depth and size."""
 
     def __init__(self, document: Document) -> None:
         self.document = document
@@ -248,7 +248,7 @@ class _Builder:
             self.document.keys[loc] = _span(event)
 
     def _refuse_key(self, frame: _Frame, event: Any) -> None:
-        """Read and throw away a key that is a block or list, and its value."""
+        """Read and discard a key that is a block or list, and its value."""
         frame.key, frame.drop = "", True
         if isinstance(event, (yaml.MappingStartEvent, yaml.SequenceStartEvent)):
             node: Any = {} if isinstance(event, yaml.MappingStartEvent) else []

@@ -1,4 +1,4 @@
-"""The one meeting place of design and models: every quantity of one or many designs."""
+"""Evaluation: combines design and models into every metric of one or many designs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Material numbers and allowables as the kernel reads them, by material name."""
+"""Material properties and allowables of a design, by material name."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ def allowances(
     temperatures: tuple[float, float],
     wet: bool,
 ) -> dict[tuple[str, str, bool], float]:
-    """What temperature, moisture, basis and process leave of every strength.
+    """Remaining share of every strength after temperature, moisture, basis and process.
 
     Keys are (material, property, cold) for the lowest and the highest of `temperatures`; `numbers`
-    (by PATH) may override the library's knock-downs.
+    (by PATH) may override the knock-downs of the library.
     """
     factors = {}
     for name, material in materials.items():
@@ -45,7 +45,7 @@ def allowances(
 
 
 class MaterialValues:
-    """The materials of a design: their numbers (possibly varied) and their allowables."""
+    """Materials of a design: their properties (possibly varied) and their allowables."""
 
     def __init__(
         self,
@@ -60,7 +60,7 @@ class MaterialValues:
         self._constants = constants
 
     def material(self, name: str) -> Material:
-        """What the library knows of `name`."""
+        """Library entry of `name`."""
         return self.materials[name]
 
     def kind(self, name: str) -> str:
@@ -68,15 +68,15 @@ class MaterialValues:
         return self.materials[name].kind
 
     def names(self) -> list[str]:
-        """Every material of the design."""
+        """All materials of the design."""
         return list(self.materials)
 
     def numbers(self, name: str) -> dict[str, Array]:
-        """Every stated property of a material, SI."""
+        """All stated properties of a material, SI."""
         return {key: self._v[f"materials.{name}.{key}"] for key in self.materials[name].numbers}
 
     def ply_constants(self, name: str) -> dict[str, Array]:
-        """Elastic constants and expansions of a material as a ply; remembered while fixed."""
+        """Elastic constants and expansions of a material as a ply; cached if fixed."""
         prefix = f"materials.{name}."
         if any(path.startswith(prefix) for path in self._v.varied):
             return ply_constants(self.numbers(name))
@@ -86,16 +86,16 @@ class MaterialValues:
         return self._constants[name]
 
     def get(self, name: str, *properties: str, default: Array = None) -> Array:
-        """The first stated of some properties; `default` where none is."""
+        """The first stated property of several; `default` if none is stated."""
         for key in properties:
             if key in self.materials[name].numbers:
                 return self._v[f"materials.{name}.{key}"]
         return default
 
     def allowable(self, name: str, *properties: str, cold: bool = False) -> Array:
-        """A strength after every knock-down that applies; None where none is stated.
+        """A strength after all applicable knock-downs; None if not stated.
 
-        Temperature is the highest of oil, load cases and environment, or the lowest.
+        The temperature is the highest of oil, load cases and environment, or the lowest.
         """
         for key in properties:
             if key in self.materials[name].numbers:

@@ -1,7 +1,7 @@
-"""The actuator as a slender beam: its critical load, and the bending moment in the rod.
+"""The actuator as a slender beam: critical load, and bending moment in the rod.
 
-A moment that is there without the push (side load, own weight) grows with it towards the critical
-load: `Beam.under`.
+The push amplifies the moment of side load and own weight towards the critical load:
+`Beam.under`.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ GRAVITY = 9.80665
 """Standard gravity, m/s^2 (3rd CGPM, 1901)."""
 
 NEAR = 0.75
-"""Share of the critical load beyond which a moment goes on growing along its tangent: a choice, so
-that designs far beyond buckling, which the buckling check rejects, keep finite numbers."""
+"""Share of the critical load beyond which a moment grows along its tangent: a choice, so
+that designs far beyond buckling, which the buckling check rejects, have finite results."""
 
 LEAST = 1e-6
-"""Least length outside the head (m), so that a rod that shows nothing has no pole."""
+"""Least length outside the head (m), to avoid a pole for a rod of zero length."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,7 @@ def lengths(g: Geometry, state: LoadState) -> tuple[Array, Array]:
 
 
 CriticalLoad: TypeAlias = Callable[[Design, Wall, Rod, tuple[Array, Array]], Array]
-"""Critical load of a design from wall, rod and the lengths of cylinder and rod outside it."""
+"""Critical load of a design from wall, rod and the lengths of cylinder and exposed rod."""
 
 
 def derive(
@@ -72,7 +72,7 @@ def derive(
     *,
     critical_load: CriticalLoad,
 ) -> Beam:
-    """Column and beam at the position of every case; the actuator lies horizontally (a choice)."""
+    """Column and beam at the position of every case, with the actuator horizontal (a choice)."""
     segments = lengths(g, state)
     own = _weight(v, design, g, state, rod, parts, segments)
     return Beam(
@@ -82,7 +82,7 @@ def derive(
 
 
 def critical_load(design: Design, wall: Wall, rod: Rod, lengths: tuple[Array, Array]) -> Array:
-    """Column of barrel and rod, or of the rod alone where the head is held; gives in shear too."""
+    """Critical load of barrel and rod, or of the rod alone if mounted at the head; with shear."""
     mount = design.cylinder.mount
     if mount.startswith("head"):
         factor = FIXED_PINNED if mount == "head_flange" else 1.0
@@ -121,8 +121,8 @@ def _weight(
 ) -> Array:
     """Largest moment of the own weight in the rod.
 
-    Pinned at both eyes for every cap mount (a fixed cap only helps). Held at the head the rod
-    spans to its eye: w L^2/8, pinned or fixed there; on trunnions the barrel hangs behind.
+    Pinned at both eyes for every cap mount (a fixed cap is stronger). Mounted at the head, the rod
+    spans to its eye: w L^2/8, pinned or fixed there; on trunnions the barrel overhangs behind.
     """
     outside = rod.mass_per_length * (state.reach + g.rod_extension)
     inside = sum(parts.values()) - parts["clevises"] - outside

@@ -1,6 +1,6 @@
-"""Bonds in an evaluation: metal fittings in a laminated rod, and all bonds without load.
+"""Bonds in an evaluation: metal fittings of a laminated rod, and all bonds without load.
 
-The bonds of the caps are of their joint.
+The joint module covers the bonds of the caps.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from .values import Values
 
 
 def fittings(v: Values, stock: MaterialValues, design: Design, rod: Rod) -> Overlap | str:
-    """The end fittings inside a laminated rod, or why there are none."""
+    """End fittings in a laminated rod, or why there are none."""
     fitting = design.rod.fitting
     if fitting is None:
         return "the rod has no bonded fittings"
@@ -38,14 +38,14 @@ def fittings(v: Values, stock: MaterialValues, design: Design, rod: Rod) -> Over
 
 
 def fitting_hole(v: Values, design: Design, rod: Rod) -> Array:
-    """Inner diameter of a fitting: none of a plug, nor of a sleeve that fills the bore."""
+    """Inner diameter of a fitting: zero for a plug or a sleeve that fills the bore."""
     if design.rod.fitting is None or design.rod.fitting.wall is None:
         return 0.0 * rod.inner_diameter
     return maximum(rod.inner_diameter - 2 * v["rod.fitting.wall"], 0.0)
 
 
 def fitting_area(v: Values, design: Design, rod: Rod) -> Array:
-    """Section of a fitting in the overlap."""
+    """Cross-section of a fitting in the overlap."""
     return section_area(
         outer_diameter=rod.inner_diameter, inner_diameter=fitting_hole(v, design, rod)
     )
@@ -56,7 +56,7 @@ def thermal(
 ) -> None:
     """Strength over edge shear without load, from joining to the coldest and the hottest.
 
-    `bonds` by place, or why there is none.
+    `bonds` are overlaps by place, or the reason why a place has none.
     """
     metric = "bond_thermal_factor"
     if design.environment is None:

@@ -1,4 +1,4 @@
-"""From one pass over the models to an Evaluation: rows, checks, warnings, provenance."""
+"""Build an Evaluation from a model run: rows, checks, warnings, provenance."""
 
 from __future__ import annotations
 
@@ -31,15 +31,15 @@ from .rows import ALL_CASES, LimitRow, MetricArrays, by_case, rows_of
 from .values import Values, of_case
 from .wall_study import study as wall_study
 
-NO_ANSWER = "the models have no finite answer for these dimensions"
-NOT_COMPUTED = "nothing computes it for this design"
+NO_ANSWER = "not computable for these dimensions"
+NOT_COMPUTED = "not computed for this design"
 
 TOLERANCE = 1e-6
-"""A margin of at least −TOLERANCE counts as met (CONTRACT)."""
+"""A margin of at least −TOLERANCE counts as met."""
 
 
 def names_of_materials(design: Design) -> list[str]:
-    """Every material a design names, once, in order of appearance."""
+    """All materials of a design, without duplicates, in order of appearance."""
     names = [design.fluid.material]
     names += [ply.material for ply in design.barrel.layup]
     names += [ply.material for ply in design.rod.layup]
@@ -63,13 +63,13 @@ def prepare(
     materials: Library | Mapping[str, Material] | None = None,
     plugins: tuple[Plugin, ...] = (),
 ) -> PreparedDesign:
-    """A design with the materials it names and all its numbers, ready to evaluate.
+    """A design with its materials and all its numbers, ready to evaluate.
 
     Parameters
     ----------
     design : the design
     materials : a library, or the materials by name; default: the project's library
-    plugins : the user's own metrics and constraints
+    plugins : user metrics and constraints
     """
     if materials is None:
         materials = load_library()
@@ -92,9 +92,9 @@ def prepare(
 
 
 def spec_hash(subject: PreparedDesign) -> str:
-    """Hash of everything that decides the result: design, material numbers, version."""
+    """Hash of everything that determines the result: design, material data, version."""
     design = subject.design.model_dump(mode="json")
-    if not design["uncertainty"]:  # what is not stated leaves the hash of older designs alone
+    if not design["uncertainty"]:  # unset fields are left out: hashes of older designs stay valid
         del design["uncertainty"]
     content = {
         "design": design,
@@ -105,9 +105,9 @@ def spec_hash(subject: PreparedDesign) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
-@np.errstate(all="ignore")  # what has no finite answer is reported as such
+@np.errstate(all="ignore")  # values that are not finite are reported as such
 def evaluate(subject: PreparedDesign) -> Evaluation:
-    """Every metric, requirement and check of one design."""
+    """Compute all metrics, requirements and checks of a design."""
     v = subject.values()
     done = compute(subject, v)
     computed = done.computed
@@ -145,7 +145,7 @@ def evaluate(subject: PreparedDesign) -> Evaluation:
 
 
 def _friction_parts(computed: MetricArrays, v: Values, case: str | None) -> dict[str, float]:
-    """Running friction of each seal in a case; parts that rub nowhere are left out."""
+    """Running friction of each seal in a case; parts without friction are left out."""
     found = {}
     for label, array in computed.friction_parts.items():
         values = dict(by_case(computed, "friction_running", array, v.cases))
@@ -171,7 +171,7 @@ def _metric(
         computed_at_all = name in computed.metrics
         why = computed.why.get(name, NO_ANSWER if computed_at_all else NOT_COMPUTED)
         if value == math.inf:
-            why = computed.why.get(name, "nothing loads it: the factor is unlimited")
+            why = computed.why.get(name, "no load: the factor is unlimited")
         definition = None if name in METRICS else subject.quantities[name]
         return Metric(name=name, value=None, why=why, definition=definition)
     _, case, place = next(row for row in rows if row[0] == value)
@@ -203,7 +203,7 @@ def _metric(
 
 
 def _worst(rows: Iterable[LimitRow]) -> LimitRow | None:
-    """The row of least margin; NaN counts as worst."""
+    """The row with the least margin; NaN counts as the least."""
     return min(
         rows,
         key=lambda row: -math.inf if math.isnan(row.margin[0]) else float(row.margin[0]),

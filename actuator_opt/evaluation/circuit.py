@@ -1,4 +1,4 @@
-"""What the chambers work with in an evaluation: lines, throttles, valve, what ends the lines."""
+"""Hydraulic circuit of the chambers in an evaluation: lines, throttles, valve, line ends."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ class Branch:
     resistance: Array = 0.0
     inertance: Array = 0.0
     far: Array = 0.0
-    """What hangs on the far node of the dynamic model: half of every line (pi element), or, with a
+    """Compliance at the far node of the dynamic model: half of every line (pi element), or, with a
     throttle, the whole of the lines beyond it."""
 
 
 def wall_compliance(v: Values, line: Line, at: str) -> Array:
-    """Volume a line's wall gives per pressure."""
+    """Volume change of a line wall per pressure."""
     if line.rigid:
         return 0.0
     material = f"materials.{line.material}."
@@ -51,7 +51,7 @@ def wall_compliance(v: Values, line: Line, at: str) -> Array:
 
 
 def branches(v: Values, design: Design, state: LoadState) -> dict[Chamber, Branch]:
-    """The lines of chambers a and b, with the oil as it moves through them."""
+    """Lines of chambers a and b, with the oil in motion."""
     throttled = design.ports.throttle is not None
     modulus = {"a": state.bulk_modulus_a, "b": state.bulk_modulus_b}
     viscosity = {"a": state.dynamic_viscosity_a, "b": state.dynamic_viscosity_b}
@@ -81,48 +81,48 @@ def branches(v: Values, design: Design, state: LoadState) -> dict[Chamber, Branc
 
 
 class Ways(NamedTuple):
-    """A number of a chamber that differs by the way the piston goes."""
+    """A property of a chamber that depends on the direction of the piston."""
 
     extending: Array
     retracting: Array
 
     def toward(self, extending: Array) -> Array:
-        """The number of the stated way; `extending` is True, False or an array of them."""
+        """Value for a direction; `extending` is True, False or an array of them."""
         return where(extending, self.extending, self.retracting)
 
 
 class LinearValve(NamedTuple):
-    """The valve linearised where it holds the load."""
+    """The valve linearised at the spool position that holds the load."""
 
     gains: dict[Chamber, Ways]
-    """Flow gains K_q into the lines, A +, B - [m^3/s/V]."""
+    """Flow gains K_q into the lines, for spool directions A+ and B- [m^3/s/V]."""
     conductances: dict[Chamber, Ways]
-    """Flow-pressure coefficients K_c [m^3/s/Pa]; empty where nothing leaks: it closes the lines."""
+    """Flow-pressure coefficients K_c [m^3/s/Pa]; empty without leakage: a closed end."""
 
     def held(self, chamber: Chamber) -> LineEnd:
-        """As the end of a chamber's line while it holds the load."""
+        """The valve as line end of a chamber while holding the load."""
         ways = self.conductances.get(chamber)
         return LineEnd((maximum(*ways),)) if ways else line_ends.CLOSED
 
     def driving(self, chamber: Chamber, extending: Array) -> LineEnd:
-        """As the end of a chamber's line while it drives."""
+        """The valve as line end of a chamber while driving."""
         ways = self.conductances.get(chamber)
         return LineEnd((ways.toward(extending),)) if ways else line_ends.CLOSED
 
 
 class Edges(NamedTuple):
-    """Coefficients of the valve's edges [m^3/s/sqrt(Pa)]."""
+    """Flow coefficients of the valve edges [m^3/s/sqrt(Pa)]."""
 
     rated: Array
-    """Fully open, at the oil's viscosity."""
+    """Fully open, at the viscosity of the oil."""
     supply: Array
-    """Centred, P-A and P-B."""
+    """Centred, edges P-A and P-B."""
     tank: Array
-    """Centred, A-T and B-T."""
+    """Centred, edges A-T and B-T."""
 
 
 def valve_edges(v: Values, design: Design, state: LoadState) -> Edges:
-    """The edges of the design's valve in every load case."""
+    """Valve edges of the design in every load case."""
     assert design.valve is not None
     at = "valve."
     rated = valve.edge_coefficient(flow=v[at + "rated_flow"], pressure_drop=v[at + "rated_drop"])
@@ -142,7 +142,7 @@ def valve_edges(v: Values, design: Design, state: LoadState) -> Edges:
 
 
 def linear_valve(v: Values, design: Design, state: LoadState, leakage: Array) -> LinearValve | None:
-    """Valve at the held pressures, its spool where it feeds its own leakage and the piston's."""
+    """Valve at holding pressures, with the spool supplying its own leakage and the piston's."""
     if design.valve is None:
         return None
     edges = valve_edges(v, design, state)
@@ -175,7 +175,7 @@ def linear_valve(v: Values, design: Design, state: LoadState, leakage: Array) ->
 def throttle_conductances(
     v: Values, design: Design, state: LoadState, geometry: Geometry
 ) -> dict[Chamber, Ways]:
-    """Conductance of the one-way valves at the flow of the case's speed, by the piston's way."""
+    """Conductance of the one-way valves at the flow of the case's speed, by piston direction."""
     if design.ports.throttle is None:
         return {}
     at = "ports.throttle."
@@ -189,7 +189,7 @@ def throttle_conductances(
     }
 
     def conductance(flow: Array) -> Array:
-        """At a flow out of the chamber."""
+        """Conductance at a flow out of the chamber."""
         drop = one_way_valve.one_way_pressure_drop(flow=flow, **common)
         return one_way_valve.one_way_conductance(pressure_difference=drop, **common)
 
@@ -207,7 +207,7 @@ def line_end(
     accumulators: tuple[LineEnd, ...],
     chamber: Chamber,
 ) -> LineEnd:
-    """What ends the line of a chamber while the load shakes the actuator."""
+    """End of a chamber's line while the load excites the actuator."""
     ends = list(accumulators)
     kind = design.ports.end
     if kind == "valve" and holding is not None:
@@ -230,7 +230,7 @@ def line_end(
 def accumulator_ends(
     v: Values, design: Design, state: LoadState, chamber: Chamber
 ) -> tuple[LineEnd, ...]:
-    """Every accumulator on the line of a chamber."""
+    """All accumulators on the line of a chamber."""
     found = []
     for i, one in enumerate(design.ports.accumulators):
         if one.chamber != chamber:

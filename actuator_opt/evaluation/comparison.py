@@ -1,7 +1,7 @@
-"""Designs side by side: what differs in their inputs, and which parts make one better.
+"""Comparison of designs: different inputs, and the parts that explain the differences.
 
-Three questions, each with the parts that answer it: lighter (mass of parts), stiffer (compliances
-at the weakest position, which add up), smoother (running friction of seals, which adds up).
+Three questions with additive parts: lighter (mass of parts), stiffer (compliances at the weakest
+position), smoother (running friction of seals).
 """
 
 from __future__ import annotations
@@ -25,18 +25,18 @@ from .result import Evaluation
 Value: TypeAlias = float | bool | str | Fraction | None
 Name: TypeAlias = Literal["lighter", "stiffer", "smoother"]
 SAME = 1e-9
-"""Relative difference up to which two numbers are the same: a choice, above rounding."""
+"""Relative difference up to which two numbers count as equal: a choice, above rounding."""
 _IDLE = ("name", "notes")
-"""Keys of a design that change nothing."""
+"""Keys of a design without effect on the result."""
 _DUTY = ("supply", "load", "load_cases", "fluid", "environment", "linkage")
-"""Keys of a design that say what is asked of it."""
+"""Keys of a design that state duties."""
 
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """An input that differs: SI numbers, words, or None where a design has none.
+    """A differing input: SI numbers, words, or None if a design has no such input.
 
-    A whole block that only some designs have is one change, its value "given".
+    A block that only some designs have is a single change with the value "given".
     """
 
     path: str
@@ -46,11 +46,11 @@ class Change:
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """Which design is better in one respect, and the parts that make it so.
+    """Which design is better in a respect, and the parts that explain it.
 
-    `values` are of the metric (SI), `parts` of what adds up: mass in kg, compliance in m/N,
-    friction in N; `best` and `other` are positions of the designs that the parts explain, None
-    where there is no better one.
+    `values` are those of the metric (SI), `parts` the additive contributions: mass in kg,
+    compliance in m/N, friction in N; `best` and `other` are indices of the compared designs, None
+    if no design is better.
     """
 
     name: Name
@@ -62,7 +62,7 @@ class Question:
 
     @property
     def steps(self) -> tuple[tuple[str, float], ...]:
-        """What each part adds (SI) on the way from the other design to the best, largest first."""
+        """Contribution of each part (SI) from the other design to the best, largest first."""
         if self.best is None or self.other is None:
             return ()
         rows = [(part, x[self.best] - x[self.other]) for part, x in self.parts.items()]
@@ -70,7 +70,7 @@ class Question:
 
     @property
     def leaders(self) -> tuple[int, ...]:
-        """Positions of the best design and of those that are as good; none without a best."""
+        """Indices of the best design and of equal designs; empty without a best design."""
         best = None if self.best is None else self.values[self.best]
         if best is None:
             return ()
@@ -82,7 +82,7 @@ class Question:
 class DesignState:
     """Whether a compared design is an optimum.
 
-    `status` is that of its optimisation; None where it was only evaluated.
+    `status` is that of its optimisation; None if it was only evaluated.
     """
 
     status: str | None = None
@@ -96,12 +96,12 @@ class DesignState:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """Designs side by side; the first is what the others are held against."""
+    """Designs side by side; the first design is the reference."""
 
     labels: tuple[str, ...]
     """A, B, C, ..."""
     origins: tuple[str, ...]
-    """File or run of each."""
+    """File or run of each design."""
     evaluations: tuple[Evaluation, ...]
     changes: tuple[Change, ...]
     questions: tuple[Question, ...]
@@ -110,14 +110,14 @@ class Comparison:
 
     @property
     def not_optimised(self) -> tuple[int, ...]:
-        """Positions of the designs that are not known to be optima."""
+        """Indices of the designs that are not known to be optima."""
         return tuple(k for k, one in enumerate(self.states) if not one.optimum)
 
     @property
     def unlike(self) -> Mapping[str, tuple[Sense | None, ...]]:
-        """Metrics that are the smallest value of one design and the largest of another.
+        """Metrics governed by the smallest value in one design and by the largest in another.
 
-        Their limits or objectives differ in sense.
+        The designs limit or optimise them in opposite senses.
         """
         names = dict.fromkeys(name for e in self.evaluations for name in e.metrics)
         found = {name: _senses(name, self.evaluations) for name in names}
@@ -125,18 +125,18 @@ class Comparison:
 
     @property
     def duties_differ(self) -> tuple[str, ...]:
-        """PATHs of what is asked of the designs where that differs."""
+        """PATHs of differing duties."""
         roots = ((c.path, c.path.partition(".")[0].partition("[")[0]) for c in self.changes)
         return tuple(path for path, root in roots if root in _DUTY)
 
     def limits(self) -> Iterator[tuple[str, str, tuple[Any, ...]]]:
-        """Name, sense and the rows of every requirement, None where a design does not have it."""
+        """Name, sense and rows of every requirement; None for designs without it."""
         known = [{(r.name, r.sense): r for r in e.requirements} for e in self.evaluations]
         for key in dict.fromkeys(key for rows in known for key in rows):
             yield *key, tuple(rows.get(key) for rows in known)
 
     def metrics(self) -> Iterator[tuple[str, Quantity, tuple[float | None, ...]]]:
-        """Every metric that some design has a value of."""
+        """All metrics with a value in any design."""
         names = dict.fromkeys(name for e in self.evaluations for name in e.metrics)
         for name in names:
             rows = [e.metrics.get(name) for e in self.evaluations]
@@ -145,7 +145,7 @@ class Comparison:
                 yield name, next(row.quantity for row in rows if row is not None), values
 
     def to_dict(self) -> dict[str, Any]:
-        """The `compare --json` object (SI), but for the sentences."""
+        """The `compare --json` object (SI), without the sentences."""
         return {
             "designs": [
                 {
@@ -195,17 +195,17 @@ class Comparison:
 def compare(
     evaluations: Sequence[Evaluation], origins: Sequence[str], states: Sequence[DesignState] = ()
 ) -> Comparison:
-    """Put evaluated designs side by side.
+    """Compare evaluated designs.
 
     Parameters
     ----------
-    evaluations : two or more, the first is held against
-    origins : file or run of each, in words
-    states : which are optima; default: none is known to be
+    evaluations : two or more; the first is the reference
+    origins : file or run of each design, in words
+    states : which are optima; default: unknown
 
     Raises
     ------
-    InputError : two of them are the same design
+    InputError : two of the designs are equal
     """
     labels = tuple(chr(ord("A") + k) for k in range(len(evaluations)))
     trees = [_tree(e.design) for e in evaluations]
@@ -236,7 +236,7 @@ def compare(
 
 
 def weakest(evaluation: Evaluation) -> dict[str, float]:
-    """Compliance (m/N) of every part where the actuator is weakest over its stroke."""
+    """Compliance (m/N) of every part at the stroke position of least stiffness."""
     curve = evaluation.curve
     stiffness = np.asarray(curve.stiffness, dtype=float)
     if not np.isfinite(stiffness).any():
@@ -252,7 +252,7 @@ def _union(parts: Sequence[Mapping[str, float]]) -> dict[str, tuple[float, ...]]
 
 
 def _senses(metric: str, evaluations: Sequence[Evaluation]) -> tuple[Sense | None, ...]:
-    """Which of several values governs each design; None where it has only one."""
+    """Sense in which several values govern each design; None if there is a single value."""
     rows = [e.metrics.get(metric) for e in evaluations]
     return tuple(None if row is None or row.value is None else row.sense for row in rows)
 
@@ -260,7 +260,7 @@ def _senses(metric: str, evaluations: Sequence[Evaluation]) -> tuple[Sense | Non
 def _question(
     name: Name, metric: str, evaluations: Sequence[Evaluation], parts: dict[str, tuple[float, ...]]
 ) -> Question:
-    """The best design against the first, or the first against the next best."""
+    """The best design compared with the first, or the first with the next best."""
     values = tuple(e.metrics[metric].value for e in evaluations)
     sign = -1.0 if name == "stiffer" else 1.0
     known = [(sign * v, k) for k, v in enumerate(values) if v is not None and math.isfinite(v)]
@@ -275,14 +275,14 @@ def _question(
 
 
 class _Missing:
-    """What a design does not have."""
+    """Marks a missing value."""
 
 
 _MISSING = _Missing()
 
 
 def _tree(design: Design) -> dict[str, Any]:
-    """A design without what changes nothing (also where a search starts); load cases by name."""
+    """A design without ineffective inputs and search starts; load cases by name."""
     tree = {key: value for key, value in to_tree(design).items() if key not in _IDLE}
     tree["variables"] = {
         path: {key: value for key, value in variable.items() if key != "start"}
@@ -300,7 +300,7 @@ class _Named(dict[str, Any]):
 
 
 def _differences(nodes: Sequence[Any], path: str) -> Iterator[tuple[str, tuple[Any, ...]]]:
-    """PATH and values of what is not the same in all trees, blocks whole where one lacks them."""
+    """PATH and values of all differences; whole blocks if missing in some trees."""
     if all(_same(node, nodes[0]) for node in nodes):
         return
     if all(isinstance(node, dict) for node in nodes):
@@ -327,7 +327,7 @@ def _same(a: Any, b: Any) -> bool:
 
 
 def _value(node: Any) -> Value:
-    """A leaf as it is; a block in a word."""
+    """A leaf unchanged; a block as a word."""
     if node is _MISSING or node == {} or node == []:
         return None
     if isinstance(node, dict):
@@ -342,7 +342,7 @@ def _value(node: Any) -> Value:
 def _quantity(
     path: str, values: Sequence[Any], evaluations: Sequence[Evaluation]
 ) -> Quantity | None:
-    """The quantity of the numbers at a PATH, by the first design that has one there."""
+    """Quantity of the numbers at a PATH, from the first design that has a number there."""
     for value, evaluation in zip(values, evaluations, strict=True):
         if isinstance(value, (int, float)) and not isinstance(value, bool):
             try:

@@ -1,7 +1,7 @@
-"""The designs of a batch that differ for one model, which then is evaluated once for each.
+"""Distinct designs of a batch for a model, which is then evaluated only for them.
 
-A gradient takes a copy of the design for every variable, and most variables are none of a wall's:
-to it, their copies are one design. A costly model is given the distinct ones only.
+A gradient needs a copy of the design for every variable, but most variables do not affect e.g. the
+wall: for it, their copies are equal. A costly model is evaluated for the distinct designs only.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ import numpy as np
 from ..base.numeric import Array
 
 FEW = 32
-"""Designs up to which a model costs about the same for all as for some."""
+"""Batch size below which a model costs about as much for all designs as for a few."""
 
 
 def distinct(given: Mapping[str, Any]) -> tuple[dict[str, Any], Callable[[Array], Array]]:
-    """Arguments of a model with only the designs that differ in them, and the way back to all.
+    """Arguments of a model for distinct designs only, and the mapping back to all designs.
 
-    Designs are the last axis of every array, which is 1 where they share a value; how many there
-    are is seen from the arguments that are arrays themselves.
+    Designs are the last axis of every array, of length 1 for a shared value; their number follows
+    from the arguments that are arrays.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def _is_array(value: Any) -> bool:
 
 
 def _arrays(value: Any) -> Iterator[Array]:
-    """Every array in a value."""
+    """All arrays in a value."""
     if _is_array(value):
         yield value
     elif isinstance(value, (list, tuple)):
@@ -74,7 +74,7 @@ def _arrays(value: Any) -> Iterator[Array]:
 
 
 def _changed(value: Any, change: Callable[[Array], Array]) -> Any:
-    """A value with every array in it changed."""
+    """A value with every array in it replaced."""
     if _is_array(value):
         return change(value)
     if isinstance(value, (list, tuple)):

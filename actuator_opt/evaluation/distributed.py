@@ -1,4 +1,4 @@
-"""Dynamic stiffness with the lines as transmission lines, to judge the lumped ones by."""
+"""Dynamic stiffness with transmission lines, to assess the lumped model."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .values import Values, of_case
 
 
 def _end(end: LineEnd, frequencies: Array, index: int) -> Array:
-    """Admittance of a line's end; infinite at constant pressure."""
+    """Admittance of a line end; infinite at constant pressure."""
     alone = LineEnd(
         tuple(of_case(c, index) for c in end.numerator),
         tuple(of_case(c, index) for c in end.denominator),
@@ -36,7 +36,7 @@ def port_admittance(
     index: int,
     frequencies: Array,
 ) -> Array:
-    """Flow into everything behind a chamber's port per its pressure, complex, over frequency."""
+    """Flow into everything behind a chamber port per pressure, complex, over frequency."""
     modulus = of_case(state.bulk_modulus_a if chamber == "a" else state.bulk_modulus_b, index)
     viscosity = state.dynamic_viscosity_a if chamber == "a" else state.dynamic_viscosity_b
     density = of_case(state.density, index)
@@ -88,10 +88,10 @@ def dynamic_stiffness(
     position: float,
     frequencies: Array,
 ) -> Array:
-    """Complex dynamic stiffness at a position, lines as transmission lines.
+    """Complex dynamic stiffness at a position, with transmission lines.
 
-    k_p = k_s + B s + s a^T M^-1 a with M of the chambers and port admittances; the rod's
-    flexibility in series, the mass behind it.
+    k_p = k_s + B s + s a^T M^-1 a, with M from chambers and port admittances; the rod compliance is
+    in series, with the mass behind it.
     """
     s = 2j * pi * frequencies
     budget = motion.springs

@@ -1,4 +1,4 @@
-"""What a reader should doubt: ranges left, data unverified, and the model behind each number."""
+"""Doubts about a result: exceeded ranges, unverified data, and the model of each number."""
 
 from __future__ import annotations
 
@@ -21,23 +21,23 @@ from .rings import Ring
 from .values import Values
 
 LONGEST_LIFE = 1e9
-"""Cycles up to which stress-life lines have data [Shigley2011]."""
+"""Cycles up to which stress-life curves have data [Shigley2011]."""
 
 
 def kind_of(subject: PreparedDesign) -> str:
-    """The wall model a design uses."""
+    """Wall model of a design."""
     return kind(subject.design, subject.materials)
 
 
 def warnings(subject: PreparedDesign, v: Values, done: ModelRun) -> Iterable[tuple[str, str]]:
-    """(metric, sentence) for everything used outside its range or doubtful."""
+    """(metric, sentence) for everything outside its range or doubtful."""
     g = done.geometry
     thin = float(np.max(done.wall.thin_ratio))
     if kind_of(subject) == "thin_laminate" and thin > laminate.THIN_WALL_LIMIT:
         text = (
             f"thin-laminate barrel at t/r = {thin:.3f} (reliable to {laminate.THIN_WALL_LIMIT}): "
-            "bore growth is understated, by 10 to 25 % here, and with it gap, squeeze loss and "
-            "compliance; first ply and burst of plies err to the safe side"
+            "bore growth is too low by 10 to 25 %, and so are gap, squeeze loss and "
+            "compliance; first ply and burst of plies are conservative"
         )
         for metric in WALL_FED:
             yield metric, text
@@ -48,17 +48,17 @@ def warnings(subject: PreparedDesign, v: Values, done: ModelRun) -> Iterable[tup
     yield from _rod_warnings(subject, done)
     yield from _bond_warnings(done)
     for part, what in (
-        ("head", "of the piston's material and length"),
-        ("caps", f"of the piston's material, {PLAIN_CAP:g} bore thick"),
+        ("head", "material and length of the piston"),
+        ("caps", f"the piston's material, thickness {PLAIN_CAP:g} bore"),
     ):
         if part not in subject.design.model_fields_set:
-            yield "", f"no {part} stated: taken {what}"
+            yield "", f"no {part} stated: assumed {what}"
     lives = [np.min(np.real(x)) for x in done.computed.metrics.get("cycle_life", {}).values()]
     if lives and np.isfinite(min(lives)) and min(lives) > LONGEST_LIFE:
         yield (
             "cycle_life",
             f"pressure-cycle life beyond {LONGEST_LIFE / 1e6:.0f} million cycles is extrapolated: "
-            "read it as longer than that; adhesive and plies are not in it",
+            "treat it as a lower bound; adhesive and plies are not included",
         )
     section = subject.design.fluid
     yield from oil_range.warnings(section, subject.materials[section.material], v.cases, done.state)
@@ -76,63 +76,66 @@ def warnings(subject: PreparedDesign, v: Values, done: ModelRun) -> Iterable[tup
         yield (
             "",
             (
-                "side load pushes the piston over: on one side the extrusion gap is the clearance "
-                f"larger, {1e6 * float(np.max(g.piston_clearance)):.0f} um"
+                "side load displaces the piston: on one side the extrusion gap is larger by the "
+                f"clearance, {1e6 * float(np.max(g.piston_clearance)):.0f} um"
             ),
         )
 
 
 def _measured(subject: PreparedDesign, v: Values) -> Iterable[tuple[str, str]]:
-    """Values that lie outside what a test record said of them."""
+    """Values outside the bounds of their test record."""
     for path, known in subject.design.measured.items():
         value = float(np.real(np.squeeze(v[path]))) if path in v else None
         if value is not None and not known.lower <= value <= known.upper:
             text = quantity_of(path, subject.design).text
             yield (
                 "",
-                f"{path}: {text(value)} lies outside what {known.record} measured, "
-                f"{text(known.lower)} to {text(known.upper)}: the record does not speak for it",
+                f"{path}: {text(value)} is outside the bounds from {known.record}, "
+                f"{text(known.lower)} to {text(known.upper)}: the record does not support it",
             )
 
 
 def _wall_warnings(subject: PreparedDesign, done: ModelRun) -> Iterable[tuple[str, str]]:
-    """What the wall model leaves out."""
+    """Effects that the wall model leaves out."""
     laminated = kind_of(subject) in LAMINATES
     environment = subject.design.environment
     if laminated and (environment is None or environment.cure_temperature is None):
         yield (
             "",
-            "no cure temperature stated: stresses from cooling are left out of first ply and yield",
+            "no cure temperature stated: first ply and yield exclude cooling stresses",
         )
     elif laminated and done.wall.expansion is None:
         yield (
             "",
-            f"stresses from cooling are left out of first ply and yield: "
-            f"{done.wall.why_no_mismatch}",
+            f"first ply and yield exclude cooling stresses: {done.wall.why_no_mismatch}",
         )
     if laminated and not all(ply.balanced for ply in subject.design.barrel.layup):
-        yield "", "bending and buckling take single plies of the wall as balanced pairs"
+        yield "", "bending and buckling treat single plies of the wall as balanced pairs"
     worked = done.wall.autofrettage
     if subject.design.barrel.autofrettage_pressure is not None:
         if worked is None:
-            yield "", "autofrettage is left out: it needs the exact tube, a metal liner and pairs"
+            yield (
+                "",
+                "autofrettage is ignored: it needs the exact tube, a metal liner and "
+                "balanced pairs",
+            )
         elif float(np.min(np.real(worked.axial_margin))) < 0:
             yield (
                 "reverse_yield_factor",
-                "autofrettage yields the liner along its axis too: the axial residual strain is "
-                "understated, up to a third; hoop residuals hold",
+                "autofrettage also yields the liner axially: the axial residual strain is "
+                "too low by up to a third; hoop residual stresses are accurate",
             )
 
 
 def _rod_warnings(subject: PreparedDesign, done: ModelRun) -> Iterable[tuple[str, str]]:
-    """What the strength of the rod leaves out."""
+    """Effects that the strength of the rod leaves out."""
     rod = done.rod
     if rod.layers and not rod.cured:
         why = "no cure temperature stated"
         if rod.expansion is None:
             name = next(layer.name for layer in rod.layers if layer.expansions is None)
-            why = f"{name} states no thermal expansion"
-        yield "rod_factor", f"stresses from cooling are left out of the rod's layers: {why}"
+            why = f"{name} has no thermal expansion"
+        yield "rod_factor", f"the rod's layers exclude cooling stresses:  {why}"
     if rod.missing:
         yield "rod_factor", f"rod: {rod.missing[0]}"
     factors = done.computed.metrics["buckling_factor"][""]
@@ -141,12 +144,12 @@ def _rod_warnings(subject: PreparedDesign, done: ModelRun) -> Iterable[tuple[str
             yield (
                 metric,
                 f"the push is above {NEAR:.0%} of the buckling load: bending of the rod is "
-                "continued from there, not computed",
+                "extrapolated beyond it",
             )
 
 
 def _bond_warnings(done: ModelRun) -> Iterable[tuple[str, str]]:
-    """The bond that force and temperature together load most, where they exceed its strength."""
+    """The bond with the highest combined shear of force and temperature, if above its strength."""
     metrics = done.computed.metrics
     sums = {}
     for place, metric in (("caps", "retention_factor"), ("rod fittings", "fitting_factor")):
@@ -161,8 +164,9 @@ def _bond_warnings(done: ModelRun) -> Iterable[tuple[str, str]]:
         yield (
             "",
             f"bond of the {place}: the elastic edge shears of force and of temperature add up to "
-            f"{sums[place]:.2f} times the strength; each is checked alone, as a ductile adhesive "
-            "yields and levels both",
+            f"{sums[place]:.2f} times the strength; each is checked alone, because a ductile "
+            "adhesive "
+            "yields and relieves both",
         )
 
 
@@ -173,10 +177,10 @@ def models(
     outside: set[str],
     said: Iterable[str],
 ) -> Iterable[ModelUse]:
-    """Every model behind a computed metric, with the values it gave.
+    """All models of computed metrics, with their values.
 
-    A model is extrapolated where it was itself used outside its range; a metric that only
-    inherits such a value is marked in its own row, not here. `said` are the warnings' texts.
+    A model is extrapolated if used outside its own range; a metric that only inherits such a value
+    is marked in its own row, not here. `said` are the texts of the warnings.
     """
     said = tuple(said)
     wall, criterion = kind_of(subject), subject.design.barrel.criterion
@@ -214,7 +218,7 @@ def models(
 
 
 def unverified(subject: PreparedDesign, v: Values) -> Iterable[Unverified]:
-    """Library values this design uses that nobody checked against their source."""
+    """Library values of this design that nobody has checked against their source."""
     for name, material in subject.materials.items():
         for key in material.unverified:
             if f"materials.{name}.{key}" in v.read or key == "kinematic_viscosity":

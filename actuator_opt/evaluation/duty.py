@@ -34,7 +34,7 @@ def compute(
     net: Array,
     out: MetricArrays,
 ) -> None:
-    """Every life and service metric; `net` is the force of every case, `stop` runs into a stop."""
+    """All life and service metrics; `net` is the force of every case, `stop` that into a stop."""
     supply = v["supply.pressure"]
     push, pull = supply * g.area_a, supply * g.area_b
     _endurance(v, stock, design, wall, section, held, supply, push, pull, out)
@@ -97,7 +97,7 @@ def _endurance(
         if values:
             out.put(metric, values)
         else:
-            out.skip(metric, f"no fatigue strength known of {', '.join(dict.fromkeys(lacking))}")
+            out.skip(metric, f"unknown fatigue strength of {', '.join(dict.fromkeys(lacking))}")
 
 
 def _end_stop(
@@ -110,9 +110,9 @@ def _end_stop(
     net: Array,
     out: MetricArrays,
 ) -> None:
-    """Energy and peak pressure where the piston runs into its stop at the case's speed.
+    """Energy and peak pressure when the piston hits its stop at the speed of the case.
 
-    The case's own load still acts; what drives the piston into the stop is the rest.
+    The load of the case still acts; the remaining force drives the piston into the stop.
     """
     if design.cylinder.end_stop == "external":
         for name in ("end_stop_energy", "end_stop_pressure", "end_stop_factor"):
@@ -155,7 +155,7 @@ def _trapped(
     if rise is None or wall.expansion is None or expansion is None:
         why = "no trapped_rise stated: add environment.trapped_rise"
         if rise is not None:
-            why = f"thermal expansion of {oil} or of the barrel is not known"
+            why = f"thermal expansion of {oil} or of the barrel is unknown"
         out.skip("trapped_pressure", why)
         out.skip("trapped_factor", why)
     else:
@@ -172,7 +172,7 @@ def _trapped(
 
 
 def _layers(stock: MaterialValues, wall: Wall, out: MetricArrays) -> None:
-    """What only a wall of several layers has: liner and fibres, cold and in service."""
+    """Metrics of a multi-layer wall only: liner and fibres, cold and in service."""
     ranges, strains = {}, {}
     for place, cycle in wall.cycles.items():
         strength = stock.allowable(cycle.material, "yield_strength", "ultimate_strength")
@@ -194,7 +194,7 @@ def _layers(stock: MaterialValues, wall: Wall, out: MetricArrays) -> None:
         (
             "ply_fatigue_factor",
             wall.ply_fatigue,
-            "no plies, or none with a known fatigue strength",
+            "no plies with a known fatigue strength",
         ),
     ):
         if values:
@@ -204,7 +204,7 @@ def _layers(stock: MaterialValues, wall: Wall, out: MetricArrays) -> None:
 
 
 def _service(v: Values, stock: MaterialValues, design: Design, out: MetricArrays) -> None:
-    """Distance of the temperature range to what every material bears."""
+    """Margin of the temperature range to the limits of every material."""
     if design.environment is None:
         out.skip("temperature_margin", "no temperature range stated: add environment")
         return
@@ -223,7 +223,7 @@ def _clearance(
 ) -> None:
     """Radial clearance of piston in barrel and rod in head, coldest and hottest.
 
-    c + r (alpha_outside - alpha_inside) dT from the temperature of assembly.
+    c + r (alpha_outside - alpha_inside) dT from the assembly temperature.
     """
     if design.environment is None:
         out.skip("clearance_min", "no temperature range stated: add environment")
@@ -237,7 +237,7 @@ def _clearance(
     if rod is not None and head is not None and not design.rod.layup:
         fits.append(("head", g.head_clearance, g.rod_diameter / 2, head - rod))
     if not fits:
-        out.skip("clearance_min", "thermal expansion of barrel or piston is not known")
+        out.skip("clearance_min", "thermal expansion of barrel or piston is unknown")
         return
     values = {}
     for name in ("temperature_min", "temperature_max"):

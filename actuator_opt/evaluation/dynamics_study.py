@@ -1,6 +1,6 @@
-"""Dynamics along the stroke and over frequency, beside the metrics: modes, Bode data, shares.
+"""Dynamics along the stroke and over frequency: modes, Bode data, transmission-line stiffness.
 
-SI throughout. Only the load case and place that govern are told; `study` fills the record.
+SI throughout, for the governing load case and place only; `study` fills the record.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from .motion import Motion
 from .values import Values, of_case
 
 FREQUENCIES = np.geomspace(0.1, 1000.0, 121)
-"""Where responses are told (Hz), and about every resonance between."""
+"""Frequencies of the responses (Hz), supplemented around every resonance."""
 AROUND = np.array([-8.0, -3.0, -1.0, 0.0, 1.0, 3.0, 8.0])
-"""Half-widths of a resonance at which it is told too, so that none falls between two points."""
+"""Half-widths of a resonance with extra points, so that none falls between two points."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pole:
-    """A pole of the held actuator: frequency [Hz] and damping ratio; above 1 it does not swing."""
+    """A pole of the held actuator: frequency [Hz] and damping ratio; above 1 it is overdamped."""
 
     frequency: float
     damping_ratio: float
@@ -36,21 +36,21 @@ class Pole:
 
 @dataclass(frozen=True, slots=True)
 class ShakenCase:
-    """A load case that shakes the actuator, where its dynamic stiffness is least."""
+    """A load case with excitation, at its place of least dynamic stiffness."""
 
     name: str
     frequency: float
-    """[Hz]"""
+    """Frequency [Hz]."""
     place: str
     stiffness: float
-    """[N/m]"""
+    """Dynamic stiffness [N/m]."""
     phase: float
-    """By which the force leads there [rad]."""
+    """Phase lead of the force [rad]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Response:
-    """Dynamic stiffness [N/m] and the phase [rad] by which the force leads, over frequency."""
+    """Dynamic stiffness [N/m] and phase lead of the force [rad] over frequency."""
 
     place: str
     position: float
@@ -68,7 +68,7 @@ class LoopStudy:
     place: str
     gain: float
     tuned: bool
-    """Whether the gain is the tool's (half the ultimate gain) and not the design's."""
+    """Whether the gain is the default (half the ultimate gain) and not stated in the design."""
     ultimate_gain: float
     ultimate_frequency: float
     gain_margin: float
@@ -76,50 +76,50 @@ class LoopStudy:
     crossover: float | None
     bandwidth: float | None
     governs: tuple[str, ...]
-    """Metrics that are least here: gain_margin, phase_margin, bandwidth."""
+    """Metrics with their least value here: gain_margin, phase_margin, bandwidth."""
     open_magnitude: Array
     open_phase: Array
-    """[rad], falling from -pi/2 without jumps."""
+    """Phase [rad], decreasing from -pi/2 without jumps."""
     closed_magnitude: Array
 
 
 @dataclass(frozen=True, slots=True)
 class DynamicsStudy:
-    """What the linear model says of one design, in the case of least stiffness."""
+    """Linear dynamics of a design in the case of least stiffness."""
 
     case: str
     mass: float
     end: str
-    """What ends the lines: closed, valve, constant_pressure, reducing_valve."""
+    """End of the lines: closed, valve, constant_pressure, reducing_valve."""
     position: Array
-    """[m] from the cap end; the next three are arrays along it"""
+    """Position [m] from the cap end; the next three are arrays over it."""
     closed_frequency: Array
-    """[Hz], ports closed"""
+    """Frequency [Hz] with closed ports."""
     frequency: Array
-    """[Hz], lines ended as `end` says"""
+    """Frequency [Hz] with lines ended as in `end`."""
     damping_ratio: Array
     friction_share: float
-    """Damping ratio from friction and oil shear at the weakest position: lost without them."""
+    """Contribution of friction and oil shear to the damping ratio at the weakest position."""
     conductance_share: float
-    """Damping ratio from leakage, lines and what ends them there: left without friction."""
+    """Contribution of leakage and line ends to the damping ratio at the weakest position."""
     poles: tuple[Pole, ...]
-    """All of them at the weakest position, slowest first."""
+    """All poles at the weakest position, slowest first."""
     frequencies: Array
     response_case: str
-    """Case of the responses: of least dynamic stiffness, or `case` where none shakes."""
+    """Case of the responses: of least dynamic stiffness, or `case` without excitation."""
     responses: tuple[Response, ...]
     """At the cap end, the weakest position and the rod end."""
     distributed: Array | None
-    """Magnitude at the weakest position with the lines as transmission lines; None without."""
+    """Magnitude at the weakest position with transmission lines; None without lines."""
     shaken: tuple[ShakenCase, ...]
-    """Load cases that shake the actuator, each at its worst place."""
+    """Load cases with excitation, each at its worst place."""
     position_loop: LoopStudy | None
-    """Where its gain margin is least; None without a valve."""
+    """At the least gain margin; None without a valve."""
     other_loops: tuple[LoopStudy, ...] = ()
-    """Where phase margin and bandwidth are least, if elsewhere."""
+    """At the least phase margin and bandwidth, if elsewhere."""
 
     def to_dict(self) -> dict[str, Any]:
-        """As plain data for JSON."""
+        """Plain data for JSON."""
         return {name: _plain(getattr(self, name)) for name in self.__dataclass_fields__}
 
 
@@ -138,7 +138,7 @@ def _plain(value: Any) -> Any:
 def study(
     subject: PreparedDesign, v: Values, done: ModelRun, case: str | None
 ) -> DynamicsStudy | None:
-    """Dynamics of one design in the case of least stiffness; None where nothing moves."""
+    """Dynamics of a design in the case of least stiffness; None without motion."""
     motion = done.motion
     index = v.cases.index(case) if case in v.cases else 0
     stroke = float(np.squeeze(done.geometry.stroke))
@@ -196,7 +196,7 @@ def _damping_ratio(motion: Motion, there: Array, index: int) -> float:
 
 
 def _loops(done: ModelRun, design: Design) -> list[_Loop]:
-    """Every loop that governs a margin or the bandwidth, with what it governs."""
+    """All loops that govern a margin or the bandwidth, with the governed metrics."""
     rows: dict[tuple[int, str], tuple[str, ...]] = {}
     for metric in ("gain_margin", "phase_margin", "bandwidth"):
         row = _worst(done, metric, design)
@@ -206,7 +206,7 @@ def _loops(done: ModelRun, design: Design) -> list[_Loop]:
 
 
 def _shaken(design: Design, done: ModelRun) -> tuple[ShakenCase, ...]:
-    """Every shaken case at its place of least dynamic stiffness."""
+    """All load cases with excitation at their place of least dynamic stiffness."""
     found = []
     for i, case in enumerate(design.load_cases):
         if case.frequency is None:
@@ -231,7 +231,7 @@ def _distributed(
 
 
 def _row(value: Array, index: int, along: Array) -> Array:
-    """One case's row of an array (cases, points)."""
+    """The row of a case in an array (cases, points)."""
     array = np.broadcast_to(np.atleast_2d(value), (np.shape(np.atleast_2d(value))[0], along.size))
     return array[min(index, array.shape[0] - 1)]
 
@@ -248,7 +248,7 @@ def _poles(model: linear.LinearActuator, index: int) -> tuple[Pole, ...]:
 
 
 def _worst(done: ModelRun, metric: str, design: Design) -> tuple[int, str] | None:
-    """Case and place of a metric's least value; None where it was not computed."""
+    """Case and place of a metric's least value; None if it was not computed."""
     shaken = [case.frequency is not None for case in design.load_cases]
     rows = [
         (float(value[i, 0]), i, place)
@@ -261,9 +261,9 @@ def _worst(done: ModelRun, metric: str, design: Design) -> tuple[int, str] | Non
 
 
 def _frequencies(polynomials: list[tuple[Polynomial, int]]) -> Array:
-    """`FREQUENCIES` and points about every resonance and anti-resonance of some polynomials.
+    """`FREQUENCIES` and points around every resonance and anti-resonance of these polynomials.
 
-    Each comes with the load case that counts.
+    Each polynomial has its load case.
     """
     found = [FREQUENCIES]
     for polynomial, index in polynomials:
@@ -283,7 +283,7 @@ def _frequencies(polynomials: list[tuple[Polynomial, int]]) -> Array:
 
 
 def _integrators(polynomial: Polynomial) -> int:
-    """How many roots at zero a polynomial has: coefficients that are 0."""
+    """Number of zero roots of a polynomial: leading coefficients that are 0."""
     known = (k for k, one in enumerate(polynomial) if np.any(np.asarray(one) != 0))
     return next(known, len(polynomial))
 
@@ -320,7 +320,7 @@ class _Loop:
 
     @classmethod
     def of(cls, done: ModelRun, index: int, place: str, governs: tuple[str, ...]) -> _Loop:
-        """From the names of the metrics' rows."""
+        """The loop of the place in the metrics' rows."""
         direction, _, where = place.partition(", ")
         position = np.asarray(done.places[where])
         one = done.motion.position_loop(position, extending=np.array(direction == "extending"))
@@ -340,7 +340,7 @@ class _Loop:
 def _loop(
     subject: PreparedDesign, v: Values, done: ModelRun, at: _Loop, frequencies: Array
 ) -> LoopStudy:
-    """What one loop does over frequency, with its figures from the metrics."""
+    """Frequency response of a loop, with its figures from the metrics."""
 
     def of(metric: str) -> float:
         return of_case(done.computed.metrics[metric][at.place], at.index)
@@ -372,6 +372,6 @@ def _loop(
 
 
 def _unwrapped(response: Array) -> Array:
-    """Phase without jumps, starting next to -pi/2 where the integrator rules."""
+    """Phase without jumps, starting near -pi/2, where the integrator dominates."""
     phase = np.unwrap(np.angle(response))
     return phase - 2 * pi * np.round((phase[0] + pi / 2) / (2 * pi))

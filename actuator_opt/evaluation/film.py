@@ -1,7 +1,7 @@
-"""The oil film under a running seal, or under two in a row: solved at one operating point.
+"""The oil film under a moving seal, or two in a row: solution at an operating point.
 
-Two elements with a film share the oil: the pressure between them settles where both pass the same
-flow ([Huang2017] eq. 17).
+Two elements with a film share the oil: at the pressure between them both have the same flow
+([Huang2017] eq. 17).
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ from .rings import Ring
 from .seal_contact import seal_contact, static_profile
 
 NODES = 121
-"""Nodes along the contact: within 0.3 % of finer ones."""
+"""Nodes along the contact: within 0.3 % of a finer mesh."""
 
 HIGHEST, AT_LEAST = 1.5, 10e6
-"""Largest pressure between two seals that is looked for, over the sealed one, or this one [Pa]: at
-little pressure the outer seal can hold back many times the sealed one."""
+"""Largest interseal pressure tried, over the sealed pressure, or absolute [Pa]: at
+low pressure the outer seal can hold many times the sealed pressure."""
 
 LEAST_SQUEEZE = 0.02
-"""Squeeze at which the film is held: below it the contact is lost, as the squeeze tells."""
+"""Least squeeze in film solutions: below it the contact is lost, and the squeeze metric fails."""
 
 _NOT_OF_FILM = frozenset(
     {
@@ -62,24 +62,24 @@ _NOT_OF_FILM = frozenset(
         "viscous_friction",
     }
 )
-"""Numbers of a ring that its film does not depend on, or that a row states once for both rings."""
+"""Numbers of a ring without effect on its film, or stated once per row for both rings."""
 
 SHARED = ("speed", "viscosity", "viscosity_coefficient")
-"""Inputs that both rings of a pair have in common, beside the pressures."""
+"""Inputs common to both rings of a pair, besides the pressures."""
 
 
 @dataclass(frozen=True, slots=True)
 class FilmRow:
     """One or two rings of floats that share the oil, from the sealed side outwards.
 
-    `outward`: their counterface moves to the outer side.
+    `outward`: the counterface moves to the outer side.
     """
 
     rings: tuple[Ring, ...]
     outward: bool
 
     def inputs(self) -> dict[str, Array]:
-        """What the films depend on, pressures absolute, the squeeze held."""
+        """Inputs of the films, with absolute pressures and limited squeeze."""
         first, last = self.rings[0], self.rings[-1]
         outer = last["outer_pressure"] + ATMOSPHERIC_PRESSURE
         found = {
@@ -95,7 +95,7 @@ class FilmRow:
         return found
 
     def at(self, point: Mapping[str, Array]) -> FilmRow:
-        """The row at a point of `inputs`; both rings then see the full pressure difference."""
+        """The row at a point of `inputs`; both rings then have the full pressure difference."""
         shared = {name: point[name] for name in SHARED if name in point}
         shared["outer_pressure"] = point["outer"] - ATMOSPHERIC_PRESSURE
         shared["pressure"] = point["sealed"] - point["outer"]
@@ -109,7 +109,7 @@ class FilmRow:
         )
 
     def between(self, pressure: Array) -> tuple[Ring, ...]:
-        """The rings under their shares, at an absolute pressure between them."""
+        """The rings with their shares of the pressure, for an absolute interseal pressure."""
         if len(self.rings) == 1:
             return self.rings
         first, second = self.rings
@@ -121,19 +121,19 @@ class FilmRow:
         )
 
     def frictions(self, values: Array) -> tuple[Array, ...]:
-        """Friction of every ring, N, of the values of their films."""
+        """Friction of every ring, N, from the values of their films."""
         return tuple(
             np.pi * ring["diameter"] * (film.drag + ring["asperity_friction"] * film.load)
             for ring, film in zip(self.rings, ring_films(values), strict=True)
         )
 
     def contacts(self, between: Array) -> tuple[Contact, ...]:
-        """What the film solver takes of every ring, at an absolute pressure between them."""
+        """Film-solver inputs of every ring, for an absolute interseal pressure."""
         return tuple(contact(ring, outward=self.outward) for ring in self.between(between))
 
 
 def contact(ring: Ring, *, outward: bool, nodes: int = NODES) -> Contact:
-    """What the film solver takes of one ring. A complex step may ride on any number."""
+    """Film-solver input of a ring; any number may carry a complex step."""
     outer = ring["outer_pressure"] + ATMOSPHERIC_PRESSURE
     width, static = static_profile(ring, nodes)
     return Contact(
@@ -172,31 +172,31 @@ def _lubricant(ring: Ring) -> Lubricant:
 
 
 class RingFilm(NamedTuple):
-    """What the film of one ring comes to, per circumference; arrays where its inputs are."""
+    """Film results of a ring, per circumference; arrays if the inputs are arrays."""
 
     drag: Array
-    """Of the oil, positive against the motion [N/m]."""
+    """Viscous drag, positive against the motion [N/m]."""
     load: Array
     """Normal force between the asperities [N/m]."""
     thickness: Array
-    """Mean film [m]."""
+    """Mean film thickness [m]."""
 
 
 def ring_films(values: Array) -> tuple[RingFilm, ...]:
-    """The rings' parts of `Solved.values`; the flow and the pressure between follow them."""
+    """Parts of `Solved.values` by ring; flow and interseal pressure follow them."""
     return tuple(RingFilm(*values[i : i + 3]) for i in range(0, len(values) - 2, 3))
 
 
 @dataclass(frozen=True, slots=True)
 class Solved:
-    """The films of a row, or why there are none.
+    """The films of a row, or the reason for a failure.
 
     Parameters
     ----------
-    row : as solved
-    films : one per ring; empty without an answer
-    why : why there is none
-    pair : of two rings: the pressure between them, how well the flows match
+    row : row as solved
+    films : one film per ring; empty after a failure
+    why : reason for a failure
+    pair : for two rings, the interseal pressure and the flow mismatch
     """
 
     row: FilmRow
@@ -206,12 +206,12 @@ class Solved:
 
     @property
     def between(self) -> float:
-        """Absolute pressure between two rings [Pa]; NaN for one ring."""
+        """Absolute interseal pressure [Pa]; NaN for a single ring."""
         return nan if self.pair is None else self.pair.pressure
 
     @property
     def values(self) -> np.ndarray:
-        """Drag against the motion, load [N/m] and mean film [m] of every ring, flow, between."""
+        """Drag, load [N/m] and mean film [m] of every ring; flow, interseal pressure."""
         sign = 1.0 if self.row.outward else -1.0
         parts = [[sign * f.viscous_drag, f.contact_load, f.mean_film] for f in self.films]
         return np.array([*np.ravel(parts), self.films[0].flow, self.between])
@@ -222,7 +222,7 @@ class Solved:
 
 
 def solve(row: FilmRow, last: Solved | None = None) -> Solved:
-    """The films of a row, begun from those of a near one."""
+    """Films of a row, starting from the films of a nearby row."""
     if len(row.rings) == 1:
         if opened := _opened(row.rings[0]):
             return Solved(row, (), opened)
@@ -238,11 +238,14 @@ def solve(row: FilmRow, last: Solved | None = None) -> Solved:
 
 
 def _opened(ring: Ring) -> str:
-    """Why the sealed pressure opens the contact of a ring; empty where it does not."""
+    """Why the sealed pressure opens the contact of a ring; empty if it does not."""
     pressure = ring["pressure"]
     if seal_contact(ring.at(pressure=abs(pressure))).excess > 0:
         return ""
-    return f"{pressure / 1e6:.4g} MPa opens the contact of the {ring.label}: its load is too small"
+    return (
+        f"{pressure / 1e6:.4g} MPa opens the contact of the {ring.label}: its contact load "
+        "is too small"
+    )
 
 
 def _tandem(row: FilmRow, start: Tandem | None) -> Tandem:
@@ -289,7 +292,7 @@ def slopes(solved: Solved, names: Sequence[str]) -> dict[str, np.ndarray]:
         surplus = by_film[0][:, 2] - by_film[1][:, 2]
         moved = -surplus[:-1] / surplus[-1]
         by_film = [rows[:-1] + np.outer(moved, rows[-1]) for rows in by_film]
-    # a starved room stays at the cavitation pressure: nothing moves between the rings
+    # a starved space stays at the cavitation pressure, so its derivative is zero
     sign = 1.0 if row.outward else -1.0
     found = {}
     for k, name in enumerate(names):
@@ -299,7 +302,7 @@ def slopes(solved: Solved, names: Sequence[str]) -> dict[str, np.ndarray]:
 
 
 def _as_starved(contact: Contact, solved: Contact) -> Contact:
-    """A contact with the oil missing at its ends as it was solved."""
+    """A contact with the same oil shortage at its ends as in the solution."""
     return replace(
         contact,
         sealed_cavitation=solved.sealed_cavitation,

@@ -1,9 +1,8 @@
-"""The film tables of a design: one per place that asks for a film, load case and stroke.
+"""Film tables of a design: one per place with a film, load case and stroke.
 
-Each is a surrogate of the solved films. It runs along the inputs that the variables of the design
-move most; all others enter to the first order, by the exact slopes of the films. The tables are
-made once, from the design as it stands and the bounds of its variables, so that a design
-evaluated alone and the same design inside the optimiser read one film.
+Each table is a surrogate of solved films. Its axes are the inputs that the design variables change
+most; other inputs enter to first order, by the exact slopes of the films. The tables are made once
+per design and bounds of its variables, so a single evaluation and the optimiser use the same film.
 """
 
 from __future__ import annotations
@@ -26,23 +25,23 @@ from .rings import Place, Ring
 from .values import Values, of_case
 
 SAMPLES = 64
-"""Points within the bounds of the variables that tell the box of the tables."""
+"""Samples within the bounds of the variables that define the box of the tables."""
 
 POINTS = 6
-"""Nodes of a surrogate along each of its axes."""
+"""Nodes of a surrogate along each axis."""
 
 MOST_AXES = 2
-"""Axes of a surrogate: one more would cost `POINTS` times as many films."""
+"""Most axes of a surrogate: a further axis would need `POINTS` times as many films."""
 
 SPEEDS, SPEED_ROOM = 3, 1.25
-"""Nodes and room of the axis of speed, which every surrogate has, so that the slope by the speed
-follows all other inputs. The middle node is the case's own speed."""
+"""Nodes and relative range of the speed axis, which every surrogate has so that the slope by speed
+depends on all other inputs. The middle node is the speed of the case."""
 
 CHECKS = 4
-"""Points of the box at which a surrogate is compared with the film itself."""
+"""Points of the box at which a surrogate is compared with solved films."""
 
 MISSED = 0.005
-"""Part of the load by which the first order may miss at the ends of an input that is no axis."""
+"""Largest first-order error, over the load, at the ends of an input that is not an axis."""
 
 Stroke = Literal["drive", "return"]
 Key = tuple[Place, int, Stroke]
@@ -51,16 +50,16 @@ Key = tuple[Place, int, Stroke]
 
 @dataclass(frozen=True, slots=True)
 class Running:
-    """A running film of one ring per case, over the whole circumference.
+    """Film of a ring in motion per case, over the whole circumference.
 
     Parameters
     ----------
-    viscous : drag of the oil, positive against the motion [N]
+    viscous : viscous drag, positive against the motion [N]
     load : normal force between the asperities [N]
     thickness : mean film [m]
     viscous_slope, load_slope : derivatives of the first two by the speed [N s/m]
-    flow : towards the outer side [m^3/s]
-    between : pressure between two rings, absolute [Pa]; NaN for one
+    flow : flow towards the outer side [m^3/s]
+    between : absolute pressure between two rings [Pa]; NaN for a single ring
     """
 
     viscous: Array
@@ -74,19 +73,19 @@ class Running:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """The surrogate of a row's films in one case, and how far it is off."""
+    """Surrogate of a row's films in a case, and its error."""
 
     surrogate: Surrogate
     row: FilmRow
     errors: Mapping[str, float]
-    """Largest relative difference of friction, flow and film thickness to films solved at the
-    design and in the box (of the flow: over the largest there)."""
+    """Largest relative differences of friction, flow and film thickness from films solved at the
+    design and in the box (flow: over its largest value)."""
 
     flow: float = 0.0
     """Flow of the film at the design itself, per circumference [m^2/s]."""
 
     def running(self, rings: Sequence[Ring]) -> tuple[Running, ...]:
-        """The films at the numbers of the rings, as arrays (designs,) or floats."""
+        """Films for the numbers of the rings, as arrays (designs,) or floats."""
         inputs = FilmRow(tuple(rings), self.row.outward).inputs()
         values = self.surrogate(inputs)
         slopes = self.surrogate(inputs, slope="speed") / inputs["speed"]
@@ -110,13 +109,13 @@ class Table:
 
 
 class _Walker:
-    """Films at points near each other, each begun from the one before."""
+    """Films at a sequence of nearby points, each starting from the previous film."""
 
     def __init__(self, row: FilmRow) -> None:
         self.row = row
         self.last: Solved | None = None
         self.names: list[str] = []
-        """Inputs that move the films at all, known after the first point."""
+        """Inputs with any effect on the films, known after the first point."""
 
     def solve(self, point: Mapping[str, Array]) -> Solved:
         found = solve(self.row.at(point), self.last)
@@ -134,12 +133,12 @@ class _Walker:
 
 
 def table(row: FilmRow, samples: Sequence[FilmRow]) -> Table:
-    """The surrogate of a row over the box that other rows span.
+    """Surrogate of a row over the box that other rows span.
 
     Raises
     ------
     Unsolvable
-        the films have no solution at the row itself, or at too many points of the box
+        no film solution at the row itself, or at too many points of the box
     """
     walker = _Walker(row)
     base = {name: float(value) for name, value in row.inputs().items() if value > 0}
@@ -150,7 +149,7 @@ def table(row: FilmRow, samples: Sequence[FilmRow]) -> Table:
     axes = _axes(walker, base, others, here)
     found = surrogate(walker, base=base, axes=axes)
     if found is None:
-        raise _unsolved(row, "too many points within the bounds of the variables have none")
+        raise _unsolved(row, "too many points within the variable bounds have no solution")
     points = [base, *(point for point in others[:CHECKS] if base.keys() <= point.keys())]
     return Table(found, row, _errors(walker, found, points), float(here.values[-2]))
 
@@ -158,7 +157,7 @@ def table(row: FilmRow, samples: Sequence[FilmRow]) -> Table:
 def _unsolved(row: FilmRow, why: str) -> Unsolvable:
     first = row.rings[0]
     message = f"the oil film of the {first.label} has no solution: {why}"
-    remedy = 'write "friction: coefficient", or bring squeeze, pressure, speed nearer to practice'
+    remedy = 'write "friction: coefficient", or use a more usual squeeze, pressure or speed'
     path = f"{first.groove.path}friction"
     return Unsolvable(Diagnostic(message, remedy, path=path))
 
@@ -169,7 +168,7 @@ def _axes(
     others: Sequence[Mapping[str, Array]],
     here: Interpolation,
 ) -> tuple[Axis, ...]:
-    """The speed, and the inputs whose extent the first order follows worst."""
+    """The speed, and the inputs with the largest first-order errors."""
     spans = {
         name: (min(values), max(values))
         for name, value in base.items()
@@ -192,7 +191,7 @@ def _axes(
 def _missed(
     walker: _Walker, base: Mapping[str, float], here: Interpolation, name: str, end: float
 ) -> float:
-    """How far the first order in an input misses drag and load at its end, over the load."""
+    """First-order error of drag and load at the end of an input's range, over the load."""
     solved = walker.solve({**base, name: end})
     if solved.why:
         return 1.0
@@ -207,7 +206,7 @@ def _missed(
 def _errors(
     walker: _Walker, found: Surrogate, points: Sequence[Mapping[str, Array]]
 ) -> dict[str, float]:
-    """Largest relative differences between surrogate and films at points that have films."""
+    """Largest relative differences between surrogate and solved films."""
     rows = []
     for point in points:
         solved = walker.solve({name: float(point[name]) for name in found.base})
@@ -229,34 +228,34 @@ def _errors(
 
 
 def films_asked(design: Design) -> bool:
-    """Whether any element asks for a film."""
+    """Whether any element uses a film."""
     seals = design.seals
     return bool(seals.piston.friction_law.film or seals.rod.friction_law.film)
 
 
 def _outward(place: Place, push: bool) -> dict[Stroke, bool]:
-    """The strokes a film is asked of, and whether the counterface then moves outwards.
+    """Strokes that need a film, and whether the counterface then moves outwards.
 
-    The piston runs away from the driven chamber, which it seals: the bore moves inwards past its
-    seal either way. The rod seal also tells what the way back returns of the oil dragged out.
+    The piston moves away from the driven chamber, which it seals: the bore moves inwards past its
+    seal in both directions. The rod seal also needs the return stroke, which draws oil back.
     """
     return {"drive": False} if place == "piston" else {"drive": push, "return": not push}
 
 
 def on_stroke(rings: Sequence[Ring], stroke: Stroke) -> tuple[Ring, ...]:
-    """The rings as they are on a stroke: the way back has its own pressure."""
+    """The rings on a stroke: the return stroke has its own pressure."""
     if stroke == "drive":
         return tuple(rings)
     return tuple(ring.at(pressure=ring["return_pressure"]) for ring in rings)
 
 
 def of_place(rings: Sequence[Ring], place: Place) -> tuple[Ring, ...]:
-    """The rings of a place that run on a film, from the sealed side outwards."""
+    """Rings of a place with a film, from the sealed side outwards."""
     return tuple(r for r in rings if r.name == place and r.element.friction_law.film)
 
 
 def floats(ring: Ring, case: int, sample: int = 0) -> Ring:
-    """One case's and one design's numbers of a ring."""
+    """Numbers of a ring for one case and one design."""
 
     def one(value: Array) -> float:
         array = np.atleast_2d(np.asarray(value, dtype=float))
@@ -269,13 +268,13 @@ def floats(ring: Ring, case: int, sample: int = 0) -> Ring:
 def tables(
     design: Design, values: Callable[..., Values], rings_of: Callable[[Values], tuple[Ring, ...]]
 ) -> dict[Key, Table]:
-    """Every film table of a design.
+    """All film tables of a design.
 
     Parameters
     ----------
     design : the design
-    values : its numbers, some of them replaced by arrays (`PreparedDesign.values`)
-    rings_of : its sealing rings at such numbers
+    values : its numbers, some replaced by arrays (`PreparedDesign.values`)
+    rings_of : function that returns its sealing rings for such numbers
     """
     here = rings_of(values())
     others: tuple[Ring, ...] = ()
@@ -299,12 +298,12 @@ def tables(
 
 @lru_cache(maxsize=64)
 def _table(inputs: bytes) -> Table:
-    """`table` of pickled inputs: equal films, of a report or a comparison, are solved once."""
+    """`table` of pickled inputs, cached: equal films of a report or comparison are solved once."""
     return table(*pickle.loads(inputs))
 
 
 def unsolved(design: Design, rings: tuple[Ring, ...]) -> dict[Key, Table]:
-    """Tables of every film of a design without its solution: what they give is NaN."""
+    """Tables of all films of a design without solutions: they return NaN."""
     found = {}
     for key, row in _rows(design, rings):
         inputs = {name: float(value) for name, value in row.inputs().items()}
@@ -314,7 +313,7 @@ def unsolved(design: Design, rings: tuple[Ring, ...]) -> dict[Key, Table]:
 
 
 def _rows(design: Design, rings: tuple[Ring, ...]) -> Iterator[tuple[Key, FilmRow]]:
-    """The row of rings behind every film of a design, by its table."""
+    """Rows of rings for all films of a design, by table."""
     places: tuple[Place, ...] = ("piston", "rod")
     for place in places:
         own = of_place(rings, place)
@@ -331,7 +330,7 @@ def _finite(row: FilmRow) -> bool:
 
 
 def _spread(design: Design) -> dict[str, np.ndarray]:
-    """Points within the bounds of the variables: even in each of them, mixed by a fixed seed."""
+    """Samples within the bounds of the variables: even in each, mixed with a fixed seed."""
     mixed = np.random.default_rng(0)
     return {
         path: np.linspace(bounds.lower, bounds.upper, SAMPLES)[mixed.permutation(SAMPLES)]
@@ -342,9 +341,9 @@ def _spread(design: Design) -> dict[str, np.ndarray]:
 def _with_corners(
     design: Design, spread: dict[str, np.ndarray], rings: Sequence[Ring]
 ) -> dict[str, np.ndarray]:
-    """The points, and the corners at which a number of a ring should be largest and smallest.
+    """The samples, and the corners at which a number of a ring should be extreme.
 
-    Which corner follows from the signs of its correlation with every variable.
+    The corner follows from the signs of its correlation with every variable.
     """
     paths = list(spread)
     varied = np.array([spread[path] - np.mean(spread[path]) for path in paths])
@@ -369,9 +368,9 @@ def _with_corners(
 def running(
     tables: Mapping[Key, Table], rings: Sequence[Ring], stroke: Stroke, cases: int
 ) -> tuple[Running, ...]:
-    """The films of a place's rings in every case, (cases, designs); 0 where the case stands still.
+    """Films of a place's rings in every case, (cases, designs); 0 for a case at rest.
 
-    Empty where no case has a film on this stroke.
+    Empty if no case has a film on this stroke.
     """
     own = rings and of_place(rings, rings[0].name)
     known = [tables.get((ring.name, case, stroke)) for ring in own[:1] for case in range(cases)]
@@ -396,7 +395,7 @@ def _stacked(films: Sequence[Running | None]) -> Running:
 
 
 def _row(ring: Ring, case: int) -> Ring:
-    """One case's numbers of a ring, floats or (designs,)."""
+    """Numbers of a ring in one case, floats or (designs,)."""
 
     def row(value: Array) -> Array:
         array = np.asarray(value)

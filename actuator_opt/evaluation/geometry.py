@@ -1,8 +1,8 @@
-"""Derived dimensions of the actuator, once for physics, mass and drawing.
+"""Derived dimensions of the actuator, shared by physics, mass and drawing.
 
 Axial layout, from the outer face of the cap plate: plate, barrel (piston retracted against the
-plate, stroke, head plug), head plate, exposed rod, eye. What holds both plates is
-a joint of `joints`.
+plate, stroke, head plug), head plate, exposed rod, eye. A joint of `joints` holds
+both plates.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class Geometry:
     head_clearance: Array
     plate: Array
     fit: Fit
-    """What the joint of caps and head gives both."""
+    """Dimensions from the joint of caps and head, the same at both ends."""
     has_skirts: bool
     barrel_length: Array
     eye_offset: Array
@@ -120,7 +120,7 @@ def derive(v: Values, design: Design) -> Geometry:
 
 
 def end_at(design: Design, sizes: JointSizes, g: Geometry) -> End:
-    """The end of the barrel as its joint sees it."""
+    """The end of the barrel as input of its joint."""
     return end_of(
         design,
         sizes,
@@ -133,7 +133,7 @@ def end_at(design: Design, sizes: JointSizes, g: Geometry) -> End:
 
 
 def lands(geometry: Geometry, thread_radius: Array) -> dict[str, Array]:
-    """Walls that must not vanish: every one is a constraint of the optimiser."""
+    """Walls that must stay positive: each is a constraint of the optimiser."""
     g = geometry
     piston_length, piston_count, piston_depth = taken(g.piston_grooves)
     head_length, head_count, head_depth = taken(g.rod_grooves)
@@ -157,10 +157,10 @@ def lands(geometry: Geometry, thread_radius: Array) -> dict[str, Array]:
 def makeable(
     v: Values, design: Design, materials: Mapping[str, Material]
 ) -> tuple[dict[str, Array], dict[str, Array]]:
-    """What is left of the process's limits, by layer of barrel and rod.
+    """Margins to the process limits, by layer of barrel and rod.
 
-    Winding angle less the smallest that can be wound [rad], and layer thickness over the least
-    that can be laid, less one. A layer at exactly 0 deg is laid along the mandrel, not wound.
+    Winding angle minus the smallest feasible angle [rad], and layer thickness over the smallest
+    feasible thickness, minus one. A layer at exactly 0 deg is laid along the mandrel, not wound.
     """
     angles: dict[str, Array] = {}
     spare: dict[str, Array] = {}
@@ -175,7 +175,7 @@ def makeable(
 
 
 def _layers(design: Design) -> Iterator[tuple[str, Ply]]:
-    """Every layer of barrel and rod by PATH."""
+    """All layers of barrel and rod by PATH."""
     for part, layup in (("barrel", design.barrel.layup), ("rod", design.rod.layup)):
         for i, entry in enumerate(layup):
             yield f"{part}.layup[{i}]", entry

@@ -1,4 +1,4 @@
-"""Glands over tolerances, growth, heat and cold: squeeze, fill, the gap behind the seal."""
+"""Gland checks with tolerances, growth and temperature: squeeze, fill, extrusion gap."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from .state import LoadState
 from .values import Values
 
 ROOM = 293.15
-"""Temperature of assembly where the design states none, K."""
+"""Default assembly temperature, K."""
 
 EXTRUSION_TABLE = "sealanddesign"
-"""Table of gaps over hardness and pressure for compounds that state none of their own."""
+"""Table of gaps by hardness and pressure for compounds without their own limits."""
 
 
 def metrics(
@@ -32,11 +32,11 @@ def metrics(
     ring: Ring,
     growth: Array,
 ) -> dict[str, Array]:
-    """Gland metrics of a ring; `growth` is the largest of the bore over it.
+    """Gland metrics of a ring; `growth` is the largest bore growth over it.
 
-    Squeeze and fill are those of the worst tolerances in heat and cold, rod and bore concentric,
-    as gland tables state them. Side load pushes the rod over: the gap of one side is then the
-    clearance larger (and the squeeze smaller, as the seal sheet shows).
+    Squeeze and fill are for worst tolerances, hot and cold, with rod and bore concentric as in
+    gland tables. Side load displaces the rod: the gap on one side is then larger by the clearance
+    (and the squeeze smaller, as the seal sheet shows).
     """
     clearance, aside = clearances(geometry, state, ring)
     cold, hot = (
@@ -47,7 +47,7 @@ def metrics(
     )
     least, most = minimum(cold, hot), maximum(cold, hot)
     found = {"extrusion_factor": _extrusion(v, stock, ring, clearance + aside + growth)}
-    if ring.element.seal_type.round_ring:  # limits of squeeze are of round rings
+    if ring.element.seal_type.round_ring:  # limits of squeeze apply to round rings
         found["seal_squeeze"] = squeezes(ring, growth=growth, aside=0.0, ratio=least)[0]
         found["seal_squeeze_max"] = squeezes(ring, growth=0.0, aside=0.0, ratio=most)[1]
     if ring.element.seal_type.o_ring_gland:
@@ -58,7 +58,7 @@ def metrics(
 
 
 def _fill(ring: Ring) -> Array:
-    """Share of an O-ring's groove, at its shallowest, that the ring fills at assembly."""
+    """Largest fill of an O-ring's groove at assembly, with the shallowest groove."""
     backs = sum(piece.area for piece in ring.groove.pieces[1:]) / ring["gland_depth"]
     return gland.gland_fill(
         section=gland.stretched_section(
@@ -70,15 +70,15 @@ def _fill(ring: Ring) -> Array:
 
 
 def clearances(geometry: Geometry, state: LoadState, ring: Ring) -> tuple[Array, Array]:
-    """Radial clearance behind a ring, and how far side load pushes its part over, by case."""
+    """Radial clearance behind a ring, and the displacement by side load, by case."""
     clearance = geometry.piston_clearance if ring.name == "piston" else geometry.head_clearance
     return clearance, where(real(state.side_load) > 0, 1.0, 0.0) * clearance
 
 
 def squeezes(ring: Ring, *, growth: Array, aside: Array, ratio: Array) -> tuple[Array, Array]:
-    """Loosest squeeze of a ring, with growth and stretch, and the tightest, without.
+    """Least squeeze of a ring, with growth and stretch, and largest squeeze, without.
 
-    `ratio` is that of ring over groove volume; `aside` the eccentricity of rod or piston.
+    `ratio` is ring over groove volume; `aside` the eccentricity of rod or piston.
     """
     section = ring["section"]
     thin = gland.stretched_section(section=section, stretch=ring["stretch"])
@@ -99,7 +99,7 @@ def squeezes(ring: Ring, *, growth: Array, aside: Array, ratio: Array) -> tuple[
 def volume_ratio(
     v: Values, design: Design, stock: MaterialValues, ring: Ring, temperature: Array
 ) -> Array:
-    """Ring over groove volume at a temperature, relative to assembly; 1 where not known."""
+    """Ring over groove volume at a temperature, relative to assembly; 1 if unknown."""
     expansion = stock.get(ring.element.compound, "volume_expansion")
     part = design.piston if ring.name == "piston" else design.head
     housing = stock.get(part.material, "thermal_expansion")
@@ -114,7 +114,7 @@ def volume_ratio(
 
 
 def _extrusion(v: Values, stock: MaterialValues, ring: Ring, gap: Array) -> Array:
-    """Largest gap that the seal or its back-up ring bears at supply pressure, over the gap."""
+    """Allowable gap of the seal or its back-up ring at supply pressure, over the gap."""
     pressure, element = v["supply.pressure"], ring.element
     if stock.material(element.compound).properties.get("extrusion_gap_max") is None:
         hardness = v[f"materials.{element.compound}.hardness"]
@@ -136,7 +136,7 @@ def _extrusion(v: Values, stock: MaterialValues, ring: Ring, gap: Array) -> Arra
 
 
 def _stated_end(material: Material) -> float:
-    """Highest pressure to which a material states its gap; 0 where it states none."""
+    """Highest pressure for which a material states a gap limit; 0 if none."""
     limit = material.properties.get("extrusion_gap_max")
     if limit is None:
         return 0.0
@@ -144,7 +144,7 @@ def _stated_end(material: Material) -> float:
 
 
 def _stated(stock: MaterialValues, name: str, pressure: Array) -> Array:
-    """A material's own limit of the gap at a pressure; 0 where it states none."""
+    """A material's own gap limit at a pressure; 0 if none."""
     limit = stock.material(name).properties.get("extrusion_gap_max")
     if limit is None:
         return 0.0
@@ -156,7 +156,7 @@ def _stated(stock: MaterialValues, name: str, pressure: Array) -> Array:
 
 
 def extrusion_end(ring: Ring, materials: Mapping[str, Material]) -> float:
-    """Highest pressure at which a limit of the gap is known for a ring."""
+    """Highest pressure for which a gap limit of a ring is known."""
     compound, back_up = materials[ring.element.compound], ring.element.back_up_material
     ends = [0.0 if back_up is None else _stated_end(materials[back_up])]
     if "extrusion_gap_max" in compound.properties:

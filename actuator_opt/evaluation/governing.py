@@ -1,7 +1,7 @@
-"""The governing value of a metric: which of its values over load cases and places stands for it.
+"""The governing value of a metric over load cases and places.
 
-It is decided here alone, for one design and for many: tables, JSON, sweeps, fronts, the optimiser
-and reports show this value.
+Defined here only, for one design and for many: tables, JSON, sweeps, fronts, the optimiser and
+reports show this value.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from .values import Values
 
 
 def worst_of(aim: Sense) -> Sense:
-    """The worst value of what is minimised ("min") is the largest; of what is maximised, the least.
+    """Worst value of a metric: the largest if minimised ("min"), the smallest if maximised.
 
     >>> worst_of("min")
     'max'
@@ -29,9 +29,9 @@ def sense_of(metric: str, subject: PreparedDesign) -> Sense | None:
     """Whether the smallest ("min") or the largest value of a metric governs a design.
 
     1. The worst value of an objective governs: the largest where it is minimised.
-    2. A metric with a required limit is governed in the sense of that limit. Limited both ways it
-       has no sense of its own (None): the value with the smaller margin governs.
-    3. Any other metric is governed by its worst value as `metrics.METRICS` states it.
+    2. A metric with a required limit is governed in the sense of that limit. With limits on both
+       sides the sense is None: the value with the smaller margin governs.
+    3. Any other metric is governed by its worst value according to `metrics.METRICS`.
     """
     objective = subject.design.objective
     aims = subject.aims or dict.fromkeys(objective.metrics, objective.aim)
@@ -50,7 +50,7 @@ def extreme(
 ) -> Array | None:
     """The smallest or largest value over load cases and places (designs,), SI.
 
-    NaN where one of them has no number, None where the metric is not computed.
+    NaN if any value is missing, None if the metric is not computed.
     """
     pick = maximum if sense == "max" else minimum
     found: Array | None = None
@@ -65,10 +65,9 @@ def extreme(
 
 
 def governing(metric: str, computed: MetricArrays, v: Values, subject: PreparedDesign) -> Array:
-    """The governing value of a metric of every design (designs,), SI.
+    """Governing value of a metric for every design (designs,), SI.
 
-    Infinite where nothing loads the part; NaN where a value has no number, or the metric is not
-    computed.
+    Infinite for an unloaded part; NaN if a value is missing or the metric is not computed.
     """
     sense = sense_of(metric, subject)
     if sense is not None:

@@ -1,4 +1,4 @@
-"""The grooves of piston and head: one for every seal element, wiper and guide."""
+"""Grooves of piston and head: one for every seal element, wiper and guide."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .values import Values
 
 
 class Piece(NamedTuple):
-    """A ring in a groove: material, free section [m^2], its centre's depth under the face [m]."""
+    """A ring in a groove: material, free section [m^2], depth of its centre under the face [m]."""
 
     material: str
     area: Array
@@ -23,7 +23,7 @@ class Piece(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Groove:
-    """A radial groove: whose it is, free section, gland depth at nominal squeeze, width, count."""
+    """A radial groove: owner, free section, gland depth at nominal squeeze, width, count."""
 
     place: str
     path: str
@@ -65,7 +65,7 @@ def _element(v: Values, place: str, path: str, element: SealElement) -> Groove:
 
 
 def grooves(v: Values, design: Design, name: Literal["piston", "rod"]) -> tuple[Groove, ...]:
-    """Every groove of a place, from the pressure outwards: guide, elements, wiper."""
+    """All grooves of a place, from the pressure side outwards: guide, elements, wiper."""
     seal: Seal = getattr(design.seals, name)
     at = f"seals.{name}."
     found = []
@@ -111,7 +111,7 @@ def grooves(v: Values, design: Design, name: Literal["piston", "rod"]) -> tuple[
 
 
 def taken(grooves: Sequence[Groove]) -> tuple[Array, Array, Array]:
-    """Axial length all grooves take, how many there are, and the deepest."""
+    """Total axial length of all grooves, their number, and the largest depth."""
     length: Array = 0.0
     count: Array = 0.0
     deepest: Array = 0.0

@@ -1,4 +1,4 @@
-"""Oil damping, leakage, flow, and what the lines make of it, in an evaluation."""
+"""Oil damping, leakage, flow and line losses in an evaluation."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .values import Values
 def compute_damping(
     geometry: Geometry, state: LoadState, friction: Friction, out: MetricArrays
 ) -> Array:
-    """Oil damping (pipe form and annular gaps); returns the incremental damping of all."""
+    """Oil damping (pipe form and annular gaps); returns the total incremental damping."""
     g = geometry
     viscosity = 0.5 * (state.dynamic_viscosity_a + state.dynamic_viscosity_b)
     pipe = damping.pipe_flow(dynamic_viscosity=viscosity, length=g.stroke)
@@ -46,11 +46,11 @@ def compute_leakage(
     film: Running | None,
     out: MetricArrays,
 ) -> Array:
-    """Leakage across the piston in motion; returns its conductance.
+    """Leakage across the moving piston; returns its conductance.
 
-    The stated conductance, the oil film of the seal, and through the gap of a piston without
-    seals, opened by the bore's growth under it. A film's flow over the pressure difference is that
-    at the case's speed; a film that draws oil back to the driven side counts as tight.
+    Sum of the stated conductance, the oil film of the seal, and the gap of a piston without seals,
+    widened by bore growth. The flow of a film is taken at the speed of the case; a film that draws
+    oil back to the driven side counts as tight.
     """
     path = "piston.leakage_conductance"
     conductance = v[path]
@@ -76,7 +76,7 @@ def compute_leakage(
         out.skip(
             "leakage",
             'needs the oil film: write "friction: film" in seals.piston, or state '
-            "piston.leakage_conductance if known",
+            "piston.leakage_conductance",
         )
     return conductance
 
@@ -116,10 +116,10 @@ def compute_flow(
 def _compute_lines(
     v: Values, design: Design, state: LoadState, flow: dict[str, Array], out: MetricArrays
 ) -> None:
-    """Velocity, pressure drop, hammer and resonance of the lines, by the flow of their chamber."""
+    """Velocity, pressure drop, hammer and resonance of the lines, by flow of their chamber."""
     velocity, drop, hammer = {}, {}, {}
     lengths: dict[str, Array] = {}
-    times: dict[str, Array] = {}  # a wave's way through the lines of a chamber
+    times: dict[str, Array] = {}  # travel time of a wave through the lines of a chamber
     modulus = {"a": state.bulk_modulus_a, "b": state.bulk_modulus_b}
     viscosity = {"a": state.dynamic_viscosity_a, "b": state.dynamic_viscosity_b}
     for i, line in enumerate(design.lines):

@@ -1,7 +1,7 @@
-"""The joint that an actuator turns through its linkage: lever arms, angles, torque, inertia.
+"""The driven joint of a linkage: lever arms, angles, torque, inertia.
 
-The lever arm rises from one dead point to its largest value and falls to the other, so over the
-stroke it is least at a stop. Every end is a row of its own: the optimiser sees no kink between.
+Between the dead points the lever arm rises to a maximum and falls, so over the stroke it is least
+at a stop. Each stop has its own row: the optimiser sees no kink.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class Joint:
     crank_radius: Array
     angle_offset: Array
     closed: Array
-    """Length pin to pin, retracted."""
+    """Retracted pin-to-pin length."""
     stroke: Array
 
     def position(self, angle: Array) -> Array:
@@ -62,14 +62,14 @@ class Joint:
 
     @property
     def ends(self) -> dict[str, Array]:
-        """Lever arm at both stops."""
+        """Lever arms at both stops."""
         return {ENDS[0]: self.lever_arm(0.0), ENDS[1]: self.lever_arm(self.stroke)}
 
     @property
     def largest(self) -> Array:
-        """Largest lever arm over the stroke: the shorter radius, square to the actuator.
+        """Largest lever arm over the stroke: the shorter radius, at a right angle to the actuator.
 
-        l^2 = |a^2 - r^2| there; at a stop where that length is not reached.
+        There l^2 = |a^2 - r^2|; if that length is out of reach, it is at a stop.
         """
         square = absolute(self.base_radius * self.base_radius - self.crank_radius**2)
         return self.lever_arm(clip(sqrt(square) - self.closed, 0.0, self.stroke))
@@ -77,12 +77,12 @@ class Joint:
 
 @dataclass(frozen=True, slots=True)
 class Demand:
-    """What the load asks of the actuator: one number, or (cases, designs)."""
+    """Force and mass that the load requires: a number, or (cases, designs)."""
 
     force: Array
     speed: Array
     mass: Array
-    """Of the load at the rod, a joint's inertia included."""
+    """Mass of the load at the rod, including the inertia of a joint."""
 
 
 def derive(v: Values, design: Design, g: Geometry) -> Joint | None:
@@ -101,7 +101,7 @@ def derive(v: Values, design: Design, g: Geometry) -> Joint | None:
 def arms(joint: Joint, positions: Sequence[Array | None]) -> dict[str, Array]:
     """Lever arm of every case (cases, designs) at both stops and at its largest.
 
-    A case that states its position has the lever arm there.
+    A case with a stated position has the lever arm of that position.
     """
     placed = [None if x is None else joint.lever_arm(x) for x in positions]
     everywhere = joint.ends | {LARGEST: joint.largest}
@@ -112,7 +112,7 @@ def arms(joint: Joint, positions: Sequence[Array | None]) -> dict[str, Array]:
 
 
 def demand(v: Values, design: Design, lever_arm: Array = None) -> Demand:
-    """What every load case asks, a joint on `lever_arm` (cases, designs); None without a joint."""
+    """Demand of every load case, with `lever_arm` (cases, designs); None without a joint."""
     forces, speeds = [], []
     for i, case in enumerate(design.load_cases):
         at = f"load_cases[{case.name}]."
@@ -139,7 +139,7 @@ def demand(v: Values, design: Design, lever_arm: Array = None) -> Demand:
 def demands(
     v: Values, design: Design, joint: Joint | None, positions: Sequence[Array | None]
 ) -> dict[str, Demand]:
-    """What every load case asks, at its worst, where its force is asked, and at both stops."""
+    """Demand of every load case: worst, where its force is largest, and at both stops."""
     if joint is None:
         asked = demand(v, design)
         return {WORST: asked, WORKING: asked}
@@ -151,7 +151,7 @@ def demands(
 
 
 def at_stop(asked: dict[str, Demand], push: Array) -> Demand:
-    """What every load case asks at the stop it runs into."""
+    """Demand of every load case at the stop in its direction."""
     if ENDS[0] not in asked:
         return asked[WORST]
     back, out = (asked[end] for end in ENDS)
@@ -163,7 +163,7 @@ def at_stop(asked: dict[str, Demand], push: Array) -> Demand:
 
 
 def open_cases(v: Values, design: Design, positions: Sequence[Array | None]) -> np.ndarray:
-    """Cases that ask another force or mass at one stop than at the other."""
+    """Cases whose force or mass differs between the stops."""
     if design.linkage is None:
         return np.array([False])
     heavy = "load.inertia" in v.varied or design.load.inertia > 0
@@ -182,7 +182,7 @@ def compute(
     net: Array,
     out: MetricArrays,
 ) -> None:
-    """Torque and range of the joint; `net` is the force that every case delivers."""
+    """Torque and range of the joint; `net` is the delivered force of every case."""
     if joint is None:
         for name in METRICS:
             out.skip(name, "no linkage stated: add linkage")
@@ -210,7 +210,7 @@ def compute(
     for direction in ("push", "pull"):
         cases = [case for case in design.load_cases if case.direction == direction]
         if cases and all(case.through_linkage for case in cases):
-            out.skip(f"{direction}_force", "asked as a joint torque: torque[NAME]")
+            out.skip(f"{direction}_force", "stated as a joint torque: torque[NAME]")
 
 
 def _dead_points(joint: Joint) -> dict[str, Array]:
@@ -223,13 +223,13 @@ def _dead_points(joint: Joint) -> dict[str, Array]:
 
 
 def warnings(design: Design, joint: Joint | None) -> Iterable[tuple[str, str]]:
-    """(metric, sentence) for what is taken at one place of the stroke."""
+    """(metric, sentence) for properties taken at a single place of the stroke."""
     if joint is None or not design.load.inertia > 0:
         return
     ends = {end: float(np.min(real(arm))) for end, arm in joint.ends.items()}
     end = min(ends, key=lambda name: ends[name])
     yield (
         "",
-        f"the joint's inertia weighs {design.load.inertia / ends[end] ** 2:.4g} kg at the rod "
-        f"where the lever arm is least ({end}); load cases without a position count it there",
+        f"the inertia of the joint equals {design.load.inertia / ends[end] ** 2:.4g} kg at the rod "
+        f"where the lever arm is least ({end}); load cases without a position use this mass",
     )

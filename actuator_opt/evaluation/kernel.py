@@ -1,4 +1,4 @@
-"""The kernel: every metric of one or many designs, from one pass over the models."""
+"""The kernel: all metrics of one or many designs, from one pass over the models."""
 
 from __future__ import annotations
 
@@ -47,12 +47,12 @@ from .state import LoadState
 from .values import Values
 
 STROKES: tuple[film_tables.Stroke, ...] = ("drive", "return")
-"""The case's own way, and the way back."""
+"""The stroke of the case, and the return stroke."""
 
 
 @dataclass(frozen=True, slots=True)
 class PreparedDesign:
-    """A design with its materials and all its numbers by PATH (materials' included)."""
+    """A design with its materials and all its numbers by PATH (including those of materials)."""
 
     design: Design
     materials: dict[str, Material]
@@ -61,19 +61,19 @@ class PreparedDesign:
     """Knock-downs of every strength, by (material, property, at the coldest)."""
     plugins: tuple[Plugin, ...] = ()
     reserves: Mapping[str, float] = field(default_factory=dict)
-    """Margins that a search keeps beyond limits, by the name of the limit."""
+    """Margins that a search keeps beyond limits, by name of the limit."""
     aims: Mapping[str, Sense] = field(default_factory=dict)
-    """Objectives of a front, wanted small ("min") or large; empty: the design's own objective."""
+    """Objectives of a front, with the better sense of each; empty: as in the design."""
     lenient: bool = False
-    """Whether a user's metric that raises is NaN, with the reason, and no fault: in a search."""
+    """Whether a raising user metric gives NaN with the reason, instead of a fault: in a search."""
     constants: dict[str, dict[str, Array]] = field(default_factory=dict, compare=False)
-    """Ply constants by material, filled when first needed."""
+    """Ply constants by material, cached."""
     films: dict[Key, Table] = field(default_factory=dict, compare=False)
-    """Tables of the seals' oil films, made when first needed."""
+    """Tables of the seals' oil films, cached."""
 
     @property
     def quantities(self) -> Mapping[str, Quantity]:
-        """Every metric of this design, the user's own included."""
+        """All metrics of this design, including those of the user."""
         return with_own(self.plugins)
 
     @property
@@ -82,17 +82,17 @@ class PreparedDesign:
         return tuple(case.name for case in self.design.load_cases)
 
     def values(self, varied: Mapping[str, Array] | None = None) -> Values:
-        """The numbers to evaluate, some of them replaced by arrays."""
+        """The numbers to evaluate, some replaced by arrays."""
         return Values(self.numbers, self.cases, varied)
 
     def touch(self, values: Values) -> None:
-        """Run the models once, so that `values.read` tells what they read."""
+        """Run the models once, so that `values.read` lists the numbers they use."""
         compute(self, values)
 
 
 @dataclass(frozen=True, slots=True)
 class ModelRun:
-    """One pass over the models, with the intermediate results the Evaluation draws on."""
+    """A pass over the models, with intermediate results for the Evaluation."""
 
     computed: MetricArrays
     geometry: Geometry
@@ -107,13 +107,13 @@ class ModelRun:
     weakest: Array
     """Position of least stiffness."""
     places: dict[str, Array]
-    """Positions where dynamics are asked, by name."""
+    """Positions of dynamic results, by name."""
     mass_parts: dict[str, Array]
 
 
 @dataclass(frozen=True, slots=True)
 class Base:
-    """What everything else stands on: dimensions, load cases, the wall under them, the seals."""
+    """Base of the evaluation: dimensions, load cases, wall, seals."""
 
     stock: MaterialValues
     geometry: Geometry
@@ -124,7 +124,7 @@ class Base:
 
 @dataclass(frozen=True, slots=True)
 class Implicit:
-    """The models that are no closed expression of the dimensions: a bound puts its own there."""
+    """Models without a closed expression of the dimensions: lower bounds replace them."""
 
     wall: Callable[[Values, Design, MaterialValues, Geometry, LoadState], Wall] = (
         barrel_module.compute
@@ -148,7 +148,7 @@ def base(subject: PreparedDesign, v: Values, implicit: Implicit = IMPLICIT) -> B
 
 @dataclass(frozen=True, slots=True)
 class Statics:
-    """Everything but where along the stroke the actuator is softest, and what moves."""
+    """All results that do not depend on the softest position, and the moving mass."""
 
     base: Base
     rod: Rod
@@ -158,17 +158,17 @@ class Statics:
     branches: dict[circuit.Chamber, circuit.Branch]
     springs: springs.Springs
     moving: Array
-    """Mass that moves with the rod, the load's included."""
+    """Mass that moves with the rod, including the load."""
     beam: Beam
     damping: Array
-    """Of the oil and the seals, incremental."""
+    """Damping of the oil and the seals, incremental."""
     leakage: Array
 
 
 def statics(
     subject: PreparedDesign, v: Values, out: MetricArrays, implicit: Implicit = IMPLICIT
 ) -> Statics:
-    """Every metric that needs no search along the stroke, put into `out`."""
+    """All metrics without a search along the stroke, stored in `out`."""
     design = subject.design
     found = base(subject, v, implicit)
     stock, g, case_state = found.stock, found.geometry, found.state
@@ -225,9 +225,9 @@ def statics(
 
 
 def compute(subject: PreparedDesign, v: Values, wanted: Container[str] | None = None) -> ModelRun:
-    """Every metric of the designs in `v`; invalid designs come out as NaN.
+    """All metrics of the designs in `v`; invalid designs give NaN.
 
-    Where `wanted` names the metrics that are needed, costly ones beside them may be left out.
+    With `wanted`, other costly metrics may be left out.
     """
     design = subject.design
     with np.errstate(all="ignore"):
@@ -263,7 +263,7 @@ def compute(subject: PreparedDesign, v: Values, wanted: Container[str] | None = 
 
 
 def _moving(load: Array, parts: dict[str, Array]) -> Array:
-    """Mass that moves with the rod, the load's included."""
+    """Mass that moves with the rod, including the load."""
     return load + parts["rod"] + parts["piston"] + parts["fastening"]
 
 
@@ -276,7 +276,7 @@ def _at_stops(
     parts: dict[str, Array],
     out: MetricArrays,
 ) -> None:
-    """Stiffness and frequency with what a joint asks at either stop, a row for each."""
+    """Stiffness and frequency with the load of a joint at either stop, one row each."""
     s = found.state
     both = joint.open_cases(v, design, s.positions)
     if not both.any():
@@ -297,9 +297,9 @@ def _at_stops(
 
 @np.errstate(all="ignore")
 def without_films(subject: PreparedDesign) -> PreparedDesign:
-    """A subject whose oil films are not solved: NaN stands wherever a film decides.
+    """A subject without solved oil films: NaN wherever a film matters.
 
-    Which metrics there are and which numbers are read is the same with films and without.
+    The metrics and the numbers they read are the same with and without films.
     """
     if not film_tables.films_asked(subject.design):
         return subject
@@ -308,7 +308,7 @@ def without_films(subject: PreparedDesign) -> PreparedDesign:
 
 
 def _films(subject: PreparedDesign) -> dict[Key, Table]:
-    """The tables of the oil films, made at the first call."""
+    """Tables of the oil films, made on first use."""
     design = subject.design
     if not film_tables.films_asked(design):
         return {}
@@ -319,7 +319,7 @@ def _films(subject: PreparedDesign) -> dict[Key, Table]:
 
 
 def _manufacture(v: Values, subject: PreparedDesign, out: MetricArrays) -> None:
-    """Margins of the process that lays the plies."""
+    """Margins to the limits of ply manufacture."""
     angles, spare = geometry_module.makeable(v, subject.design, subject.materials)
     for name, values, limit in (
         ("winding_margin", angles, "smallest angle"),
@@ -328,7 +328,7 @@ def _manufacture(v: Values, subject: PreparedDesign, out: MetricArrays) -> None:
         if values:
             out.put(name, values)
         else:
-            out.skip(name, f"no layer states a {limit} that can be made")
+            out.skip(name, f"no layer states a {limit}")
 
 
 def _forces(g: Geometry, s: LoadState, friction: Friction, out: MetricArrays) -> Array:

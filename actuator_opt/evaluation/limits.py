@@ -1,8 +1,8 @@
-"""What a design must satisfy: its own requirements, its load cases' forces, and the check list.
+"""Limits of a design: its requirements, the forces of its load cases, and the check list.
 
-The check list is what a professional checks on every actuator; each line has a limit with its
-source, unless only the user can know one. A requirement on the same metric and sense replaces a
-line's limit; `waivers` take a line out, with the reason printed.
+The check list contains the usual professional checks of an actuator. Each line has a limit with its
+source, unless only the user can set it. A requirement on the same metric and sense replaces the
+limit; `waivers` remove a line, and the report prints their reason.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from .values import Values
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """One limit on one metric: a number of the design (`path`) or a constant.
+    """A limit of a metric: a number of the design (`path`) or a constant.
 
-    Where a load case states a joint torque, `path` is the torque and `lever` the arm's PATH.
+    For a load case with a joint torque, `path` is the torque and `lever` the PATH of its lever arm.
     """
 
     name: str
@@ -36,10 +36,10 @@ class Limit:
     source: str = ""
     lever: str | None = None
     places: tuple[str, ...] | None = None
-    """Places of the metric it is for; None for all."""
+    """Places of the metric that it applies to; None for all."""
 
     def value(self, v: Values) -> Array:
-        """The limit in SI (an array when a parameter study varies it)."""
+        """The limit in SI (an array if a parameter study varies it)."""
         if self.path is None:
             return self.constant
         return v[self.path] if self.lever is None else v[self.path] / v[self.lever]
@@ -47,11 +47,11 @@ class Limit:
 
 ENDS = ("retracted", "extended")
 OWN_PLACE = "position of the case"
-"""Places of a joint torque: both stops, and where a load case says it stands."""
+"""Places of a joint torque: both stops, and the stated position of a load case."""
 
 
 def requirement_limits(design: Design) -> list[Limit]:
-    """The limits a person wrote: `requirements` and the force or torque of every load case."""
+    """Limits in the file: `requirements`, and the force or torque of every load case."""
     limits = []
     for metric, limit in design.requirements.items():
         for sense in ("min", "max"):
@@ -64,7 +64,7 @@ def requirement_limits(design: Design) -> list[Limit]:
 
 
 def _case_limit(case: LoadCase) -> Limit:
-    """The force of a load case, or its torque where the linkage makes it one."""
+    """The force of a load case, or its torque if it acts through the linkage."""
     at = f"load_cases[{case.name}]"
     if case.through_linkage:
         placed = case.angle is not None or case.position != "worst"
@@ -94,7 +94,7 @@ def _case_limit(case: LoadCase) -> Limit:
 
 
 def check_limits(design: Design) -> list[Limit]:
-    """The check list's own limits, where the design neither replaces nor waives them."""
+    """Limits of the check list that the design neither replaces nor waives."""
     limits = []
     for metric, check in CHECKS:
         if check.limit is None or metric.name in design.waivers:
@@ -116,7 +116,7 @@ def check_limits(design: Design) -> list[Limit]:
 
 
 def default_limits() -> dict[str, float]:
-    """The check list's limits by PATH, so that they can be studied like any other number."""
+    """Limits of the check list by PATH, so that they can be varied like other numbers."""
     return {
         f"requirements.{metric.name}.{metric.worst}": check.limit
         for metric, check in CHECKS
@@ -125,7 +125,7 @@ def default_limits() -> dict[str, float]:
 
 
 def geometry_limits() -> list[Limit]:
-    """Walls and rooms that must exist for the parts to be parts."""
+    """Walls and clearances that must stay positive for a valid geometry."""
     return [
         Limit(
             name,
@@ -141,7 +141,7 @@ def geometry_limits() -> list[Limit]:
 
 
 def all_limits(design: Design, plugins: Iterable[Plugin] = ()) -> list[Limit]:
-    """Every limit a design must hold: its own, the check list's, geometry and user constraints."""
+    """All limits of a design: requirements, check list, geometry and user constraints."""
     own = [
         Limit(plugin.name, plugin.name, plugin.sense, constant=0.0, source="user constraint")
         for plugin in plugins
@@ -151,9 +151,9 @@ def all_limits(design: Design, plugins: Iterable[Plugin] = ()) -> list[Limit]:
 
 
 def margin(value: Array, limit: Array, sense: Sense) -> Array:
-    """Relative margin, ≥ 0 where the limit holds: (value − limit)/|limit|, negated for `max`.
+    """Relative margin, ≥ 0 if the limit is met: (value − limit)/|limit|, negated for `max`.
 
-    A limit of zero gives ± the value itself.
+    For a limit of zero it is ± the value itself.
     """
     scale = where(real(limit) == 0, 1.0 + 0 * limit, absolute(limit))
     difference = (value - limit) / scale

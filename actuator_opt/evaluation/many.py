@@ -1,4 +1,4 @@
-"""Every metric and limit of many designs at once: one governing value each, as of one design."""
+"""All metrics and limits of many designs at once, with one governing value each."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from .values import Values
 
 @dataclass(frozen=True, slots=True)
 class Many:
-    """Arrays (designs,) of many designs.
+    """Results of many designs, arrays (designs,).
 
-    `metrics` are the governing values, NaN where there is none; `margin` is the least of all
-    limits, of the check list too, and `missed` the number of its limit in `limits`. `read` are the
-    PATHs of what models and limits looked at.
+    `metrics` are the governing values, NaN if missing; `margin` is the least margin of all limits,
+    including the check list, and `missed` the index of its limit in `limits`. `read` are the PATHs
+    that models and limits have read.
     """
 
     metrics: dict[str, Array]
@@ -38,7 +38,7 @@ class Many:
         return found
 
 
-@np.errstate(all="ignore")  # what has no finite answer is NaN
+@np.errstate(all="ignore")  # values that are not finite are NaN
 def evaluate_many(
     subject: PreparedDesign,
     varied: Mapping[str, Array],
@@ -51,8 +51,8 @@ def evaluate_many(
     ----------
     subject : the design
     varied : arrays (designs,) by PATH, SI
-    count : of designs
-    wanted : metrics asked for; default: all
+    count : number of designs
+    wanted : metrics to compute; default: all
     """
     v = subject.values(varied)
     computed = compute(subject, v).computed
@@ -64,7 +64,7 @@ def evaluate_many(
     limits = limits_of(subject)
     margin, missed = np.full(count, np.inf), np.zeros(count, dtype=np.int32)
     for number, value in _margins(limits, computed, v, count):
-        worse = ~(value >= margin)  # NaN is worst
+        worse = ~(value >= margin)  # NaN counts as the worst
         margin = np.where(worse, np.where(np.isnan(value), -np.inf, value), margin)
         missed[worse] = number
     return Many(metrics, margin, missed, limits, frozenset(v.read))
@@ -72,9 +72,9 @@ def evaluate_many(
 
 @np.errstate(all="ignore")
 def margins_of(subject: PreparedDesign, varied: Mapping[str, Array], count: int) -> Array:
-    """The margin of every limit of such designs, (limits, designs), in the order of `limits_of`.
+    """Margins of all limits of such designs, (limits, designs), in the order of `limits_of`.
 
-    Infinity where a limit does not apply, NaN where it has no finite answer.
+    Infinity if a limit does not apply, NaN if its value is not finite.
     """
     v = subject.values(varied)
     limits = limits_of(subject)
@@ -87,9 +87,9 @@ def margins_of(subject: PreparedDesign, varied: Mapping[str, Array], count: int)
 def margins_many(
     subject: PreparedDesign, varied: Mapping[str, Array], count: int
 ) -> dict[str, Array]:
-    """The margin of every limit (designs,) of designs that differ in some numbers, by its name.
+    """Margins of all limits (designs,) of designs that differ in some numbers, by name.
 
-    Infinite where it asks nothing of a design; minus infinity where it cannot be known.
+    Infinity if a limit does not apply; minus infinity if its value is unknown.
     """
     found = margins_of(subject, varied, count)
     return {
@@ -101,14 +101,14 @@ def margins_many(
 def _margins(
     limits: Sequence[Limit], computed: MetricArrays, v: Values, count: int
 ) -> Iterator[tuple[int, Array]]:
-    """Number of a limit, with its margins (designs,) in one case at one place."""
+    """Index of a limit, with its margins (designs,) in one case at one place."""
     for number, limit in enumerate(limits):
         for row in rows_of(limit, computed, v):
             yield number, np.broadcast_to(row.margin, (count,))
 
 
 def limits_of(subject: PreparedDesign) -> tuple[Limit, ...]:
-    """Requirements and checks that a feasible design meets."""
+    """Requirements and checks of a feasible design."""
     every = all_limits(subject.design, subject.plugins)
     return tuple(limit for limit in every if limit.origin != "advice")
 
@@ -116,6 +116,6 @@ def limits_of(subject: PreparedDesign) -> tuple[Limit, ...]:
 def _governing(
     name: str, computed: MetricArrays, v: Values, subject: PreparedDesign, count: int
 ) -> Array:
-    """The governing value of every design (count,); infinity, unlimited, is no value."""
+    """Governing value of every design (count,); infinity (unlimited) does not count as a value."""
     found = governing(name, computed, v, subject)
     return np.broadcast_to(np.where(np.isfinite(found), found, np.nan), (count,))

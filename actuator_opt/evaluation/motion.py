@@ -1,8 +1,8 @@
 """Linear dynamics in an evaluation: modes, dynamic stiffness and the position loop.
 
-One model (`models.linear`) serves them all. Every figure is asked at several places of the stroke
-and, for the loop, in both directions of the spool; each is a row, so the optimiser sees the worst
-without a smooth maximum.
+All use one model (`models.linear`). Every result is computed at several places of the stroke and,
+for the loop, in both spool directions. Each has its own row, so the optimiser needs no smooth
+maximum.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from .state import LoadState
 from .values import Values
 
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
-"""Where on the stroke dynamics are asked, beside the weakest position."""
+"""Places of the dynamic results on the stroke, besides the weakest position."""
 
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """What the linear model needs beside the position; arrays (cases, designs)."""
+    """Position-independent inputs of the linear model; arrays (cases, designs)."""
 
     springs: Springs
     mass: Array
@@ -39,18 +39,18 @@ class Motion:
     leakage: Array
     branches: dict[Chamber, Branch]
     throttles: dict[Chamber, Ways]
-    """Conductance of the throttles at their operating point [m^3/s/Pa]; empty without."""
+    """Conductance of the throttles at their operating point [m^3/s/Pa]; empty without throttles."""
     push: Array
-    """Cases whose piston extends: how the throttles work while the load shakes."""
+    """Cases with extending piston: sets the throttle direction under load excitation."""
     held: dict[Chamber, LineEnd]
-    """What ends the lines while the load shakes the actuator, accumulators included."""
+    """Ends of the lines under load excitation, including accumulators."""
     accumulators: dict[Chamber, tuple[LineEnd, ...]]
-    """Those at the ports."""
+    """Accumulators at the ports."""
     valve: LinearValve | None
     spool: tuple[Array, Array] | None
 
     def model(self, position: Array, *, extending: Array | None = None) -> LinearActuator:
-        """Linear model at a position: load shaking, or driven by the valve in one direction.
+        """Linear model at a position: under load excitation, or driven by the valve.
 
         `extending` is True, False, or an array of them.
         """
@@ -100,13 +100,13 @@ class Motion:
         )
 
     def closed_frequency(self, position: Array) -> Array:
-        """Natural frequency with closed ports, per chamber whatever the topology [Hz]."""
+        """Natural frequency with closed ports, per chamber for every topology [Hz]."""
         return dynamics.natural_frequency(
             stiffness=self.springs.per_chamber_stiffness(position), mass=self.mass
         )
 
     def mode(self, model: LinearActuator, position: Array) -> loop.Mode:
-        """Mode of the load on the actuator as it is held."""
+        """Mode of the load on the held actuator."""
         return loop.load_mode(model=model, near=self.closed_frequency(position))
 
 
@@ -120,7 +120,7 @@ def derive(
     damping: Array,
     leakage: Array,
 ) -> Motion:
-    """The linear model's numbers in every load case."""
+    """Inputs of the linear model in every load case."""
     holding = circuit.linear_valve(v, design, state, leakage)
     accumulators = {
         chamber: circuit.accumulator_ends(v, design, state, chamber) for chamber in CHAMBERS
@@ -144,7 +144,7 @@ def derive(
 
 
 def _places(stroke: Array, weakest: Array) -> tuple[list[str], Array]:
-    """Names and positions (places, cases, designs) where dynamics are asked."""
+    """Names and positions (places, cases, designs) of dynamic results."""
     names = [f"{100 * share:.0f} % of the stroke" for share in SHARES] + ["weakest position"]
     positions = [share * stroke for share in SHARES] + [weakest]
     shape = np.broadcast_shapes(*(np.shape(p) for p in positions), (1, 1))
@@ -158,9 +158,9 @@ def compute(
     wanted: Container[str] | None,
     out: MetricArrays,
 ) -> dict[str, Array]:
-    """Damping ratio, dynamic stiffness and the position loop; returns the places asked.
+    """Damping ratio, dynamic stiffness and position loop; returns the places.
 
-    Poles, limits and margins cost more than all else: only those in `wanted` are found (None: all).
+    Poles, limits and margins are costly: only those in `wanted` are computed (None: all).
     """
     weakest = weakest_per_chamber(motion.springs)
     names, positions = _places(motion.springs.geometry.stroke, weakest)
@@ -178,7 +178,7 @@ def compute(
 
 
 def _by_place(names: list[str], value: Array, positions: Array) -> dict[str, Array]:
-    """A value at every place; where nothing depends on the place, the same at all."""
+    """A value at every place; constant if it does not depend on the place."""
     shape = np.broadcast_shapes(np.shape(value), positions.shape)
     return dict(zip(names, np.broadcast_to(value, shape), strict=True))
 
@@ -197,7 +197,7 @@ def _dynamic_stiffness(
     shaken = np.array([case.frequency is not None for case in design.load_cases])
     if not shaken.any():
         for name in ("dynamic_stiffness", "dynamic_phase"):
-            out.skip(name, "no load case shakes: add load_cases[NAME].frequency")
+            out.skip(name, "no load case with excitation: add load_cases[NAME].frequency")
         return
     parts = linear.dynamic_stiffness(model=model, frequency=v.case("frequency", 1.0))
     values = magnitude(parts.real, parts.imaginary)
@@ -215,12 +215,12 @@ def _position_loop(
     wanted: Container[str] | None,
     out: MetricArrays,
 ) -> None:
-    """Margins and bandwidth at every place, in both directions of the spool."""
+    """Margins and bandwidth at every place, in both spool directions."""
     directions = np.array([True, False]).reshape(-1, 1, 1, 1)
     one = motion.position_loop(positions, extending=directions)
     limit = loop.ultimate_gain(loop=one)
-    out.why["ultimate_gain"] = out.why["gain_margin"] = "no gain makes the loop swing"
-    out.why["phase_margin"] = "no crossover: the open loop stays below one"
+    out.why["ultimate_gain"] = out.why["gain_margin"] = "the loop is stable at any gain"
+    out.why["phase_margin"] = "no crossover: the open-loop gain stays below one"
     stated = design.control is not None and design.control.gain is not None
     gain = v["control.gain"] if stated else maximum(0.5 * _least(limit.gain), LEAST_GAIN)
     margin = limit.gain / gain
@@ -240,16 +240,16 @@ def _position_loop(
     if wanted is None or "phase_margin" in wanted or "bandwidth" in wanted:
         found = loop.margins(loop=one, gain=gain)
         put("phase_margin", where(real(margin) > 1, found.phase_margin, -found.phase_margin))
-        # where the loop swings, nothing follows
+        # an unstable loop has no bandwidth
         put("bandwidth", where(real(margin) > 1, found.bandwidth, 0.0))
 
 
 LEAST_GAIN = 1e-3
-"""Gain where every gain would swing (V/m): nothing follows, and the figures stay finite."""
+"""Gain limit of a loop that is unstable at any gain (V/m): no tracking, but finite figures."""
 
 
 def _least(values: Array) -> Array:
-    """Smallest over directions, places and cases, by real part: (designs,)."""
+    """Least value over directions, places and cases, by real part: (designs,)."""
     flat = values.reshape(-1, values.shape[-1])
     best = np.argmin(real(flat), axis=0)[None]
     return np.take_along_axis(flat, best, axis=0)[0]

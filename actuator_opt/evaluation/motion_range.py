@@ -1,4 +1,4 @@
-"""Where the linear model leaves its range: sticking, swinging and stalled loads, long lines."""
+"""Range of the linear model: sticking, oscillating and stalled loads, long lines."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ from .state import LoadState
 from .values import Values
 
 LEAST_DAMPING = 0.005
-"""Damping ratio below which a loop is told to be hardly damped (choice)."""
+"""Damping ratio below which a loop counts as poorly damped (choice)."""
 NEAR_RESONANCE = 0.8
-"""Bandwidth over the load's natural frequency that counts as about it (choice)."""
+"""Bandwidth over natural frequency of the load that counts as close to it (choice)."""
 LONGEST = 0.1
-"""Longest lines of a chamber over the wavelength for one lumped element (choice: 3 % in the
-admittance of a closed line, 7 % of one held at constant pressure)."""
+"""Largest line length of a chamber over wavelength for a lumped element (choice: 3 % error of the
+admittance of a closed line, 7 % at constant end pressure)."""
 
 
 def warnings(
     v: Values, design: Design, motion: Motion, state: LoadState, out: MetricArrays
 ) -> Iterable[tuple[str, str]]:
-    """(metric, sentence) where the linear model is used outside its range."""
+    """(metric, sentence) for each use of the linear model outside its range."""
     slowest = float(np.min(np.real(motion.damping)))
     if slowest < 0:
         yield (
             "damping_ratio",
-            f"friction falls with speed ({slowest:.3g} N*s/m): the load may stick and slip",
+            f"friction falls with speed ({slowest:.3g} N*s/m): stick-slip is possible",
         )
     if "ultimate_gain" in out.metrics:
         yield from _loop(v, motion, out)
@@ -39,8 +39,8 @@ def warnings(
         if own is not None and own.tank_leakage_drop not in (None, own.leakage_drop):
             yield (
                 "ultimate_gain",
-                "edges to tank leak unlike those to the supply: the load is taken as held by the "
-                "pressures of alike ones; a scenario finds its own",
+                "tank edges and supply edges leak differently: the holding pressures assume equal "
+                "edges; a scenario computes its own",
             )
     yield from _ports(v, design, motion, state)
     yield from _lines(design, motion, out)
@@ -54,12 +54,12 @@ def _weakest_gain(motion: Motion) -> Array:
 
 
 def _loop(v: Values, motion: Motion, out: MetricArrays) -> Iterable[tuple[str, str]]:
-    """The position loop swings, hardly damped or behind its resonance, or nothing drives it."""
+    """The position loop is unstable, poorly damped, beyond its resonance, or without drive."""
     damped = min(float(np.min(np.real(x))) for x in out.metrics["damping_ratio"].values())
     if 0 <= damped < LEAST_DAMPING:
         yield (
             "damping_ratio",
-            f"the load hardly has any damping (ratio {damped:.1g}): a loop over it stays slow; "
+            f"the load has almost no damping (ratio {damped:.1g}): its loop must be slow; "
             "state valve.leakage_flow with ports.end: valve, or piston.leakage_conductance",
         )
     weakest = weakest_per_chamber(motion.springs)
@@ -69,13 +69,14 @@ def _loop(v: Values, motion: Motion, out: MetricArrays) -> Iterable[tuple[str, s
     if near:
         yield (
             "bandwidth",
-            f"at {near} of {len(widths)} places the closed loop falls to -3 dB only about the "
-            "load's resonance or behind it: what it follows there is a swing, not the signal",
+            f"at {near} of {len(widths)} places the closed loop falls to -3 dB only at or "
+            "above the "
+            "load resonance: there it oscillates and does not follow the signal",
         )
     least = min(float(np.min(np.real(x))) for x in out.metrics["ultimate_gain"].values())
     margin = min(float(np.min(np.real(x))) for x in out.metrics["gain_margin"].values())
     if least > 0 and margin <= 1:
-        yield "bandwidth", "the position loop swings at this gain: its bandwidth counts as 0"
+        yield "bandwidth", "the position loop is unstable at this gain: its bandwidth counts as 0"
     stalled = [
         case
         for case, gain in zip(
@@ -86,33 +87,33 @@ def _loop(v: Values, motion: Motion, out: MetricArrays) -> Iterable[tuple[str, s
     for case in stalled:
         yield (
             "bandwidth",
-            f"{case}: the held force takes the whole supply pressure, the valve moves nothing",
+            f"{case}: the held force needs the whole supply pressure, the valve has no effect",
         )
     if least == 0:
         yield (
             "ultimate_gain",
-            "no gain is stable: the load grows by itself, or leakage across the piston "
-            "outweighs the valve's; give the valve leakage or the load damping",
+            "no gain is stable: the load itself is unstable, or leakage across the piston "
+            "exceeds that of the valve; add valve leakage or load damping",
         )
 
 
 def _ports(
     v: Values, design: Design, motion: Motion, state: LoadState
 ) -> Iterable[tuple[str, str]]:
-    """What ends the lines counts less than one might think."""
+    """Line ends with less effect than expected."""
     if design.valve is not None and design.ports.end == "closed":
         for metric in ("damping_ratio", "dynamic_stiffness"):
             yield (
                 metric,
-                "ports.end is closed: damping ratio and dynamic stiffness leave out the leakage of "
-                "the valve that holds; write end: valve to count it",
+                "ports.end is closed: damping ratio and dynamic stiffness exclude the leakage of "
+                "the holding valve; write end: valve to include it",
             )
     slow = np.ravel(np.real(state.speed)) == 0
     shaken = [case.frequency is not None for case in design.load_cases]
     if motion.throttles and np.any(slow & np.array(shaken)):
         yield (
             "dynamic_stiffness",
-            "a throttle in a case that shakes without speed: it works as at creeping flow",
+            "a throttle in a case with excitation but no speed: taken at creeping flow",
         )
     for i, one in enumerate(design.ports.accumulators):
         held = state.holding_a if one.chamber == "a" else state.holding_b
@@ -120,13 +121,13 @@ def _ports(
         if float(np.min(np.real(held))) <= precharge:
             yield (
                 "",
-                f"ports.accumulators[{i}]: its precharge is not below the pressure it holds in "
+                f"ports.accumulators[{i}]: its precharge is not below the holding pressure in "
                 "every case: it takes no oil there",
             )
 
 
 def _lines(design: Design, motion: Motion, out: MetricArrays) -> Iterable[tuple[str, str]]:
-    """Lines too long for one element at the frequencies asked."""
+    """Lines too long for a lumped element at the frequencies of interest."""
     asked = {f"load case {case.name}": case.frequency or 0.0 for case in design.load_cases}
     if motion.spool is not None:
         asked["the valve's spool"] = float(np.max(np.real(motion.spool[0])))
@@ -137,7 +138,7 @@ def _lines(design: Design, motion: Motion, out: MetricArrays) -> Iterable[tuple[
             metric = "dynamic_stiffness" if "dynamic_stiffness" in out.metrics else "bandwidth"
             yield (
                 metric,
-                f"{place}: one lumped element together, good to {limit:.0f} Hz; {what} asks for "
-                f"{fastest:.4g} Hz: read the figure as rough, the report sets transmission lines "
-                "beside it",
+                f"{place}: a single lumped element, valid to {limit:.0f} Hz, but {what} has "
+                f"{fastest:.4g} Hz: the result is rough, the report compares it with transmission "
+                "lines",
             )

@@ -1,8 +1,8 @@
-"""The oil of an evaluation: bulk modulus, viscosity, density and vapour limit, by the laws chosen.
+"""Oil properties of an evaluation: bulk modulus, viscosity, density and vapour pressure.
 
-Pressures are gauge. What a law needs is in the library (`design.material_laws`); without a stated
-law the library entry decides. Everything belongs to the pure liquid, but for `bulk_modulus`, which
-counts the entrained air.
+Pressures are gauge. The library has the data of each law (`design.material_laws`); without a stated
+law the library entry decides. All properties are those of the pure liquid, except `bulk_modulus`,
+which includes entrained air.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ Law: TypeAlias = Callable[..., Array]
 
 
 def alone(material: Material, **choices: object) -> tuple[Values, FluidSection, MaterialValues]:
-    """What the functions below take, for an oil of the library outside a design.
+    """Inputs of the functions below for a library oil without a design.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def _properties(stock: MaterialValues, name: str) -> Callable[[str], Array]:
 def bulk_modulus(
     v: Values, section: FluidSection, stock: MaterialValues, temperature: Array, pressure: Array
 ) -> Array:
-    """Tangent bulk modulus of the oil with its entrained air."""
+    """Tangent bulk modulus of the oil with entrained air."""
     return fluid.effective_bulk_modulus(
         bulk_modulus=pure_bulk_modulus(v, section, stock, temperature, pressure),
         pressure=pressure,
@@ -94,7 +94,7 @@ def density(
 def kinematic_viscosity(
     v: Values, section: FluidSection, stock: MaterialValues, temperature: Array
 ) -> Array:
-    """Kinematic viscosity at zero gauge pressure, from the oil's table scaled with its value."""
+    """Kinematic viscosity at zero gauge pressure, from the oil's table, scaled by its value."""
     oil = stock.material(section.material)
     points = oil.viscosity_points
     stated = oil.numbers["kinematic_viscosity"]
@@ -122,7 +122,7 @@ def dynamic_viscosity(
 def pressure_law(
     section: FluidSection, stock: MaterialValues, temperature: Array
 ) -> tuple[str, Array]:
-    """Name of the law of viscosity over pressure, and its coefficient at a temperature."""
+    """Name of the viscosity law over pressure, and its coefficient at a temperature."""
     name = section.material
     oil = stock.material(name)
     law = VISCOSITY_LAWS[viscosity_law(section.viscosity_pressure, oil.numbers)]
@@ -139,7 +139,7 @@ def under_pressure(
     temperature: Array,
     pressure: Array,
 ) -> Array:
-    """Dynamic viscosity at a pressure, from the one at zero gauge pressure."""
+    """Dynamic viscosity at a pressure, from the value at zero gauge pressure."""
     law, coefficient = pressure_law(section, stock, temperature)
     return VISCOSITY_LAWS[law].viscosity(
         viscosity=viscosity, pressure=pressure, coefficient=coefficient
@@ -147,7 +147,7 @@ def under_pressure(
 
 
 def vapour_pressure(stock: MaterialValues, name: str, temperature: Array) -> Array | None:
-    """Vapour pressure (absolute) at a temperature; None where the library states none."""
+    """Vapour pressure (absolute) at a temperature; None if the library has none."""
     stated = stock.get(name, "vapour_pressure")
     if stated is None:
         return None
@@ -162,7 +162,7 @@ def vapour_pressure(stock: MaterialValues, name: str, temperature: Array) -> Arr
 
 
 def laws(section: FluidSection, oil: Material) -> Iterable[tuple[Law, str]]:
-    """(function, quantity) of every law of the oil over pressure that an evaluation uses."""
+    """(function, quantity) of all laws of the oil over pressure in an evaluation."""
     modulus = BULK_MODULUS_LAWS[bulk_modulus_law(section.bulk_modulus_law, oil.numbers)]
     if modulus.model is not None:
         yield modulus.model, "bulk modulus"

@@ -1,4 +1,4 @@
-"""Where the oil of an evaluation leaves its range: boiling, laws over pressure, temperatures."""
+"""Range of the oil in an evaluation: boiling, laws over pressure, temperatures."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from .state import LoadState
 def compute(
     section: FluidSection, stock: MaterialValues, state: LoadState, out: MetricArrays
 ) -> None:
-    """Distance of the chambers from the boiling of the oil, in every case."""
+    """Margin of the chambers to boiling of the oil, in every case."""
     limit = oil_laws.vapour_pressure(stock, section.material, state.temperature)
     if limit is None:
-        why = f"{section.material} states no vapour_pressure: add it under materials"
+        why = f"{section.material} has no vapour_pressure: add it under materials"
         out.skip("cavitation_margin", why)
         return
     lowest = minimum(
@@ -37,7 +37,7 @@ def compute(
 def warnings(
     section: FluidSection, oil: Material, cases: Sequence[str], state: LoadState
 ) -> Iterable[tuple[str, str]]:
-    """(metric, sentence) for every use of the oil outside what it, or a law of it, is known for."""
+    """(metric, sentence) for each use of the oil outside the range of its data or laws."""
     yield from _temperatures(oil, cases, state)
     law = bulk_modulus_law(section.bulk_modulus_law, oil.numbers)
     chambers = [state.moving_a, state.moving_b, state.holding_a, state.holding_b]
@@ -45,8 +45,8 @@ def warnings(
     limit = BULK_MODULUS_LAWS[law].largest_pressure
     if highest > limit:
         text = (
-            f"bulk modulus: {highest / 1e5:.0f} bar is beyond the {limit / 1e5:.0f} bar to which "
-            f"the {law} law of the oil is known"
+            f"bulk modulus: {highest / 1e5:.0f} bar exceeds the limit of {limit / 1e5:.0f} bar of "
+            f"the {law} law of the oil"
         )
         yield from ((metric, text) for metric in OIL_FED)
     law = viscosity_law(section.viscosity_pressure, oil.numbers)
@@ -54,15 +54,15 @@ def warnings(
     if highest > limit:
         yield (
             "oil_viscosity",
-            f"viscosity: {highest / 1e5:.0f} bar is beyond the {limit / 1e5:.0f} bar to which the "
-            f"law of {law.capitalize()} holds",
+            f"viscosity: {highest / 1e5:.0f} bar exceeds the limit of {limit / 1e5:.0f} bar of the "
+            f"{law.capitalize()} law",
         )
 
 
 def _temperatures(
     oil: Material, cases: Sequence[str], state: LoadState
 ) -> Iterable[tuple[str, str]]:
-    """Load cases outside the temperatures and viscosities the oil is known or made for."""
+    """Load cases outside the temperatures and viscosities of the oil's data or service range."""
     low = oil.numbers.get("temperature_min", -np.inf)
     high = oil.numbers.get("temperature_max", np.inf)
     for case, temperature, viscosity in zip(
@@ -81,5 +81,5 @@ def _temperatures(
             yield (
                 "oil_viscosity",
                 f"{case}: {1e6 * viscosity:.2g} mm^2/s is below the "
-                f"{1e6 * fluid.LEAST_VISCOSITY:.0f} mm^2/s to which ASTM D341 holds",
+                f"lower limit of ASTM D341, {1e6 * fluid.LEAST_VISCOSITY:.0f} mm^2/s",
             )

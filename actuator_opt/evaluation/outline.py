@@ -1,4 +1,4 @@
-"""Half-sections of every part, retracted, for the drawing; their volumes equal the mass model's."""
+"""Half-sections of all parts, retracted, for the drawing; volumes equal those of the mass model."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .retention import Stated, end_of, joint_of
 from .rods import end_material
 
 _Part: TypeAlias = tuple[str, str, list[Polygon], int]
-"""Part, material, polygons, and of round bars how many."""
+"""Part, material, polygons, and number of round bars."""
 
 _Kind: TypeAlias = Literal["metal", "composite", "polymer", "seal", "oil"]
 
@@ -25,7 +25,7 @@ _Kind: TypeAlias = Literal["metal", "composite", "polymer", "seal", "oil"]
 def _grooves(
     start: float, length: float, grooves: Sequence[Groove]
 ) -> Iterator[tuple[Groove, float, float]]:
-    """Axial intervals of all grooves in order, evenly spread over a part."""
+    """Axial intervals of all grooves in order, evenly spaced over a part."""
     used, count, _ = taken(grooves)
     land = (length - float(used)) / (round(float(count)) + 1)
     x = start + land
@@ -45,9 +45,9 @@ def _grooved(
     *,
     outside: bool,
 ) -> Polygon:
-    """A ring with rectangular grooves cut from outside or from inside.
+    """A ring with rectangular grooves cut from outside or inside.
 
-    A groove is as deep as its gland, from the counterface on.
+    Groove depth is the gland depth, from the counterface.
     """
     surface = outer if outside else inner
     edge = [(x0, surface)]
@@ -61,11 +61,11 @@ def _grooved(
 
 
 def _eye(centre: float, pin: float, side: int) -> list[Polygon]:
-    """Half of an eye seen from the side: lug of radius `pin` around the pin hole, and its neck."""
+    """Half of an eye seen from the side: lug of radius `pin` around the pin hole, with its neck."""
     angles = [pi * k / 24 for k in range(25)]
     rim = [(centre + pin * cos(a), pin * sin(a)) for a in angles]
     hole = [(centre + pin / 2 * cos(a), pin / 2 * sin(a)) for a in reversed(angles)]
-    foot = 0.75**0.5 * pin  # where a neck of this diameter meets the rim
+    foot = 0.75**0.5 * pin  # intersection of the neck with the rim
     neck = sorted((centre + side * foot, centre + side * 2 * pin))
     return [(*rim, *hole), rectangle(neck[0], neck[1], 0.0, pin / 2)]
 
@@ -120,7 +120,7 @@ def _barrel(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
 
 
 def _turned_down(shape: Polygon, radius: float, length: float) -> Polygon:
-    """A ring whose outside is smaller at both ends, under the skirts."""
+    """A ring turned down at both ends, under the skirts."""
     (x0, r0), _, (x1, r1), _ = shape
     left, right = x0 + length, x1 - length
     ends = ((x1, radius), (right, radius), (right, r1), (left, r1), (left, radius), (x0, radius))
@@ -128,7 +128,7 @@ def _turned_down(shape: Polygon, radius: float, length: float) -> Polygon:
 
 
 def _ends(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
-    """Caps, with what their joint adds to them, and what else holds them."""
+    """Caps with the additions of their joint, and further parts of the joint."""
     plate, radius = float(g.plate), float(g.fit.plate_radius)
     caps = [
         rectangle(at.face, at.start, 0.0, radius),
@@ -164,7 +164,7 @@ def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
 
 
 def _rod(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
-    """The rod: a bar or tube, or its layers with the fittings inside both ends."""
+    """The rod: a bar or tube, or its layers with the fittings in both ends."""
     bore = float(g.rod_inner_diameter) / 2
     if not design.rod.layup:
         bar = rectangle(at.piston_end, at.tip, bore, at.rod)
@@ -193,7 +193,7 @@ def _rod(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
 def _rings(
     start: float, length: float, grooves: Sequence[Groove], counterface: float, side: int
 ) -> Iterator[_Part]:
-    """What lies in every groove: round rings as wide as their section, others fill it."""
+    """Parts in every groove: round rings as wide as their section, other rings fill the groove."""
     shapes: dict[tuple[str, str], list[Polygon]] = {}
     for groove, left, right in _grooves(start, length, grooves):
         middle, half = (left + right) / 2, min(float(groove.ring_width), right - left) / 2
@@ -212,7 +212,7 @@ def _eyes(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
 
 
 def outlines(design: Design, materials: dict[str, Material], g: Geometry) -> tuple[Outline, ...]:
-    """Every part as closed polygons of (axial position from the cap pin, radius) in m."""
+    """All parts as closed polygons of (axial position from the cap pin, radius) in m."""
     at = _stations(g)
     oil = Outline(
         "oil",
@@ -233,7 +233,7 @@ def outlines(design: Design, materials: dict[str, Material], g: Geometry) -> tup
 
 
 def lengths(design: Design, g: Geometry) -> dict[str, float]:
-    """Dimensions shown on the drawing, m."""
+    """Dimensions in the drawing, m."""
     values = {
         "bore": g.bore,
         "rod": g.rod_diameter,
@@ -256,7 +256,7 @@ def lengths(design: Design, g: Geometry) -> dict[str, float]:
 
 
 def notes(design: Design, lengths: Mapping[str, float]) -> list[str]:
-    """Sentences on what the section does not show of the joint; `lengths` of the same design."""
+    """Details of the joint that the section does not show; `lengths` of the same design."""
     joint = joint_of(design)
     if joint is None or design.retention is None:
         return []

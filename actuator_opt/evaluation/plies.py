@@ -1,8 +1,7 @@
-"""The layers of a laminated wall or rod as the models take them, strengths after knock-downs.
+"""Layers of a laminated wall or rod as model inputs, with strengths after knock-downs.
 
-Residual stresses matter at both ends of the temperature range: cold, where cooling from the cure
-has shrunk the most, and hot, where the matrix is weakest. Each `Climate` goes with the allowables
-of its own temperature.
+Residual stresses matter at both ends of the temperature range: cold, with the largest cooling from
+cure, and hot, where the matrix is weakest. Each `Climate` has the allowables of its temperature.
 """
 
 from __future__ import annotations
@@ -34,7 +33,7 @@ _STRENGTHS = (
 
 @dataclass(frozen=True, slots=True)
 class Climate:
-    """Temperature change from the stress-free state, K, and the allowables that go with it."""
+    """Temperature change from the stress-free state, K, with its allowables."""
 
     name: str
     change: Array
@@ -43,7 +42,7 @@ class Climate:
 
 @dataclass(frozen=True, slots=True)
 class Layer:
-    """One layer with its numbers; `strengths` and `yields` one per climate, None where unknown."""
+    """A layer with its properties; `strengths` and `yields` per climate, None if unknown."""
 
     label: str
     name: str
@@ -56,11 +55,11 @@ class Layer:
     strengths: tuple[PlyStrength, ...]
     yields: tuple[Array, ...]
     fatigue: Array = None
-    """Fibre stress amplitude the ply stands for its stated cycles; None where unknown."""
+    """Fibre stress amplitude endured for the stated cycles; None if unknown."""
 
     @property
     def strength(self) -> PlyStrength | None:
-        """Ply strengths where the matrix is weakest: the last climate is the hottest."""
+        """Ply strengths at the weakest matrix: the last climate is the hottest."""
         return self.strengths[-1] if self.strengths else None
 
     @property
@@ -70,13 +69,13 @@ class Layer:
 
     @property
     def expansions(self) -> tuple[Array, Array] | None:
-        """Thermal expansions along and across the fibre; None where not stated."""
+        """Thermal expansions along and across the fibre; None if not stated."""
         first = self.constants.get("thermal_expansion_1")
         second = self.constants.get("thermal_expansion_2")
         return None if first is None or second is None else (first, second)
 
     def as_tube(self) -> TubeLayer:
-        """The layer as the exact tube takes it."""
+        """The layer as input of the exact tube."""
         first, second = self.expansions or (0.0, 0.0)
         return TubeLayer(
             stiffness=self.solid,
@@ -89,7 +88,7 @@ class Layer:
         )
 
     def as_wall(self, climate: int | None = None) -> WallLayer:
-        """The layer as the burst models take it, in one climate or in all, (climates, 1, 1)."""
+        """The layer as input of the burst models, in one climate or in all, (climates, 1, 1)."""
         c, (first, second) = self.constants, self.expansions or (0.0, 0.0)
         return WallLayer(
             expansion_1=first,
@@ -110,7 +109,7 @@ class Layer:
 
 
 def _of_one(values: Sequence[Any], climate: int | None, every: Callable[..., Any]) -> Any:
-    """The value of a climate; where none is named, all of them, or the only one; None of none."""
+    """The value of a climate; without a climate all values or the only value; None if missing."""
     if not values:
         return None
     if climate is not None:
@@ -141,7 +140,7 @@ def _of_all(strengths: Sequence[PlyStrength]) -> PlyStrength:
 
 
 def climates(v: Values, design: Design) -> tuple[Climate, ...]:
-    """Coldest and hottest state with cure stresses; only the hottest without, where none stated."""
+    """Coldest and hottest state with cure stresses; only the hottest, without them, by default."""
     environment = design.environment
     if environment is None or environment.cure_temperature is None:
         return (Climate("", 0.0, cold=False),)
@@ -160,7 +159,7 @@ def layers(
     states: Sequence[Climate],
     missing: list[str],
 ) -> list[Layer]:
-    """Layers of a wall; `at` is the PATH of its lay-up; `missing` collects strengths not stated."""
+    """Layers of a wall; `at` is the PATH of its lay-up; `missing` collects unknown strengths."""
     found = []
     for i, entry in enumerate(layup):
         name = entry.material
@@ -185,7 +184,7 @@ def layers(
                 )
         if not strengths and not yields:
             missing.append(
-                f"{name} states no yield strength" if isotropic else f"{name} lacks ply strengths"
+                f"{name} has no yield strength" if isotropic else f"{name} lacks ply strengths"
             )
         found.append(
             Layer(
@@ -213,7 +212,7 @@ def _solid(constants: dict[str, Array]) -> Solid:
 
 
 def worst(values: Array, axes: tuple[int, ...]) -> Array:
-    """The largest by real part over some axes, keeping each design's own branch."""
+    """The largest by real part over some axes, with the derivative branch of each design."""
     kept = [i for i in range(values.ndim) if i not in axes]
     moved = np.transpose(values, (*axes, *kept)).reshape(-1, *(values.shape[i] for i in kept))
     if len(moved) == 1:
@@ -223,7 +222,7 @@ def worst(values: Array, axes: tuple[int, ...]) -> Array:
 
 
 def grouped(modes: Mapping[str, Array]) -> dict[str, Array]:
-    """Utilisations of modes that exclude each other, as one: both fibre modes as "fibre"."""
+    """Utilisations of mutually exclusive modes merged: both fibre modes as "fibre"."""
     groups: dict[str, Array] = {}
     for mode, used in modes.items():
         group = mode.partition(" ")[0]
@@ -239,7 +238,7 @@ def utilisations(
 ) -> dict[str, Array]:
     """1/SR of every mode by one criterion; stresses are (faces, plies, climates, ...).
 
-    Strengths of each ply and climate stand on those axes; batches follow.
+    Strengths of each ply and climate are on those axes; batch axes follow.
     """
     extra = stress[0].ndim - 3
 
@@ -270,7 +269,7 @@ def utilisations(
 
 
 def _strengths(plies: Sequence[Layer], name: str, extra: int) -> Array:
-    """One strength of every ply and climate, (plies, climates, ...)."""
+    """A strength of every ply and climate, (plies, climates, ...)."""
     rows = [
         np.stack(np.broadcast_arrays(*[np.asarray(getattr(one, name)) for one in layer.strengths]))
         for layer in plies

@@ -1,8 +1,8 @@
-"""A user's own metrics and constraints, from a script or a ``--plugin`` file.
+"""User metrics and constraints, from a script or a ``--plugin`` file.
 
-A metric is a function of a `View`: it reads numbers of the design by PATH and the project's
-metrics by name, and returns an array. Written with the operators and NumPy functions that take
-complex numbers it gets exact gradients; otherwise the optimiser falls back to differences.
+A metric is a function of a `View`: it reads numbers of the design by PATH and built-in metrics by
+name, and returns an array. If its operators and NumPy functions accept complex numbers, its
+gradient is exact; otherwise the optimiser uses finite differences.
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ from .values import Values
 
 _MARK = "_actuator_opt_plugin"
 _LONGEST = 300
-"""Letters of an exception that a line repeats."""
+"""Most characters of an exception that a line shows."""
 
 
 class View:
-    """What a user's metric may read: numbers by PATH, metrics by name; SI."""
+    """Inputs of a user metric: numbers by PATH, metrics by name; SI."""
 
     def __init__(
         self,
@@ -44,7 +44,7 @@ class View:
         self._values = values
         self._metrics = metrics
         self._design = design
-        """One design by its index, of how many; None for all at once."""
+        """Index and number of designs, for a single design; None for all at once."""
 
     def __getitem__(self, path: str) -> Array:
         """The number at a PATH (``cylinder.bore``), a float or an array of designs."""
@@ -53,7 +53,7 @@ class View:
         return self._one(self._values[path])
 
     def metric(self, name: str) -> Array:
-        """A computed metric; of several places the worst."""
+        """A computed metric; its worst value over places."""
         if name not in self._metrics:
             raise KeyError(f"no metric {name}")
         places = list(self._metrics[name].values())
@@ -65,7 +65,7 @@ class View:
         return self._one(worst)
 
     def _one(self, value: Array) -> Array:
-        """A value as the function gets it: of all designs, or of one (a number, or one a case)."""
+        """A value for the function: for all designs, or for one (a number, or one per case)."""
         shape = np.shape(value)
         if self._design is None or not shape:
             return value
@@ -76,7 +76,7 @@ class View:
 
 @dataclass(frozen=True, slots=True)
 class Plugin:
-    """A user's metric; with a `sense` it is also a constraint against zero."""
+    """A user metric; with a `sense` it is also a constraint against zero."""
 
     name: str
     quantity: Quantity
@@ -91,16 +91,16 @@ class Plugin:
         *,
         lenient: bool = False,
     ) -> PluginValue:
-        """The metric of every design; NaN, with a reason, where the function raised.
+        """The metric of every design; NaN with a reason if the function raised.
 
-        A function that raises for many designs at once is asked for each alone, so that one it
-        refuses costs no other, and one that takes no arrays can be used. What the function prints
-        goes to standard error: standard output is for data.
+        A function that raises for many designs at once is called for each design alone. One failing
+        design then does not affect others, and functions without array support work. Printed text
+        of the function goes to standard error, as standard output is for data.
 
         Raises
         ------
         PluginError
-            Where it raised for every design and is not `lenient`, or returned what is no number.
+            If it raised for every design and is not `lenient`, or returned no number.
         """
         count = _designs(values)
         with contextlib.redirect_stdout(sys.stderr):
@@ -123,7 +123,7 @@ class Plugin:
             return self.function(View(values, metrics, design))
         except KeyboardInterrupt:
             raise
-        except BaseException as error:  # a stranger's code may raise anything
+        except BaseException as error:  # user code may raise anything
             raise _fault(self, error) from error
 
     def _one_by_one(
@@ -150,24 +150,24 @@ class Plugin:
 
 
 def with_own(plugins: Iterable[Plugin]) -> dict[str, Quantity]:
-    """Every metric by name: the project's, and the user's own."""
+    """All metrics by name: built-in metrics, and those of the user."""
     return {**METRICS, **{plugin.name: plugin.quantity for plugin in plugins}}
 
 
 @dataclass(frozen=True, slots=True)
 class PluginValue:
-    """What a user's function yields, and what it raised for some of the designs."""
+    """Result of a user function, and its exceptions by design."""
 
     value: Array
     raised: str = ""
 
 
 class PluginError(InputError):
-    """A user's function raised."""
+    """A user function raised."""
 
 
 def _line(error: BaseException, file: str) -> tuple[str, int | None]:
-    """The user's own line an exception came through last."""
+    """The last line of user code that an exception passed."""
     frames = [f for f in traceback.extract_tb(error.__traceback__) if f.filename != __file__]
     own = [f for f in frames if file and Path(f.filename).resolve() == Path(file).resolve()]
     last = (own or frames)[-1] if frames else None
@@ -179,36 +179,36 @@ def _said(error: BaseException) -> str:
     detail = error.args[0] if isinstance(error, KeyError) and error.args else error
     try:
         words = str(detail)
-    except Exception:  # its own text raises
+    except Exception:  # its own text raises an exception
         words = ""
     return shown(" ".join(f"{type(error).__name__}: {words}".split()).removesuffix(":"), _LONGEST)
 
 
 def _fault(plugin: Plugin, error: BaseException) -> PluginError:
     file, line = _line(error, plugin.file)
-    remedy = "mend the function, or guard its input"
+    remedy = "correct the function, or guard its input"
     if isinstance(error, TypeError):
-        remedy = "use operators and NumPy functions; float(), int() and math take no arrays"
+        remedy = "use operators and NumPy functions; float(), int() and math do not accept arrays"
     return PluginError(Diagnostic(f"{plugin.name} raised {_said(error)}", remedy, file, line))
 
 
 def _designs(values: Values) -> int:
-    """Number of designs evaluated at once."""
+    """Number of simultaneously evaluated designs."""
     return int(np.broadcast_shapes((1,), *[np.shape(v) for v in values.varied.values()])[-1])
 
 
 def _complex(values: Values) -> bool:
-    """Whether slopes are asked for, by complex numbers."""
+    """Whether complex numbers carry derivatives."""
     return any(np.iscomplexobj(value) for value in values.varied.values())
 
 
 def _checked(plugin: Plugin, found: object, values: Values, designs: int) -> Array:
-    """What a user's function returned, if it is a number for every design (and case)."""
+    """The result of a user function, checked for a number per design (and case)."""
     try:
         array = np.asarray(found)
     except KeyboardInterrupt:
         raise
-    except BaseException as error:  # rows of unequal length, or an object with ideas of its own
+    except BaseException as error:  # rows of unequal length, or an unusual object
         raise _fault(plugin, error) from error
     shape = np.broadcast_shapes((1,), array.shape) if array.ndim < 2 else array.shape
     plain = not _complex(values)
@@ -232,26 +232,26 @@ def _checked(plugin: Plugin, found: object, values: Values, designs: int) -> Arr
 def metric(
     name: str, *, dimension: str = "ratio", unit_name: str = "", label: str = ""
 ) -> Callable[[Callable[[View], Array]], Callable[[View], Array]]:
-    """Declare a function as a metric: usable in requirements and objectives by its name.
+    """Declare a function as a metric, for use in requirements and objectives by name.
 
     Parameters
     ----------
-    name : name in design files; must not be one of the project's metrics
+    name : name in design files; must not be a built-in metric
     dimension : a dimension of `units.BASE` (``"length"``, ``"ratio"``, …)
     unit_name : display unit; default the SI unit
-    label : what tables and reports call it
+    label : name in tables and reports
 
-    Of several load cases the largest value governs, unless a requirement or the objective says
+    The largest value over load cases governs, unless a requirement or the objective states
     otherwise.
     """
     if not isinstance(name, str):
-        raise InputError('a metric needs its name: write @metric("my_metric") above the function')
+        raise InputError('a metric needs a name: write @metric("my_metric") above the function')
     if not name.strip() or re.search(r"[.\[\]=]", name) or not name.isprintable():
         raise InputError(f'"{name}" cannot name a metric; use letters, digits and _')
     if name in METRICS:
-        raise InputError(f"{name} is a metric of the project; choose another name")
+        raise InputError(f"{name} is a built-in metric; choose another name")
     if dimension not in BASE:
-        raise InputError(f"{dimension} is no dimension; use one of {', '.join(BASE)}")
+        raise InputError(f"{dimension} is not a dimension; use one of {', '.join(BASE)}")
     shown = unit_name or BASE[dimension]
     if shown:
         try:
@@ -284,7 +284,7 @@ def constraint(
 
 
 def collect(*functions: Callable[[View], Array]) -> tuple[Plugin, ...]:
-    """The plugins that `metric` or `constraint` declared on functions of a script."""
+    """Plugins that `metric` or `constraint` declared on functions of a script."""
     found = []
     for function in functions:
         plugin = getattr(function, _MARK, None)
@@ -296,7 +296,7 @@ def collect(*functions: Callable[[View], Array]) -> tuple[Plugin, ...]:
 
 
 def _marked(values: Iterable[object]) -> list[Plugin]:
-    """The plugins among the values of a module; a value that cannot be asked is none."""
+    """Plugins among the values of a module; values that raise on access are skipped."""
     found = []
     for value in values:
         with contextlib.suppress(Exception):
@@ -307,7 +307,7 @@ def _marked(values: Iterable[object]) -> list[Plugin]:
 
 
 def load(path: str | Path) -> tuple[Plugin, ...]:
-    """The plugins of a Python file."""
+    """Plugins of a Python file."""
     path = Path(path)
     try:
         known = path.is_file()
@@ -320,7 +320,7 @@ def load(path: str | Path) -> tuple[Plugin, ...]:
     if spec is None or spec.loader is None:
         raise InputError(Diagnostic("not a Python file", "name it *.py", str(path)))
     module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module  # dataclasses and pickling look their module up there
+    sys.modules[spec.name] = module  # dataclasses and pickle look up their module there
     try:
         with contextlib.redirect_stdout(sys.stderr):
             spec.loader.exec_module(module)
@@ -335,13 +335,13 @@ def load(path: str | Path) -> tuple[Plugin, ...]:
         raise InputError(
             [replace(fault, file=str(path), line=line) for fault in error.diagnostics]
         ) from None
-    except BaseException as error:  # a stranger's code may raise anything
+    except BaseException as error:  # user code may raise anything
         line = _line(error, str(path))[1]
-        raise InputError(Diagnostic(_said(error), "mend the file", str(path), line)) from None
+        raise InputError(Diagnostic(_said(error), "correct the file", str(path), line)) from None
     if not plugins:
         raise InputError(
             Diagnostic(
-                "declares no metric and no constraint",
+                "declares no metrics or constraints",
                 "decorate a function with @actuator_opt.metric or @actuator_opt.constraint",
                 str(path),
             )

@@ -1,8 +1,8 @@
-"""Values out of all proportion: a slip of unit or decimal point that no limit would show.
+"""Implausible values: errors of unit or decimal point that no limit would reveal.
 
-A table of ratios, each with the range that designs keep; every limit is a choice, wide of what
-catalogues show, and a value beyond it is a warning, never a fault. Only dimensions are read, no
-model, so that `check` may look too.
+A table of ratios with their usual range. Every limit is a choice, wider than in catalogues; a value
+beyond it gives a warning, never a fault. Only dimensions are used, no models, so that `check` can
+include these warnings.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ Ratio = Callable[[Values, Design, Geometry], Array | None]
 
 @dataclass(frozen=True, slots=True)
 class Proportion:
-    """A number that stays within a range in sensible designs.
+    """A ratio with a usual range in sensible designs.
 
-    `path` is the value to look at, `what` the words after the number, `source` why the range;
-    `of` gives the number, one or many, or None where the design has none.
+    `path` is the value to check, `what` the words after the number, `source` the reason for the
+    range; `of` returns one or several numbers, or None if not applicable.
     """
 
     path: str
@@ -42,7 +42,7 @@ class Proportion:
     of: Ratio
 
     def beyond(self, number: float) -> str | None:
-        """What to say of a number; None where it is within the range."""
+        """Warning about a number; None if within the range."""
         if self.least <= number <= self.most:
             return None
         low, high = _plain(self.least), _plain(self.most)
@@ -75,7 +75,7 @@ def _dead(chamber: str) -> Ratio:
 
 
 def _stated(path: str, over: Callable[[Geometry], Array]) -> Ratio:
-    """A value that the file may leave out, over a dimension."""
+    """An optional value of the file, over a dimension."""
 
     def ratio(v: Values, design: Design, g: Geometry) -> Array | None:
         value = v.get(path, None)
@@ -154,15 +154,15 @@ _WIDE = "choice"
 
 TABLE: tuple[Proportion, ...] = (
     Proportion(
-        "cylinder.dead_volume_a", "times the volume that the piston displaces", 0.0, 1.0,
+        "cylinder.dead_volume_a", "times the swept volume of the piston", 0.0, 1.0,
         "choice: most of the oil moves", _dead("a"),
     ),
     Proportion(
-        "cylinder.dead_volume_b", "times the volume that the piston displaces", 0.0, 1.0,
+        "cylinder.dead_volume_b", "times the swept volume of the piston", 0.0, 1.0,
         "choice: most of the oil moves", _dead("b"),
     ),
     Proportion(
-        "lines", "times the volume that the piston displaces, in one line", 0.0, 20.0, _WIDE,
+        "lines", "times the swept volume of the piston, in one line", 0.0, 20.0, _WIDE,
         _lines,
     ),
     Proportion(
@@ -184,7 +184,7 @@ TABLE: tuple[Proportion, ...] = (
         "cylinder.stroke", _BORE, 0.1, 60.0, _WIDE, lambda v, design, g: g.stroke / g.bore,
     ),
     Proportion(
-        "barrel.layup", "times the inner radius in wall", 0.005, 2.0, _WIDE, _wall,
+        "barrel.layup", "times the inner radius as wall thickness", 0.005, 2.0, _WIDE, _wall,
     ),
     Proportion(
         "supply.pressure", "MPa of mean hoop stress, pressure times radius over wall", 0.2, 2500.0,
@@ -203,7 +203,7 @@ TABLE: tuple[Proportion, ...] = (
         lambda v, design, g: g.piston_clearance / g.bore,
     ),
     Proportion(
-        "head.clearance", "times the rod's diameter", 5e-5, 0.02, "choice, as of the piston",
+        "head.clearance", "times the rod diameter", 5e-5, 0.02, "choice, as for the piston",
         lambda v, design, g: g.head_clearance / g.rod_diameter,
     ),
     Proportion(
@@ -216,11 +216,11 @@ TABLE: tuple[Proportion, ...] = (
         "caps.thickness", _BORE, 0.03, 2.0, _WIDE, lambda v, design, g: g.plate / g.bore,
     ),
     Proportion(
-        "rod.extension", "times the bore and stroke together", 0.0, 3.0, _WIDE,
+        "rod.extension", "times the sum of bore and stroke", 0.0, 3.0, _WIDE,
         lambda v, design, g: g.rod_extension / (g.bore + g.stroke),
     ),
     Proportion(
-        "barrel.length", "times stroke, piston and head together", 0.0, 3.0, _WIDE,
+        "barrel.length", "times the sum of stroke, piston and head", 0.0, 3.0, _WIDE,
         lambda v, design, g: g.barrel_length / (g.stroke + g.piston_length + g.head_length),
     ),
     Proportion(
@@ -228,11 +228,11 @@ TABLE: tuple[Proportion, ...] = (
         lambda v, design, g: v["cylinder.stop_travel"] / g.stroke,
     ),
     Proportion(
-        "seals.piston", "times the bore in depth of a groove", 0.004, 0.25,
+        "seals.piston", "times the bore as groove depth", 0.004, 0.25,
         "choice; ISO 3601-2 grooves", _gland("piston"),
     ),
     Proportion(
-        "seals.rod", "times the rod's diameter in depth of a groove", 0.004, 0.4,
+        "seals.rod", "times the rod diameter as groove depth", 0.004, 0.4,
         "choice; ISO 3601-2 grooves", _gland("rod"),
     ),
     Proportion(
@@ -250,10 +250,10 @@ TABLE: tuple[Proportion, ...] = (
         for usual in joint.usual
     ),
     Proportion(
-        "load.mass", "m/s^2, what the supply pressure can give the load", 0.05, inf, _WIDE,
+        "load.mass", "m/s^2 of load acceleration at supply pressure", 0.05, inf, _WIDE,
         _acceleration,
     ),
-    Proportion("load_cases", "strokes a second", 1e-5, 200.0, _WIDE, _strokes),
+    Proportion("load_cases", "strokes per second", 1e-5, 200.0, _WIDE, _strokes),
     Proportion(
         "fluid.temperature", "degC of oil", -60.0, 200.0, "choice; hydraulic oils", _temperatures,
     ),
@@ -261,12 +261,12 @@ TABLE: tuple[Proportion, ...] = (
         "environment", "K between coldest and hottest", 0.0, 250.0, _WIDE, _climate,
     ),
 )  # fmt: skip
-"""Every proportion that is looked at."""
+"""All checked proportions."""
 
 
-@np.errstate(all="ignore")  # what has no finite answer is said elsewhere
+@np.errstate(all="ignore")  # values that are not finite are reported elsewhere
 def warnings(subject: PreparedDesign, v: Values, g: Geometry | None = None) -> Iterator[str]:
-    """A sentence for each value that is out of all proportion."""
+    """A sentence for each implausible value."""
     g = geometry.derive(v, subject.design) if g is None else g
     for proportion in TABLE:
         ratio = proportion.of(v, subject.design, g)

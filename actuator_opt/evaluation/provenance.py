@@ -1,4 +1,4 @@
-"""Which model stands behind a metric, read from the model's own docstring."""
+"""The model of a metric, with the description from its docstring."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ..models.criteria import CRITERIA
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """A model function as its docstring describes it."""
+    """A model function with the contents of its docstring."""
 
     name: str
     summary: str
@@ -51,7 +51,7 @@ def describe(function: Callable[..., object]) -> Model:
 
 @cache
 def function_of(name: str) -> Callable[..., object]:
-    """The model function of a name in the table of metrics, ``"forces.push_force"``."""
+    """Model function of a name in the table of metrics, ``"forces.push_force"``."""
     module, _, function = name.partition(".")
     found: Callable[..., object] = getattr(import_module(f"{models.__name__}.{module}"), function)
     return found
@@ -60,7 +60,7 @@ def function_of(name: str) -> Callable[..., object]:
 def model_of(
     metric: str, *, wall: str, criterion: str = "max_stress", place: str | None = None
 ) -> Model | None:
-    """The model behind a metric at its governing place; None for plain geometry and inputs.
+    """Model of a metric at its governing place; None for plain geometry and inputs.
 
     `wall` is the barrel's model, `criterion` that of its plies.
     """

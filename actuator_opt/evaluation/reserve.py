@@ -1,7 +1,7 @@
-"""Reserve of a design: limits that it meets without room, and the yield to expect of it.
+"""Reserve of a design: limits met without reserve, and the expected yield.
 
-An optimum lies on its limits. It meets them at its nominal numbers; of the actuators built to it
-many miss one.
+An optimum lies on its limits and meets them at nominal dimensions; many actuators built to it
+violate a limit.
 """
 
 from __future__ import annotations
@@ -11,16 +11,16 @@ from dataclasses import dataclass
 from typing import Any
 
 NO_RESERVE = 1e-3
-"""Margin below which a limit that is met has no reserve. A choice: a single tolerance is as wide.
+"""Margin below which a met limit has no reserve. A choice: a single tolerance is as wide.
 IT7 of a diameter of 20 mm is 21 um, 0.1 % of it (ISO 286-1). Optima end within 1e-6 of a limit."""
 NO_ROOM = 1e-6
-"""The same for a limit of 0, whose margin is the room itself in SI: the tolerance of `met`."""
+"""The same for a limit of 0, whose margin is the distance itself in SI: the tolerance of `met`."""
 MOST_NAMED = 5
-"""Limits without reserve that a sentence names."""
+"""Most limits without reserve that a sentence names."""
 
 
 def without_reserve(margin: float | None, limit: float | None) -> bool:
-    """Whether a limit that is met has less than `NO_RESERVE` of it to spare.
+    """Whether a met limit has a margin below `NO_RESERVE`.
 
     >>> without_reserve(-1e-9, 4.0), without_reserve(0.02, 4.0), without_reserve(0.0005, 0.0)
     (True, False, False)
@@ -29,7 +29,7 @@ def without_reserve(margin: float | None, limit: float | None) -> bool:
 
 
 def count_words(count: int) -> str:
-    """How many limits have no reserve.
+    """Number of limits without reserve, in words.
 
     >>> count_words(1), count_words(8)
     ('1 limit without reserve', '8 limits without reserve')
@@ -43,11 +43,11 @@ class YieldEstimate:
 
     Parameters
     ----------
-    value, lower, upper : share and its exact 95 % bounds; None where it was not estimated
-    draws : independent draws behind it
-    with_checks : share that meets every check too; None where the design itself misses one
-    worst, worst_fails : requirement that fails most, and the share of draws in which it does
-    why : why there is no estimate
+    value, lower, upper : share and its exact 95 % bounds; None if not estimated
+    draws : number of independent samples
+    with_checks : share that also meets every check; None if the design itself misses a check
+    worst, worst_fails : requirement that fails most, and its share of failures
+    why : reason for a missing estimate
     """
 
     value: float | None = None
@@ -60,7 +60,7 @@ class YieldEstimate:
     why: str = ""
 
     def to_dict(self) -> dict[str, Any] | None:
-        """The "yield" of the JSON's "reserve"; None where it was not estimated."""
+        """The "yield" of the JSON's "reserve"; None if not estimated."""
         if self.value is None:
             return None
         worst = None
@@ -73,10 +73,10 @@ class YieldEstimate:
 
     @property
     def sentence(self) -> str:
-        """The estimate, or why there is none."""
+        """The estimate, or the reason why it is missing."""
         if self.value is None or self.lower is None or self.upper is None:
             return f"Yield not estimated ({self.why}): `actuator-opt uncertainty` computes it."
-        shown = f"{_percent(self.lower)} to {_percent(self.upper)} %, {self.draws} draws"
+        shown = f"{_percent(self.lower)} to {_percent(self.upper)} %, {self.draws} samples"
         said = (
             f"About {_percent(self.value)} % of the actuators built to this design would meet "
             f"every requirement ({shown})"
@@ -88,18 +88,18 @@ class YieldEstimate:
         return f"{said}."
 
 
-UNKNOWN = YieldEstimate(why="an evaluation draws nothing")
-"""Of an evaluation alone."""
+UNKNOWN = YieldEstimate(why="an evaluation does not sample")
+"""Yield of a plain evaluation."""
 
 
 def sentences(names: Sequence[str], estimate: YieldEstimate, *, movable: bool) -> tuple[str, ...]:
-    """Limits without reserve by name, the yield, and what to do about both.
+    """Limits without reserve by name, the yield, and remedies.
 
     Parameters
     ----------
     names : limits without reserve
     estimate : the yield
-    movable : whether the design has variables, so that `optimise` can give it reserves
+    movable : whether the design has variables, so that `optimise` can add reserves
     """
     said = []
     if names:
@@ -109,14 +109,14 @@ def sentences(names: Sequence[str], estimate: YieldEstimate, *, movable: bool) -
     said.append(estimate.sentence)
     known = estimate.value is not None
     if movable and (names or (known and estimate.value != 1)):
-        said.append("`actuator-opt optimise --yield 0.99` keeps a reserve beyond every limit.")
+        said.append("`actuator-opt optimise --yield 0.99` adds a reserve to every limit.")
     elif known and estimate.value != 1:
-        said.append("`actuator-opt uncertainty` shows what makes it scatter.")
+        said.append("`actuator-opt uncertainty` shows the causes of scatter.")
     return tuple(said)
 
 
 def _percent(share: float) -> str:
-    """A share in per cent, with a decimal near its ends.
+    """A share in per cent, with a decimal near 0 and 100.
 
     >>> _percent(0.026), _percent(0.436), _percent(0.9967), _percent(1.0), _percent(0.0)
     ('2.6', '44', '99.7', '100', '0')

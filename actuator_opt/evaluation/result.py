@@ -1,4 +1,4 @@
-"""The Evaluation: every quantity of a design against its requirements, ready to print or export."""
+"""The Evaluation: all metrics of a design with its requirements, for printing and export."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from .dynamics_study import DynamicsStudy
 from .wall_result import WallStudy
 
 State: TypeAlias = Literal["met", "no_reserve", "missed", "not_checked"]
-"""Of a limit: `no_reserve` is met, with nothing to spare."""
+"""State of a limit: `no_reserve` is met, but without margin."""
 
 
 @dataclass(frozen=True, slots=True)
 class Metric:
-    """One computed quantity at its governing case (and place: a ply, a seal, a part).
+    """A metric at its governing case (and place: a ply, a seal, a part).
 
-    `value` is SI, or None with the reason in `why`; `by_case` holds every case's worst value.
-    `sense` says whether it is the smallest ("min") or the largest of several; None where all agree.
+    `value` is SI, or None with the reason in `why`; `by_case` has the worst value of every case.
+    `sense` is the smallest ("min") or largest of several values; None if all are equal.
     """
 
     name: str
@@ -37,7 +37,7 @@ class Metric:
     reference: str = ""
     in_range: bool = True
     definition: quantities.Quantity | None = None
-    """The quantity of a user's own metric; None for the project's."""
+    """Quantity of a user metric; None for built-in metrics."""
     sense: quantities.Sense | None = None
 
     @property
@@ -48,7 +48,7 @@ class Metric:
 
 @dataclass(frozen=True, slots=True)
 class Requirement:
-    """One limit with its value and margin = (value − limit)/|limit|, negated for `max`."""
+    """A limit with its value and margin = (value − limit)/|limit|, negated for `max`."""
 
     name: str
     metric: str
@@ -72,7 +72,7 @@ class Requirement:
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """One line of the professional check list: met, missed, or not checked and why."""
+    """A line of the check list: met, missed, or not checked with the reason."""
 
     name: str
     status: Literal["met", "missed", "not_checked"]
@@ -85,7 +85,7 @@ class Check:
     case: str | None = None
     place: str | None = None
     source: str = ""
-    """Where the limit comes from (a standard, a paper, or a stated choice)."""
+    """Source of the limit (a standard, a paper, or a choice)."""
 
     @property
     def state(self) -> State:
@@ -97,7 +97,7 @@ class Check:
 
 @dataclass(frozen=True, slots=True)
 class ModelUse:
-    """A model as used here: its equation's source, its valid range, where it was used."""
+    """Use of a model: source of its equation, valid range, place of use."""
 
     name: str
     equation: str
@@ -109,7 +109,7 @@ class ModelUse:
 
 @dataclass(frozen=True, slots=True)
 class Unverified:
-    """A library value this design uses that nobody has checked against its primary source."""
+    """A library value of this design that nobody has checked against its primary source."""
 
     material: str
     property: str
@@ -120,7 +120,7 @@ class Unverified:
 
 @dataclass(frozen=True, slots=True)
 class StrokeCurve:
-    """Stiffness over the stroke, of the governing case; arrays along `position` (m, from cap end).
+    """Stiffness over the stroke in the governing case; arrays over `position` (m, from cap end).
 
     `stiffness` is the total (N/m); `contributions` maps a part (oil, barrel, lines, rod, mount)
     to its compliance (m/N), so that the contributions add up to 1/stiffness.
@@ -132,7 +132,7 @@ class StrokeCurve:
     contributions: Mapping[str, Array]
 
     def to_dict(self) -> dict[str, Any]:
-        """As plain data for JSON; compliances in m/N."""
+        """Plain data for JSON; compliances in m/N."""
         return {
             "case": self.case,
             "position": self.position.tolist(),
@@ -143,19 +143,19 @@ class StrokeCurve:
 
 @dataclass(frozen=True, slots=True)
 class Outline:
-    """Half-section of one part: closed polygons of (axial position, radius) in m, retracted."""
+    """Half-section of a part: closed polygons of (axial position, radius) in m, retracted."""
 
     part: str
     material: str
     polygons: tuple[tuple[tuple[float, float], ...], ...]
     kind: Literal["metal", "composite", "polymer", "seal", "oil"]
     bars: int = 0
-    """Of round bars, how many stand about the axis; 0: a turned part."""
+    """Number of round bars about the axis; 0: a turned part."""
 
 
 @dataclass(frozen=True, slots=True)
 class Evaluation:
-    """Everything known about one design: metrics, requirements, checks, drawing, provenance."""
+    """Complete results of a design: metrics, requirements, checks, drawing, provenance."""
 
     name: str
     version: str
@@ -168,19 +168,19 @@ class Evaluation:
     unverified: tuple[Unverified, ...]
     models: tuple[ModelUse, ...]
     mass_parts: Mapping[str, float]
-    """kg per part, dry, in assembly order; sums to `mass`; oil is `metrics["mass_oil"]`."""
+    """Mass per part in kg, dry, in assembly order; sums to `mass`; oil is `metrics["mass_oil"]`."""
     curve: StrokeCurve
     outlines: tuple[Outline, ...]
     lengths: Mapping[str, float]
     """Dimensions for the drawing (m): bore, rod, barrel outer diameter, stroke, closed length…"""
     wall: WallStudy | None = None
-    """The barrel through its thickness; None where its model is the paper's own."""
+    """The barrel through its thickness; None with the wall model of the paper."""
     dynamics: DynamicsStudy | None = None
     """Modes along the stroke, dynamic stiffness over frequency, and the position loop."""
     friction_parts: Mapping[str, float] = field(default_factory=dict)
-    """Running friction of each seal (N) in the case that governs it; wipers and guides together."""
+    """Running friction of each seal (N) in its governing case; wipers and guides together."""
     yield_estimate: reserve.YieldEstimate = reserve.UNKNOWN
-    """Share of the actuators built to the design that meet every requirement, where estimated."""
+    """Share of the actuators built to the design that meet every requirement, if estimated."""
 
     @property
     def met(self) -> bool:
@@ -201,14 +201,14 @@ class Evaluation:
 
     @property
     def extrapolated(self) -> tuple[str, ...]:
-        """Metrics whose value rests on a model outside its valid range."""
+        """Metrics that depend on a model outside its valid range."""
         return tuple(
             m.name for m in self.metrics.values() if m.value is not None and not m.in_range
         )
 
     @property
     def counts(self) -> dict[str, int]:
-        """Library values taken that nobody has verified; metrics and models out of range."""
+        """Number of unverified library values, and of metrics and models out of range."""
         return {
             "unverified": len(self.unverified),
             "extrapolated": len(self.extrapolated),
@@ -217,7 +217,7 @@ class Evaluation:
 
     @property
     def reserve_sentences(self) -> tuple[str, ...]:
-        """Limits without reserve and the yield; nothing where a requirement is missed."""
+        """Limits without reserve and the yield; empty if a requirement is missed."""
         if not self.met or not self.requirements:
             return ()
         movable = bool(self.design.variables)
@@ -225,7 +225,7 @@ class Evaluation:
 
     @property
     def tally(self) -> str:
-        """How many requirements are met and, where all are, which check is missed all the same."""
+        """Number of requirements met and, if all are met, any missed check."""
         total, met = len(self.requirements), sum(row.met for row in self.requirements)
         missed = [check.name for check in self.checks if check.status == "missed"]
         more = f" and {len(missed) - 1} more" if len(missed) > 1 else ""
@@ -293,7 +293,7 @@ class Evaluation:
         }
 
     def columns(self) -> dict[str, list[Any]]:
-        """Metrics as columns (name, value, unit, case), in display units, for tables."""
+        """Metrics as columns (name, value, unit, case), in display units."""
         rows = list(self.metrics.values())
         return {
             "name": [m.name for m in rows],

@@ -1,6 +1,6 @@
-"""The joint of caps and head that a design names, and the end of the barrel as that joint sees it.
+"""The joint of caps and head in a design, and the end of the barrel as its input.
 
-Both ends have the same joint, so one `End` stands for both.
+Both ends have the same joint, so a single `End` represents both.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from .values import Values
 
 
 class Numbers:
-    """Numbers of `retention` by key, read from the numbers of an evaluation."""
+    """Numbers of `retention` by key, from the numbers of an evaluation."""
 
     def __init__(self, v: Values) -> None:
         self._v = v
@@ -27,18 +27,18 @@ class Numbers:
         return self._v[f"retention.{key}"]
 
     def get(self, key: str, default: Array) -> Array:
-        """The number of a key, or `default` where the design does not state it."""
+        """The number of a key, or `default` if the design does not state it."""
         return self._v.get(f"retention.{key}", default)
 
 
 class Stated:
-    """Numbers of `retention` by key, as a design states them."""
+    """Numbers of `retention` by key, as stated in a design."""
 
     def __init__(self, section: Retention) -> None:
         self._section = section
 
     def get(self, key: str, default: Array) -> Array:
-        """The number of a key, or `default` where the design does not state it."""
+        """The number of a key, or `default` if the design does not state it."""
         found: object = self._section
         for name in key.split("."):
             found = getattr(found, name, None)
@@ -52,7 +52,7 @@ class Stated:
 
 
 def joint_of(design: Design) -> Joint | None:
-    """The joint that a design names; None where it states no retention."""
+    """The joint of a design; None without retention."""
     return None if design.retention is None else JOINTS[design.retention.type]
 
 

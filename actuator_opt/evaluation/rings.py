@@ -1,4 +1,4 @@
-"""The sealing rings of an evaluation: their numbers, and the pressure and growth they see."""
+"""Sealing rings of an evaluation: their numbers, with pressure and bore growth."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ Place = Literal["piston", "rod"]
 class Ring:
     """A sealing element with its numbers by name; arrays broadcast to (cases, designs).
 
-    `numbers`: those of the design file, and `diameter`, `youngs_modulus` of what is squeezed,
-    `pressure` (the difference it seals, gauge), `outer_pressure` (gauge), `squeeze_left` (nominal
-    squeeze less what the bore's growth takes). With an oil film: `speed`, `viscosity`,
-    `return_pressure` (p_B while the rod runs the other way) and the face's roughness.
+    `numbers`: those of the design file, and `diameter`, `youngs_modulus` of the squeezed part,
+    `pressure` (sealed difference), `outer_pressure` (gauge), `squeeze_left` (nominal squeeze minus
+    the loss by bore growth). With an oil film: `speed`, `viscosity`, `return_pressure` (p_B on the
+    return stroke) and the roughness of the face.
     """
 
     name: Place
@@ -37,20 +37,20 @@ class Ring:
     groove: Groove
     numbers: Mapping[str, Array]
     viscosity_law: str = "none"
-    """How the oil under it thickens with pressure."""
+    """Viscosity law of its oil over pressure."""
 
     def __getitem__(self, name: str) -> Array:
         return self.numbers[name]
 
     @property
     def sizes(self) -> SealSizes:
-        """Its numbers and laws, as seal types and friction laws take them."""
+        """Its numbers and laws, as inputs of seal types and friction laws."""
         own = self.element
         return SealSizes(self.numbers, own.law, own.hardness_model, self.name == "rod")
 
     @property
     def label(self) -> str:
-        """How results call it."""
+        """Name in results."""
         return self.groove.place
 
     def at(self, **numbers: Array) -> Ring:
@@ -68,7 +68,7 @@ HARDNESS_TEMPERATURE = 296.15
 
 
 def hardness_modulus(v: Values, compound: str, law: str) -> Array:
-    """Young's modulus of a compound by its hardness, where it was measured."""
+    """Young's modulus of a compound from its hardness, at measuring temperature."""
     at = f"materials.{compound}."
     modulus = elastomer.MODULUS_LAWS[law].modulus(hardness=v[f"{at}hardness"])
     own = f"{at}hardness_modulus_factor"
@@ -98,9 +98,10 @@ def rings(
     state: LoadState,
     growth: Array,
 ) -> tuple[Ring, ...]:
-    """Every sealing element; the first of a place carries the pressure.
+    """All sealing elements; the first of a place carries the pressure.
 
-    The piston's sees the difference, the rod's p_B. `growth` is the bore's far from it.
+    The piston seal has the pressure difference, the rod seal p_B. `growth` is the far-field bore
+    growth.
     """
     across: dict[str, tuple[Array, Array]] = {
         "piston": (
@@ -141,18 +142,18 @@ def rings(
 
 
 _OWN = ("friction_coefficient", "breakaway_ratio", "stribeck_speed")
-"""Numbers an element takes from its compound where it states none."""
+"""Numbers that default to those of the compound."""
 
 
 def _numbers(
     v: Values, element: SealElement, groove: Groove, diameter: Array, temperature: Array
 ) -> dict[str, Array]:
-    """What the contact of an element is computed from."""
+    """Inputs of the contact of an element."""
     at, compound, kind = groove.path, f"materials.{element.compound}.", element.seal_type
     law = element.friction_law
     face = face_modulus(v, element.compound, element.hardness_model, temperature)
     squeezed = face
-    if kind.modulus_by == "hardness":  # the temperature law is of the sliding ring
+    if kind.modulus_by == "hardness":  # the temperature law applies to the sliding ring
         squeezed = hardness_modulus(v, element.compound, element.hardness_model)
     numbers = {
         "section": groove.section,
@@ -180,4 +181,4 @@ def _numbers(
 
 
 INCOMPRESSIBLE = 0.495
-"""Poisson's ratio of rubber whose compound states none (0.49 to 0.499 in use)."""
+"""Default Poisson's ratio of rubber (0.49 to 0.499 in use)."""

@@ -1,7 +1,7 @@
 """Strength of the rod in an evaluation: yield, plies and metal layers, local buckling.
 
-Push and pull are the largest the supply makes. Bending of side load and own weight comes on top,
-grown by the push; the part of the rod inside chamber B bears its pressure while it pulls.
+Push and pull are the largest forces of the supply. Bending by side load and own weight is added,
+amplified by the push; the rod inside chamber B is under its pressure while pulling.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from .state import LoadState
 def yields(
     stock: MaterialValues, design: Design, g: Geometry, state: LoadState, section: Rod, beam: Beam
 ) -> dict[str, Array]:
-    """Yield over working stress of a rod of one metal, at the pressure of every case."""
+    """Yield over working stress of a single-metal rod, at the pressure of every case."""
     if section.layers:
         return {}
     strength = stock.allowable(design.rod.material, "yield_strength", "strength_1_compression")
@@ -76,9 +76,9 @@ def _layers(
     pull: Array,
     out: MetricArrays,
 ) -> None:
-    """Strength ratio of every layer, mode and direction; both sides of the bent rod."""
+    """Strength ratio of every layer, mode and direction, on both sides of the bent rod."""
     if not section.layers:
-        out.skip("rod_factor", "the rod is of one metal: yield_factor judges it")
+        out.skip("rod_factor", "the rod is a single metal: see yield_factor")
         return
     pressed, drawn = (
         beam_column.bending_axial_force(
@@ -103,11 +103,11 @@ def _layers(
 
 
 DIRECTIONS = {"push": slice(0, 2), "pull": slice(2, 6)}
-"""Sides of the bent rod in either direction; pulling, each without and with outside pressure."""
+"""Sides of the bent rod in either direction; pulling with and without outside pressure."""
 
 
 def _factors(design: Design, section: Rod, forces: Array, pressures: Array) -> dict[str, Array]:
-    """Every layer's factors; forces and outside pressures are (sides, cases, designs)."""
+    """Factors of all layers; forces and outside pressures are (sides, cases, designs)."""
     factors: dict[str, Array] = {}
     brittle = [i for i, layer in enumerate(section.layers) if layer.strengths]
     if brittle:
@@ -146,10 +146,10 @@ def _rows(section: Rod, label: str, used: Array) -> dict[str, Array]:
 def cycles(
     design: Design, section: Rod, supply: Array, push: Array, pull: Array
 ) -> dict[str, Cycle]:
-    """Stress of the rod's metals between push and pull; a compressive mean earns no credit.
+    """Stress of the rod's metals between push and pull; a compressive mean gives no credit.
 
-    A metal layer works around its cure stress, and bears the pressure of chamber B while it pulls;
-    its mean is the equivalent stress of the pull less half the range.
+    The stress of a metal layer includes its cure stress and, while pulling, the pressure of chamber
+    B; its mean is the equivalent stress of the pull minus half the range.
     """
     if not section.layers:
         size = {"outer_diameter": section.outer_diameter, "inner_diameter": section.inner_diameter}
@@ -180,7 +180,7 @@ def _stress(parts: Sequence[Array]) -> Stress:
 
 
 def _unit(section: Rod, rows: list[int], load: int) -> list[Array]:
-    """Ply stresses of some layers per unit load, (faces, layers, 1, 1, 1, designs)."""
+    """Ply stresses of these layers per unit load, (faces, layers, 1, 1, 1, designs)."""
     assert section.unit is not None
     return [part[:, rows][:, :, load][:, :, None, None, None] for part in section.unit]
 

@@ -1,6 +1,6 @@
-"""The rod's section, the one place that chooses between a bar of one metal and a layered tube.
+"""Section of the rod: the only place that selects a bar of one metal or a layered tube.
 
-Everything after it works with a `Rod`.
+All later code works with a `Rod`.
 """
 
 from __future__ import annotations
@@ -29,17 +29,16 @@ from .plies import Climate, Layer
 from .values import Values
 
 OUTSIDE, FORCE, WARMTH = range(3)
-"""Unit loads of `Rod.unit`: pressure on its outside, axial force, warming."""
+"""Unit loads of `Rod.unit`: outside pressure, axial force, temperature change."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rod:
-    """The rod's section, (designs,).
+    """Section of the rod, (designs,).
 
     EA [N], EI [N m^2], kappa G A [N] and kg/m; `shell_modulus` and `shell_ratio` are those of an
-    isotropic wall that buckles like its own; `expansion` along the axis [1/K], None where not
-    stated. A rod of layers adds its plies: `unit` holds their stresses per unit load,
-    (faces, layers, loads, designs).
+    isotropic wall with the same buckling load; `expansion` is axial [1/K], None if not stated. A
+    layered rod also has `unit`, its ply stresses per unit load, (faces, layers, loads, designs).
     """
 
     outer_diameter: Array
@@ -65,33 +64,33 @@ class Rod:
 
     @property
     def middle(self) -> Array:
-        """Mid-radius of its wall."""
+        """Mid-radius of the wall."""
         return (self.outer_diameter + self.inner_diameter) / 4
 
     @property
     def cured(self) -> bool:
-        """Whether its layers hold stresses of cooling from the cure."""
+        """Whether its layers have residual stresses from cure."""
         return any(np.any(real(state.change)) for state in self.climates)
 
     @property
     def place(self) -> str:
-        """Names the model behind the section, where it is not a plain bar."""
+        """Name of the section model, if it is not a plain bar."""
         return "layered tube" if self.layers else ""
 
 
 def end_material(design: Design) -> str:
-    """The metal that carries the rod's threads."""
+    """The metal with the rod's threads."""
     fitting = design.rod.fitting
     return (fitting.material if fitting is not None else None) or design.rod.material
 
 
 def derive(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> Rod:
-    """The section of a design's rod."""
+    """Section of a design's rod."""
     return _tube(v, design, stock, g) if design.rod.layup else _bar(v, design, stock, g)
 
 
 def _bar(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> Rod:
-    """A bar or tube of one material."""
+    """A bar or tube of a single material."""
     name = design.rod.material
     modulus = stock.get(name, "youngs_modulus", "youngs_modulus_1")
     ratio = stock.get(name, "poissons_ratio", "poissons_ratio_12")
@@ -166,7 +165,7 @@ def _tube(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> Rod:
 
 
 def _unit(tube: LayeredTube, state: TubeState) -> Stress:
-    """Ply stresses at the faces; of a tube that twists those of both plies of its pairs."""
+    """Ply stresses at the faces; for a twisting tube those of both plies of its pairs."""
     plus = ply_stresses_at_faces(tube=tube, state=state)
     if not tube.twisting:
         return plus

@@ -1,4 +1,4 @@
-"""From computed metrics to rows: one margin per limit, load case and place."""
+"""Rows of computed metrics: one margin per limit, load case and place."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from .values import Values
 
 ALL_CASES = "all"
 UNLIMITED = 1e300
-"""Stands for an infinite value (nothing loads the part) in margins, which must stay finite."""
+"""Replaces an infinite value (unloaded part) in margins, which must be finite."""
 
 
 @dataclass(slots=True)
 class MetricArrays:
-    """What a kernel computed: metric → place → array, and why a metric could not be computed.
+    """Results of a kernel: metric → place → array, and reasons for missing metrics.
 
     Arrays are floats, (designs,), (cases, 1) or (cases, designs). A place is a ply, a seal or a
-    part; "" where the metric has only one. `applies` marks the cases a metric has a meaning in,
-    `applies_at` those of one place.
+    part; "" if the metric has a single place. `applies` marks the cases of a metric, `applies_at`
+    those of a place.
     """
 
     metrics: dict[str, dict[str, Array]] = field(default_factory=dict)
@@ -34,11 +34,11 @@ class MetricArrays:
     """Running friction of each seal; the parts sum to `friction_running`."""
 
     def put(self, name: str, value: Array | dict[str, Array], cases: Array = None) -> None:
-        """Record a metric: one array, or one per place; `cases` marks where it applies.
+        """Record a metric: an array, or an array per place; `cases` marks where it applies.
 
         Raises
         ------
-        KeyError : `metrics.table` has no row of that name
+        KeyError : `metrics.table` has no row with this name
         """
         if name not in METRICS:
             raise KeyError(f"metric {name}: add its row to metrics/table.py")
@@ -47,13 +47,13 @@ class MetricArrays:
             self.applies[name] = cases
 
     def skip(self, name: str, why: str) -> None:
-        """Record why a metric does not apply or cannot be known."""
+        """Record why a metric does not apply or is unknown."""
         self.why[name] = why
 
 
 @dataclass(frozen=True, slots=True)
 class LimitRow:
-    """One limit in one case at one place: `value`, `limit` and `margin` are (designs,)."""
+    """A limit in one case at one place: `value`, `limit` and `margin` are (designs,)."""
 
     limit_of: Limit
     case: str
@@ -62,7 +62,7 @@ class LimitRow:
     limit: Array
     margin: Array
     case_index: int | None = None
-    """Row of the computed array, where it has one row per load case."""
+    """Row index in the computed array, if it has a row per load case."""
 
     @property
     def label(self) -> str:
@@ -86,7 +86,7 @@ def by_case(
 
 
 def rows_of(limit: Limit, computed: MetricArrays, v: Values) -> Iterator[LimitRow]:
-    """Every row of one limit; none where the metric was not computed."""
+    """All rows of a limit; none if the metric was not computed."""
     bound = limit.value(v)
     for place, array in computed.metrics.get(limit.metric, {}).items():
         if limit.places is not None and place not in limit.places:

@@ -1,4 +1,4 @@
-"""Contact of a sealing ring with its counterface, by its seal type or as the design states it."""
+"""Contact of a sealing ring with its counterface, by seal type or as stated in the design."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What to doubt about the seals: laws outside their data, films, limits of the compounds."""
+"""Doubts about the seals: laws outside their data, films, limits of the compounds."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .seal_contact import seal_contact
 from .values import Values
 
 FILM_ERROR = 0.02
-"""Relative error of a film's surrogate that is worth a word."""
+"""Relative error of a film surrogate from which a warning is given."""
 
 _SURROGATES = {
     "friction": "friction_running",
@@ -28,7 +28,7 @@ _SURROGATES = {
 
 
 def warnings(subject: PreparedDesign, v: Values, done: ModelRun) -> Iterable[tuple[str, str]]:
-    """(metric, text) of everything doubtful about the seals."""
+    """(metric, text) of all doubts about the seals."""
     for ring in done.rings:
         yield from _contact(subject, ring)
         yield from _limits(subject, done, ring, float(v["supply.pressure"]))
@@ -39,7 +39,7 @@ def warnings(subject: PreparedDesign, v: Values, done: ModelRun) -> Iterable[tup
 
 
 def _contact(subject: PreparedDesign, ring: Ring) -> Iterable[tuple[str, str]]:
-    """Laws out of their range, a compound the fluid attacks, a contact that is lost."""
+    """Laws out of range, a compound that the fluid attacks, or a lost contact."""
     liquid, compound = subject.design.fluid.material, ring.element.compound
     if not ring.element.contact:
         for text in ring.element.seal_type.warnings(ring.sizes):
@@ -47,47 +47,49 @@ def _contact(subject: PreparedDesign, ring: Ring) -> Iterable[tuple[str, str]]:
     else:
         yield (
             "friction_running",
-            f"{ring.label}: stated contact profiles are taken as they are, whatever the bore's "
-            "growth leaves of the squeeze",
+            f"{ring.label}: stated contact profiles are used unchanged, even if bore "
+            "growth reduces the squeeze",
         )
     if compatible(subject.materials[liquid], subject.materials[compound]) is False:
         yield "", f"{ring.label}: {compound} does not withstand {liquid}"
     if np.any(np.real(ring["squeeze_left"]) <= 0):
         yield (
             "friction_running",
-            f"{ring.label}: the bore's growth takes the whole squeeze, there is no contact",
+            f"{ring.label}: bore growth uses up the whole squeeze, there is no contact",
         )
     elif not np.all(np.real(seal_contact(ring).excess) > 0):
         yield (
             "friction_running",
-            f"{ring.label}: the sealed pressure would open the contact; its load is too small",
+            f"{ring.label}: the sealed pressure would open the contact; its contact load is "
+            "too small",
         )
 
 
 def _leak_at_rest(subject: PreparedDesign) -> Iterable[tuple[str, str]]:
-    """An averaged film of a rod seal that passes oil on the stroke in."""
+    """The averaged film of a rod seal also leaks on the instroke."""
     if any(
         place == "rod" and not table.row.outward and table.flow > 0
         for (place, _, _), table in subject.films.items()
     ):
         yield (
             "rod_leakage",
-            "film of the rod seals leaks on the stroke in too: an averaged film passes oil at any "
-            "gap, at rest as well, where a real elastomer seal holds; rod_leakage is told too high",
+            "the film of the rod seals also leaks on the instroke: an averaged film passes "
+            "oil at any "
+            "gap, even at rest, where a real elastomer seal is tight; rod_leakage is too high",
         )
 
 
 def _film(name: str, table: Table) -> Iterable[tuple[str, str]]:
-    """A surrogate that is not exact enough, used beyond its box, or has points without solution."""
+    """A surrogate with a large error, beyond its box, or with points without solution."""
     for what, metric in _SURROGATES.items():
         if table.errors[what] > FILM_ERROR:
             yield (
                 metric,
-                f"{name}: the surrogate's {what} is up to {100 * table.errors[what]:.1f} % off "
+                f"{name}: the surrogate's {what} is up to {100 * table.errors[what]:.1f} % from "
                 "the solved films within the bounds",
             )
     if not table.surrogate.covers(table.row.inputs()):
-        yield "friction_running", f"{name}: the design lies beyond the surrogate's box"
+        yield "friction_running", f"{name}: the design is outside the surrogate's box"
     if table.surrogate.failed:
         count = len(table.surrogate.failed)
         yield (
@@ -99,34 +101,35 @@ def _film(name: str, table: Table) -> Iterable[tuple[str, str]]:
 def _limits(
     subject: PreparedDesign, done: ModelRun, ring: Ring, supply: float
 ) -> Iterable[tuple[str, str]]:
-    """Pressure and speed beyond what the compound bears, extrusion beyond its data."""
+    """Pressure and speed beyond the limits of the compound, extrusion beyond its data."""
     compound = subject.materials[ring.element.compound]
     known = compound.numbers
     fastest = float(np.max(np.real(done.state.speed)))
     if not ring.element.back_ups and supply > known.get("pressure_max", np.inf):
         yield (
             "",
-            f"{ring.label}: {supply / 1e5:.0f} bar, {compound.name} bears "
+            f"{ring.label}: {supply / 1e5:.0f} bar, but {compound.name} allows "
             f"{known['pressure_max'] / 1e5:.0f} bar without a back-up ring",
         )
     if fastest > known.get("speed_max", np.inf):
         yield (
             "",
-            f"{ring.label}: {fastest:.2g} m/s, {compound.name} bears {known['speed_max']:.2g} m/s",
+            f"{ring.label}: {fastest:.2g} m/s, but {compound.name} allows "
+            f"{known['speed_max']:.2g} m/s",
         )
     end = extrusion_end(ring, subject.materials)
     if supply > end * (1 + 1e-9):
         yield (
             "extrusion_factor",
-            f"{ring.label}: limits of the extrusion gap are known up to {end / 1e5:.0f} bar, "
-            "held beyond; use a back-up ring",
+            f"{ring.label}: limits of the extrusion gap are known up to {end / 1e5:.0f} bar "
+            "and assumed constant beyond; use a back-up ring",
         )
 
 
 def models(
     rings: Iterable[Ring], subject: PreparedDesign, said: Iterable[str]
 ) -> Iterable[ModelUse]:
-    """The models of every sealing ring. `said` are the warnings' texts."""
+    """Models of all sealing rings; `said` are the texts of the warnings."""
     said = tuple(said)
     for ring in rings:
         doubted = any(text.startswith(ring.label) for text in said)
@@ -144,7 +147,7 @@ def models(
 
 
 def _contact_model(ring: Ring, *, doubted: bool) -> ModelUse:
-    """The contact model of one ring, with its O-ring law where it has one."""
+    """Contact model of a ring, with its O-ring law if it has one."""
     element = ring.element
     at = f"squeeze {100 * element.squeeze:.4g} %"
     if element.contact:

@@ -38,7 +38,7 @@ def compute(
     films: Films,
     out: MetricArrays,
 ) -> Friction:
-    """Gland, contact and friction metrics of every seal; returns the cylinder's friction."""
+    """Gland, contact and friction metrics of all seals; returns the friction of the cylinder."""
     full_growth = SEAL_STEP * wall.growth
     by_metric: dict[str, dict[str, Array]] = {}
     total = Friction()
@@ -72,7 +72,7 @@ def compute(
     for metric, by_place in by_metric.items():
         out.put(metric, by_place, cases=moving if metric == "film_thickness" else None)
     for name in ("seal_squeeze", "seal_squeeze_max", "seal_fill", "seal_stretch", "seal_section"):
-        out.skip(name, "no O-ring runs here")
+        out.skip(name, "no sliding O-ring")
     gap = gland.extrusion_gap(clearance=geometry.piston_clearance, growth=full_growth)
     out.put("seal_gap", gap)
     out.put("growth_at_seal", full_growth)
@@ -81,18 +81,18 @@ def compute(
     secant = damping.secant(friction=total.running, speed=state.speed)
     out.put("damping_seal", secant, cases=moving)
     if not moving.any():
-        out.skip("damping_seal", "a secant damping needs a speed; no load case states one")
+        out.skip("damping_seal", "give a load case a `speed` to get the secant damping")
     return total
 
 
 Films = Mapping[str, Running]
-"""The running film of every ring that asks for one, by its label."""
+"""Films of all rings with a film, by label."""
 
 
 def films_of(
     tables: Mapping[Key, Table], rings: tuple[Ring, ...], stroke: Stroke, cases: int
 ) -> dict[str, Running]:
-    """The films of all rings on a stroke."""
+    """Films of all rings on a stroke."""
     places: tuple[Place, ...] = ("piston", "rod")
     found: dict[str, Running] = {}
     for place in places:
@@ -105,9 +105,9 @@ def films_of(
 def compute_film(
     geometry: Geometry, state: LoadState, there: Films, back: Films, out: MetricArrays
 ) -> None:
-    """What the films of both strokes say together: oil left outside, pressure between seals.
+    """Results of both strokes: oil left outside, interseal pressure.
 
-    A double stroke of the rod leaves outside what it drags out less what it draws back.
+    The oil left outside per double stroke is the oil dragged out minus the oil drawn back.
     """
     moving = real(state.speed) > 0
     if "rod seal" in there and "rod seal" in back:
@@ -137,7 +137,7 @@ def _row_load(ring: Ring, contact: SealContact) -> Array:
 
 
 def _share(ring: Ring, films: Films) -> Ring:
-    """The ring under its share of the pressure, where a pair has settled on one between them."""
+    """The ring with its share of the pressure, if a pair has an interseal pressure."""
     film = films.get(ring.label)
     if film is None:
         return ring
@@ -165,7 +165,7 @@ def _beside(v: Values, design: Design, geometry: Geometry, state: LoadState) -> 
 
 
 class WiperFriction(NamedTuple):
-    """A wiper in its place: PATH of its block, its coefficient, its Coulomb friction [N]."""
+    """A wiper at its place: PATH of its block, coefficient, Coulomb friction [N]."""
 
     path: str
     coefficient: Array
@@ -175,7 +175,7 @@ class WiperFriction(NamedTuple):
 def wipers(
     v: Values, design: Design, geometry: Geometry, state: LoadState
 ) -> tuple[WiperFriction, ...]:
-    """Friction of every wiper: the lip of a U-cup without pressure."""
+    """Friction of all wipers: the lip of a U-cup without pressure."""
     found = []
     for name, grooves, diameter in places(geometry):
         wiper = getattr(design.seals, name).wiper

@@ -1,8 +1,8 @@
-"""Half-sections of many designs: few templates whose points move with the dimensions.
+"""Half-sections of many designs: few templates with points that move with the dimensions.
 
 Every point of `outline.outlines` is a sum of dimensions, as long as no part appears, vanishes or
-changes its form. A template holds these sums, found by moving one dimension after the other; each
-design is drawn from one that gives its own outlines, or from none.
+changes its form. A template contains these sums, determined by varying each dimension. Each design
+is drawn from a template that reproduces its outlines, or is not drawn.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ from .kernel import PreparedDesign
 from .result import Outline
 
 MOST = 24
-"""Templates of one prepared design."""
+"""Most templates of a prepared design."""
 
 SAME = 1e-7
-"""Most that a point of a template may lie off (m)."""
+"""Largest error of a point of a template (m)."""
 
 STEP = 1e-4
-"""By which a dimension is moved to see what moves with it (m)."""
+"""Step of a dimension to determine its effect (m)."""
 
 LENGTHS = ("bore", "rod", "stroke", "closed_length")
-"""Dimensions that are told beside a section."""
+"""Dimensions that are listed beside a section."""
 
 _GROOVE = ("section", "gland_depth", "width", "ring_width", "count")
 _Change: TypeAlias = Callable[[Array], Array]
@@ -39,10 +39,10 @@ _Change: TypeAlias = Callable[[Array], Array]
 
 @dataclass(frozen=True)
 class Template:
-    """Outlines of one design, and how their numbers move with the dimensions.
+    """Outlines of a design, and their slopes by the dimensions.
 
     `numbers` (m) are x and r of every point in order, then `LENGTHS`; `slopes` is
-    (numbers, dimensions), `origin` the dimensions of the design it is of.
+    (numbers, dimensions), `origin` the dimensions of its design.
     """
 
     outlines: tuple[Outline, ...]
@@ -58,9 +58,9 @@ class Template:
 
 @dataclass(frozen=True)
 class Shapes:
-    """Sections of many designs: the dimensions (dimensions, designs) and the template of each.
+    """Sections of many designs: dimensions (dimensions, designs), and a template each.
 
-    `which` is the number of the template, -1 where none gives the design's outlines.
+    `which` is the index of the template, -1 if no template reproduces the outlines.
     """
 
     dimensions: Array
@@ -80,8 +80,8 @@ def shapes(
     ----------
     subject : the design
     varied : arrays (designs,) by PATH, SI
-    count : of designs
-    hidden : parts that are left out
+    count : number of designs
+    hidden : omitted parts
     """
     geometry = geometry_module.derive(subject.values(varied), subject.design)
     dimensions = np.stack([np.broadcast_to(one, (count,)) for one in _leaves(geometry)])
@@ -111,7 +111,7 @@ def same_dimensions(
     other: tuple[PreparedDesign, Mapping[str, Array]],
     count: int,
 ) -> bool:
-    """Whether two prepared designs with what varies have the same dimensions."""
+    """Whether two prepared designs with their varied inputs have the same dimensions."""
     found = []
     for subject, varied in (one, other):
         geometry = geometry_module.derive(subject.values(varied), subject.design)
@@ -131,7 +131,7 @@ class _Parts:
     hidden: tuple[str, ...]
 
     def drawn(self, moved: int | None = None) -> tuple[tuple[Outline, ...], Array]:
-        """Outlines and their numbers, with one dimension moved a little."""
+        """Outlines and their numbers, with one dimension varied slightly."""
         values = self.dimensions.astype(float)
         if moved is not None:
             values[moved] += STEP
@@ -156,12 +156,12 @@ def _template(parts: _Parts, drawn: tuple[tuple[Outline, ...], Array], moving: A
 
 
 def _form(outlines: tuple[Outline, ...]) -> list[object]:
-    """What two outlines share that differ in dimensions alone."""
+    """Structure of outlines that differ only in dimensions."""
     return [(o.part, o.material, o.kind, [len(p) for p in o.polygons]) for o in outlines]
 
 
 def _leaves(geometry: Geometry) -> list[Array]:
-    """Every number of the dimensions, always in the same order."""
+    """All numbers of the dimensions, in a fixed order."""
     found: list[Array] = []
 
     def keep(value: Array) -> Array:
@@ -173,7 +173,7 @@ def _leaves(geometry: Geometry) -> list[Array]:
 
 
 def _changed(geometry: Geometry, change: _Change) -> Geometry:
-    """The dimensions with every number changed."""
+    """The dimensions with every number replaced."""
     values: dict[str, Any] = {}
     for field in fields(Geometry):
         value = getattr(geometry, field.name)

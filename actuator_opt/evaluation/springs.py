@@ -1,4 +1,4 @@
-"""The stiffness budget: everything that gives way between load and ground, along the stroke."""
+"""The stiffness budget: all compliances between load and ground, along the stroke."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from .values import Values
 
 
 class Give(NamedTuple):
-    """One cause of compliance along the piston's position x.
+    """A cause of compliance along the piston position x.
 
-    Of chamber A a0 + a1 x, of chamber B b0 + b1 (s - x); c0 + c1 x is what the pressure of one adds
-    to the volume of the other.
+    Chamber A: a0 + a1 x, chamber B: b0 + b1 (s - x); c0 + c1 x is the coupling: volume of one
+    chamber per pressure in the other.
     """
 
     a0: Array = 0.0
@@ -45,7 +45,7 @@ class Give(NamedTuple):
 
 
 class Compliances(NamedTuple):
-    """Of chamber A, of chamber B, and of one on the other [m^3/Pa]."""
+    """Compliances of chamber A, of chamber B, and their coupling [m^3/Pa]."""
 
     a: Array
     b: Array
@@ -58,18 +58,18 @@ OIL = ("oil A", "oil B", "oil in lines")
 
 @dataclass(frozen=True, slots=True)
 class Springs:
-    """Everything that gives way between load and ground."""
+    """All compliances between load and ground."""
 
     chambers: dict[str, Give]
     """By cause: oil of A, of B and in the lines, barrel, its stretch, walls of pipes and hoses."""
     seals: Array | None
-    """Of sticking seals, beside the oil; None where they slide."""
+    """Stiffness of sticking seals, parallel to the oil; None if they slide."""
     chain: dict[str, Array]
     """Stiffnesses in series with the chambers: rod, mount, load cell."""
     geometry: Geometry
     topology: str
     pressure: Array
-    """Pressure difference over the piston, for the one published form that needs it."""
+    """Pressure difference across the piston, for the published form that needs it."""
     rod_place: str = ""
 
     @property
@@ -78,12 +78,12 @@ class Springs:
         return tuple(cause for cause in OIL if cause in self.chambers)
 
     def total(self, causes: Iterable[str] | None = None) -> Give:
-        """Compliance of some causes, or all, together."""
+        """Total compliance of some or all causes."""
         chosen = [self.chambers[cause] for cause in (causes or self.chambers)]
         return Give(*(sum(part[1:], start=part[0]) for part in zip(*chosen, strict=True)))
 
     def hydraulic(self, position: Array, causes: Iterable[str] | None = None) -> Array:
-        """Stiffness of the closed chambers at a position, counting only some causes."""
+        """Stiffness of the closed chambers at a position, from some causes only."""
         g = self.geometry
         a, b, ab = self.total(causes).at(position, g.stroke)
         return stiffness.hydraulic_stiffness(
@@ -95,10 +95,11 @@ class Springs:
         return sum(1 / part for part in self.chain.values())
 
     def compliances(self, position: Array) -> dict[str, Array]:
-        """Compliance by part at a position (m/N); they add up to 1/stiffness.
+        """Compliance by part at a position (m/N); the sum is 1/stiffness.
 
-        Per chamber, each part's share is its strain energy under a unit force: p^T C_part p with
-        the chamber pressures p of that force, k x^2 of the seals; no order of parts matters.
+        Per chamber, the share of each part is its strain energy under a unit force: p^T C_part p
+        with the chamber pressures p of that force, and k x^2 for the seals; independent of the
+        order of the parts.
         """
         if self.topology != "per_chamber":
             parts = self._published(position)
@@ -109,7 +110,7 @@ class Springs:
     def _by_energy(self, position: Array) -> dict[str, Array]:
         g = self.geometry
         a, b, ab = self.total().at(position, g.stroke)
-        det = a * b - ab * ab  # 0 where a chamber is empty: rigid, so nothing is divided by it
+        det = a * b - ab * ab  # 0 if a chamber is empty: rigid, so never a divisor
         swing_a, swing_b = g.area_a * b + g.area_b * ab, -(g.area_a * ab + g.area_b * a)
         seals = 0.0 if self.seals is None else self.seals
         whole = g.area_a * swing_a - g.area_b * swing_b + seals * det
@@ -128,12 +129,12 @@ class Springs:
         return parts
 
     def _published(self, position: Array) -> dict[str, Array]:
-        """Totals of each kind in series, as the sources write them."""
+        """Totals of each kind in series, as in the published sources."""
         g = self.geometry
         square_a, square_b = g.area_a * g.area_a, g.area_b * g.area_b
 
         def both(a: Array, b: Array) -> Array:
-            """Compliance of two springs side by side; an empty chamber is rigid."""
+            """Compliance of two parallel springs; an empty chamber is rigid."""
             return a * b / (a + b)
 
         def side_a(cause: str) -> Array:
@@ -154,7 +155,7 @@ class Springs:
                 pressure=self.pressure, area=g.area_a, stroke=g.stroke
             )
             return parts | {"barrel": 1 / bulge}
-        # eq. 23 lets the wall of chamber B swell over the annulus, not over the bore
+        # eq. 23 uses the annulus for the wall of chamber B, not the bore
         parts["barrel"] = both(side_a("barrel"), side_b("barrel") * g.area_b / g.area_a)
         for cause in ("pipes", "hoses"):
             if cause in self.chambers:
@@ -166,17 +167,17 @@ class Springs:
         return 1 / sum(self.compliances(position).values())
 
     def per_chamber_stiffness(self, position: Array) -> Array:
-        """Axial stiffness at a position, per chamber whatever the topology."""
+        """Axial stiffness at a position, per chamber for every topology."""
         return 1 / (sum(self._by_energy(position).values()) + self.series_compliance())
 
 
 def _stretch(design: Design, g: Geometry, wall: Wall, extra: Array) -> Give:
-    """Axial stretch of the barrel under the pressure of the chamber that pulls on it.
+    """Axial stretch of the barrel under the pressure of the chamber that loads it.
 
     Cap-mounted, N = p_B A_B over the whole length: the head moves by e_N L N + e_p (x p_A +
     y p_B), and N narrows both chambers by e_p N per length; e_p is the strain per pressure, y the
-    wetted length of chamber B, the rest of the stroke and what the barrel is longer (`extra`).
-    Head-mounted, the same with p_A A_A. Tie rods take their share of N.
+    wetted length of chamber B: the rest of the stroke and the extra length of the barrel (`extra`).
+    Head-mounted, the same with p_A A_A. Tie rods carry their share of N.
     """
     shortening = wall.swelling.shortening * wall.path.share
     cap = design.cylinder.mount.startswith("cap")
@@ -200,7 +201,7 @@ def springs(
 ) -> Springs:
     """Compliance of chambers, lines, rod, mount, seals and load cell.
 
-    `breakaway` is the force at which the seals slip [N].
+    `breakaway` is the force at which the seals break away [N].
     """
     g = geometry
     extra = g.barrel_length - g.piston_length - g.head_length - g.stroke
@@ -253,7 +254,7 @@ def weakest(s: Springs) -> Array:
 
 
 def weakest_per_chamber(s: Springs) -> Array:
-    """Position of least stiffness of the chambers themselves, whatever the topology."""
+    """Position of least stiffness of the chambers themselves, for every topology."""
     give = s.total()
     return stiffness.weakest_position(
         area_a=s.geometry.area_a,
@@ -269,9 +270,9 @@ def weakest_per_chamber(s: Springs) -> Array:
 
 
 def _softest(curve: Callable[[Array], Array], stroke: Array) -> Array:
-    """Position of least stiffness by narrowing a grid.
+    """Position of least stiffness by grid refinement.
 
-    On real parts: for the stiffness there, the position's own derivative does not count.
+    Uses real parts only: at a minimum the derivative by position does not affect the stiffness.
     """
     length = np.asarray(real(stroke))
     middle, reach = 0.5 * length, 0.5 * length
@@ -304,24 +305,25 @@ def compute(s: Springs, moving_mass: Array, out: MetricArrays) -> Array:
 
 
 def warnings(s: Springs) -> Iterable[tuple[str, str]]:
-    """(metric, sentence) for what the stiffness leaves out or counts on."""
+    """(metric, sentence) for effects that the stiffness excludes or assumes."""
     if s.topology != "per_chamber":
         for metric in ("stiffness_min", "natural_frequency"):
             yield (
                 metric,
                 f"stiffness as published ({s.topology.partition('_')[0]}): totals of oil, barrel "
-                "and lines in series, off by up to 13 % with hoses; per_chamber is the balance",
+                "and lines in series, with errors up to 13 % with hoses; per_chamber is exact",
             )
         for cause in ("pipes", "hoses"):
             give = s.chambers.get(cause)
             if give is not None and not (np.all(give.a0) and np.all(give.b0)):
                 yield (
                     "stiffness_min",
-                    f"as published, {cause} on one chamber only count as rigid: the other side's "
-                    "missing ones are infinitely stiff and are added",
+                    f"as published, {cause} on one chamber only have no effect: the missing "
+                    "ones of the "
+                    "other chamber are added as infinitely stiff",
                 )
     if s.seals is not None:
         yield (
             "",
-            "sticking seals are counted in the stiffness: they hold only until they break away",
+            "the stiffness includes sticking seals, which is valid only until breakaway",
         )

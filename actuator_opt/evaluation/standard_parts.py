@@ -1,4 +1,4 @@
-"""What of a design is a standard size: bore and rod, glands and housings. A remark, no limit."""
+"""Standard sizes in a design: bore and rod, glands and housings. A remark, not a limit."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from .rings import Place, Ring
 PLACES: tuple[Place, ...] = ("piston", "rod")
 
 NEAR = 0.02
-"""Relative difference of a housing's depth or length that counts as none."""
+"""Relative difference of a housing's depth or length that is ignored."""
 
 
 _SIZES, _GLANDS, _SECTIONS = "standard sizes", "standard glands", "ISO 3601-2 sections (AS568)"
 
 
 def sizes(design: Design) -> Check:
-    """Whether bore and rod are ISO 3320 sizes; says the nearest ones where not."""
+    """Whether bore and rod are ISO 3320 sizes; otherwise the nearest sizes."""
     odd = []
     asked: tuple[tuple[Literal["bore", "rod"], float], ...] = (
         ("bore", design.cylinder.bore),
@@ -43,21 +43,21 @@ def sizes(design: Design) -> Check:
 
 
 def glands(rings: Iterable[Ring]) -> Check:
-    """Whether every groove is that of a standard; says what differs where not."""
+    """Whether every groove conforms to a standard; otherwise the differences."""
     odd = [text for ring in rings for text in _remarks(floats(ring, 0))]
     if odd:
         return Check(_GLANDS, "not_checked", "free glands: " + "; ".join(odd), source=_SECTIONS)
-    return Check(_GLANDS, "met", "every gland is a standard one", source=_SECTIONS)
+    return Check(_GLANDS, "met", "all glands are standard", source=_SECTIONS)
 
 
 def _remarks(ring: Ring) -> Iterator[str]:
-    """What of one groove lies outside its standard."""
+    """Deviations of a groove from its standard."""
     if ring.element.seal_type.o_ring_gland:
         yield from _o_ring(ring)
     elif any(housings(ring.element.type, place) for place in PLACES):
         yield from _housing(ring)
     else:
-        yield f"{ring.label}: no standard housing of a {ring.element.type} is known"
+        yield f"{ring.label}: no standard housing for a {ring.element.type}"
 
 
 def _o_ring(ring: Ring) -> Iterator[str]:

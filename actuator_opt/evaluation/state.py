@@ -1,4 +1,4 @@
-"""The state of every load case: pressures, force, speed, temperature and the oil at them."""
+"""State of all load cases: pressures, force, speed, temperature and oil properties."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ from .values import Values, stacked
 
 @dataclass(frozen=True, slots=True)
 class LoadState:
-    """Load-case quantities, (cases, 1) or (cases, designs); pressures are gauge.
+    """Quantities of the load cases, (cases, 1) or (cases, designs); pressures are gauge.
 
-    Moving: the driven chamber at the case pressure (default: supply), the other at return.
-    Holding: ports closed by a critical-centre servo valve against the case's force [Merritt1967].
+    Moving: driven chamber at the case pressure (default: supply), the other at return pressure.
+    Holding: a critical-centre servo valve closes the ports against the force [Merritt1967].
     """
 
     push: np.ndarray
@@ -31,13 +31,13 @@ class LoadState:
     positions: tuple[Array | None, ...]
     """Piston position of every case; None for the worst."""
     reach: Array
-    """Piston position for column and side load: the case's own, or the full stroke (worst)."""
+    """Piston position for column and side load: stated, or the full stroke (worst)."""
     asked: dict[str, Demand]
-    """What the load asks at its worst, where its force is asked, and at both stops of a joint."""
+    """Demands of the load: worst, where its force is largest, and at both stops of a joint."""
     force: Array
-    """At its worst: through a linkage and without a position, at the least lever arm."""
+    """Worst demand: for a linkage without stated position at the least lever arm."""
     speed: Array
-    """At its worst: of a joint without a position, at the largest lever arm."""
+    """Worst force: for a joint without stated position at the largest lever arm."""
     side_load: Array
     temperature: Array
     driven_pressure: Array
@@ -51,18 +51,18 @@ class LoadState:
     """Viscosities and density at the case temperature and zero gauge pressure."""
     dynamic_viscosity_a: Array
     dynamic_viscosity_b: Array
-    """At the pressures of the moving chambers."""
+    """Viscosities at the pressures of the moving chambers."""
     bulk_modulus_a: Array
     bulk_modulus_b: Array
 
 
 def overhang(g: Geometry, state: LoadState) -> Array:
-    """Distance of the rod eye from the middle of the head bearing, at the case's position."""
+    """Distance of the rod eye from the middle of the head bearing, at the position of the case."""
     return state.reach + g.rod_extension + g.eye_offset + (g.head_length + g.plate) / 2
 
 
 def side_reactions(g: Geometry, state: LoadState) -> dict[str, Array]:
-    """Side force that rod and piston guide carry."""
+    """Side forces on rod and piston guides."""
     head, piston = retention.guide_forces(
         side_force=state.side_load, overhang=overhang(g, state), span=g.bearing_span
     )
@@ -72,7 +72,7 @@ def side_reactions(g: Geometry, state: LoadState) -> dict[str, Array]:
 def _positions(
     v: Values, design: Design, geometry: Geometry, joint: Joint | None
 ) -> tuple[Array | None, ...]:
-    """Piston position of every case, by its joint angle or its own; None for the worst."""
+    """Piston position of every case, from its joint angle or stated; None for the worst."""
     rows: list[Array | None] = []
     for case in design.load_cases:
         at = f"load_cases[{case.name}]"
@@ -88,14 +88,14 @@ def _positions(
 
 
 def _reach(geometry: Geometry, positions: Sequence[Array | None]) -> Array:
-    """Position of every case; one number where all are ``worst``, which is full extension."""
+    """Position of every case; a single number if all are ``worst``, which is full extension."""
     if all(position is None for position in positions):
         return geometry.stroke
     return stacked([geometry.stroke if x is None else x for x in positions])
 
 
 def _stated(v: Values, design: Design, field: str, otherwise: Array) -> Array:
-    """A held pressure of every case: the case's own, or `otherwise`."""
+    """A held pressure of every case: stated, or `otherwise`."""
     own = np.array([[getattr(case, field) is not None] for case in design.load_cases])
     return where(own, v.case(field, 0.0), otherwise) if own.any() else otherwise
 
@@ -103,7 +103,7 @@ def _stated(v: Values, design: Design, field: str, otherwise: Array) -> Array:
 def _holding(
     v: Values, design: Design, geometry: Geometry, push: Array, force: Array
 ) -> tuple[Array, Array]:
-    """Pressures that hold the force, where a case does not state its own."""
+    """Pressures that hold the force, unless the case states them."""
     holding_a, holding_b = stiffness.holding_pressures(
         force=where(push, force, -force),
         supply_pressure=v["supply.pressure"],
@@ -120,7 +120,7 @@ def _holding(
 def holding(
     v: Values, design: Design, stock: MaterialValues, geometry: Geometry, s: LoadState, end: str
 ) -> LoadState:
-    """The state with what the load asks at one stop of a joint, held there."""
+    """The state with the demand of the load at one stop of a joint, holding."""
     force = s.asked[end].force
     holding_a, holding_b = _holding(v, design, geometry, s.push, force)
     return replace(
@@ -134,7 +134,7 @@ def holding(
 
 
 def derive(v: Values, design: Design, stock: MaterialValues, geometry: Geometry) -> LoadState:
-    """State of every load case of a design."""
+    """State of all load cases of a design."""
     push = np.array([[case.direction == "push"] for case in design.load_cases])
     joint = joint_module.derive(v, design, geometry)
     positions = _positions(v, design, geometry, joint)

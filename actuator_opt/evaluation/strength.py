@@ -1,7 +1,7 @@
 """Static strength in an evaluation: wall, rod, column, thread, retention, caps, pins, guides.
 
-Loads are the largest the supply can make: p A_A pushing (stall, column), p A_B pulling (rod
-tension), and what the end stop puts through barrel and retention.
+Loads are the largest forces of the supply: p A_A pushing (stall, column), p A_B pulling (rod
+tension), and the end-stop force through barrel and retention.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class Held:
 
 
 def held(v: Values, design: Design, stock: MaterialValues, g: Geometry, wall: Wall) -> Held | None:
-    """The joint of a design under the largest force; None where it states no retention."""
+    """The joint of a design under the largest force; None without retention."""
     joint = joint_of(design)
     if joint is None:
         return None
@@ -72,7 +72,7 @@ def compute(
     held: Held | None,
     out: MetricArrays,
 ) -> None:
-    """Every strength metric."""
+    """All strength metrics."""
     supply = v["supply.pressure"]
     push, pull = supply * g.area_a, supply * g.area_b
     yields, bursts = wall.yield_pressure, wall.burst_pressure
@@ -110,7 +110,7 @@ def _pressure_factors(
     bursts: Mapping[str, Array],
     out: MetricArrays,
 ) -> None:
-    """What the barrel bears over working and proof pressure, its thread included.
+    """Strength of the barrel over working and proof pressure, including its thread.
 
     `yields` and `bursts` are pressures by place.
     """
@@ -136,7 +136,7 @@ def _pressure_factors(
 def _fitting_yield(
     v: Values, stock: MaterialValues, design: Design, section: Rod, push: Array
 ) -> dict[str, Array]:
-    """Yield over working stress of the rod's fittings."""
+    """Yield over working stress of the rod fittings."""
     strength = stock.allowable(section.end_material, "yield_strength")
     if strength is None or design.rod.fitting is None:
         return {}
@@ -151,7 +151,7 @@ def _rod_end(
         why = (
             "no thread stated: add rod.thread"
             if design.rod.thread is None
-            else f"{section.end_material} states no yield strength"
+            else f"{section.end_material} has no yield strength"
         )
         out.skip("thread_factor", why)
         return
@@ -162,7 +162,7 @@ def _rod_end(
 
 
 def _retention(found: Strength | str, out: MetricArrays) -> None:
-    """What holds caps and head: elastic limit and breaking load over the largest axial force."""
+    """Retention of caps and head: elastic limit and breaking load over the largest axial force."""
     if isinstance(found, str):
         out.skip("retention_factor", found)
         out.skip("retention_burst_factor", found)
@@ -172,7 +172,7 @@ def _retention(found: Strength | str, out: MetricArrays) -> None:
 
 
 def own(held: Held | None, out: MetricArrays) -> None:
-    """The joint's own metrics; those of other joints have a reason."""
+    """Metrics of the joint; metrics of other joints get a reason."""
     found = {} if held is None else held.joint.own(held.loaded)
     for joint in JOINTS.values():
         for name, absent in joint.metrics.items():
@@ -183,7 +183,7 @@ def own(held: Held | None, out: MetricArrays) -> None:
 
 
 def _fittings(stock: MaterialValues, bond: Overlap | str, push: Array, out: MetricArrays) -> None:
-    """Bond of the rod's fittings under the push, which is larger than any pull."""
+    """Bond of the rod fittings under the push, which exceeds any pull."""
     if isinstance(bond, str):
         out.skip("fitting_factor", bond)
     else:
@@ -193,22 +193,21 @@ def _fittings(stock: MaterialValues, bond: Overlap | str, push: Array, out: Metr
 def _caps(
     stock: MaterialValues, design: Design, g: Geometry, supply: Array, out: MetricArrays
 ) -> None:
-    """Bending of the end plates; the head's plate and plug bend as one turned part.
+    """Bending of the end plates; plate and plug of the head bend as one turned part.
 
-    The cap hangs on its joint while the piston stands at the far end; on a
-    clevis its neck takes the push, pressure bending the plate around it, and the pull, which
-    comes in at the skirt.
+    The joint supports the cap while the piston is at the far end. On a clevis, the neck carries the
+    push, with pressure bending the plate around it, and the pull, which enters at the skirt.
     """
     name = design.caps.material
     strength = stock.allowable(name, "yield_strength")
     ratio = stock.get(name, "poissons_ratio")
     if strength is None or ratio is None:
-        out.skip("cap_factor", f"{name} states no yield strength or Poisson's ratio")
+        out.skip("cap_factor", f"{name} has no yield strength or Poisson's ratio")
         return
     support = (g.fit.plate_radius + g.fit.radius) / 2
     stresses: dict[str, Array] = {}
     if design.cylinder.end_stop == "internal" or clamped(design) or design.clevis is None:
-        stresses["cap, hung on its skirt"] = end_plate.hung_plate_stress(
+        stresses["cap, supported by its skirt"] = end_plate.hung_plate_stress(
             pressure=supply,
             loaded_radius=g.inner_radius,
             support_radius=support,
@@ -217,10 +216,10 @@ def _caps(
         )
     if design.clevis is not None and design.cylinder.mount == "cap_clevis":
         hub = {"hub_radius": g.pin_diameter / 2, "thickness": g.plate, "poissons_ratio": ratio}
-        stresses["cap, pushing on its neck"] = end_plate.hub_plate_stress(
+        stresses["cap, push on its neck"] = end_plate.hub_plate_stress(
             pressure=supply, edge_force=0.0, edge_radius=g.inner_radius, **hub
         )
-        stresses["cap, pulled by its neck"] = end_plate.hub_plate_stress(
+        stresses["cap, pull on its neck"] = end_plate.hub_plate_stress(
             pressure=0.0, edge_force=supply * g.area_b, edge_radius=support, **hub
         )
     head = end_plate.end_plate_stress(
@@ -239,14 +238,14 @@ def _pins(v: Values, stock: MaterialValues, design: Design, push: Array, out: Me
         return
     strength = stock.allowable(design.clevis.material, "yield_strength")
     if strength is None:
-        out.skip("pin_factor", f"{design.clevis.material} states no yield strength")
+        out.skip("pin_factor", f"{design.clevis.material} has no yield strength")
         return
     stress = retention.pin_shear_stress(force=push, diameter=v["clevis.pin_diameter"])
     out.put("pin_factor", strength / sqrt(3) / stress)
 
 
 def _guided(grooves: Sequence[Groove], length: Array) -> Array:
-    """Length that carries side load: the guide rings', else what the grooves leave of the part."""
+    """Length that carries side load: guide rings, else the part without its grooves."""
     for groove in grooves:
         if groove.role == "guide":
             return groove.count * groove.width
@@ -280,7 +279,7 @@ def _guides(
         material = own if seal.guide is None else seal.guide.material
         allowed = stock.allowable(material, "bearing_strength")
         if allowed is None:
-            out.skip("bearing_factor", f"{material} states no bearing strength")
+            out.skip("bearing_factor", f"{material} has no bearing strength")
             return
         loaded = real(pressures[place]) > 0
         safe = where(loaded, pressures[place], 1.0 + 0 * pressures[place])

@@ -1,8 +1,8 @@
-"""The numbers a design is evaluated at: fixed ones as floats, varied ones as arrays.
+"""Numbers of an evaluated design: fixed numbers as floats, varied numbers as arrays.
 
 Arrays of varied numbers are (designs,); numbers of load cases are (cases, 1) or (cases, designs),
-so that everything a kernel computes broadcasts to (cases, designs). Every PATH that is read is
-remembered: a variable that no model reads is a fault of the design file.
+so all results of a kernel broadcast to (cases, designs). Every PATH that is read is recorded: a
+variable that no model reads is a fault of the design file.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ class Values:
         return self._numbers[path] if found is None else found
 
     def get(self, path: str, default: Array) -> Array:
-        """The number at `path`, or `default` where the design does not state it."""
+        """The number at `path`, or `default` if the design does not state it."""
         return self[path] if path in self else default  # noqa: SIM401 (self[path] records the read)
 
     def case(self, field: str, default: Array = None) -> Array:
-        """One field of every load case, (cases, 1) or (cases, designs)."""
+        """A field of all load cases, (cases, 1) or (cases, designs)."""
         if field not in self._case_cache:
             self._case_cache[field] = stacked(
                 [self.get(f"load_cases[{name}].{field}", default) for name in self.cases]
@@ -51,15 +51,15 @@ class Values:
 
 
 def stacked(rows: Sequence[Array]) -> Array:
-    """One number per load case, floats or arrays (designs,), as (cases, 1) or (cases, designs)."""
+    """A number per load case, floats or arrays (designs,), as (cases, 1) or (cases, designs)."""
     if all(isinstance(row, float) for row in rows):
         return np.array(rows)[:, None]
-    if len(rows) == 1 and namespace(rows[0]) is not np:  # a traced value stands alone
+    if len(rows) == 1 and namespace(rows[0]) is not np:  # a traced value is a scalar
         return rows[0]
     return np.stack(np.broadcast_arrays(*[np.atleast_1d(np.asarray(row)) for row in rows]))
 
 
 def of_case(value: Array, index: int) -> float:
-    """One case's number of an array (cases, 1), (1, 1) or a float."""
+    """The number of a case from an array (cases, 1), (1, 1) or a float."""
     array = np.atleast_2d(np.asarray(value))
     return float(array[min(index, array.shape[0] - 1), 0])

@@ -1,6 +1,6 @@
-"""What the barrel's wall could be instead: thicker or thinner, thin by theory, or of a metal.
+"""Alternatives to the barrel wall: other thickness, thin-wall theory, or metal.
 
-Also how its growth settles beside the pressure step under the piston seal. Floats only.
+Also the decay of bore growth beside the pressure step under the piston seal. Floats only.
 """
 
 from __future__ import annotations
@@ -23,20 +23,20 @@ from .plies import Layer
 from .values import Values
 
 METALS = ("steel_e355", "al_7075_t6")
-"""The metal barrels set beside every wall: the usual honed steel tube, the usual light one."""
+"""Metal barrels to compare with every wall: the usual honed steel tube, the usual light alloy."""
 
 FACTORS = (0.8, 1.25)
-"""Bore growths for which a thickness is sought, over the present one."""
+"""Bore growths, over the actual growth, for which a thickness is computed."""
 
 LARGEST = 2.0
-"""Largest thickness sought, in bore radii."""
+"""Largest thickness tried, in bore radii."""
 
 
 @dataclass(frozen=True, slots=True)
 class Thickness:
-    """Thickness [m] of one layer that brings the bore growth [m] to `factor` times the present.
+    """Thickness [m] of a layer that changes the bore growth [m] by `factor`.
 
-    `mass_per_length` [kg/m] is the whole wall's then; both None where no thickness does it.
+    `mass_per_length` [kg/m] is that of the whole wall; both None if no thickness suffices.
     """
 
     factor: float
@@ -47,7 +47,7 @@ class Thickness:
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """A wall quantity (SI) by the exact tube and by the thin laminate; None where unlimited."""
+    """A wall quantity (SI) by the exact tube and by the thin laminate; None if unlimited."""
 
     name: str
     exact: float | None
@@ -56,7 +56,7 @@ class Difference:
 
 @dataclass(frozen=True, slots=True)
 class Settling:
-    """How growth settles beside the pressure step under the piston seal.
+    """Decay of bore growth beside the pressure step under the piston seal.
 
     `decay_length` is 1/beta [m], `radius_ratio` mid-radius over thickness (thin shells above about
     5), `at_seal` the share of the far growth at the step, `shares` at distances into the pressure
@@ -71,10 +71,10 @@ class Settling:
 
 @dataclass(frozen=True, slots=True)
 class MetalTube:
-    """A barrel of the same bore for the same pressure; without a material, the design's own.
+    """A barrel with the same bore and pressure; without a material, that of the design.
 
-    `for_growth` and `for_burst` are the walls [m] that hold either, None where none does or none
-    is asked; `thickness` is the larger. Growth [m] is at supply pressure without axial force,
+    `for_growth` and `for_burst` are the walls [m] required by either, None if impossible or not
+    required; `thickness` is the larger. Growth [m] is at supply pressure without axial force,
     burst and yield pressures [Pa] are those of the worse axial force, mass is per length [kg/m].
     """
 
@@ -89,12 +89,12 @@ class MetalTube:
 
 
 def single(value: Array) -> float:
-    """The only number of a design's array."""
+    """The only number of a single design's array."""
     return float(np.squeeze(np.real(value)))
 
 
 def least(pressures: Mapping[str, Array]) -> tuple[float | None, str]:
-    """The smallest finite one of some pressures, and its place; None where there is none."""
+    """The smallest finite pressure, and its place; None if there is none."""
     found = {place: single(value) for place, value in pressures.items()}
     usable = {place: value for place, value in found.items() if isfinite(value)}
     if not usable:
@@ -104,7 +104,7 @@ def least(pressures: Mapping[str, Array]) -> tuple[float | None, str]:
 
 
 def governing_force(wall: Wall) -> float:
-    """Axial force [N] at the largest bore growth: that of a load case, or none."""
+    """Axial force [N] at the largest bore growth: that of a load case, or zero."""
     pushed = np.atleast_1d(np.squeeze(np.real(wall.swelling.growth_by_force * wall.path.cases)))
     worst = int(np.argmax(pushed))
     force = np.atleast_1d(np.squeeze(np.real(wall.path.cases)))
@@ -122,7 +122,7 @@ def mass_per_length(layers: Sequence[Layer], densities: Sequence[float], inner: 
 
 
 def main_layer(layers: Sequence[Layer], inner_radius: float) -> int:
-    """The layer that carries the most hoop force; a ply before a liner."""
+    """The layer with the largest hoop force; a ply before a liner."""
     tube = layered_tube(layers=[layer.as_tube() for layer in layers], inner_radius=inner_radius)
     carried = tube.wall[3] * (tube.outer - tube.inner)
     plies = [i for i, layer in enumerate(layers) if not layer.isotropic] or range(len(layers))
@@ -138,7 +138,7 @@ def thicknesses(
     force: float,
     index: int,
 ) -> tuple[Thickness, ...]:
-    """Thickness of layer `index` for bore growths around the present one, by the exact tube."""
+    """Thickness of layer `index` for bore growths around the actual growth, by the exact tube."""
     inner = float(g.inner_radius)
     wall = [layer.as_tube() for layer in layers]
     tube = layered_tube(layers=wall, inner_radius=inner)
@@ -156,7 +156,7 @@ def thicknesses(
                 axial_force_per_pressure=force / pressure,
                 largest_thickness=LARGEST * inner,
             )
-        except ValueError:  # one of them is out of reach: find out which
+        except ValueError:  # some growth is out of reach: find which
             return [x for one in factors for x in solved([one])] if len(factors) > 1 else [None]
         return [float(value) for value in found]
 
@@ -175,7 +175,7 @@ def thicknesses(
 def differences(
     subject: PreparedDesign, v: Values, stock: MaterialValues, done: ModelRun, *, exact: bool
 ) -> tuple[Difference, ...]:
-    """The wall by both laminate theories; `exact` says which one the design uses."""
+    """The wall by both laminate theories; `exact` states which theory the design uses."""
     other = laminated.compute(v, subject.design, stock, done.geometry, done.state, exact=not exact)
     pair = (done.wall, other) if exact else (other, done.wall)
     growths = [float(np.max(np.real(wall.growth))) for wall in pair]
@@ -188,7 +188,7 @@ def differences(
 
 
 def settling(layers: Sequence[Layer], g: Geometry) -> Settling:
-    """Decay length of the wall as a thin shell, and the growth it leaves beside the step."""
+    """Decay length of the wall as a thin shell, and its growth beside the step."""
     turned = []
     for layer in layers:
         c = layer.constants
@@ -228,10 +228,10 @@ def metal_tubes(
     densities: Sequence[float],
     done: ModelRun,
 ) -> tuple[MetalTube, ...]:
-    """The design's wall, and the thinnest barrel of each of `METALS` for the same duty.
+    """The wall of the design, and the thinnest barrel of each of `METALS` for the same duty.
 
-    The duty is its bore growth without axial force, and the burst pressure it must have (its own
-    where that is lower, or where the burst check is waived) under every load path.
+    The duty is its bore growth without axial force, and the required burst pressure for every load
+    path (its own burst pressure if lower, or if the burst check is waived).
     """
     wall, inner, pressure = done.wall, float(done.geometry.inner_radius), v["supply.pressure"]
     burst = least(wall.burst_pressure)[0]
@@ -267,7 +267,7 @@ def metal_tubes(
 
 
 def _stock_of(subject: PreparedDesign, name: str) -> MaterialValues:
-    """One library metal with the knock-downs of this design's temperatures."""
+    """A library metal with the knock-downs of this design's temperatures."""
     material = subject.materials.get(name) or load_library().get(name)
     numbers = {f"materials.{name}.{key}": value for key, value in material.numbers.items()}
     numbers |= {key: subject.numbers[key] for key in numbers if key in subject.numbers}
@@ -291,7 +291,7 @@ def metal_tube(
     burst_pressure: float | None,
     axial_forces_per_pressure: Sequence[float],
 ) -> MetalTube:
-    """The thinnest tube of one metal for a bore strain (no axial force) and a burst pressure."""
+    """The thinnest tube of a metal for a bore strain (no axial force) and a burst pressure."""
     inner, density = inner_radius, stock.get(name, "density")
     elastic = {
         "youngs_modulus": stock.get(name, "youngs_modulus"),
@@ -299,7 +299,7 @@ def metal_tube(
     }
     strength = stock.allowable(name, "yield_strength")
     ultimate = stock.allowable(name, "ultimate_strength")
-    if strength is None or ultimate is None:  # a person's own entry of that name
+    if strength is None or ultimate is None:  # a user entry of that name
         return MetalTube(name, None, None)
     strengths = {"yield_strength": strength, "ultimate_strength": ultimate}
     ratios = [force / (pi * inner * inner) for force in axial_forces_per_pressure]

@@ -1,4 +1,4 @@
-"""The records of a wall seen through its thickness; `through_wall` fills them. SI throughout."""
+"""Records of a wall through its thickness; `wall_study` fills them. SI throughout."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from ..base.numeric import Array
 from .wall_alternatives import Difference, MetalTube, Settling, Thickness
 
 YIELD = "yield"
-"""The criterion of metal layers: von Mises."""
+"""Criterion of metal layers: von Mises."""
 
 
 @dataclass(frozen=True, slots=True)
 class LayerRow:
-    """One layer; `strengths` are what the knock-downs leave at the hottest, `factors` the share.
+    """A layer; `strengths` are after knock-downs at the hottest, `factors` the remaining share.
 
     `angle` in rad from the tube axis; lengths in m, moduli and strengths in Pa.
     """
@@ -37,8 +37,8 @@ class LayerRow:
 class Profile:
     """Stresses [Pa] through the wall under one load, each (layers, points) from the bore.
 
-    `used` is 1/SR by the design's criterion (of a metal: yield), the worst climate's cure stress
-    included; NaN where unknown, None at rest.
+    `used` is 1/SR by the criterion of the design (metals: yield), including the cure stress of the
+    worst climate; NaN if unknown, None at rest.
     """
 
     name: str
@@ -50,7 +50,7 @@ class Profile:
 
 @dataclass(frozen=True, slots=True)
 class Ratio:
-    """Least strength ratio of a layer by one criterion; None where nothing loads it."""
+    """Least strength ratio of a layer by one criterion; None if unloaded."""
 
     layer: int
     criterion: str
@@ -66,7 +66,7 @@ class Ratio:
 class Shares:
     """Stress over strength through the wall, (layers, points), under its most severe load.
 
-    Signed along the fibre, across it and in shear; of metals von Mises over yield. NaN elsewhere.
+    Signed along the fibre, across it and in shear; for metals von Mises over yield. NaN elsewhere.
     """
 
     path: str
@@ -79,7 +79,7 @@ class Shares:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One failure on the way to burst: layer (0 at the bore), mode, pressure [Pa]."""
+    """A failure before burst: layer (0 at the bore), mode, pressure [Pa]."""
 
     layer: int
     mode: str
@@ -88,9 +88,9 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Ladder:
-    """Pressures [Pa] from working to burst, None where not known; places as the metrics name them.
+    """Pressures [Pa] from working to burst, None if unknown; places as in the metrics.
 
-    `steps` are those of the load path with the lowest burst, by maximum stress.
+    `steps` belong to the load path with the lowest burst, by maximum stress.
     """
 
     working: float
@@ -107,14 +107,14 @@ class Ladder:
 
 @dataclass(frozen=True, slots=True)
 class WallStudy:
-    """The whole study; `radius` is (layers, points) [m], `criterion` the design's own."""
+    """The complete study; `radius` is (layers, points) [m], `criterion` that of the design."""
 
     layers: tuple[LayerRow, ...]
     criterion: str
     radius: Array
     profiles: tuple[Profile, ...]
     rest: tuple[Profile, ...]
-    """Cure stress and clamp without pressure, by climate; empty where there are none."""
+    """Cure stress and clamp without pressure, by climate; empty without such stresses."""
     ratios: tuple[Ratio, ...]
     shares: Shares | None
     ladder: Ladder
@@ -125,7 +125,7 @@ class WallStudy:
     metals: tuple[MetalTube, ...]
 
     def to_dict(self) -> dict[str, Any]:
-        """The `wall` object of `evaluate --json` (SI); profiles stand in the report only."""
+        """The `wall` object of `evaluate --json` (SI); profiles are in the report only."""
         found: dict[str, Any] = _finite(
             {
                 "layers": [asdict(row) for row in self.layers],
@@ -142,7 +142,7 @@ class WallStudy:
 
 
 def _finite(value: Any) -> Any:
-    """The same records with None for what has no finite value."""
+    """The same records with None for values that are not finite."""
     if isinstance(value, dict):
         return {key: _finite(one) for key, one in value.items()}
     if isinstance(value, (list, tuple)):

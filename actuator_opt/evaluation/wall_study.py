@@ -1,8 +1,8 @@
-"""The barrel's wall seen through its thickness: what an engineer asks before signing for it.
+"""The barrel wall through its thickness, for a design review.
 
 Layers with their allowables, stresses at eleven points of every layer, strength ratios by every
-criterion, the ladder to burst, and what else the wall could be (`alternatives`). Stresses are
-those of the exact tube, whatever model the design chose. Once for a finished design; floats only.
+criterion, the failure sequence to burst, and alternative walls (`alternatives`). Stresses are
+those of the exact tube, even if the design uses another model. For a single design; floats only.
 """
 
 from __future__ import annotations
@@ -49,12 +49,12 @@ _STRENGTHS = {
         "strength_12",
     ),
 }
-"""What the table of layers shows of isotropic layers, and of plies."""
+"""Properties in the table of layers, for isotropic layers and for plies."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Sight:
-    """Stresses (layers, points, loads): of every load path, then of every climate at rest."""
+    """Stresses (layers, points, loads): for every load path, then every climate at rest."""
 
     paths: tuple[str, ...]
     states: tuple[Climate, ...]
@@ -63,7 +63,7 @@ class _Sight:
     ply: tuple[Array, ...]
 
     def load(self, rows: Sequence[int]) -> Stress:
-        """Stress of some layers by pressure and axial force, (points, layers, 1, paths, 1)."""
+        """Stress of these layers by pressure and axial force, (points, layers, 1, paths, 1)."""
         one, two, three, slip = (
             part[rows, :, : len(self.paths)].transpose(1, 0, 2)[:, :, None, :, None]
             for part in self.ply
@@ -71,7 +71,7 @@ class _Sight:
         return one, two, three, slip
 
     def rest(self, rows: Sequence[int]) -> Stress | None:
-        """Stress of some layers without pressure, (points, layers, climates, 1, 1); None: none."""
+        """Stress of these layers without pressure, (points, layers, climates, 1, 1); None: none."""
         held = [part[rows, :, len(self.paths) :] for part in self.ply]
         if not any(np.any(part) for part in held):
             return None
@@ -81,7 +81,7 @@ class _Sight:
 
 @dataclass(frozen=True, slots=True)
 class _Used:
-    """1/SR of some layers by one criterion, (modes, points, layers, climates, paths)."""
+    """1/SR of these layers by one criterion, (modes, points, layers, climates, paths)."""
 
     criterion: str
     layers: tuple[int, ...]
@@ -90,11 +90,11 @@ class _Used:
 
 
 def study(subject: PreparedDesign, v: Values, done: ModelRun) -> WallStudy | None:
-    """The wall of one evaluated design; None where the paper's own barrel model is in use.
+    """The wall of an evaluated design; None with the barrel model of the paper.
 
     Parameters
     ----------
-    subject, v : the design and its numbers, none of them varied
+    subject, v : the design and its fixed numbers
     done : the pass over its models
     """
     design, model = subject.design, kind(subject.design, subject.materials)
@@ -162,7 +162,7 @@ def _layer_rows(
 
 
 def _sublayers(layers: Sequence[Layer]) -> list[TubeLayer]:
-    """Equal parts of every layer, which leave the tube as it is."""
+    """Equal parts of every layer, which do not change the tube."""
     whole = [layer.as_tube() for layer in layers for _ in range(PARTS)]
     return [replace(part, thickness=part.thickness / PARTS) for part in whole]
 
@@ -176,7 +176,7 @@ def _points(values: Array) -> Array:
 def _look(
     layers: Sequence[Layer], states: tuple[Climate, ...], pressure: float, g: Geometry, wall: Wall
 ) -> _Sight:
-    """Stresses of all loads at all points; what autofrettage left stands in every climate."""
+    """Stresses of all loads at all points; residual stresses of autofrettage in every climate."""
     tube = layered_tube(layers=_sublayers(layers), inner_radius=float(g.inner_radius))
     pulls = [pressure * alternatives.single(area) for area in wall.path.per_pressure.values()]
     clamp = alternatives.single(wall.path.held)
@@ -200,7 +200,7 @@ def _look(
 def _overpressed(layers: Sequence[Layer], left: Autofrettage, radius: Array) -> list[Array]:
     """Residual stresses z, t, r and 1, 2, 3, 12 of autofrettage at all points.
 
-    The wrap is elastic under the pressure and the axial force that the liner leaves on it. In the
+    The wrap is elastic under the pressure and the axial force from the liner. In the
     liner sigma_t - sigma_r is Y out to c and Y c^2/r^2 beyond, less the elastic part ~ 1/r^2;
     sigma_r follows from equilibrium, sigma_z - nu (sigma_r + sigma_t) is constant.
     """
@@ -278,7 +278,7 @@ def _ratios(used: _Used, sight: _Sight) -> list[Ratio]:
 
 
 def _profiles(sight: _Sight, used: Sequence[_Used]) -> tuple[Profile, ...]:
-    """Stresses of every load path, with what they use of the strength."""
+    """Stresses of every load path, with their utilisation of the strength."""
     found = []
     for p, path in enumerate(sight.paths):
         share = np.full(sight.radius.shape, np.nan)
@@ -301,7 +301,7 @@ def _at_rest(sight: _Sight) -> tuple[Profile, ...]:
 
 
 def _shares(layers: Sequence[Layer], sight: _Sight, ratios: Sequence[Ratio]) -> Shares | None:
-    """Stress over strength at the load path and climate of the least strength ratio."""
+    """Stress over strength for the load path and climate of the least strength ratio."""
     loaded = [row for row in ratios if row.ratio is not None]
     if not loaded:
         return None
@@ -333,7 +333,7 @@ def _ladder(
     *,
     exact: bool,
 ) -> Ladder:
-    """The levels as the metrics have them, and the steps of the weakest load path."""
+    """The pressure levels of the metrics, and the failure sequence of the weakest load path."""
     wall, g = done.wall, done.geometry
     yields, yield_place = alternatives.least(wall.yield_pressure)
     first, first_place = alternatives.least(wall.first_ply_pressure)

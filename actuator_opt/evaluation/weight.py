@@ -1,4 +1,4 @@
-"""Mass of every part in an evaluation, each a formula that can be checked by hand."""
+"""Mass of every part in an evaluation, each by a formula that can be checked by hand."""
 
 from __future__ import annotations
 
@@ -79,9 +79,9 @@ def _seals(v: Values, g: Geometry) -> Array:
 
 
 def _rod_ends(v: Values, design: Design, rod: Rod) -> Array:
-    """Stud and plugs of a hollow rod, one thread diameter long, and its bonded fittings.
+    """Stud and plugs of a hollow rod, each one thread diameter long, and its bonded fittings.
 
-    A plug closes either end; a fitting is a plug already, or a sleeve around one.
+    A plug closes each end; a fitting is itself a plug, or a sleeve around a plug.
     """
     density = v[f"materials.{rod.end_material}.density"]
     hole, total = rod.inner_diameter, 0.0
@@ -133,7 +133,7 @@ def parts(
 
 
 def oil(v: Values, design: Design, geometry: Geometry, position: Array = 0.0) -> Array:
-    """Mass of the oil inside with the piston at a distance from the cap end, lines not counted."""
+    """Mass of the oil with the piston at a distance from the cap end, without lines."""
     g = geometry
     volume = (
         v["cylinder.dead_volume_a"]

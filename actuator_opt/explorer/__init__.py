@@ -1,4 +1,4 @@
-"""The explorer: a kept sweep as one page to look through, offline."""
+"""The explorer: a stored sweep as an interactive offline page."""
 
 from .page import ExplorerFile, design_beside, page, write_explorer
 

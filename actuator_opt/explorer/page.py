@@ -1,7 +1,7 @@
-"""The page of an explored sweep: markup, style, script and data in one file that loads nothing.
+"""The page of an explored sweep: markup, style, script and data in a single, self-contained file.
 
-Data stand in a JSON block in which no text can end the block; the script writes texts as texts,
-and the page's own policy runs no other script than this one.
+Data are in a JSON block that no text can close; the script inserts texts as text nodes, and the
+security policy of the page allows no other script.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class ExplorerFile:
     path: Path
     sha256: str
     remarks: tuple[str, ...] = ()
-    """Remarks on its rows."""
+    """Remarks on the rows of the sweep."""
 
     def to_dict(self) -> dict[str, object]:
         """The JSON form."""
@@ -46,8 +46,8 @@ def page(explored: Explored, *, design: str, plugins: Sequence[str] = ()) -> str
     Parameters
     ----------
     explored : the sweep
-    design : name of the base design's file, beside the page
-    plugins : files with the user's metrics, for the command
+    design : file name of the base design, beside the page
+    plugins : files with user metrics, for the command
     """
     data = payload(explored, design=design, plugins=plugins)
     style = _text("page.css")
@@ -64,7 +64,7 @@ def page(explored: Explored, *, design: str, plugins: Sequence[str] = ()) -> str
 
 
 def design_beside(target: Path) -> Path:
-    """The base design's file, beside the page."""
+    """File of the base design, beside the page."""
     return target.with_name(f"{target.stem}_base.yaml")
 
 
@@ -75,14 +75,14 @@ def write_explorer(
     plugins: Sequence[str] = (),
     remarks: Sequence[str] = (),
 ) -> list[ExplorerFile]:
-    """Write the page, and beside it the base design that its command names.
+    """Write the page, and beside it the base design that its command uses.
 
     Parameters
     ----------
     explored : the sweep
-    target : the page's file
-    plugins : files with the user's metrics, for the command
-    remarks : on the rows, printed with the page
+    target : file of the page
+    plugins : files with user metrics, for the command
+    remarks : remarks on the rows, printed with the page
 
     Raises
     ------
@@ -92,7 +92,7 @@ def write_explorer(
     design = design_beside(target)
     if explored.damaged:
         rows = "1 row is" if explored.damaged == 1 else f"{explored.damaged} rows are"
-        remarks = [*remarks, f"{rows} damaged and left out; the sweep's own command computes again"]
+        remarks = [*remarks, f"{rows} damaged and left out; run the sweep again to restore them"]
     texts = {
         target: page(explored, design=design.name, plugins=plugins),
         design: explored.kept.design,
@@ -117,6 +117,6 @@ def _hash(text: str) -> str:
 
 
 def _json(data: dict[str, Any]) -> str:
-    """JSON in which nothing reads as markup."""
+    """JSON in which nothing parses as markup."""
     text = encoded(data, ensure_ascii=False, separators=(",", ":"))
     return re.sub("[<>&\u2028\u2029]", lambda found: _ESCAPES[found[0]], text)

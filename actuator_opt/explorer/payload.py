@@ -1,4 +1,4 @@
-"""The data of the explorer's page: columns, limits, sections, words."""
+"""Data of the explorer page: columns, limits, sections, texts."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ from ..sweeps.sample import MORE_IS_BETTER, better
 from ..version import VERSION
 
 AXES = 8
-"""Parallel axes shown at first."""
+"""Number of parallel axes shown at first."""
 
 TOLD = 3
-"""Most reasons of failed designs that are told."""
+"""Most failure reasons that are listed."""
 
 MOST = 1e30
-"""Margin told of what is further off, which single precision holds."""
+"""Largest margin that is stored, which single precision can represent."""
 
 MM = 1000.0
 _WORDS = {"bore": "bore ⌀", "rod": "rod ⌀", "closed_length": "closed length"}
 
 
 def payload(explored: Explored, *, design: str, plugins: Sequence[str]) -> dict[str, Any]:
-    """Everything the page shows, as JSON."""
+    """All data of the page, as JSON."""
     columns = _columns(explored)
     limits, held = _limits(explored)
     command = ["actuator-opt", "report", design]
@@ -52,7 +52,7 @@ def payload(explored: Explored, *, design: str, plugins: Sequence[str]) -> dict[
         "columns": columns,
         "exact": _exact(explored),
         "command": command,
-        "where": f"Run it where {design} stands, the base design written beside this page.",
+        "where": f"Run it in the folder of {design}, the base design beside this page.",
         "limits": limits,
         "held": held,
         "shapes": _shapes(explored),
@@ -67,7 +67,7 @@ def _base64(values: Array, kind: str) -> str:
 
 
 def _column(name: str, label: str, unit: str, values: Array) -> dict[str, Any]:
-    """One column in the unit people read; a number where all rows have the same."""
+    """A column in its display unit; a single number if all rows are equal."""
     told: dict[str, Any] = {"name": name, "label": label, "unit": unit_text(unit)}
     if np.isfinite(values[0]) and (values == values[0]).all():
         return told | {"value": float(np.float32(values[0]))}
@@ -75,9 +75,9 @@ def _column(name: str, label: str, unit: str, values: Array) -> dict[str, Any]:
 
 
 def _columns(explored: Explored) -> list[dict[str, Any]]:
-    """What varies, then the least margin and every metric that some design has.
+    """Varied inputs, then the least margin and every metric that any design has.
 
-    `better` is 1 where more is better, -1 where less is, 0 where nothing says so.
+    `better` is 1 if larger values are better, -1 if smaller values are, 0 if neither.
     """
     study, numbers = explored.study, explored.numbers
     count = len(study.order)
@@ -86,7 +86,7 @@ def _columns(explored: Explored) -> list[dict[str, Any]]:
         quantity = quantity_of(column.name, study.design)
         shown = quantity.to_display(numbers[:, k])
         found.append(_column(column.name, column.name, quantity.unit, np.asarray(shown)))
-    percent = np.round(100 * numbers[:, -3], 9) + 0.0  # no rounding of zero on the axis
+    percent = np.round(100 * numbers[:, -3], 9) + 0.0  # no rounding errors of zero on the axis
     margin = _column("least_margin", "least margin of all", "%", percent)
     found.append(margin | {"better": MORE_IS_BETTER})
     for k, name in enumerate(study.metrics, count):
@@ -99,7 +99,7 @@ def _columns(explored: Explored) -> list[dict[str, Any]]:
 
 
 def _texts(explored: Explored, path: str) -> dict[str, Any]:
-    """A column of texts: the number of each row's text."""
+    """A column of texts, as the index of each row's text."""
     texts = explored.kept.texts[path]
     number = [texts.index(one[path]) for one in explored.variants]
     codes = _base64(np.array(number)[explored.variant], "<u2")
@@ -107,7 +107,7 @@ def _texts(explored: Explored, path: str) -> dict[str, Any]:
 
 
 def _exact(explored: Explored) -> list[dict[str, Any]]:
-    """What varies to the last bit, in SI, for the command."""
+    """Varied inputs in SI with all digits, for the command."""
     found = []
     for path in explored.kept.texts:
         column = _texts(explored, path)
@@ -119,7 +119,7 @@ def _exact(explored: Explored) -> list[dict[str, Any]]:
 
 
 def _limits(explored: Explored) -> tuple[list[dict[str, Any]], str]:
-    """Limits that cut some design, the person's own first; and how many cut none."""
+    """Limits that exclude designs, those of the user first; and the number of other limits."""
     study = explored.study
     base = prepare(study.design, plugins=study.plugins).values()
     quantities = with_own(study.plugins)
@@ -137,7 +137,7 @@ def _limits(explored: Explored) -> tuple[list[dict[str, Any]], str]:
         moved = limit.path in varied or limit.lever in varied
         bound = None if moved else float(limit.value(base))
         quantity = quantities[limit.metric]
-        words = f"{SENSES[limit.sense]} a limit that varies"
+        words = f"{SENSES[limit.sense]} a varying limit"
         if bound is not None:
             words = limit_text(quantity, limit.sense, bound)
         found.append(
@@ -149,18 +149,18 @@ def _limits(explored: Explored) -> tuple[list[dict[str, Any]], str]:
                 "margin": _base64(np.clip(margin, -MOST, MOST), "<f4"),
             }
         )
-    return found, f"{held} further checks are met by every design here." if held else ""
+    return found, f"Every design meets {held} further checks." if held else ""
 
 
 def _label(limit: Limit, quantity: Quantity, plugins: Sequence[Plugin]) -> str:
-    """A limit in words: what it is on, and the load case it is of."""
+    """A limit in words: its quantity and its load case."""
     own = any(plugin.name == limit.name for plugin in plugins)
     words = limit.name if own or limit.origin == "check" else quantity.label
     return f"{words} ({limit.case})" if limit.case else words
 
 
 def _start(explored: Explored, columns: list[dict[str, Any]]) -> dict[str, Any]:
-    """What is shown at first: the objective over the first metric asked for, else what varies."""
+    """Initial axes: the objective over the first selected metric, else the varied inputs."""
     place = {column["name"]: k for k, column in enumerate(columns)}
     study = explored.study
     margin = place["least_margin"]
@@ -171,7 +171,7 @@ def _start(explored: Explored, columns: list[dict[str, Any]]) -> dict[str, Any]:
     wanted = explored.shown
     first = (*varied[: AXES - max(3, len(wanted))], *wanted, goal, *asked)
     shown = [k for k in first if "value" not in columns[place[k]]]
-    last = [] if wanted else [margin]  # of a front it is zero all along
+    last = [] if wanted else [margin]  # zero for every design of a front
     axes = sorted({*(place[name] for name in dict.fromkeys(shown[: AXES - len(last)])), *last})
     moved = next((k for k in numbers if "value" not in columns[place[k]]), varied[0])
     across = next((k for k in asked if k != goal and "value" not in columns[place[k]]), moved)
@@ -187,29 +187,29 @@ def _start(explored: Explored, columns: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def _summary(explored: Explored) -> str:
-    """What the page holds, what was left out, what failed."""
+    """Contents of the page, omitted rows and failed designs."""
     kept = explored.kept
     good, shown = kept.rows - explored.failed, len(explored.numbers)
     feasible = int((explored.numbers[:, -1] == 1.0).sum())
-    words = f"{explored.origin}, {good} design{'s' * (good != 1)} with an answer"
+    words = f"{explored.origin}, {good} design{'s' * (good != 1)} evaluated"
     if explored.thinned:
         words += (
-            f"; {shown} of them are shown: one in {-(-good // explored.most)}, spread evenly, "
+            f"; {shown} are shown: one in {-(-good // explored.most)}, spread evenly, "
             f"and the {BEST} best feasible"
         )
-    words += f". {feasible} of those shown meet every requirement and check."
+    words += f". {feasible} of these meet every requirement and check."
     if explored.failed:
         reasons = list(kept.failures.items())
         told = "; ".join(f"{times} times {reason}" for reason, times in reasons[:TOLD])
         more = f"; and {len(reasons) - TOLD} more reasons" if len(reasons) > TOLD else ""
-        words += f" {explored.failed} failed, which have no numbers: {told}{more}."
+        words += f" {explored.failed} failed and have no results:  {told}{more}."
     if explored.damaged:
         words += f" {explored.damaged} damaged and left out."
     return f"{pretty(words)} Models of version {VERSION}."
 
 
 def _shapes(explored: Explored) -> dict[str, Any]:
-    """Templates once each, what of the dimensions moves them, and the template of every row."""
+    """Templates, the dimensions that move them, and the template of every row."""
     count = len(explored.numbers)
     which = np.full(count, -1)
     slots: list[Array] = []
@@ -232,12 +232,12 @@ def _shapes(explored: Explored) -> dict[str, Any]:
         "templates": [json.loads(text) for text in known],
         "which": _base64(which, "<i2"),
         "lengths": [_WORDS.get(name, name) for name in LENGTHS],
-        "hidden": "the rod's fittings, whose dimensions vary" if hidden else "",
+        "hidden": "the rod's fittings, because their dimensions vary" if hidden else "",
     }
 
 
 def _template(template: Template, used: list[int]) -> dict[str, Any]:
-    """A template in mm: its numbers where every used dimension is 0, and what each adds."""
+    """A template in mm: its numbers at zero dimensions, and their slopes by each dimension."""
     zero = template.numbers - template.slopes[:, used] @ template.origin[used]
     rows, places = np.nonzero(template.slopes[:, used])
     return {

@@ -1,4 +1,4 @@
-"""Files for other programs: STEP of the turned parts, DXF of the section, XLSX of the numbers."""
+"""Files for other programs: STEP of turned parts, DXF of the section, XLSX of the results."""
 
 from .files import FORMATS, ExportFile, require_formats, write_exports
 

@@ -1,6 +1,6 @@
 """Dimensions of the section as DIMENSION entities: diameters above the parts, lengths below.
 
-They measure the drawing itself (DIMLFAC 1), so a program that moves a line shows the new length.
+They measure the drawing itself (DIMLFAC 1): if a line is moved in CAD, its dimension follows.
 """
 
 from __future__ import annotations
@@ -16,15 +16,16 @@ from .solids import Profile
 
 LAYER = "dimensions"
 STYLE = "TRUE"
-_COLOUR = 5
+_COLOUR, _BY_LAYER, _BLACK_OR_WHITE = 153, 256, 7
+"""Of the lines, which show on black and on white; letters take the colour that the ground lacks."""
 
 _SMALLEST = 1e-6
-"""Lengths below this (mm) are not dimensioned."""
+"""Shorter lengths (mm) are not dimensioned."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Diameter:
-    """A diameter and where along the axis it is dimensioned."""
+    """A diameter and its axial position in the drawing."""
 
     x: float
     value: float
@@ -40,7 +41,7 @@ class _Diameter:
 
 
 def number(value: float) -> str:
-    """A length as the dimension style shows it: three decimals, no trailing zeros.
+    """A length in the format of the dimension style: three decimals, no trailing zeros.
 
     >>> number(12.0), number(7.12345)
     ('12', '7.123')
@@ -58,15 +59,15 @@ def set_up(document: Any, paper: Paper) -> None:
         "dimexo": 1.0 * paper.scale, "dimexe": 1.5 * paper.scale, "dimgap": 0.8 * paper.scale,
         "dimtad": 1, "dimtih": 0, "dimtoh": 0, "dimdec": 3, "dimzin": 8, "dimdsep": ord("."),
         "dimtxsty": "Standard",
-        "dimclrd": _COLOUR,
-        "dimclre": _COLOUR,
-        "dimclrt": _COLOUR,
+        "dimclrd": _BY_LAYER,
+        "dimclre": _BY_LAYER,
+        "dimclrt": _BLACK_OR_WHITE,
     }.items():  # fmt: skip
         style.dxf.set(name, value)
 
 
 def reach(profiles: Sequence[Profile], x: float) -> float:
-    """Largest radius of the parts at a position along the axis."""
+    """Largest radius of the parts at an axial position."""
     found = [
         max(r for _, r in profile)
         for profile in profiles
@@ -76,7 +77,7 @@ def reach(profiles: Sequence[Profile], x: float) -> float:
 
 
 def _stations(lengths: Mapping[str, float]) -> dict[str, tuple[float, float]]:
-    """Start and end of every length along the axis, mm."""
+    """Start and end of every axial length, mm."""
     mm = {name: 1000 * value for name, value in lengths.items()}
     face = mm["eye_offset"]
     start = face + mm["plate"]
@@ -107,19 +108,19 @@ def lengths_below(
     profiles: Sequence[Profile],
     paper: Paper,
 ) -> float:
-    """Dimension lengths below the parts, row by row.
+    """Draw dimension lengths below the parts, row by row.
 
     Parameters
     ----------
     space : model space
     evaluated : `lengths` of the evaluation
-    skirts : start and end of the skirt to dimension, mm, if there is one
+    skirts : start and end of the dimensioned skirt, mm, if any
     profiles : half-sections of all parts
     paper : sizes of letters and gaps
 
     Returns
     -------
-    the lowest y used
+    the lowest y coordinate used
     """
     spans = _stations(evaluated) | {f"skirt {k}": span for k, span in enumerate(skirts)}
     lengths = [Length(*span, _words(name, span)) for name, span in spans.items()]
@@ -150,7 +151,7 @@ def lengths_below(
 
 
 def _wanted(evaluated: Mapping[str, float], profiles: Sequence[Profile]) -> list[_Diameter]:
-    """Diameters of rod, bore and barrel across the chamber, that of the plate across it."""
+    """Diameters of rod, bore and barrel at the chamber, and of the plate."""
     spans = _stations(evaluated)
     low, high = spans["stroke"]
     names = {
@@ -174,7 +175,7 @@ def _wanted(evaluated: Mapping[str, float], profiles: Sequence[Profile]) -> list
 def diameters_above(
     space: Any, evaluated: Mapping[str, float], profiles: Sequence[Profile], paper: Paper
 ) -> float:
-    """Dimension diameters, their texts in one row above the parts; returns the highest y used."""
+    """Draw diameters, with texts in one row above the parts; returns the highest y used."""
     wanted = _wanted(evaluated, profiles)
     top = max(r for profile in profiles for _, r in profile)
     widths = [paper.width(one.shown) for one in wanted]

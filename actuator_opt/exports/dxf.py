@@ -1,4 +1,4 @@
-"""The longitudinal section as DXF: true lengths in mm, hatched, dimensioned, a layer per part."""
+"""The longitudinal section as DXF: true lengths in mm, hatched, dimensioned, one layer per part."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .solids import EYES, Profile, joined, millimetres, title
 from .words import plain
 
 _SHEET = 270.0
-"""Length of paper (mm) the section should fit: A3 with room for dimensions."""
+"""Paper length (mm) for the section: A3 with space for dimensions."""
 
 _SCALES = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0)
 """mm of the drawing per mm of paper: 10:1 to 1:200 of ISO 5455."""
@@ -28,7 +28,8 @@ _COMPOSITE = ((60.0, 0.8), (120.0, 0.8), (75.0, 1.1), (105.0, 1.1))
 _POLYMER = ((15.0, 1.2),)
 """Angle and spacing (mm of paper) of hatches, by material in order of appearance."""
 
-_COLOURS = (7, 30, 34, 3, 4, 6, 140, 94, 200, 42, 174, 22)
+_COLOURS = (7, 23, 142, 94, 6, 42, 134, 200, 54, 213, 233, 74)
+"""Of the layers, by part: each shows on a black ground and on a white ground (7 is the other)."""
 
 _Corner: TypeAlias = tuple[float, float, float]
 """x, y and bulge of a polyline: tan of a quarter of the arc to the next corner."""
@@ -44,7 +45,7 @@ def paper_for(length: float) -> Paper:
 
 
 def layer_name(part: str) -> str:
-    """A part's layer: letters that layers may not have become underscores."""
+    """Layer name of a part; characters that layers do not allow become underscores."""
     return re.sub(r"[<>/\\\":;?*|=`',]", "_", part)
 
 
@@ -53,7 +54,7 @@ def _straight(points: Profile) -> list[_Corner]:
 
 
 def _halves(profile: Profile) -> list[list[_Corner]]:
-    """What the section plane cuts: both halves, or one piece of a part that meets the axis."""
+    """The section of a part: both halves, or a single piece if the part meets the axis."""
     below = tuple((x, -r) for x, r in reversed(profile))
     on_axis = [k for k, (_, r) in enumerate(profile) if r == 0]
     if not on_axis:
@@ -78,14 +79,14 @@ def _profiles(outline: Outline) -> list[Profile]:
 
 
 def _cut(evaluation: Evaluation, outline: Outline) -> list[list[_Corner]]:
-    """Closed lines of a part in the plane of the section."""
+    """Closed lines of a part in the section plane."""
     if outline.part in EYES:
         at, side = ("pin_cap", 1) if outline.part == "cap eye" else ("pin_rod", -1)
         lengths = evaluation.lengths
         return _eye(1000 * lengths[at], 1000 * lengths["pin"], side)
     lines = [half for profile in _profiles(outline) for half in _halves(profile)]
     if outline.bars % 2:
-        return [line for line in lines if line[0][1] > 0]  # none stands opposite the first
+        return [line for line in lines if line[0][1] > 0]  # no bar opposite the first
     return lines
 
 
@@ -106,7 +107,7 @@ def _hatch(
     *,
     nested: bool,
 ) -> None:
-    """Hatch closed lines, in one piece where one lies in another; without a look, fill them."""
+    """Hatch closed lines, jointly if nested; fill them if no hatch style is given."""
     for group in [lines] if nested else [[line] for line in lines]:
         hatch = space.add_hatch(dxfattribs={**attributes, "hatch_style": 0})
         if look is None:
@@ -121,7 +122,7 @@ def _hatch(
 
 
 def _across(angle: float, spacing: float) -> tuple[float, float]:
-    """Offset from one hatch line to the next."""
+    """Offset between neighbouring hatch lines."""
     turn = radians(angle + 90.0)
     return spacing * cos(turn), spacing * sin(turn)
 
@@ -160,13 +161,13 @@ def _words(
     size = f"1:{scale:g}" if scale >= 1 else f"{1 / scale:g}:1"
     lines = [
         evaluation.name,
-        f"Section, retracted. Lengths in mm, drawn 1:1; letters for print at {size}.",
+        f"Section, retracted. Lengths in mm, drawn 1:1; text height for print at {size}.",
         made,
         "",
         *(f"{title(one.part)}: {one.material}" for one in outlines),
         "",
-        "Not drawn, for the models have no shape of them: threads, ports, fillets, chamfers.",
-        "Rings fill what they take of their grooves; their own sections are not drawn.",
+        "Not drawn, as the models have no geometry for them: threads, ports, fillets, chamfers.",
+        "Rings are drawn as rectangles in their grooves, without their true sections.",
     ]
     lines += notes(evaluation.design, evaluation.lengths)
     x, y = corner
@@ -180,7 +181,7 @@ def _words(
 
 @contextmanager
 def _repeatable(ezdxf: Any) -> Iterator[None]:
-    """Same input, same bytes: no time, no random identifiers."""
+    """Make the output reproducible: no time, no random identifiers."""
     before = ezdxf.options.write_fixed_meta_data_for_testing
     ezdxf.options.write_fixed_meta_data_for_testing = True
     try:
@@ -192,14 +193,14 @@ def _repeatable(ezdxf: Any) -> Iterator[None]:
 def _ordered_classes(document: Any) -> None:
     """Register the classes in the order of their names.
 
-    ezdxf takes them from a set, whose order differs from process to process.
+    ezdxf reads them from a set, whose order differs between processes.
     """
     for name in sorted(document.entitydb.dxf_types_in_use()):
         document.classes.add_class(name)
 
 
 def _skirts(outlines: Sequence[Outline], start: float) -> list[tuple[float, float]]:
-    """The skirt of the cap end, if there is one."""
+    """The skirt of the cap end, if any."""
     caps = [profile for one in outlines if one.part == "caps" for profile in _profiles(one)]
     ends = [max(x for x, _ in profile) for profile in caps[:1]]
     return [(start, end) for end in ends if end > start]
@@ -210,9 +211,9 @@ def dxf(evaluation: Evaluation, *, program: str, date: str | None = None) -> byt
 
     Parameters
     ----------
-    evaluation : to draw
-    program : what wrote it
-    date : ISO date, or None for none
+    evaluation : evaluation of the design to draw
+    program : name of the writing program
+    date : ISO date, or None
 
     Raises
     ------

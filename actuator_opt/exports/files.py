@@ -1,4 +1,4 @@
-"""An evaluation as files for other programs, all of them whole or none."""
+"""Write an evaluation as files for other programs: all complete, or none."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..base.suggest import shown
 from ..evaluation.result import Evaluation
 
 FORMATS = ("step", "dxf", "xlsx")
-"""Formats, each the ending of its files."""
+"""Formats, which are also the file suffixes."""
 
 _NEEDS = {"dxf": "ezdxf", "xlsx": "openpyxl"}
 
@@ -32,19 +32,19 @@ class ExportFile:
 
 
 def require_formats(formats: Sequence[str]) -> tuple[str, ...]:
-    """The formats asked for, each once; refuse what is none, and what lacks its library.
+    """The requested formats without duplicates; refuse unknown formats and missing libraries.
 
     Raises
     ------
-    UsageError : no such format, or none named
-    ActuatorError : its library is not installed
+    UsageError : unknown format, or no format
+    ActuatorError : the library is not installed
     """
     if not formats:
-        raise UsageError(Diagnostic("no format named", f"add --format {'|'.join(FORMATS)}"))
+        raise UsageError(Diagnostic("no format given", f"add --format {'|'.join(FORMATS)}"))
     for name in formats:
         if name not in FORMATS:
-            remedy = f"use {', '.join(FORMATS)}, each with a --format of its own"
-            raise UsageError(Diagnostic(f'no format "{shown(name)}"', remedy))
+            remedy = f"use {', '.join(FORMATS)}, each with its own --format"
+            raise UsageError(Diagnostic(f'unknown format "{shown(name)}"', remedy))
         if name in _NEEDS:
             library(_NEEDS[name])
     return tuple(dict.fromkeys(formats))
@@ -79,18 +79,18 @@ def write_exports(
 
     Parameters
     ----------
-    evaluation : of the design to export
-    formats : of `FORMATS`
-    folder, stem : where to; the folder is made if missing
-    date : ISO date the files carry, or None for none
+    evaluation : evaluation of the design to export
+    formats : some of `FORMATS`
+    folder, stem : folder (created if missing) and file name without suffix
+    date : ISO date in the files, or None
 
     Returns
     -------
-    the files, in the order asked for
+    the files, in the order of `formats`
 
     Raises
     ------
-    InputError : a part cannot be drawn, or the folder cannot be written; nothing is left
+    InputError : a part cannot be drawn, or the folder is not writable; no file is left
     """
     asked = require_formats(formats)
     contents = {f"{stem}.{name}": _content(evaluation, name, date) for name in asked}

@@ -1,6 +1,6 @@
-"""Where dimensions of the section stand, so that none meets another: no file, only numbers.
+"""Layout of the section's dimensions without overlaps, independent of the file format.
 
-Everything is in mm of the drawing; `Paper` says how large letters and gaps are in it.
+All lengths are in mm of the drawing; `Paper` gives the size of letters and gaps.
 """
 
 from __future__ import annotations
@@ -9,12 +9,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 LETTER = 0.95
-"""Width of a letter over its height, on the wide side: fonts differ between programs."""
+"""Upper estimate of character width over height, as fonts differ between programs."""
 
 
 @dataclass(frozen=True, slots=True)
 class Paper:
-    """Sizes at the scale the drawing is meant to be printed at."""
+    """Sizes of drawing elements at the intended print scale."""
 
     scale: float
     """mm of the drawing per mm of paper."""
@@ -31,7 +31,7 @@ class Paper:
 
     @property
     def row(self) -> float:
-        """From one row of dimensions to the next."""
+        """Distance between rows of dimensions."""
         return 8.0 * self.scale
 
     def width(self, text: str) -> float:
@@ -41,7 +41,7 @@ class Paper:
 
 @dataclass(frozen=True, slots=True)
 class Length:
-    """A length along the axis, as it is to be dimensioned."""
+    """An axial length with its dimension text."""
 
     start: float
     end: float
@@ -50,7 +50,7 @@ class Length:
 
 @dataclass(frozen=True, slots=True)
 class Placed:
-    """A length with its row, counted outwards, and the middle of its text."""
+    """A length with its row, counted outwards, and the centre of its text."""
 
     length: Length
     row: int
@@ -63,7 +63,7 @@ def _clear(middle: float, half: float, lines: Sequence[float]) -> bool:
 
 
 def _middle(length: Length, paper: Paper, lines: Sequence[float]) -> tuple[float, bool]:
-    """Middle of a text over its own dimension line, else beside it, clear of all lines."""
+    """Centre of a text over its own dimension line, else beside it, clear of all lines."""
     half, pad = paper.width(length.text) / 2, 0.5 * paper.letter
     centre = (length.start + length.end) / 2
     inner = [x for x in lines if length.start < x < length.end]
@@ -83,10 +83,10 @@ def _middle(length: Length, paper: Paper, lines: Sequence[float]) -> tuple[float
 
 
 def rows(lengths: Sequence[Length], paper: Paper) -> list[Placed]:
-    """Put every length into a row: short ones next to the parts, long ones outside.
+    """Assign every length to a row: short lengths next to the parts, long lengths outside.
 
-    Extension lines of a length pass through all rows nearer to the parts, so a text keeps clear
-    of the ends of every length in its own row and further out.
+    Extension lines of a length cross all rows nearer to the parts, so a text must not overlap the
+    ends of lengths in its own row or further out.
     """
     ordered = sorted(set(lengths), key=lambda one: (round(one.end - one.start, 6), one.start))
     ends = sorted({x for one in ordered for x in (one.start, one.end)})

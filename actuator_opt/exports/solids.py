@@ -1,4 +1,4 @@
-"""The turned parts as bodies of revolution: half-sections of the drawing, joined and checked."""
+"""Turned parts as bodies of revolution: half-sections of the drawing, merged and checked."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from ..evaluation.result import Evaluation, Outline
 
 Point: TypeAlias = tuple[float, float]
 Profile: TypeAlias = tuple[Point, ...]
-"""Corners (axial position, radius) in mm, anticlockwise, none of them on a straight line."""
+"""Corners (axial position, radius) in mm, anticlockwise, without collinear points."""
 
 _Edge: TypeAlias = tuple[Point, Point]
 
 _DIGITS = 9
-"""Decimals of a millimetre that are kept: a thousandth of a nanometre."""
+"""Decimals of a millimetre in files: a thousandth of a nanometre."""
 
 _NAMES = {
     "caps": ("cap, cap end", "cap, rod end"),
     "rod.fitting": ("rod.fitting, piston end", "rod.fitting, rod end"),
 }
-"""What the bodies of a part are called, from the cap end on; others have the part's name."""
+"""Names of a part's bodies, from the cap end on; others have the name of the part."""
 
 _RINGS = tuple(
     f"{place} {ring}"
@@ -33,15 +33,15 @@ _RINGS = tuple(
 )
 EYES = ("cap eye", "rod eye")
 NOT_TURNED = ("oil", *_RINGS, *EYES)
-"""Parts of the section that are no bodies: what the model says of them is no shape of theirs."""
+"""Parts of the section that are not exported: the model does not define their shape."""
 
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """A body of revolution about an axis along x; lengths in mm.
+    """A body of revolution about the x axis; lengths in mm.
 
-    `profile` counts from the body's own first face; `places` are where its origin lies in the
-    assembly, one for each time it is there.
+    `profile` starts at the first face of the body; `places` are the positions of its origin in the
+    assembly, one per copy.
     """
 
     name: str
@@ -52,7 +52,7 @@ class Body:
 
 
 def title(part: str) -> str:
-    """What a part of the outlines is called in files: by its PATH where it has one.
+    """Name of an outline's part in files: its PATH if it has one.
 
     >>> title("layup[1]"), title("glands"), title("rod.layup[0]")
     ('barrel.layup[1]', 'head', 'rod.layup[0]')
@@ -75,7 +75,7 @@ def area(profile: Sequence[Point]) -> float:
 
 
 def edges(profile: Sequence[Point]) -> list[_Edge]:
-    """Every edge of a polygon, the closing one included."""
+    """Edges of a polygon, including the closing edge."""
     return list(pairwise((*profile, *profile[:1])))
 
 
@@ -84,7 +84,7 @@ def _turn(a: Point, b: Point, c: Point) -> float:
 
 
 def tidy(profile: Sequence[Point]) -> Profile:
-    """The same polygon anticlockwise from its lowest corner, without corners that do not turn."""
+    """The same polygon anticlockwise from its lowest corner, without collinear corners."""
     corners = [a for a, b in edges(profile) if a != b]
     around = [(corners[k - 1], b, corners[(k + 1) % len(corners)]) for k, b in enumerate(corners)]
     kept = [b for a, b, c in around if _turn(a, b, c) != 0]
@@ -95,7 +95,7 @@ def tidy(profile: Sequence[Point]) -> Profile:
 
 
 def _between(point: Point, edge: _Edge) -> bool:
-    """Whether a point lies inside an edge along an axis of the drawing."""
+    """Whether a point lies inside an axis-parallel edge."""
     (x1, r1), (x2, r2) = edge
     if x1 == x2 == point[0]:
         return min(r1, r2) < point[1] < max(r1, r2)
@@ -105,13 +105,13 @@ def _between(point: Point, edge: _Edge) -> bool:
 
 
 def _pieces(edge: _Edge, corners: Iterable[Point]) -> Iterator[_Edge]:
-    """An edge, cut where corners lie on it."""
+    """An edge, split at corners that lie on it."""
     on = sorted({p for p in corners if _between(p, edge)}, reverse=edge[0] > edge[1])
     yield from pairwise((edge[0], *on, edge[1]))
 
 
 def _joined(one: Profile, other: Profile) -> Profile | None:
-    """Two polygons that share edges as one; None where they share none, or more than one run."""
+    """Two polygons with a common run of edges, merged; None if they share no run or several."""
     corners = (*one, *other)
     pieces = [piece for edge in (*edges(one), *edges(other)) for piece in _pieces(edge, corners)]
     left = [(a, b) for a, b in pieces if (b, a) not in pieces]
@@ -125,7 +125,7 @@ def _joined(one: Profile, other: Profile) -> Profile | None:
 
 
 def joined(polygons: Iterable[Profile]) -> list[Profile]:
-    """Polygons joined wherever they share an edge, in order along the axis.
+    """Polygons merged along shared edges, in axial order.
 
     >>> plate = ((0.0, 0.0), (2.0, 0.0), (2.0, 5.0), (0.0, 5.0))
     >>> skirt = ((2.0, 4.0), (6.0, 4.0), (6.0, 5.0), (2.0, 5.0))
@@ -146,7 +146,7 @@ def joined(polygons: Iterable[Profile]) -> list[Profile]:
 
 
 def _crosses(one: _Edge, other: _Edge) -> bool:
-    """Whether two edges that are no neighbours meet."""
+    """Whether two edges that are not neighbours intersect."""
     (a, b), (c, d) = one, other
     sides = _turn(a, b, c) * _turn(a, b, d), _turn(c, d, a) * _turn(c, d, b)
     apart = any(
@@ -156,9 +156,9 @@ def _crosses(one: _Edge, other: _Edge) -> bool:
 
 
 def sound(profile: Profile) -> bool:
-    """Whether a polygon bounds one solid of revolution: with an area, not crossing.
+    """Whether a polygon bounds a solid of revolution: nonzero area, no crossing.
 
-    It may touch the axis along one edge only: a point would pinch it, two edges shut in a void.
+    It may touch the axis along one edge only: a point would pinch it, two edges would make a void.
     """
     sides = edges(profile)
     if len(sides) < 3 or area(profile) <= 0 or min(r for _, r in profile) < 0:
@@ -172,12 +172,12 @@ def sound(profile: Profile) -> bool:
 
 
 def _fault(part: str) -> InputError:
-    remedy = "its grooves and walls need room: see the geometry_... metrics of evaluate"
+    remedy = "make room for its grooves and walls: see the geometry_... metrics of evaluate"
     return InputError(Diagnostic(f"{part}: its section crosses itself or has no wall", remedy))
 
 
 def _bars(outline: Outline) -> Body:
-    """Round bars evenly spread about the axis, the first in the plane of the section."""
+    """Round bars evenly spaced about the axis, the first in the plane of the section."""
     profile = tidy(millimetres(outline.polygons[0]))
     first, low = profile[0]
     last, high = max(profile)
@@ -207,7 +207,7 @@ def _bodies(outline: Outline) -> Iterator[Body]:
 
 
 def bodies(evaluation: Evaluation) -> list[Body]:
-    """Every turned part of an evaluation: no oil, no rings in the grooves, no eyes.
+    """All turned parts of an evaluation, without oil, seals in grooves and eyes.
 
     Raises
     ------

@@ -1,8 +1,8 @@
 """STEP (ISO 10303-214): turned parts as closed solids of planes, cylinders and cones.
 
-A body's half-section, walked anticlockwise, gives one face per edge and one circle per corner; a
-circle ends the face before it and begins the one after, so each edge is used twice, once each way.
-Faces around the axis are closed by a seam.
+The half-section of a body, traversed anticlockwise, gives one face per edge and one circle per
+corner. A circle separates two faces, so each edge is used twice, once in each direction. Faces
+around the axis are closed by a seam.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from .solids import Body, Point, Profile, edges
 SCHEMA = "AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }"
 
 _UNCERTAINTY = 1e-6
-"""Distance below which points are one (mm), as the file states it."""
+"""Distance below which points coincide (mm), as stated in the file."""
 
 
 def text(words: str) -> str:
-    r"""A string of ISO 10303-21: quotes doubled, letters beyond ASCII by their code.
+    r"""A string of ISO 10303-21: quotes doubled, non-ASCII characters as codes.
 
     >>> print(text("5' \u00f6"))
     '5'' \X2\00F6\X0\'
@@ -39,7 +39,7 @@ def text(words: str) -> str:
 
 
 def real(value: float) -> str:
-    """A real number of ISO 10303-21, which has a point always.
+    """A real number of ISO 10303-21, always with a decimal point.
 
     >>> real(12.0), real(0.1), real(1e-06), real(-0.0)
     ('12.', '0.1', '1.E-06', '0.')
@@ -56,13 +56,13 @@ class Records:
         self._known: dict[str, str] = {}
 
     def add(self, record: str) -> str:
-        """Add a record; its number, as others refer to it."""
+        """Add a record; returns its number for references."""
         number = f"#{len(self.lines) + 1}"
         self.lines.append(f"{number}={record};")
         return number
 
     def shared(self, record: str) -> str:
-        """Add a record that says the same wherever it stands, once."""
+        """Add a record once; equal records are shared."""
         if record not in self._known:
             self._known[record] = self.add(record)
         return self._known[record]
@@ -76,12 +76,12 @@ class Records:
         return self.shared(f"DIRECTION('',({real(x)},{real(y)},{real(z)}))")
 
     def frame(self, origin: str, along: float = 1.0) -> str:
-        """A frame whose main axis lies along x (or against it), turns counted from y."""
+        """A frame with its main axis along x (or opposite), angles counted from y."""
         axis, zero = self.direction(along, 0.0), self.direction(0.0, 1.0)
         return self.shared(f"AXIS2_PLACEMENT_3D('',{origin},{axis},{zero})")
 
     def place(self, at: tuple[float, float, float]) -> str:
-        """A frame moved, not turned: readers agree on what it does to a part."""
+        """A frame moved but not rotated, which all CAD readers interpret alike."""
         axis, zero = self.direction(0.0, 0.0, 1.0), self.direction(1.0, 0.0)
         return self.shared(f"AXIS2_PLACEMENT_3D('',{self.point(*at)},{axis},{zero})")
 
@@ -122,7 +122,7 @@ class _Skin:
         return r.add(f"EDGE_LOOP('',{listed(sides)})")
 
     def face(self, start: Point, end: Point) -> str:
-        """The face that an edge of the section sweeps; its material lies left of the edge."""
+        """The face that an edge of the section sweeps; the material is left of the edge."""
         r = self.records
         rims = [(self.circles[c], c is end, c[1]) for c in (start, end) if c in self.circles]
         if start[0] == end[0]:  # the larger rim is the outer bound
@@ -144,7 +144,7 @@ class _Skin:
         return r.add(f"ADVANCED_FACE('',({bound}),{self._round(start, end)},.{same}.)")
 
     def _round(self, start: Point, end: Point) -> str:
-        """The cylinder or cone through an edge; a cone's axis points where it widens."""
+        """The cylinder or cone of an edge; the axis of a cone points to its wide end."""
         r = self.records
         (x, radius), (far, wide) = sorted((start, end), key=lambda corner: corner[1])
         if radius == wide:
@@ -179,7 +179,7 @@ class _Product:
         self.representation = ""
 
     def shaped(self, kind: str, items: Iterable[str]) -> None:
-        """Give it a shape."""
+        """Assign the shape."""
         r = self._records
         made = f"{kind}({text(self.name)},{listed(items)},{self._space})"
         self.representation = r.add(made)
@@ -220,7 +220,7 @@ class _Contexts:
 def _placed(
     records: Records, whole: _Product, part: _Product, name: str, home: str, place: str
 ) -> None:
-    """Put a part into the assembly: its own frame `home` comes to lie on `place`."""
+    """Add a part to the assembly: its own frame `home` is mapped to `place`."""
     r = records
     use = r.add(
         f"NEXT_ASSEMBLY_USAGE_OCCURRENCE({text(name)},{text(name)},'',"
@@ -241,14 +241,14 @@ def step(bodies: Sequence[Body], *, name: str, program: str, date: str | None = 
 
     Parameters
     ----------
-    bodies : its parts
-    name : of the assembly
-    program : what wrote it
-    date : ISO date, or None for none
+    bodies : parts of the assembly
+    name : name of the assembly
+    program : name of the writing program
+    date : ISO date, or None
 
     Returns
     -------
-    the file's text, ASCII
+    text of the file, ASCII
     """
     r = Records()
     contexts = _Contexts(r)

@@ -1,4 +1,4 @@
-"""A person's words in files of others."""
+"""Cleaning of user texts for files in other formats."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ LONGEST = 200
 
 
 def plain(words: str) -> str:
-    r"""One line without control and direction characters, at most 200 letters.
+    r"""One line without control and direction characters, at most 200 characters.
 
     >>> plain("a\nb"), len(plain(300 * "c"))
     ('a b', 200)

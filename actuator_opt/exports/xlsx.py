@@ -1,8 +1,8 @@
-"""An evaluation as a workbook: requirements with live margins, variables, masses with a chart.
+"""An evaluation as a workbook: limits with live margins, the section, variables, masses.
 
-Margins and verdicts are formulas of the limit and result cells, so that a changed limit shows its
-margin at once. Numbers stand in the units people read; where a formula needs SI, the factor stands
-beside it. Excel and LibreOffice compute the formulas when they open the file.
+Margins and verdicts are formulas of the limit and result cells: they follow a changed limit.
+Numbers are in display units; where a formula needs SI, the factor is beside it. Excel and
+LibreOffice compute the formulas when they open the file.
 """
 
 from __future__ import annotations
@@ -23,15 +23,17 @@ from ..design.paths import get, quantity_of
 from ..evaluation.reserve import NO_RESERVE, NO_ROOM
 from ..evaluation.result import Check, Evaluation, Requirement
 from ..metrics import METRICS
+from ..pages.section import section
+from ..rendering.image import images
 from .words import plain
 
 TOLERANCE = "0.000001"
-"""Miss of a margin that still counts as met, in formulas (CONTRACT)."""
+"""Largest violation of a margin that counts as met, in formulas."""
 _TIGHT = "yes, no reserve"
 """Verdict of a limit that is met without reserve (`reserve.NO_RESERVE`)."""
 
 _EPOCH = (1980, 1, 1, 0, 0, 0)
-"""The first moment a zip archive can name: same input, same bytes."""
+"""Earliest time of a zip archive: same input, same bytes."""
 
 _LIMITS = (
     "quantity",
@@ -46,18 +48,20 @@ _LIMITS = (
     "remark",
 )
 _FONT = {"name": "Calibri", "size": 11}
-"""Of every cell; a style without a name would be drawn in a font of the program's own."""
+"""Font of every cell; without a font, programs use their own."""
 _LINE = 15.0
 """Height of a line of text, points."""
+_PIXELS = 96 / 25.4
+"""Of a sheet, per millimetre."""
 _WIDEST = 110.0
-"""Most letters a column is made wide for."""
+"""Largest column width in characters."""
 _FIRST = 5
 """Row of the first requirement or check."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Scale:
-    """The unit a row is in. One with an offset (degC) has no ratios: SI then."""
+    """Unit of a row. A unit with an offset (degC) has no ratios: SI then."""
 
     name: str
     factor: float
@@ -90,9 +94,9 @@ def _format(value: float | None) -> str:
 
 
 class _Sheet:
-    """A sheet that is filled row by row; texts stay texts, whatever they begin with.
+    """A sheet that is filled row by row; texts are never read as formulas.
 
-    Columns are as wide as asked, and wider where texts below the head are.
+    Columns have the stated width, or more if texts below the head need it.
     """
 
     def __init__(self, book: Any, title: str, widths: Sequence[float]) -> None:
@@ -103,7 +107,7 @@ class _Sheet:
         for column, width in self.widths.items():
             self.sheet.column_dimensions[column].width = width
         self.sheet.page_setup.orientation, self.sheet.page_setup.paperSize = "landscape", 9  # A4
-        self.sheet.page_setup.fitToHeight = 0  # as many pages as it takes, one of them wide
+        self.sheet.page_setup.fitToHeight = 0  # one page wide, any number of pages high
         self.sheet.sheet_properties.pageSetUpPr.fitToPage = True
 
     def put(self, place: str, value: float | str | None, *, bold: bool = False) -> Any:
@@ -192,7 +196,7 @@ def _limit_row(sheet: _Sheet, at: int, evaluation: Evaluation, row: Requirement 
 def _limits(
     book: Any, title: str, evaluation: Evaluation, rows: Sequence[Requirement | Check]
 ) -> None:
-    """A sheet of limits: what is asked, what comes out, the margin and the verdict, live."""
+    """A sheet of limits: limit, result, margin and verdict, with live formulas."""
     one = "requirement" if title == "Requirements" else "check"
     widths = (25, 20, 7, 9, 14, 14, 24, 7, 12, 16, 16)
     sheet = _Sheet(book, title, widths)
@@ -213,15 +217,27 @@ def _limits(
         sheet.colour(cells, "no", "F5C9C2")
 
 
+def _section(book: Any, evaluation: Evaluation) -> None:
+    """The longitudinal section as a picture below the requirements."""
+    drawn = section(evaluation)
+    picture = library("openpyxl.drawing.image").Image(
+        io.BytesIO(images(drawn.ink, "section")["section.png"])
+    )
+    picture.width = round(drawn.ink.width * _PIXELS)
+    picture.height = round(drawn.ink.height * _PIXELS)
+    sheet = book.worksheets[0]
+    sheet.add_image(picture, f"A{sheet.max_row + 2}")
+
+
 def _variables(book: Any, evaluation: Evaluation) -> None:
-    """What the optimiser may move, within its bounds."""
+    """Variables of the optimiser with their bounds."""
     sheet = _Sheet(book, "Variables", (20, 20, 9, 12, 12, 12, 14))
     sheet.put("A1", f"{evaluation.name}: variables", bold=True)
     design = evaluation.design
     names = [f"{name} [unit of its row]" for name in ("lower bound", "value", "upper bound")]
     sheet.head(3, ("variable", "quantity", "unit", *names, "place between the bounds [%]"))
     if not design.variables:
-        sheet.put("A4", "nothing is free in this design")
+        sheet.put("A4", "this design has no variables")
     for at, (path, bounds) in enumerate(design.variables.items(), 4):
         quantity, value = quantity_of(path, design), get(design, path)
         for column, text in zip("ABC", (path, quantity.label, quantity.unit), strict=True):
@@ -233,7 +249,7 @@ def _variables(book: Any, evaluation: Evaluation) -> None:
 
 
 def _mass(book: Any, evaluation: Evaluation) -> None:
-    """Masses of the parts, adding up, with a chart; the oil below."""
+    """Masses of the parts with their sum and a chart; oil below."""
     quantity = METRICS["mass"]
     sheet = _Sheet(book, "Mass", (24, 14, 12))
     sheet.put("A1", f"{evaluation.name}: mass", bold=True)
@@ -270,7 +286,7 @@ def _metrics(book: Any, evaluation: Evaluation) -> None:
     sheet = _Sheet(book, "Metrics", (20, 20, 14, 10, 18, 20))
     sheet.put("A1", f"{evaluation.name}: metrics", bold=True)
     names = ("metric", "quantity", "value [unit of its row]", "unit", "governing case")
-    sheet.head(3, (*names, "why there is none"))
+    sheet.head(3, (*names, "reason for a missing value"))
     for at, metric in enumerate(evaluation.metrics.values(), 4):
         quantity = metric.quantity
         value = None if metric.value is None else quantity.to_display(metric.value)
@@ -283,7 +299,7 @@ def _about(book: Any, evaluation: Evaluation, program: str, date: str | None) ->
     sheet = _Sheet(book, "About", (24, 110))
     rows = [
         ("design", evaluation.name),
-        ("made by", program),
+        ("written by", program),
         ("date", date or ""),
         ("hash of the input", evaluation.spec_hash),
         ("margin", "(result - limit)/|limit| for min, negated for max; met from -1e-6 on"),
@@ -297,7 +313,7 @@ def _about(book: Any, evaluation: Evaluation, program: str, date: str | None) ->
 
 
 def _packed(book: Any) -> bytes:
-    """The workbook's bytes, the same for the same contents."""
+    """Bytes of the workbook, equal for equal contents."""
     raw, clean = io.BytesIO(), io.BytesIO()
     with zipfile.ZipFile(raw, "w") as archive:
         library("openpyxl.writer.excel").ExcelWriter(book, archive).write_data()
@@ -309,13 +325,13 @@ def _packed(book: Any) -> bytes:
 
 
 def xlsx(evaluation: Evaluation, *, program: str, date: str | None = None) -> bytes:
-    """The workbook of an evaluation.
+    """Workbook of an evaluation.
 
     Parameters
     ----------
-    evaluation : to write
-    program : what wrote it
-    date : ISO date, or None for none
+    evaluation : evaluation of the design
+    program : name of the writing program
+    date : ISO date, or None
 
     Raises
     ------
@@ -324,6 +340,7 @@ def xlsx(evaluation: Evaluation, *, program: str, date: str | None = None) -> by
     book = library("openpyxl").Workbook()
     book.remove(book.active)
     _limits(book, "Requirements", evaluation, evaluation.requirements)
+    _section(book, evaluation)
     checks = [row for row in evaluation.checks if row.limit is not None and row.metric is not None]
     _limits(book, "Checks", evaluation, checks)
     _variables(book, evaluation)

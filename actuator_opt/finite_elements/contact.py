@@ -1,4 +1,4 @@
-"""Contact pressures from the forces of walls, and the profile on the sliding face."""
+"""Contact pressures from wall forces, and the profile on the sliding face."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .result import contact_end
 from .section import Section
 
 HOLDING = 0.05
-"""Share of the fluid pressure by which a contact may fall below it and still keep it out."""
+"""Share of the fluid pressure by which contact pressure may fall below it and still seal."""
 
 
 def boundary_nodes(section: Section, body: int) -> Integers:
@@ -22,14 +22,14 @@ def boundary_nodes(section: Section, body: int) -> Integers:
 
 
 def middle_node(section: Section, nodes: int) -> int:
-    """The node at the middle of a round section, which is the first body."""
+    """Node at the centre of a round section, which is the first body."""
     places = section.nodes[:nodes]
     middle = (places.min(axis=0) + places.max(axis=0)) / 2
     return int(np.argmin(np.sum((places - middle) ** 2, axis=1)))
 
 
 def level_pair(section: Section, nodes: int, middle: float) -> tuple[int, int]:
-    """Two inner nodes of a round section, left and right of its middle at the same height."""
+    """Two inner nodes of a round section, left and right of its centre at the same height."""
     places = section.nodes[:nodes]
     centre = float(places[:, 0].min() + places[:, 0].max()) / 2
     on_line = np.flatnonzero(np.abs(places[:, 1] - middle) < 1e-9)
@@ -44,7 +44,7 @@ def level_pair(section: Section, nodes: int, middle: float) -> tuple[int, int]:
 
 
 def wall_pressing(section: Section, state: ElementState) -> Floats:
-    """Force with which walls above and below press every node."""
+    """Force of walls above and below on every node."""
     force = state.reaction.reshape(-1, 2)[:, 1]
     lower = state.at_lower.reshape(-1, 2)[:, 1]
     return np.asarray(np.where(lower, force, -force))
@@ -53,32 +53,32 @@ def wall_pressing(section: Section, state: ElementState) -> Floats:
 def barriers(
     section: Section, state: ElementState, places: Floats, pressing: Floats, pressure: float
 ) -> Floats:
-    """Contact pressure at every node from the force on it and the fluid behind it."""
+    """Contact pressure at every node from its force and the fluid behind it."""
     length = np.abs(fluid.shares(section, places)[:, 0]) * section.radii(places)
     total = pressing / np.maximum(length, 1e-12) + state.wet * pressure
     return np.asarray(np.where(pressing != 0, total, 0.0))
 
 
 def both_ways(boundary: Integers, start: int) -> tuple[Integers, Integers]:
-    """A boundary from one of its places on, anticlockwise and clockwise."""
+    """A boundary from one of its nodes, anticlockwise and clockwise."""
     return np.roll(boundary, -start), np.roll(boundary[::-1], start + 1)
 
 
 def reached(
     chain: Integers, barrier: Floats, state: ElementState, pressure: float
 ) -> tuple[Integers, int | None]:
-    """Nodes of a chain that the fluid reaches, and the place of the outer side wall in it.
+    """Nodes of a chain that the fluid reaches, and the index of the first node at the outer wall.
 
-    The fluid goes up to the first node that is pressed more strongly than it presses. A node
-    that keeps it out goes on doing so until it is pressed `HOLDING` less: the mesh resolves the
-    front to one node, and without this band two states may alternate.
+    The fluid advances to the first node whose contact pressure exceeds the fluid pressure. This
+    node seals until its pressure falls below by `HOLDING`: the mesh resolves the front to one
+    node, and without this hysteresis two states may alternate.
 
     Parameters
     ----------
     chain : boundary nodes in order, from the sealed side
     barrier : contact pressure at every node, 0 where nothing touches
-    state : what was wet before, and what leans on the outer side wall
-    pressure : of the fluid
+    state : previously wet nodes, and nodes on the outer side wall
+    pressure : pressure of the fluid
     """
     needed = pressure * np.where(state.wet[chain] > 0, 1.0, 1.0 - HOLDING)
     stops = np.flatnonzero(barrier[chain] > needed)
@@ -103,9 +103,9 @@ def profile_on_face(
     ----------
     section, state, places : the solution
     boundary : boundary nodes of the sliding body in order, anticlockwise: rising x on the face
-    held : whether a node is held by the sliding face
-    pressure : of the fluid
-    force : of the sliding face on every node
+    held : whether a node is in contact with the sliding face
+    pressure : pressure of the fluid
+    force : force of the sliding face on every node
     """
     inside = np.flatnonzero(held[boundary] & (state.wet[boundary] == 0))
     if not len(inside):
@@ -118,7 +118,7 @@ def profile_on_face(
     x = places[nodes, 0]
     start = contact_end(float(x[0]), places[open_nodes, 1], places[open_nodes, 0])
     end = contact_end(float(x[-1]), places[after, 1], places[after, 0])
-    # Simpson's rule gives a corner 1/6 of each edge beside it, a middle node 2/3 of its own
+    # Simpson's rule gives a corner 1/6 of each adjacent edge, a middle node 2/3 of its edge
     before = places[chain[-1], 0]
     lent = (1 / 3 if turn % 2 else 2 / 3) * (x[0] - before)
     share = np.abs(fluid.shares(section, places)[nodes, 0])

@@ -1,9 +1,9 @@
-"""Newton's method with walls that bound the displacements: contact without a penalty.
+"""Newton's method with walls as bounds of the displacements: contact without a penalty.
 
-A wall that stands along an axis bounds one displacement component of every boundary node. A node
-at its bound is held there as long as the wall pushes it; the force is the wall's own reaction.
-The fluid reaches every boundary node from the sealed side up to the first one that is pressed
-more strongly than the fluid presses.
+A wall parallel to an axis bounds one displacement component of every boundary node. A node at its
+bound stays there as long as the wall pushes it; the force is the reaction of the wall. The fluid
+reaches all boundary nodes from the sealed side up to the first node whose contact pressure exceeds
+the fluid pressure.
 """
 
 from __future__ import annotations
@@ -21,47 +21,47 @@ from .pair import Booleans, Pair
 from .section import Section
 
 TOLERANCE = 1e-9
-"""Force left unbalanced, of modulus times section."""
+"""Largest unbalanced force, relative to modulus times section."""
 SMALLEST_MOVE = 1e-7
-"""Step of an iteration that changes nothing any more, of the section."""
-FREE = "the bodies are not held against moving freely"
+"""Largest step of a converged iteration, relative to the section."""
+FREE = "the bodies can move freely"
 MOST_ITERATIONS = 40
 PATIENCE, STICKING = 15, 5e-4
-"""After so many iterations a node may be held by so small a pull: the end of a contact lies
-between two nodes, and holding or releasing the last one may both be wrong."""
+"""After this many iterations a node with so small a tension may stay in contact: the contact end
+lies between two nodes, and holding or releasing the last node may both be wrong."""
 LONGEST_MOVE = 0.1
-"""Largest displacement of one iteration; the section is 1."""
+"""Largest displacement of an iteration; the section is 1."""
 FLATTEST = 0.2
-"""Smallest J an iteration may reach, as a share of the last one."""
+"""Smallest J after an iteration, relative to the previous J."""
 
 
 @dataclass(slots=True)
 class Bounds:
-    """Bounds of every displacement; equal bounds hold a node."""
+    """Bounds of all displacements; equal bounds fix a node."""
 
     lower: Floats
     upper: Floats
 
     @classmethod
     def none(cls, section: Section) -> Bounds:
-        """No wall anywhere."""
+        """No walls."""
         size = section.displacements
         return cls(np.full(size, -np.inf), np.full(size, np.inf))
 
 
 @dataclass(slots=True)
 class ElementState:
-    """Unknowns, what touches what, and the fluid: enough to go on from.
+    """Unknowns, contacts and fluid: a complete state to continue from.
 
     Parameters
     ----------
     values : displacements and multipliers
-    at_lower, at_upper : displacements held at their bound
+    at_lower, at_upper : displacements at their bound
     touching : nodes of the pair's upper body in contact
-    pair_force : force of the pair at each of them
-    wet : share of the fluid's pressure that every node feels, 0 to 1
-    reaction : force of walls on every displacement
-    level_force : what keeps the level pair level, nothing but the mesh's unevenness
+    pair_force : force of the pair at each of these nodes
+    wet : share of the fluid pressure at every node, 0 to 1
+    reaction : wall force on every displacement
+    level_force : force that keeps the level pair level, due to mesh asymmetry only
     """
 
     values: Floats
@@ -90,21 +90,21 @@ class ElementState:
 WetPart = Callable[["ElementState", Floats, float], Floats]
 """Share of the pressure at every node, from state, node places and pressure."""
 FIRST_STEP, SHORTEST_STEP, GROWTH = 0.1, 1e-3, 1.5
-"""Steps of pressure over modulus: the first, the shortest, and the growth after a success."""
+"""Steps of pressure over modulus: initial, smallest, and growth after a success."""
 
 
 @dataclass(slots=True)
 class ElementProblem:
-    """Bodies, a pair that may touch, and where the fluid goes.
+    """Bodies, a pair in contact, and the region of the fluid.
 
     Parameters
     ----------
     section : bodies
     bounds : walls
-    pair : two surfaces that may touch, None with one body
-    wet_part : tells which nodes the fluid reaches
-    level : two nodes kept level with each other: a round section between frictionless walls is
-        free to roll, and every rolled place of it is the same; None when nothing can roll
+    pair : two surfaces that may touch; None with a single body
+    wet_part : returns the nodes that the fluid reaches
+    level : two nodes kept level, because a round section between frictionless walls could roll
+        without effect; None if nothing can roll
     """
 
     section: Section
@@ -117,7 +117,7 @@ class ElementProblem:
     worst_residual: float = 0.0
 
     def start(self) -> ElementState:
-        """Nothing moved, nothing touches."""
+        """Undeformed state without contact."""
         size, count = self.section.displacements, len(self.pair.upper) if self.pair else 0
         none = np.zeros(size, dtype=bool)
         return ElementState(
@@ -132,11 +132,11 @@ class ElementProblem:
 
 
 class NotConverged(Exception):
-    """A load step that Newton's method could not make; the text says why."""
+    """Newton's method failed in a load step; the text states the reason."""
 
 
 def _update_walls(problem: ElementProblem, state: ElementState, force: Floats, pull: float) -> bool:
-    """Hold what passes its bound, release what is pulled more; whether anything changed."""
+    """Hold nodes that pass a bound, release nodes under tension; whether anything changed."""
     bounds, moved = problem.bounds, state.values[: problem.section.displacements]
     held = bounds.lower == bounds.upper
     slack = 1e-10
@@ -149,7 +149,7 @@ def _update_walls(problem: ElementProblem, state: ElementState, force: Floats, p
 
 @dataclass(slots=True)
 class _Links:
-    """Conditions with a force each: nodes of the pair that touch, then the level pair."""
+    """Constraints with a force each: touching nodes of the pair, then the level pair."""
 
     gap: Floats
     rows: csc_matrix
@@ -159,7 +159,7 @@ class _Links:
 
 
 def _links(problem: ElementProblem, state: ElementState, places: Floats) -> _Links:
-    """The conditions of a state; none is an empty matrix."""
+    """Constraints of a state; an empty matrix if there are none."""
     unknowns = problem.section.unknowns
     none = csc_matrix((unknowns, unknowns))
     links = _Links(
@@ -187,7 +187,7 @@ def _step(
     stiffness: csc_matrix,
     links: _Links,
 ) -> tuple[Floats, Floats, float]:
-    """Newton's step of the unknowns and of the links' forces, and the largest error before it."""
+    """Newton step of the unknowns and the constraint forces, and the largest previous error."""
     section, bounds = problem.section, problem.bounds
     fixed = np.zeros(section.unknowns, dtype=bool)
     fixed[: section.displacements] = state.at_lower | state.at_upper
@@ -217,7 +217,7 @@ def _step(
 
 
 def _damped(problem: ElementProblem, state: ElementState, move: Floats) -> float:
-    """Share of a step that neither moves too far nor turns an element inside out."""
+    """Share of a step that limits displacement and inverts no element."""
     section = problem.section
     longest = float(np.max(np.abs(move[: section.displacements])))
     share = min(1.0, LONGEST_MOVE / max(longest, 1e-300))
@@ -229,9 +229,9 @@ def _damped(problem: ElementProblem, state: ElementState, move: Floats) -> float
     return share
 
 
-@np.errstate(all="ignore")  # a trial that turns elements inside out is judged by its balance
+@np.errstate(all="ignore")  # a trial that inverts elements is rejected by its residual
 def solve(problem: ElementProblem, start: ElementState, pressure: float) -> ElementState:
-    """Equilibrium under a fluid pressure within the walls, from a neighbouring state.
+    """Equilibrium under a fluid pressure and walls, from a neighbouring state.
 
     Raises
     ------
@@ -280,12 +280,12 @@ def solve(problem: ElementProblem, start: ElementState, pressure: float) -> Elem
 def raise_pressure(
     problem: ElementProblem, state: ElementState, reached: float, wanted: float
 ) -> ElementState:
-    """Equilibrium at a higher pressure, in steps as long as Newton's method can make them.
+    """Equilibrium at a higher pressure, with adaptive load steps.
 
     Raises
     ------
     NotConverged
-        With the pressure that was reached and the reason.
+        With the reached pressure and the reason.
     """
     step = min(FIRST_STEP, wanted - reached)
     while reached < wanted:
@@ -295,7 +295,7 @@ def raise_pressure(
         try:
             found = solve(problem, state, trial)
             if np.sum(found.touching & ~np.roll(found.touching, 1)) > 1:
-                raise NotConverged("the contact between the rings opens inside")
+                raise NotConverged("the contact between the rings opens in its interior")
         except NotConverged as reason:
             step /= 2
             if step < SHORTEST_STEP:

@@ -1,7 +1,7 @@
-"""Fluid pressure on the part of a boundary that it reaches: a follower load at the nodes.
+"""Fluid pressure on the wetted part of a boundary: a follower load at the nodes.
 
-Simpson's rule on every three-node edge: exact for a uniform pressure, so the fluid's resultant
-on an arc is the pressure times the distance between its ends.
+Simpson's rule on every three-node edge is exact for a uniform pressure: the resultant on an arc is
+the pressure times the distance between its ends.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from .mesh import Integers
 from .section import Section
 
 SLOPES = np.array([[-1.5, 2.0, -0.5], [-0.5, 0.0, 0.5], [0.5, -2.0, 1.5]])
-"""d(place)/d(xi) at the three nodes of an edge from their places, xi from -1 to 1."""
+"""d(position)/d(xi) at the three nodes of an edge from their positions, xi from -1 to 1."""
 SIMPSON = np.array([1.0, 4.0, 1.0]) / 3
 
 
@@ -23,7 +23,7 @@ def tangents(edges: Integers, places: Floats) -> Floats:
 
 
 def shares(section: Section, places: Floats) -> Floats:
-    """Directed length that each node stands for, nodes x 2 [m]."""
+    """Directed length of each node's share of the boundary, nodes x 2 [m]."""
     total = np.zeros_like(places)
     for edges in section.edges:
         np.add.at(total, edges, tangents(edges, places))
@@ -36,8 +36,8 @@ def load(section: Section, places: Floats, pressure: Floats) -> tuple[Floats, Fl
     Parameters
     ----------
     section : bodies
-    places : where the nodes are now [m]
-    pressure : of the fluid at every node, 0 where it does not reach [Pa]
+    places : current positions of the nodes [m]
+    pressure : fluid pressure at every node, 0 where dry [Pa]
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The finite-element library, loaded when it is first needed: the core works without it."""
+"""The finite-element library, imported on first use: the core works without it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from ..base.errors import ActuatorError, Diagnostic
 
 
 def finite_element_library() -> Any:
-    """The module ``skfem``; one clear line when the extra is not installed.
+    """The module ``skfem``; a one-line error if the extra is not installed.
 
     Raises
     ------

@@ -1,7 +1,7 @@
-"""Mooney-Rivlin rubber and plastics in five components of the deformation gradient.
+"""Mooney-Rivlin rubber and plastics, with five components of the deformation gradient.
 
-Components stand in the order 11, 12, 21, 22, 33: plane strain keeps 33 at one, axisymmetry makes
-it the hoop stretch. Direction 1 is axial, 2 radial.
+The order of components is 11, 12, 21, 22, 33: component 33 is one in plane strain, the hoop
+stretch in axisymmetry. Direction 1 is axial, 2 radial.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _COLUMNS = np.array([j for _, j in COMPONENTS])
 class MooneyRivlin:
     """Strain energy c10 (I1 - 3) + c01 (I2 - 3) - 2 (c10 + 2 c01) ln J + q (J - 1) - q^2/(2 L).
 
-    The multiplier q holds the volume; L is the stiffness against a change of volume (Lame's first
+    The multiplier q enforces the volume; L is the stiffness against volume change (Lame's first
     constant at small strain), infinite for an incompressible body.
 
     Parameters
@@ -39,7 +39,7 @@ class MooneyRivlin:
     def of_modulus(
         cls, youngs_modulus: float, *, second_share: float = 0.0, poissons_ratio: float = 0.5
     ) -> MooneyRivlin:
-        """Constants of a body with this Young's modulus at small strain.
+        """A body with this Young's modulus at small strain.
 
         Parameters
         ----------
@@ -89,7 +89,7 @@ def stress(gradient: Floats, multiplier: Floats, c10: Floats, c01: Floats) -> Fl
     Parameters
     ----------
     gradient : deformation gradient F, five components on the last axis [-]
-    multiplier : q [Pa]
+    multiplier : multiplier q [Pa]
     c10, c01 : constants, broadcast against the multiplier [Pa]
     """
     inverse, volume = inverse_transpose(gradient)

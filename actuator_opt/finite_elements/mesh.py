@@ -1,4 +1,4 @@
-"""Meshes of six-node triangles: a round section and a slide ring with an edge and a taper.
+"""Meshes of six-node triangles: a round section, and a slide ring with edge and taper.
 
 Direction 1 runs along the cylinder from the sealed side to the outer side, direction 2 outward
 from the sliding face.
@@ -17,16 +17,16 @@ from .material import Floats
 
 Integers = npt.NDArray[np.int64]
 ORDER = 4
-"""Degree of the polynomials the quadrature integrates exactly."""
+"""Polynomial degree that the quadrature integrates exactly."""
 
 
 @dataclass(frozen=True, slots=True)
 class Mesh:
-    """One body: nodes of six-node triangles, its boundary, and its shape functions.
+    """Mesh of a body: six-node triangles, boundary, and shape functions.
 
     Parameters
     ----------
-    nodes : places, n x 2 [m]
+    nodes : positions, n x 2 [m]
     triangles : the six nodes of every element
     corners : the three multiplier unknowns of every element, 0 to `corner_count` - 1
     corner_count : number of corner nodes, which carry the multiplier
@@ -49,7 +49,7 @@ class Mesh:
 
 
 def _in_order(edges: Integers) -> Integers:
-    """Boundary edges one after the other, from any order."""
+    """Boundary edges in sequence, from any order."""
     following = {int(edge[0]): edge for edge in edges}
     ordered = [edges[0]]
     while len(ordered) < len(edges):
@@ -72,9 +72,9 @@ def meshed(points: Floats, triangles: Integers, radius: float | None = None) -> 
 
     Parameters
     ----------
-    points : corner places, n x 2 [m]
-    triangles : three corners each, either sense of rotation
-    radius : [m], of a round section about the origin: middle nodes of its boundary lie on it
+    points : corner positions, n x 2 [m]
+    triangles : three corners each, in either orientation
+    radius : radius of a round section about the origin [m]: its boundary midside nodes lie on it
     """
     library = finite_element_library()
     a, b, c = (points[triangles[:, k]] for k in range(3))
@@ -91,7 +91,7 @@ def meshed(points: Floats, triangles: Integers, radius: float | None = None) -> 
         curved = library.MeshTri2(nodes.T.copy(), straight.t.copy(), sort_t=False)
     basis = library.Basis(curved, library.ElementTriP2(), intorder=ORDER)
     corner = library.Basis(curved, library.ElementTriP1(), intorder=ORDER)
-    if not np.array_equal(basis.element_dofs.T, numbered):  # the numbering must have stayed
+    if not np.array_equal(basis.element_dofs.T, numbered):  # the numbering must be unchanged
         raise AssertionError("nodes were renumbered")
     shape = [np.asarray(basis.basis[k][0]) for k in range(6)]
     return Mesh(
@@ -112,7 +112,7 @@ def disc(*, diameter: float, around: int) -> Mesh:
 
     Parameters
     ----------
-    diameter : of the section [m]
+    diameter : diameter of the section [m]
     around : number of elements around it, a multiple of 4
     """
     from scipy.spatial import Delaunay
@@ -133,16 +133,16 @@ def disc(*, diameter: float, around: int) -> Mesh:
 
 @dataclass(frozen=True, slots=True)
 class SlideRing:
-    """Section of a slide ring with a chamfer towards the sealed side and a relief behind its land.
+    """Section of a slide ring with a chamfer on the sealed side and a relief behind its land.
 
     Parameters
     ----------
-    width : along the cylinder [m]
-    thickness : from land to back [m]
+    width : axial width [m]
+    thickness : thickness from land to back [m]
     land_width : flat part of the sliding face [m]
-    chamfer_width, chamfer_height : on the sealed side of the land [m]
-    relief_angle : opening of the face behind the land [rad]
-    edge_radius : of both ends of the land [m]
+    chamfer_width, chamfer_height : chamfer on the sealed side of the land [m]
+    relief_angle : angle of the face behind the land [rad]
+    edge_radius : radius at both ends of the land [m]
     """
 
     width: float
@@ -160,12 +160,12 @@ class SlideRing:
 
     @property
     def land(self) -> tuple[float, float]:
-        """Ends of the land, from the outer end of the ring, negative [m]."""
+        """Ends of the land, relative to the outer end of the ring, negative [m]."""
         first = self.chamfer_width - self.width
         return first, first + self.land_width
 
     def face(self, x: Floats) -> Floats:
-        """Height of the undeformed sliding face over the rod at x, x = 0 the outer end [m]."""
+        """Height of the undeformed sliding face above the rod at x, x = 0 at the outer end [m]."""
         first, last = self.land
         before = math.atan2(self.chamfer_height, self.chamfer_width)
         return np.asarray(
@@ -175,7 +175,7 @@ class SlideRing:
 
 
 def _rounded(distance: Floats, angle: float, radius: float) -> Floats:
-    """Height over a flat that turns up by an angle at distance 0, through a tangent arc."""
+    """Height above a flat that turns up by an angle at distance 0, through a tangent arc."""
     reach = radius * math.tan(angle / 2)
     arc = radius - np.sqrt(np.maximum(radius**2 - np.clip(distance + reach, 0, radius) ** 2, 0))
     along = math.tan(angle) * distance
@@ -184,7 +184,7 @@ def _rounded(distance: Floats, angle: float, radius: float) -> Floats:
 
 
 def _graded(start: float, end: float, fine: float, coarse: float, growth: float) -> Floats:
-    """Places from start (fine spacing) to end, the spacing growing up to a coarse one."""
+    """Positions from start (fine spacing) to end, with growing spacing up to a coarse limit."""
     places, step, length = [0.0], fine, abs(end - start)
     while places[-1] < length:
         places.append(places[-1] + step)
@@ -193,11 +193,11 @@ def _graded(start: float, end: float, fine: float, coarse: float, growth: float)
 
 
 def slide_ring(shape: SlideRing, *, fine: float, coarse: float) -> Mesh:
-    """The section of a slide ring, its outer end at x = 0, fine at both ends of the land.
+    """Mesh of a slide ring with its outer end at x = 0, fine at both ends of the land.
 
     Parameters
     ----------
-    shape : of the section
+    shape : dimensions of the section
     fine, coarse : spacing of the elements at the ends of the land, and elsewhere [m]
     """
     first, last = shape.land

@@ -1,4 +1,4 @@
-"""A rubber ring of round section in a rectangular groove, squeezed and then pressurised."""
+"""A round rubber ring in a rectangular groove, squeezed and then pressurised."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ from .result import Contact, SealSolution, stress_field
 from .section import Body, Section
 
 MOST_FILL = 0.98
-"""Share of the groove that an incompressible section may take: corners stay open."""
+"""Largest fill of the groove by an incompressible section: corners stay open."""
 
 
 class RoundRing:
-    """The problem of one ring in units of its section and its modulus.
+    """The problem of a ring, in units of its section and modulus.
 
     Parameters
     ----------
     rubber : strain energy, modulus 1
     around : elements around the section
-    sliding_radius, outward : as of `Section`
+    sliding_radius, outward : as in `Section`
     """
 
     def __init__(
@@ -56,7 +56,7 @@ class RoundRing:
         bounds.lower[2 * self.boundary + 1] = -self.section.nodes[self.boundary, 1]
 
     def wet_part(self, state: ElementState, places: Floats, pressure: float) -> Floats:
-        """The fluid comes from the left and goes along both sides of the ring."""
+        """The fluid comes from the left and advances along both sides of the ring."""
         pressing = wall_pressing(self.section, state)
         barrier = barriers(self.section, state, places, pressing, pressure)
         start = int(np.argmin(places[self.boundary, 0]))
@@ -69,9 +69,9 @@ class RoundRing:
         return wet
 
     def mount(self, squeeze: float, groove_width: float) -> ElementState:
-        """Bring the groove's bottom down, its outer wall to the ring: frictionless, so no matter.
+        """Lower the groove bottom and outer wall onto the ring; without friction, in any order.
 
-        The middle keeps its place along the cylinder until then.
+        The centre of the ring keeps its axial position.
         """
         bounds, centre = self.problem.bounds, 2 * self.centre
         state = self.problem.start()
@@ -83,7 +83,7 @@ class RoundRing:
         return self._lean(state, groove_width)
 
     def _lean(self, state: ElementState, groove_width: float) -> ElementState:
-        """Both side walls; a narrow groove squeezes the ring between them."""
+        """Walls of the groove; a narrow groove squeezes the ring between them."""
         bounds, place = self.problem.bounds, self.section.places(state.values)
         bounds.lower[2 * self.centre], bounds.upper[2 * self.centre] = -np.inf, np.inf
         state.at_lower[2 * self.centre] = state.at_upper[2 * self.centre] = False
@@ -98,13 +98,13 @@ class RoundRing:
         return state
 
     def release(self, state: ElementState) -> ElementState:
-        """The ring leans on the outer wall already."""
+        """The ring already touches the outer wall."""
         return state
 
     def contact(
         self, state: ElementState, pressure: float, length: float, modulus: float
     ) -> Contact:
-        """The contact on the sliding face with its dimensions."""
+        """Contact on the sliding face, with dimensions."""
         places = self.section.places(state.values)
         force = state.reaction.reshape(-1, 2)
         held = state.at_lower.reshape(-1, 2)[:, 1]
@@ -141,29 +141,29 @@ def squeezed_ring(
 ) -> SealSolution:
     """Mount a round rubber ring in a groove and raise the sealed pressure on one side.
 
-    Walls are rigid and frictionless, the groove's corners closed. The ring leans on the outer
-    side wall. The fluid acts on every part of the boundary that it reaches.
+    Walls are rigid and frictionless, groove corners closed. The ring rests against the outer side
+    wall. The fluid acts on every part of the boundary that it reaches.
 
     Parameters
     ----------
     section : free section W [m]
-    squeeze : of the free section [-]
-    groove_width : along the cylinder [m]
-    rubber : strain energy, from which the modulus at small strain is taken [Pa]
-    pressures : sealed pressures above the outer side's, rising [Pa]
-    sliding_radius : of rod or bore [m]; None is plane strain
+    squeeze : squeeze over free section [-]
+    groove_width : axial width of the groove [m]
+    rubber : strain energy, which defines the modulus at small strain [Pa]
+    pressures : sealed pressures above the outer pressure, increasing [Pa]
+    sliding_radius : radius of rod or bore [m]; None: plane strain
     on_rod : whether the sliding face is a rod (groove outside) or a bore
     elements_around : elements around the section, a multiple of 4
 
     Returns
     -------
-    contacts of the mounted ring and of every pressure reached; why one was not [words]
+    contacts of the mounted ring and at every reached pressure; reason for a missing pressure
 
     Notes
     -----
-    Valid: squeeze 0.02 to 0.35, room for the section in the groove; no friction, no relaxation.
+    Valid: squeeze 0.02 to 0.35, section fits the groove; no friction, no relaxation.
 
-    The ring is not stretched around the rod; it does not roll.
+    The ring is not stretched around the rod and does not roll.
 
     References
     ----------

@@ -1,8 +1,8 @@
-"""Two bodies that touch without friction: nodes of the upper one on the surface of the lower one.
+"""Frictionless contact of two bodies: nodes of the upper body on the surface of the lower body.
 
 The gap is measured along direction 2, g = y_node - y_surface(x_node). The force is normal to the
-surface, whose slope is taken as continuous from edge to edge: a node that slides over the corner
-between two edges would otherwise be thrown back and forth.
+surface. Its slope is made continuous from edge to edge, since a node that slides over the corner
+between two edges would otherwise oscillate.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ Booleans = npt.NDArray[np.bool_]
 
 @dataclass(frozen=True, slots=True)
 class Rows:
-    """What a pair adds to Newton's equations.
+    """Contribution of a pair to Newton's equations.
 
     Parameters
     ----------
     gaps : derivative of the touching nodes' gaps by all unknowns
     directions : unit forces of the touching nodes on all unknowns
-    stiffness : derivative of the forces, taken with their present size
+    stiffness : derivative of the forces at their current size
     """
 
     gaps: csc_matrix
@@ -38,7 +38,7 @@ class Rows:
 
 @dataclass(frozen=True, slots=True)
 class _Under:
-    """The surface under every upper node: its three nodes, shape functions, slope."""
+    """The surface under every upper node: three nodes, shape functions, slope."""
 
     nodes: Integers
     inside: Booleans
@@ -49,7 +49,7 @@ class _Under:
 
 
 class Pair:
-    """Nodes above, edges below; the edges run towards falling x, as an upper surface does.
+    """Upper nodes and lower edges; the edges run towards decreasing x, as on an upper surface.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class Pair:
         self.upper, self.edges = upper, edges
 
     def _locate(self, places: Floats) -> tuple[Integers, Floats, Booleans]:
-        """Edge under every node, the local coordinate from -1 to 1, and whether there is one."""
+        """Edge under every node, local coordinate from -1 to 1, and whether an edge exists."""
         x = places[self.upper, 0]
         ends = places[self.edges, 0]
         low, high = ends[:, 2], ends[:, 0]
@@ -99,13 +99,13 @@ class Pair:
     def update(
         self, touching: Booleans, force: Floats, places: Floats, pull: float
     ) -> tuple[Booleans, Floats]:
-        """Which nodes touch now, and their forces: they part when they are pulled more."""
+        """Touching nodes and their forces; nodes under tension separate."""
         gap = self.gap(places)
         after = np.where(touching, force > -pull, gap < -1e-10) & np.isfinite(gap)
         return after, np.where(after, force, 0.0)
 
     def _surface_slopes(self, places: Floats, unknowns: int) -> tuple[Floats, csr_matrix]:
-        """Slope of the surface at its nodes, the mean of two edges at a corner; derivative."""
+        """Slope of the surface at its nodes, averaged at corners; and its derivative."""
         ends = SLOPES @ places[self.edges]
         slope = ends[..., 1] / ends[..., 0]
         weight = np.ones_like(slope)
@@ -123,7 +123,7 @@ class Pair:
         return mean, derivative
 
     def rows(self, places: Floats, touching: Booleans, force: Floats, unknowns: int) -> Rows:
-        """Gaps, directions and stiffness of the nodes that touch."""
+        """Gaps, directions and stiffness of the touching nodes."""
         chosen = np.flatnonzero(touching)
         under = self._under(places)
         nodes, shape = under.nodes[chosen], under.shape[chosen]

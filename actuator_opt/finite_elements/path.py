@@ -1,4 +1,4 @@
-"""From the free seal to the mounted one and up in pressure; a failure is an outcome in words."""
+"""Load path from the free to the mounted and pressurised seal; a failure returns its reason."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from .material import MooneyRivlin
 from .result import Contact, SealSolution
 
 SQUEEZE_STEP = 0.04
-"""Squeeze of one load step."""
+"""Squeeze per load step."""
 MOST_SQUEEZE = 0.4
-"""Elements at the edge of the contact are turned inside out beyond."""
+"""Largest squeeze: beyond it, elements at the contact edge invert."""
 
 
 def check_inputs(
@@ -24,12 +24,12 @@ def check_inputs(
     elements_around: int,
     *more: tuple[bool, str, str],
 ) -> None:
-    """One clear line for every input that cannot be used.
+    """Check all inputs; a one-line error for an invalid input.
 
     Parameters
     ----------
-    section, squeeze, rubber, pressures, elements_around : as of the seals
-    more : further checks: whether it is wrong, what is, what to do
+    section, squeeze, rubber, pressures, elements_around : as for the seals
+    more : further checks: condition of the fault, message, remedy
     """
     rising = all(b > a for a, b in zip((0.0, *pressures), pressures, strict=False))
     checks = (
@@ -44,7 +44,7 @@ def check_inputs(
             "the constants of Mooney and Rivlin are not positive",
             "give a modulus",
         ),
-        (not rising, "sealed pressures must be positive and rise", "sort them"),
+        (not rising, "sealed pressures must be positive and increasing", "sort them"),
         (
             elements_around < 16 or elements_around % 4 != 0,
             f"{elements_around} elements around the section",
@@ -58,7 +58,7 @@ def check_inputs(
 
 
 class Seal(Protocol):
-    """A seal that can be mounted, released against the groove's outer wall, and looked at."""
+    """A seal that can be mounted, moved to the outer groove wall, and evaluated."""
 
     problem: ElementProblem
 
@@ -66,12 +66,12 @@ class Seal(Protocol):
         """Equilibrium in the groove without pressure."""
 
     def release(self, state: ElementState) -> ElementState:
-        """The seal against the outer side wall, held by nothing else."""
+        """The seal against the outer side wall, without other constraints."""
 
     def contact(
         self, state: ElementState, pressure: float, length: float, modulus: float
     ) -> Contact:
-        """The contact on the sliding face with its dimensions."""
+        """Contact on the sliding face, with dimensions."""
 
 
 def follow(
@@ -86,10 +86,10 @@ def follow(
 
     Parameters
     ----------
-    seal : in units of length and modulus
-    squeeze : of the rubber's section [-]
-    groove_width : in units of length
-    pressures : rising [Pa]
+    seal : seal in units of length and modulus
+    squeeze : squeeze over the section of the rubber ring [-]
+    groove_width : width of the groove in units of length
+    pressures : increasing pressures [Pa]
     length, modulus : the units [m], [Pa]
     """
     contacts: list[Contact] = []

@@ -1,4 +1,4 @@
-"""What a finite-element solution hands on: contact pressures over the sliding face, and stress."""
+"""Results of a finite-element solution: contact pressures on the sliding face, and stress."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from .section import Section
 
 @dataclass(frozen=True, slots=True)
 class StressField:
-    """Deformed bodies with their von Mises stress, for a figure.
+    """Deformed bodies with von Mises stress, for a figure.
 
     Parameters
     ----------
-    nodes : places of the corners, n x 2: along the cylinder, away from the sliding face [m]
+    nodes : positions of the corners, n x 2: axial, and away from the sliding face [m]
     triangles : three corners of every element
     von_mises : mean of every element [Pa]
     body : number of the body of every element, 0 the rubber ring
@@ -32,20 +32,20 @@ class StressField:
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """A seal in its groove at one sealed pressure; all pressures count from the outer side's.
+    """A seal in its groove at one sealed pressure; pressures are relative to the outer side.
 
     Parameters
     ----------
     pressure : sealed pressure above that of the outer side [Pa]
-    positions : from the end of the contact on the sealed side, rising, first 0, last `width` [m]
-    contact_pressure : there [Pa]; first the sealed pressure, last 0
-    width : length of the contact along the cylinder [m]
+    positions : distances from the sealed end of the contact, from 0 to `width` [m]
+    contact_pressure : contact pressure [Pa]; first the sealed pressure, last 0
+    width : axial width of the contact [m]
     line_load : force on the sliding face per length of its circumference [N/m]
     peak_pressure : highest contact pressure [Pa]
-    opposite_load : force on the groove's bottom per length of circumference, in contact alone [N/m]
-    side_load : force on the outer side wall of the groove likewise [N/m]; of a mounted step ring
-        what holds it along the cylinder
-    start : place of the sealed end of the contact, from the groove's outer wall, negative [m]
+    opposite_load : contact force on the groove bottom per length of circumference [N/m]
+    side_load : same for the outer side wall of the groove [N/m]; for a mounted step ring the axial
+        holding force
+    start : position of the sealed end of the contact from the outer groove wall, negative [m]
     field : deformed mesh with stress
     """
 
@@ -67,10 +67,10 @@ class SealSolution:
 
     Parameters
     ----------
-    contacts : one per pressure that was reached, the mounted seal first
-    failure : why a wanted pressure was not reached, in words; None when all were
+    contacts : one per reached pressure, the mounted seal first
+    failure : reason for a pressure that was not reached; None if all were reached
     steps, iterations : load steps, and Newton iterations of all of them
-    residual : largest force left unbalanced, of modulus times section
+    residual : largest unbalanced force, relative to modulus times section
     """
 
     contacts: tuple[Contact, ...]
@@ -96,14 +96,14 @@ def stress_field(section: Section, values: Floats, length: float, modulus: float
 
 
 def contact_end(held: float, gaps: Floats, places: Floats) -> float:
-    """End of a contact between its last held node and the first open one.
+    """End of a contact between its last closed and its first open node.
 
-    Beside a smooth contact the gap grows as distance^(3/2); its first two nodes give the end.
+    Beside a smooth contact the gap grows as distance^(3/2); its first two open nodes give the end.
 
     Parameters
     ----------
-    held : place of the last node in contact [m]
-    gaps, places : of the first two open nodes [m]
+    held : position of the last node in contact [m]
+    gaps, places : gaps and positions of the first two open nodes [m]
     """
     ratio = (max(gaps[0], 0.0) / gaps[1]) ** (2 / 3) if gaps[1] > gaps[0] else 0.0
     end = (places[0] - ratio * places[1]) / (1 - ratio)

@@ -1,4 +1,4 @@
-"""Bodies put together: internal forces, their derivative, stress; unknowns are (u, q)."""
+"""Assembly of bodies: internal forces, their derivative, stress; the unknowns are (u, q)."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from .mesh import Integers, Mesh
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """A mesh of one material, moved to its place.
+    """A mesh with its material and position.
 
     Parameters
     ----------
     mesh : its nodes and elements
     rubber : its strain energy
-    place : where the mesh's origin lies [m]
+    place : position of the mesh origin [m]
     """
 
     mesh: Mesh
@@ -30,13 +30,13 @@ class Body:
 
 
 class Section:
-    """All bodies in one vector of unknowns: displacements 2 i, 2 i + 1 of node i, then q.
+    """All bodies with a common vector of unknowns: displacements 2 i, 2 i + 1 of node i, then q.
 
     Parameters
     ----------
     bodies : meshes with their materials
-    sliding_radius : radius of direction-2 zero [m]; None is plane strain
-    outward : 1 where direction 2 points away from the axis (rod), -1 towards it (bore)
+    sliding_radius : radius at zero of direction 2 [m]; None: plane strain
+    outward : 1 if direction 2 points away from the axis (rod), -1 towards it (bore)
     """
 
     def __init__(
@@ -95,7 +95,7 @@ class Section:
         self.flat_shape: Floats = self.shape.reshape(count, points * 5, 12)
 
     def _pattern(self) -> None:
-        """Places of all element and edge entries in one sparse matrix."""
+        """Positions of all element and edge entries in a sparse matrix."""
         own = (2 * self.triangles[:, :, None] + np.arange(2)).reshape(len(self.triangles), 12)
         self.element_unknowns = np.concatenate((own, self.displacements + self.corners), axis=1)
         chain = np.concatenate(self.edges)
@@ -118,12 +118,12 @@ class Section:
         return identity + moved, unknown[:, 12:] @ self.corner_values.T
 
     def smallest_volume(self, state: Floats) -> float:
-        """Smallest J of all integration points; nothing may be turned inside out."""
+        """Smallest J of all integration points; it must stay positive."""
         gradient, _ = self.gradient(state)
         return float(np.min(material.inverse_transpose(gradient)[1]))
 
     def internal(self, state: Floats) -> Floats:
-        """Internal forces, and volume errors on the multiplier's rows."""
+        """Internal forces, and volume errors in the rows of the multiplier."""
         gradient, multiplier = self.gradient(state)
         nominal = material.stress(gradient, multiplier, self.c10, self.c01)
         _, volume = material.inverse_transpose(gradient)
@@ -136,7 +136,7 @@ class Section:
         return np.asarray(total)
 
     def stiffness(self, state: Floats, edge_blocks: Floats) -> csc_matrix:
-        """Derivative of the internal forces, with the fluid's 6 x 6 block of every edge added."""
+        """Derivative of the internal forces, plus the 6 x 6 block of the fluid for every edge."""
         gradient, multiplier = self.gradient(state)
         count, points = self.weights.shape
         slope = material.tangent(gradient, multiplier, self.c10, self.c01)
@@ -161,11 +161,11 @@ class Section:
         )
 
     def radii(self, places: Floats) -> Floats:
-        """Length of circumference per node: its radius per that of the sliding face, or one."""
+        """Circumference at every node over that of the sliding face; 1 in plane strain."""
         if self.sliding_radius is None:
             return np.ones(len(places))
         return np.asarray(1 + self.outward * places[:, 1] / self.sliding_radius)
 
     def places(self, state: Floats) -> Floats:
-        """Where the nodes are now, n x 2 [m]."""
+        """Current positions of the nodes, n x 2 [m]."""
         return np.asarray(self.nodes + state[: self.displacements].reshape(-1, 2))

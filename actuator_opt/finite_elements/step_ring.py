@@ -1,4 +1,4 @@
-"""A step ring: a stiff slide ring on the rod, pressed by a squeezed rubber ring behind it."""
+"""A step ring: a stiff slide ring on the rod, energised by a squeezed rubber ring behind it."""
 
 from __future__ import annotations
 
@@ -27,24 +27,24 @@ from .result import Contact, SealSolution, stress_field
 from .section import Body, Section
 
 COARSE = 0.12
-"""Largest spacing of the slide ring's elements, of the rubber's section."""
+"""Largest element size of the slide ring, over the section of the rubber ring."""
 RAMP = 0.03
-"""Length over which the fluid's pressure falls on the slide ring's back, of the rubber's section:
-the spacing of its nodes."""
+"""Length of the pressure transition on the back of the slide ring, over the rubber's section:
+its node spacing."""
 SHIFT_STEP = 0.05
-"""Move of the rubber ring along the cylinder in one load step, of its section."""
+"""Axial displacement of the rubber ring per load step, over its section."""
 
 
 class StepRing:
-    """The problem of both rings in units of the rubber's section and modulus.
+    """The problem of both rings, in units of the rubber's section and modulus.
 
     Parameters
     ----------
-    rubber, plastic : strain energies, the rubber's modulus 1
-    shape : of the slide ring
+    rubber, plastic : strain energies; the modulus of the rubber is 1
+    shape : dimensions of the slide ring
     around : elements around the rubber's section
-    fine : spacing of the elements at the ends of the land
-    sliding_radius, outward : as of `Section`
+    fine : element size at the ends of the land
+    sliding_radius, outward : as in `Section`
     """
 
     def __init__(
@@ -112,10 +112,10 @@ class StepRing:
         return np.minimum(wet, 1.0)
 
     def _wet_back(self, places: Floats, front: float) -> Floats:
-        """Share of the pressure on the slide ring's back, up to the front between the rings.
+        """Share of the pressure on the back of the slide ring, up to the front between the rings.
 
-        It is kept while the front stays at its node: as it shifts with the nodes' own motion,
-        a tilting ring would chase it.
+        It is kept while the front stays at its node: following the motion of the nodes would make
+        a tilting ring oscillate.
         """
         _, back = both_ways(self.flat, self.sealed_end)
         x = places[back, 0]
@@ -131,7 +131,7 @@ class StepRing:
         self.problem.bounds.lower[unknown] = self.problem.bounds.upper[unknown] = value
 
     def mount(self, squeeze: float, groove_width: float) -> ElementState:
-        """Bring the groove's bottom down on the rubber ring in the middle of the slide ring."""
+        """Lower the groove bottom onto the rubber ring at the middle of the slide ring."""
         self.groove_width = groove_width
         nodes, bounds, problem = self.section.nodes, self.problem.bounds, self.problem
         state = problem.start()
@@ -145,7 +145,7 @@ class StepRing:
         return state
 
     def release(self, state: ElementState) -> ElementState:
-        """Move the rubber ring to the outer side wall; both rings lean on it, nothing is held."""
+        """Move the rubber ring to the outer side wall, where both rings rest unconstrained."""
         nodes, bounds, problem = self.section.nodes, self.problem.bounds, self.problem
         distance = -float(np.max(self.section.places(state.values)[self.round, 0]))
         for part in np.linspace(0, distance, math.ceil(abs(distance) / SHIFT_STEP) + 1)[1:]:
@@ -167,7 +167,7 @@ class StepRing:
     def contact(
         self, state: ElementState, pressure: float, length: float, modulus: float
     ) -> Contact:
-        """The contact on the rod with its dimensions."""
+        """Contact on the rod, with dimensions."""
         places = self.section.places(state.values)
         force = state.reaction.reshape(-1, 2)
         held = state.at_lower.reshape(-1, 2)[:, 1]
@@ -205,33 +205,33 @@ def squeezed_step_ring(
 ) -> SealSolution:
     """Mount a slide ring with its rubber ring in a groove and raise the sealed pressure.
 
-    Walls, rod and the contact between the rings are frictionless, the groove's corners closed.
-    Both rings lean on the outer side wall. Plastic and rubber are elastic.
+    Walls, rod and the contact between the rings are frictionless, groove corners closed.
+    Both rings rest against the outer side wall. Plastic and rubber are elastic.
 
     Parameters
     ----------
     section : free section W of the rubber ring [m]
-    squeeze : of the rubber ring, of its free section [-]
-    groove_width : along the cylinder [m]
+    squeeze : squeeze of the rubber ring over its free section [-]
+    groove_width : axial width of the groove [m]
     rubber : strain energy of the rubber ring [Pa]
     plastic : strain energy of the slide ring [Pa]
     shape : section of the slide ring
-    pressures : sealed pressures above the outer side's, rising [Pa]
-    sliding_radius : of rod or bore [m]; None is plane strain
+    pressures : sealed pressures above the outer pressure, increasing [Pa]
+    sliding_radius : radius of rod or bore [m]; None: plane strain
     on_rod : whether the sliding face is a rod (groove outside) or a bore
     elements_around : elements around the rubber ring, a multiple of 4
     edge_elements : elements along the radius of the land's ends
 
     Returns
     -------
-    contacts of the mounted seal and of every pressure reached; why one was not [words]
+    contacts of the mounted seal and at every reached pressure; reason for a missing pressure
 
     Notes
     -----
     Valid: no friction, no creep, no yielding of the plastic, closed groove corners.
 
-    Line load and width hardly depend on the mesh; the peak at an end of the land does, and needs
-    8 or more `edge_elements`.
+    Line load and width hardly depend on the mesh. The peak at an end of the land does, and needs
+    at least 8 `edge_elements`.
 
     References
     ----------
@@ -256,7 +256,7 @@ def squeezed_step_ring(
         elements_around,
         (
             not shape.width <= groove_width,
-            f"the slide ring is {shape.width:g} m wide, its groove {groove_width:g} m",
+            f"the slide ring is {shape.width:g} m wide, but its groove {groove_width:g} m",
             "widen the groove",
         ),
         (
@@ -278,7 +278,7 @@ def squeezed_step_ring(
         (not shape.edge_radius > 0, "the land has sharp ends", "give their edge_radius"),
         (
             not thinnest >= 0.2 * shape.thickness,
-            "chamfer or relief takes the slide ring's thickness",
+            "chamfer or relief uses up the thickness of the slide ring",
             "make them flatter or the ring thicker",
         ),
     )

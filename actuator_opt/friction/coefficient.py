@@ -1,4 +1,4 @@
-"""A coefficient of friction times the contact load, with the Stribeck curve."""
+"""Friction coefficient times contact load, with the Stribeck curve."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ..seals.seal_type import SealSizes
 from .law import FrictionLaw
 
 STRIBECK_EXPONENT = 2.0
-"""Shape of the Stribeck curve where no record says otherwise ([MECE5005], [Huang2017] Table 2)."""
+"""Default exponent of the Stribeck curve ([MECE5005], [Huang2017] Table 2)."""
 
 
 def _coefficient(seal: SealSizes, contact: SealContact) -> Array:
@@ -40,7 +40,7 @@ def _slope(seal: SealSizes, coulomb: Array, speed: Array) -> Array:
 
 LAW = FrictionLaw(
     name="coefficient",
-    help="a coefficient times its contact load, with the Stribeck curve",
+    help="friction coefficient times contact load, with the Stribeck curve",
     compound=(),
     coefficient=_coefficient,
     breakaway=_breakaway,

@@ -1,4 +1,4 @@
-"""The oil film between rough surfaces."""
+"""Friction on an oil film between rough surfaces."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .law import Film, Friction
 
 
 def _friction(seal: SealSizes, contact: SealContact, film: Film | None) -> Friction:
-    """Friction on an oil film; at rest all oil is squeezed out and the face is dry."""
+    """Friction on an oil film; at rest the oil is squeezed out and the contact is dry."""
     own = seal["asperity_friction"]
     dry = friction.seal_friction(
         line_load=contact.line_load, diameter=seal["diameter"], friction_coefficient=own
@@ -32,7 +32,7 @@ def _friction(seal: SealSizes, contact: SealContact, film: Film | None) -> Frict
 LAW = replace(
     coefficient.LAW,
     name="film",
-    help="the oil film between rough surfaces, which also tells the leakage",
+    help="oil film between rough surfaces, which also gives the leakage",
     compound=("seal_roughness", "asperity_radius", "asperity_density", "asperity_friction"),
     film=_friction,
 )

@@ -1,4 +1,4 @@
-"""Every friction law of a seal, by the word of a design file."""
+"""All friction laws of a design file."""
 
 from __future__ import annotations
 

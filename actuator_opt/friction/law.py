@@ -1,4 +1,4 @@
-"""What a friction law states: words, numbers, the dry friction over speed, an oil film."""
+"""Interface of a friction law: names, properties, dry friction over speed, oil film."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..seals.seal_type import SealSizes
 
 @dataclass(frozen=True, slots=True)
 class Friction:
-    """Friction per case, N; `slope` is dF/dv at the case's speed, N·s/m."""
+    """Friction per case, N; `slope` is dF/dv at the speed of the case, N·s/m."""
 
     running: Array = 0.0
     breakaway: Array = 0.0
@@ -29,11 +29,11 @@ class Friction:
 
 
 class Film(Protocol):
-    """A running oil film of a ring, over the whole circumference."""
+    """Oil film of a ring in motion, over the whole circumference."""
 
     @property
     def viscous(self) -> Array:
-        """Drag of the oil, positive against the motion [N]."""
+        """Viscous drag, positive against the motion [N]."""
 
     @property
     def load(self) -> Array:
@@ -41,33 +41,33 @@ class Film(Protocol):
 
     @property
     def viscous_slope(self) -> Array:
-        """Derivative of the drag by the speed [N s/m]."""
+        """Derivative of the drag by speed [N s/m]."""
 
     @property
     def load_slope(self) -> Array:
-        """Derivative of the force by the speed [N s/m]."""
+        """Derivative of the normal force by speed [N s/m]."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class FrictionLaw:
-    """A friction law; every piece must be given.
+    """A friction law; every field must be stated.
 
-    Every seal has the numbers `friction_coefficient`, `breakaway_ratio` and `stribeck_speed` (its
-    own, else its compound's) and `viscous_friction`, a part proportional to speed that every law
-    but a film adds. `count` seals stand in a row.
+    Every seal has `friction_coefficient`, `breakaway_ratio` and `stribeck_speed` (stated, else from
+    its compound) and `viscous_friction`, a term proportional to speed that every law except a film
+    adds. `count` is the number of seals in a row.
 
     Parameters
     ----------
-    name : word in a design file
-    help : what the word means
-    compound : further numbers of the compound that it reads
-    coefficient : Coulomb coefficient of friction at a contact [-]
-    breakaway : friction at the begin of a motion, of the Coulomb friction [N]
-    level : friction over speed without its viscous part, of Coulomb friction [N] and speed [m/s];
-        of the shape that both broadcast to
-    slope : its derivative by speed [N s/m], of that shape
-    film : friction on a solved oil film, which is None where it was not solved; None: the law needs
-        no film. A law with a film states its dry friction too, for records and simulations
+    name : name in a design file
+    help : meaning of the name
+    compound : further properties of the compound that it uses
+    coefficient : Coulomb friction coefficient of a contact [-]
+    breakaway : breakaway friction, from Coulomb friction [N]
+    level : friction without its viscous part, from Coulomb friction [N] and speed [m/s], which
+        broadcast
+    slope : derivative of `level` by speed [N s/m], of the same shape
+    film : friction on an oil film, whose argument is None if the film was not solved; None: the
+        law needs no film. A law with a film also states dry friction, for records and simulations
     """
 
     name: str
@@ -82,11 +82,11 @@ class FrictionLaw:
     def friction(
         self, seal: SealSizes, contact: SealContact, load: Array, speed: Array
     ) -> Friction:
-        """Dry friction of a row of seals: sliding where the case moves, Coulomb where it does not.
+        """Dry friction of a row of seals: sliding if the case moves, else Coulomb friction.
 
         Parameters
         ----------
-        seal, contact : of the seal that holds the pressure
+        seal, contact : the pressure-loaded seal and its contact
         load : line load of the whole row [N/m]
         speed : [m/s]
         """

@@ -1,4 +1,4 @@
-"""Friction over time: what the force balance of the rod leaves."""
+"""Friction over time from the force balance of the rod."""
 
 from __future__ import annotations
 
@@ -14,28 +14,29 @@ from ..studies.bench import Bench
 from .conditioning import Motion, Piece
 
 RESTING, CREEP = 3.0, 2e-5
-"""Standard deviations of the velocity's noise below which the rod may be at rest, and least such
-speed [m/s] (choices: 0.3 % of the samples at rest are faster; two steps of 10 um in a second)."""
+"""Noise multiple, in standard deviations of the velocity, below which the rod may be at rest, and
+least such speed [m/s] (choices: 0.3 % of the samples at rest are faster; two steps of 10 um in a
+second)."""
 OPPOSED = 0.5
-"""Least share of the friction's power that must oppose motion; less, and a sign is wrong (a choice:
-a quarter of the power drives the rod then, more than noise and offsets do)."""
+"""Least share of the friction's power that must oppose motion; less means a wrong sign (a choice: a
+quarter of the power then drives the rod, more than noise and offsets explain)."""
 SLIDES = 5e-4
-"""Travel of a piece that is sliding [m] (a choice: ten breakaway travels of 50 um; below it
-bristles give back much of what they take)."""
+"""Travel of a section that counts as sliding [m] (a choice: ten breakaway travels of 50 um; below
+it bristles return much of their energy)."""
 SURE = 0.8
-"""Share from which another order of the channels is named as the remedy (a choice: a tenth of the
-power drives the rod then: plain, where the record as it stands fails `OPPOSED`)."""
+"""Driving share above which a swap of channels is suggested (a choice: a tenth of the power then
+drives the rod: plausible if the record itself fails `OPPOSED`)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sliding:
-    """Friction along one piece of a record, SI; arrays (samples).
+    """Friction along one section of a record, SI; arrays (samples).
 
     Parameters
     ----------
     piece : the motion
     hydraulic : p_1 A_1 - p_2 A_2 [N]
-    resisting : F_L + m a [N], what of it is not friction
+    resisting : F_L + m a [N], the part that is not friction
     pressure : the higher of both chambers, gauge [Pa]
     resting : velocity below which the rod may be at rest [m/s]
     """
@@ -53,15 +54,15 @@ class Sliding:
 
     @property
     def moving(self) -> Array:
-        """Samples at which the rod moves for sure."""
+        """Samples at which the rod certainly moves."""
         return self.piece.sound & (np.abs(self.piece.velocity) > self.resting)
 
 
 def velocity_noise(motion: Motion) -> float:
-    """Standard deviation of the velocity by the position's noise and steps [m/s].
+    """Standard deviation of the velocity due to noise and resolution of the position [m/s].
 
-    White noise s of a sample, filtered to f_c and differentiated:
-    s_v = 2 pi f_c s sqrt(2 f_c dt/3) [derived]; a step q of the sensor counts as q/sqrt 12.
+    White noise s of a sample, filtered to f_c and differentiated: s_v = 2 pi f_c s sqrt(2 f_c dt/3)
+    [derived]; a sensor step q counts as q/sqrt 12.
     """
     quality = motion.quality["x"]
     sample = max(quality.noise, quality.resolution / np.sqrt(12))
@@ -70,7 +71,7 @@ def velocity_noise(motion: Motion) -> float:
 
 
 def slide(motion: Motion, bench: Bench, *, mass: float, load_force: float | None) -> list[Sliding]:
-    """Friction along every piece of a record.
+    """Friction along every section of a record.
 
     F_r = p_1 A_1 - p_2 A_2 - F_L - m a, [Huang2017] eq. 1; areas in the bore as grown.
 
@@ -78,12 +79,12 @@ def slide(motion: Motion, bench: Bench, *, mass: float, load_force: float | None
     ----------
     motion : conditioned record; without a channel p2 the rod end is open to the air
     bench : the actuator's areas
-    mass : what moves inside the force sensor [kg]
-    load_force : of the load where no channel F_L measures it [N]
+    mass : moving mass inside the force sensor [kg]
+    load_force : of the load if no channel F_L measures it [N]
 
     Returns
     -------
-    friction by piece
+    friction by section
     """
     resting = max(RESTING * velocity_noise(motion), CREEP)
     return [_one(piece, bench, mass, load_force or 0.0, resting) for piece in motion.pieces]
@@ -107,8 +108,8 @@ def _one(piece: Piece, bench: Bench, mass: float, load_force: float, resting: fl
 def opposed(slidings: Sequence[Sliding]) -> float:
     """Share of the friction's power that opposes motion: 1 all, -1 none.
 
-    Of a record that hardly slides, share of its change that opposes motion, dF dx: there friction
-    is a spring that gives back what it took.
+    If the record hardly slides, the share of its changes that oppose motion, dF dx, as friction
+    then acts as a spring.
     """
     work = np.concatenate([_work(one) for one in slidings])
     whole = float(np.sum(np.abs(work)))
@@ -116,7 +117,7 @@ def opposed(slidings: Sequence[Sliding]) -> float:
 
 
 def _work(one: Sliding) -> Array:
-    """F v of the samples that have slid, else dF v."""
+    """F v of the samples after sliding, else dF v."""
     velocity = one.piece.velocity
     if _slides(one):
         return (one.friction * velocity)[one.moving]
@@ -128,13 +129,13 @@ def _slides(one: Sliding) -> bool:
 
 
 def check_signs(slidings: Sequence[Sliding], bench: Bench, *, mass: float, name: str) -> None:
-    """Refuse a record whose friction drives the rod: a channel is turned round.
+    """Reject a record whose friction drives the rod, which means a channel has the wrong sign.
 
     Raises
     ------
     InputError
-        naming what would put it right, where one change does: the one of least friction, x last, as
-        its sign does not change how large friction is
+        names the single change that helps, if any: the one with least friction, x last, as its sign
+        does not change the size of the friction
     """
     share = opposed(slidings)
     slid = any(_slides(one) for one in slidings)
@@ -149,7 +150,7 @@ def check_signs(slidings: Sequence[Sliding], bench: Bench, *, mass: float, name:
         if opposed(turned) > SURE and (way or _size(turned) < _size(slidings)):
             found.append((_size(turned), pressures, force))
     about = (
-        f"the friction found drives the rod instead of opposing it ({100 * share:.0f} % of its "
+        f"the friction drives the rod instead of opposing it (only {100 * share:.0f} % of its "
         "power opposes motion)"
     )
     if not found:
@@ -158,13 +159,19 @@ def check_signs(slidings: Sequence[Sliding], bench: Bench, *, mass: float, name:
     _, pressures, force = min(found)
     if pressures:
         what, remedy = (
-            "p1 and p2 look reversed",
+            "p1 and p2 seem swapped",
             "swap them, e.g. with --column p1=... --column p2=...",
         )
     elif force:
-        what, remedy = "F_L looks reversed", "F_L is positive against extension: turn its sign"
+        what, remedy = (
+            ("F_L seems to have the wrong sign"),
+            "F_L is positive against extension: reverse its sign",
+        )
     else:
-        what, remedy = "x looks reversed", "x grows as the rod comes out: turn its sign"
+        what, remedy = (
+            ("x seems to have the wrong sign"),
+            "x increases as the rod extends: reverse its sign",
+        )
     raise InputError(Diagnostic(f"{what}: {about}", remedy, file=name))
 
 
@@ -176,7 +183,7 @@ def _size(slidings: Sequence[Sliding]) -> float:
 def _turned(
     one: Sliding, bench: Bench, mass: float, pressures: bool, force: bool, way: bool
 ) -> Sliding:
-    """The friction with one channel the other way round."""
+    """The friction with one channel reversed."""
     piece = one.piece
     channels = dict(piece.channels)
     if pressures and "p2" in channels:

@@ -1,9 +1,9 @@
-"""Bending test to modulus: the slope of force over deflection in its straight part, with bounds.
+"""Modulus from a bending test: slope of force over deflection in its straight part, with bounds.
 
 The straight part lies between the strains 0.0005 and 0.0025 of the outer fibre, as the chord of
-[ISO178] and [ISO14125], counted from where the straight line meets zero force (toe compensation of
-[ASTM-D790], annex A1). [ASTM-D7264] takes 0.001 to 0.003; ASTM D790 leaves the chord open and
-prefers the steepest tangent, which noise makes too steep.
+[ISO178] and [ISO14125]. Strain counts from the point where the straight line meets zero force (toe
+compensation of [ASTM-D790], annex A1). [ASTM-D7264] takes 0.001 to 0.003; ASTM D790 leaves the
+chord open and prefers the steepest tangent, which noise makes too steep.
 """
 
 from __future__ import annotations
@@ -21,43 +21,43 @@ from .specimen import Specimen
 from .straight import BENT, SHARES, Loop, Straight, Term, by_way, mean, scatter, slopes, straight
 
 STRAINS = (0.0005, 0.0025)
-"""Strains between which the slope is taken [ISO178], [ISO14125]."""
+"""Strains between which the slope is determined [ISO178], [ISO14125]."""
 SHORT = 0.5
-"""Least share of the strains' range that a test must cover to be read by strain (a choice)."""
+"""Least share of the strain range that a test must cover to use strain limits (a choice)."""
 SLENDER = 16.0
 """Least span over depth [ISO178], [ASTM-D790]."""
 SHEARED = 0.1
-"""Share of shear in the deflection by bending from which the modulus rests on it (a choice)."""
+"""Shear deflection relative to bending above which the modulus depends on it (a choice)."""
 APART = 0.05
-"""Difference of loading and unloading slope from which friction or creep is named (a choice)."""
+"""Difference of loading and unloading slope that indicates friction or creep (a choice)."""
 NOISY = 0.02
-"""Scatter 1 - r^2 that lets noise of the deflection lower the slope by as much (a choice)."""
+"""Scatter 1 - r^2 at which noise of the deflection lowers the slope noticeably (a choice)."""
 STATED = 0.2
-"""Difference from the material's modulus from which part, span and units are doubted (a choice: an
+"""Difference from the material's modulus at which part, span and units are questioned (a choice: an
 error of the span counts three times, one of the diameter four)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BendingResult:
-    """What a bending test told, SI; bounds are those of the record.
+    """Results of a bending test, SI; bounds cover the record only.
 
-    Beside them an error of the span counts three times, of a solid bar's diameter four times.
+    In addition, an error of the span counts three times, of a solid bar's diameter four times.
 
     Parameters
     ----------
     slope : k_0, mean of loading and unloading [N/m]
-    loading, unloading : slopes of each [N/m]; None where the record has none
-    as_published : E = k_0 L^3/(48 I), nothing taken off [Pa]
-    modulus : the same with what is known of shear and dents taken off [Pa]
-    taken_off : what was: "shear", "dents"
-    shear_share : 12 E I/(kappa G A L^2), deflection by shear over that by bending; None: not known
-    strains : of the outer fibre between which the slope was taken; None: depth not known
+    loading, unloading : slopes of each [N/m]; None if the record has none
+    as_published : E = k_0 L^3/(48 I), uncorrected [Pa]
+    modulus : the same, corrected for known shear and indentation [Pa]
+    taken_off : corrections made: "shear", "dents"
+    shear_share : 12 E I/(kappa G A L^2), deflection by shear over that by bending; None if unknown
+    strains : range of the slope, in the outer fibre; None if the depth is unknown
     deflections : the same as deflections from zero force [m]
     bent : change of slope along the straight part over the slope
-    hysteresis : work lost over work done on loading, mean of the cycles; None where not told
+    hysteresis : work lost over work done on loading, mean of the cycles; None if not available
     cycles : of loading, of unloading or of both
     samples : in the straight part
-    doubts : what the modulus rests on
+    doubts : caveats of the modulus
     """
 
     record: Record
@@ -108,25 +108,26 @@ def _percent(share: float) -> str:
 def bending(record: Record, specimen: Specimen) -> BendingResult:
     """The bending modulus of a three-point bending test.
 
-    Slope of force over deflection in the straight part, each branch with offsets of its own, mean
-    of loading and unloading: friction at the supports that grows with the load makes one as much
-    too steep as the other too flat. 95 % bounds for noise that remembers, `straight.term`, wider by
-    what the slope changes along the part it is taken from.
+    Slope of force over deflection in the straight part, each branch with its own offsets, mean of
+    loading and unloading. Support friction proportional to the load makes one slope too steep by as
+    much as the other is too flat. The 95 % bounds allow for correlated noise, `straight.term`, and
+    for the change of slope along the part.
 
     Parameters
     ----------
-    record : with channels F_L, w, of a specimen that is not loaded at first; both grow as it is
-        bent, or both fall; any offsets
-    specimen : span, section, and what is known of shear and dents
+    record : with channels F_L, w, of an initially unloaded specimen; both increase or both decrease
+        under load; any offsets
+    specimen : span, section, and known shear and indentation
 
     Returns
     -------
-    slope, modulus as published and with shear and dents taken off
+    slope, modulus as published and corrected for shear and indentation
 
     Raises
     ------
     InputError
-        a channel missing or still, too few samples, a sign turned round, give beyond what is seen
+        a channel missing or constant, too few samples, a wrong sign, compliance above the measured
+        one
 
     References
     ----------
@@ -139,13 +140,13 @@ def bending(record: Record, specimen: Specimen) -> BendingResult:
     noise = scatter(found.parts)
     doubts = _doubts_of_record(result, by_strain=by_strain, cut=found.cut, noise=noise)
     if loop.both:
-        way = "bent both ways: the slope is that of the side bent further, from where"
+        way = "bent both ways: the slope is taken from the side bent further, starting where"
         doubts.append(f"{way} the force is zero")
     return replace(result, doubts=(*_doubts_of_specimen(result), *doubts))
 
 
 def _result(loop: Loop, specimen: Specimen, found: Straight) -> BendingResult:
-    """What the straight part says of the specimen, without doubts."""
+    """Properties of the specimen from the straight part, without caveats."""
     record, parts, ends = loop.record, found.parts, found.ends
     slope = _parameter(slopes(parts, 1, record), found.unsure)
     ways = {way: mean(one).value for way, one in by_way(parts, 1).items()}
@@ -153,7 +154,8 @@ def _result(loop: Loop, specimen: Specimen, found: Straight) -> BendingResult:
     modulus = _modulus(slope, specimen)
     if not isfinite(modulus.value):
         raise record.fault(
-            f"shear and dents alone give more than the {1e6 / slope.value:.4g} um/N measured",
+            "shear and indentation alone exceed the measured compliance of "
+            f"{1000000.0 / slope.value:.4g} um/N",
             "check the shear modulus, the local compliance and the span",
         )
     shear, slender = specimen.shear, 12 * specimen.inertia / specimen.span**2
@@ -180,7 +182,7 @@ def _result(loop: Loop, specimen: Specimen, found: Straight) -> BendingResult:
 
 
 def _range(loop: Loop, specimen: Specimen) -> tuple[list[float], float, float, bool]:
-    """Zero of every branch and the range from there, found together; whether by strain."""
+    """Zero of every branch and the range from there; whether strain limits are used."""
     zeros = loop.begins()
     first, last = (specimen.deflection(one) for one in STRAINS)
     low = high = 0.0
@@ -197,7 +199,7 @@ def _range(loop: Loop, specimen: Specimen) -> tuple[list[float], float, float, b
 
 
 def _parameter(found: Term, unsure: float) -> Parameter:
-    """A slope with its bounds, a share by which it changes along its part counted in."""
+    """A slope with its bounds, widened by its change along the part."""
     error = float(np.sqrt(found.variance))
     half = quantile(found.freedom) * error + unsure * abs(found.value)
     near = half <= WEAK * abs(found.value)
@@ -205,7 +207,7 @@ def _parameter(found: Term, unsure: float) -> Parameter:
 
 
 def _modulus(slope: Parameter, specimen: Specimen, *, published: bool = False) -> Parameter:
-    """The modulus of a slope and of its bounds."""
+    """The modulus for a slope and its bounds."""
 
     def of(one: float) -> float:
         return float(
@@ -229,7 +231,7 @@ def _modulus(slope: Parameter, specimen: Specimen, *, published: bool = False) -
 def _doubts_of_record(
     result: BendingResult, *, by_strain: bool, cut: bool, noise: float
 ) -> list[str]:
-    """What the slope rests on."""
+    """Caveats of the slope."""
     found = []
     for name, one in (("slope", result.slope), ("modulus", result.modulus)):
         if not one.identifiable:
@@ -239,35 +241,38 @@ def _doubts_of_record(
     if strains is None:
         found.append(
             "the depth of the section is not known: the slope is taken between "
-            f"{_percent(SHARES[0])} and {_percent(SHARES[1])} of the highest force, not by strain"
+            f"{_percent(SHARES[0])} and {_percent(SHARES[1])} of the highest force, not between "
+            "strains"
         )
     elif not by_strain:
         found.append(
-            f"the test is too short for the strains {100 * STRAINS[0]:g} to {100 * STRAINS[1]:g} %:"
-            f" the slope is taken between {100 * strains[0]:.2g} and {100 * strains[1]:.2g} %"
+            f"the test does not cover the strains {100 * STRAINS[0]:g} to {100 * STRAINS[1]:g} "
+            f"%: the slope is taken between {100 * strains[0]:.2g} and {100 * strains[1]:.2g} %"
         )
     if cut:
         low, high = (1e3 * one for one in result.deflections)
-        words = "force over deflection is bent: the slope is taken where it is straight"
+        words = "force over deflection is curved: the slope is taken from its straight part"
         found.append(f"{words}, from {low:.3g} to {high:.3g} mm")
     if abs(result.bent) > BENT:
         found.append(
-            f"the slope changes by {_percent(result.bent)} along the part it is taken from: "
-            "yielding, slip, or supports that settle"
+            f"the slope changes by {_percent(result.bent)} along the part used: yielding, slip, "
+            "or settling supports"
         )
     if result.unloading is None or result.loading is None:
         way = "loading" if result.unloading is None else "unloading"
-        found.append(f"{way} only: friction at the supports and creep change the slope")
+        found.append(f"{way} only: support friction and creep change the slope")
     elif abs(result.loading - result.unloading) > APART * result.slope.value:
         ways = ["loading", "unloading"]
         share = (result.loading - result.unloading) / result.slope.value
         first, second = ways if share > 0 else reversed(ways)
         found.append(
-            f"{first} is {_percent(abs(share))} steeper than {second}: friction at the supports, "
-            "creep or damage; their mean is taken"
+            f"{first} is {_percent(abs(share))} steeper than {second}: support friction, creep "
+            "or damage; the mean is used"
         )
     if result.hysteresis is None and result.unloading is not None and result.loading is not None:
-        words = "the work lost cannot be told, unloading gives back more than loading took"
+        words = (
+            "the hysteresis cannot be determined, as unloading returns more work than loading took"
+        )
         found.append(f"{words}: F_L lags w, or one drifts")
     if noise > NOISY:
         words = "force and deflection scatter: noise of the deflection alone would make the slope"
@@ -276,7 +281,7 @@ def _doubts_of_record(
 
 
 def _doubts_of_specimen(result: BendingResult) -> list[str]:
-    """What shear and dents leave open."""
+    """Caveats of shear and indentation."""
     found = []
     specimen, share = result.specimen, result.shear_share
     height, stated = specimen.height, specimen.expected_modulus
@@ -284,18 +289,22 @@ def _doubts_of_specimen(result: BendingResult) -> list[str]:
     if stated is not None and abs(ratio - 1) > STATED:
         part = _percent(ratio) if ratio <= 10 else "more than 1000 %"
         part = "less than 1 %" if ratio < 0.01 else part
-        words = f"the modulus is {part} of what the material states, {1e-9 * stated:.4g} GPa"
-        found.append(f"{words}: part, span or units?")
+        words = f"the modulus is {part} the material's value, {1e-09 * stated:.4g} GPa"
+        found.append(f"{words}: check part, span and units")
     if share is None:
-        found.append("shear is not taken off, no shear modulus is stated: the modulus is low")
+        found.append(
+            "not corrected for shear, as no shear modulus is stated: the modulus is too low"
+        )
     elif share > SHEARED:
-        words = f"shear deflects {_percent(share)} of what bending does"
-        found.append(f"{words}: the modulus rests on it")
+        words = f"shear deflection is {_percent(share)} of that by bending"
+        found.append(f"{words}: the modulus depends on it")
     if height is not None and specimen.span < SLENDER * height:
         found.append(
             f"the span is {specimen.span / height:.1f} depths, less than {SLENDER:g}: shear and "
-            "dents are not small"
+            "indentation are significant"
         )
     if specimen.local_compliance is None:
-        found.append("dents at rollers and supports are not taken off: the modulus is low")
+        found.append(
+            "not corrected for indentation at rollers and supports: the modulus is too low"
+        )
     return found

@@ -1,22 +1,22 @@
 """Bounds by resampling instead of the linearised model: a wild bootstrap of points and windows.
 
-Points of steady sliding are few, and one alone often carries a parameter (the slowest F_S, the
-fastest sigma_2): drawing them with replacement would lose it. Their residuals are drawn instead
-[Wu1986], each with the variance that it and its own error together say it has: of independent
-noise of unit weight, E[noise_i^2 | residuals] = r_i^2 + h_i s^2, h_i the leverage, s^2 the sum of
-squares over n - p [derived]. Where the fit bends to a point, its own error counts; else its
-residual. Windows about reversals are blocks, as their samples remember: all residuals of one are
-drawn together, which keeps what neighbours share. To first order this is the bootstrap of whole
-windows; the windows themselves stay, so that no draw lacks one way or the sharpest turns.
+Points of steady sliding are few, and a single one often determines a parameter (the slowest F_S,
+the fastest sigma_2). Drawing points with replacement would lose it, so their residuals are drawn
+instead [Wu1986]. Each has the variance implied by itself and its own error: for independent noise
+of unit weight, E[noise_i^2 | residuals] = r_i^2 + h_i s^2, h_i the leverage, s^2 the sum of squares
+over n - p [derived]. Where the fit bends to a point, its own error counts; else its residual.
+Windows about reversals are blocks, as their samples are correlated: all residuals of one are drawn
+together. To first order this is the bootstrap of whole windows, but every draw keeps both
+directions and the sharpest reversals.
 
-Each draw also scales the noise by sqrt(nu/chi^2_nu), as its size is known from nu spare points or
-windows only: for a linear model the bounds are then Student's t. Every draw is fitted again from
-the optimum, F_S and v_s from three starts, by damped Gauss-Newton steps within the limits of the
-search. Bounds are percentiles: they keep to the limits, follow skewed parameters, and do not change
-with how a parameter is written. The acceleration that BCa adds is taken from fits without one point
-at a time, which do not exist where that point alone carries a parameter.
+Each draw also scales the noise by sqrt(nu/chi^2_nu), as its size is known from only nu spare points
+or windows; for a linear model the bounds are then Student's t. Every draw is fitted again from the
+optimum, F_S and v_s from three starts, by damped Gauss-Newton steps within the search limits.
+Bounds are percentiles: they respect the limits, follow skewed parameters, and do not depend on the
+parametrisation. The acceleration of BCa needs fits without one point at a time, which do not exist
+where that point alone determines a parameter.
 
-What was asked of the points is not asked again: the bounds are those of the parameters chosen.
+The selection of parameters is not repeated: the bounds apply to those already selected.
 """
 
 from __future__ import annotations
@@ -38,27 +38,28 @@ from .points import SETTLED, Point
 from .stribeck_fit import EXPONENTS, SPEEDS, STATIC_MOST, Steady, StribeckFit
 
 FEWEST = 80
-"""Resamples at least: the second from each end is the bound then, not the outermost."""
+"""Least number of resamples, so that the bound is the second from each end, not the outermost."""
 STARTS = (1.0, 1 / 3, 3.0)
-"""Stribeck speeds over that of the optimum from which a draw is fitted (a choice: half a decade
-either way)."""
+"""Initial Stribeck speeds of a refit relative to the optimum (a choice: half a decade either
+way)."""
 STEPS, LUGRE_STEPS = 40, 8
-"""Steps of a fit, and of one whose slopes are those of the optimum (a choice: the bounds of the
-synthetic records stand still beyond)."""
+"""Steps of a fit, and of one with the slopes of the optimum (a choice: the bounds of the synthetic
+records do not change beyond)."""
 LEAST_WINDOWS = 3
-"""Windows that can be drawn (a choice: with two the noise is known from one difference)."""
+"""Least number of windows to draw from (a choice: with two the noise follows from one
+difference)."""
 ROWS = 256
 """Draws integrated at once (a choice: some 100 MB)."""
 RANK = 1e-10
-"""Least ratio of singular values of slopes that count for the leverage: rounding lies below."""
+"""Least ratio of singular values of slopes for the leverage: rounding lies below."""
 LOGS = ("stribeck_speed", "bristle_stiffness")
-"""Searched by their logarithm; sigma_1, which may be 0, is not."""
+"""Searched by logarithm; sigma_1, which may be 0, is not."""
 PHYSICAL = ("static", "viscous", "bristle_damping")
-"""Parameters whose lower end is one of physics: F_C for F_S, else 0."""
+"""Parameters with a physical lower limit: F_C for F_S, else 0."""
 SIGNED = ("offset", "pressure_slope", "lag")
-"""Parameters that may be 0: bounds about 0 do not say that they are not known."""
+"""Parameters that may be 0: bounds that include 0 do not mean they are unknown."""
 AT_END = 1e-6
-"""Distance from the end of a search, over its size, at which it is reached."""
+"""Relative distance from a search limit that counts as reached."""
 
 
 def resampled(
@@ -75,19 +76,19 @@ def resampled(
     """Both models of a record with bounds by resampling.
 
     Values stay; bounds, standard errors (half the bounds over Student's t) and verdicts change. A
-    parameter that the linearised model leaves open stays open, and so does one whose draws run to
-    an end of the search. One that it calls not identifiable keeps the wider of both bounds: the
-    optimum lies in a flat valley then, and draws show the scatter about it, not the valley. So do
-    those of LuGre where F_C is open or a lag is not looked for: its bounds hold more than scatter
-    then. The Stribeck curve's covariance stays that of the linearised model.
+    parameter left open by the linearised model stays open, and so does one whose draws reach a
+    search limit. A parameter that is not identifiable keeps the wider of both bounds: its optimum
+    lies in a flat valley, and draws show the scatter about it, not the valley. The same applies to
+    LuGre if F_C is open or no lag is fitted, as its bounds then contain more than scatter. The
+    Stribeck curve's covariance stays that of the linearised model.
 
     Parameters
     ----------
-    slidings, motion, points : as both were fitted to
-    stribeck, lugre : the fits, or why there is none
+    slidings, motion, points : data of both fits
+    stribeck, lugre : the fits, or the reason why there is none
     count : of resamples
-    seed : of the draws: the same one gives the same bounds
-    settling : distance after a reversal from which sliding is steady, as the fits took it [m]
+    seed : of the draws; the same seed gives the same bounds
+    settling : distance after a reversal from which sliding is steady [m], as in the fits
 
     Returns
     -------
@@ -96,11 +97,11 @@ def resampled(
     Raises
     ------
     InputError
-        fewer resamples than have a tail
+        too few resamples
     """
     if count < FEWEST:
-        message = f"{count} resamples have no tail of 2.5 %"
-        raise InputError(Diagnostic(message, f"take {FEWEST} or more, 200 as a rule"))
+        message = f"{count} resamples are too few for 2.5 % tails"
+        raise InputError(Diagnostic(message, f"take {FEWEST} or more, usually 200"))
     first, second = (np.random.default_rng(one) for one in np.random.SeedSequence(seed).spawn(2))
     curve_known = stribeck if isinstance(stribeck, StribeckFit) else None
     if isinstance(lugre, LuGreFit):
@@ -160,7 +161,7 @@ def _lugre(
     """A LuGre model with bounds by resampling points and windows."""
     blocks = found.velocity.shape[0]
     if blocks < LEAST_WINDOWS:
-        doubt = f"{blocks} windows are too few to resample: bounds of the linearised model"
+        doubt = f"{blocks} windows are too few to resample: bounds are from the linearised model"
         return replace(fit, doubts=(*fit.doubts, doubt))
     problem = LuGreResiduals(found, points, stribeck, fit)
     best = searched(tuple(fit.parameters), fit.values)
@@ -212,7 +213,7 @@ def _bristles(parameters: Mapping[str, Parameter]) -> list[str]:
 
 
 class LuGreResiduals:
-    """Weighted residuals of points and windows over searched numbers, as in `lugre_problem`."""
+    """Weighted residuals of points and windows as functions of the searched numbers."""
 
     def __init__(
         self, found: Windows, points: Sequence[Point], stribeck: StribeckFit | None, fit: LuGreFit
@@ -258,7 +259,7 @@ def _search(
     largest: float,
     ends: Mapping[str, tuple[float, float]],
 ) -> FitSearch:
-    """Ends of the search; an optimum at one lies within it."""
+    """Limits of the search; an optimum on a limit lies within it."""
     usual = {
         "static": (0.0, STATIC_MOST * largest),
         "stribeck_speed": (float(np.log(SPEEDS[0])), float(np.log(SPEEDS[1]))),
@@ -273,14 +274,14 @@ def _search(
 
 
 def searched(names: Sequence[str], values: Mapping[str, float]) -> Array:
-    """Searched numbers of parameters: logarithms, and F_S as its rise over F_C."""
+    """Searched numbers of parameters: logarithms, and F_S as its excess over F_C."""
     own = dict(values)
     own["static"] = own.get("static", own["coulomb"]) - own["coulomb"]
     return np.array([np.log(own[n]) if n in LOGS else own[n] for n in names])
 
 
 def natural(names: Sequence[str], rows: Array, values: Mapping[str, float]) -> dict[str, Array]:
-    """Parameters (rows,) of searched numbers (rows, searched), the others as they are."""
+    """Parameters (rows,) from searched numbers (rows, searched), the others unchanged."""
     own = {
         name: np.exp(column) if name in LOGS else column
         for name, column in zip(names, rows.T, strict=True)
@@ -304,7 +305,7 @@ def _spreads(slopes: Array, residuals: Array, variance: float) -> Array:
 
 
 def _scales(rng: np.random.Generator, freedom: int, count: int) -> Array:
-    """Size of the noise in each draw over that of the residuals (count, 1)."""
+    """Noise factor of each draw relative to the residuals (count, 1)."""
     return np.sqrt(freedom / rng.chisquare(freedom, (count, 1)))
 
 
@@ -316,7 +317,7 @@ def _bounded(
     spare: int,
     wider: Sequence[str] = (),
 ) -> dict[str, Parameter]:
-    """Parameters with percentiles for bounds; draws at an open end of the search have none.
+    """Parameters with percentile bounds; without bounds if draws reach an open search limit.
 
     Those named in `wider` keep the wider of both bounds.
     """

@@ -1,4 +1,4 @@
-"""From a record to the friction numbers of the design it was made with, each with its bounds."""
+"""Seal friction parameters of a design from its test record, each with bounds."""
 
 from __future__ import annotations
 
@@ -23,25 +23,25 @@ from .result import Identification
 from .stribeck_fit import StribeckFit
 
 KEYS = ("friction_coefficient", "breakaway_ratio", "stribeck_speed", "viscous_friction")
-"""Keys of a seal that a record can give."""
+"""Seal keys that a record can determine."""
 _ASKED = ("coulomb", "static", "stribeck_speed", "viscous")
-"""Parameters of the fits behind them."""
+"""Fit parameters behind these keys."""
 RISEN = 0.05
-"""Share of the friction at one speed that may be its rise towards rest before that is said (a
-choice: as much as a good record errs)."""
+"""Share of the friction at one speed due to the rise towards rest that is reported (a choice: the
+error of a good record)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Learned:
-    """One number of the cylinder that the record told, and how it is shared among the seals.
+    """One cylinder parameter from a record, and its distribution over the seals.
 
     Parameters
     ----------
     name : of the design's key: friction_coefficient, breakaway_ratio, stribeck_speed or
         viscous_friction
-    known : of the cylinder, SI; of friction_coefficient, the factor on what the design stated
+    known : of the cylinder, SI; for friction_coefficient, the factor on the stated values
     shares : of each seal by PATH: its value over that of the cylinder
-    before : what the design stated or took from the compound, by PATH
+    before : value stated in the design or taken from the compound, by PATH
     source : the fit it comes from
     """
 
@@ -56,7 +56,7 @@ class Learned:
         return {path: self.known.value * share for path, share in self.shares.items()}
 
     def bounds(self) -> dict[str, tuple[float, float]]:
-        """Bounds by PATH, within what the design can state."""
+        """Bounds by PATH, within the valid range of the design."""
         least, most = INPUTS[self.name].lower, INPUTS[self.name].upper
 
         def within(value: float) -> float:
@@ -87,16 +87,16 @@ class Learned:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Calibration:
-    """What a record changes in the seals of its design.
+    """Seal parameters of a design after a calibration.
 
     Parameters
     ----------
     identification : of the record
-    learned : what the record told
-    left : by key, why the design's value stays
-    coulomb, stated : Coulomb friction measured, and as the design stated it, at the record's
-        mean pressures [N]
-    doubts : what the numbers rest on
+    learned : parameters from the record
+    left : by key, the reason why the design's value stays
+    coulomb, stated : Coulomb friction measured, and as stated in the design, at the record's mean
+        pressures [N]
+    doubts : caveats of the numbers
     """
 
     identification: Identification
@@ -121,12 +121,12 @@ class Calibration:
 
 
 def calibration(identification: Identification) -> Calibration:
-    """The friction numbers that a record gives the seals of its design.
+    """Return the seal friction parameters from a record of their design.
 
-    The coefficients of all rings and wipers change by one factor, so that the Coulomb friction of
-    the design at the pressures of the steady points is that measured; the record of a cylinder
-    cannot tell piston from rod. F_S/F_C and v_s become those of every ring, sigma_2 is shared by
-    circumference. Each comes from the fit that knows it best; what none knows stays as it is. A
+    The coefficients of all rings and wipers change by one factor, so that the design's Coulomb
+    friction at the steady points' pressures equals the measured one; a cylinder record cannot
+    separate piston from rod. F_S/F_C and v_s apply to every ring, sigma_2 is distributed by
+    circumference. Each parameter comes from the fit with the tightest bounds, else it stays. A
     record of one speed gives the factor alone.
 
     Parameters
@@ -146,7 +146,7 @@ def calibration(identification: Identification) -> Calibration:
     refuse_films(bench.design)
     if not points:
         raise identification.record.fault(
-            "no steady sliding: nothing to calibrate the seals with",
+            "no steady sliding, so the seals cannot be calibrated",
             "record plateaus of constant speed, or slow sweeps, in both directions",
         )
     coulomb = np.asarray(bench.coulomb(*_pressures(points)))
@@ -166,14 +166,14 @@ def calibration(identification: Identification) -> Calibration:
             left[one.name] = why
     if not kept:
         raise identification.record.fault(
-            f"it tells nothing of the seals: {'; '.join(dict.fromkeys(left.values()))}",
+            f"the record determines no seal parameter: {'; '.join(dict.fromkeys(left.values()))}",
             "record plateaus of several constant speeds, in both directions",
         )
     doubts += weak({one.name: one.known for one in kept})
     doubts += extrapolated(bench, points)
     if len(bench.rings) + len(bench.wipers) > 1:
         doubts.append(
-            "one factor for all rings and wipers: a record of the cylinder cannot tell piston "
+            "one factor for all rings and wipers, as a cylinder record cannot separate piston "
             "from rod"
         )
     return Calibration(
@@ -187,27 +187,28 @@ def calibration(identification: Identification) -> Calibration:
 
 
 def _beyond_range(one: Learned) -> str | None:
-    """Why a number cannot stand in a design; None where it can."""
+    """Why a design cannot state a number, or None."""
     quantity = INPUTS[one.name]
     out = [v for v in one.values().values() if not quantity.lower <= v <= quantity.upper]
     if not out:
         return None
-    return f"measured {quantity.text(out[0])}, a design takes {quantity.range_text()}"
+    return f"measured {quantity.text(out[0])}, but a design accepts {quantity.range_text()}"
 
 
 def refuse_films(design: Design) -> None:
-    """Refuse a design whose seals take their friction from an oil film.
+    """Reject a design whose seals take their friction from an oil film.
 
     Raises
     ------
     InputError
-        at the seal's PATH
+        names the seal's PATH
     """
     for place in ("piston", "rod"):
         for tail, element in getattr(design.seals, place).elements().items():
             if element.friction_law.film:
                 message = (
-                    "the friction of this seal comes from an oil film: records give coefficients"
+                    "the friction of this seal comes from an oil film, but records give "
+                    "coefficients"
                 )
                 remedy = 'write "friction: coefficient" to calibrate it'
                 raise InputError(Diagnostic(message, remedy, path=f"seals.{place}.{tail}friction"))
@@ -224,10 +225,10 @@ def _pressures(points: Sequence[Point]) -> tuple[Array, Array]:
 def _from_fits(
     identification: Identification, stribeck: StribeckFit, stated: Array
 ) -> tuple[list[Learned], dict[str, str], Array]:
-    """What the Stribeck curve and the bristles told, and the Coulomb level by point.
+    """Parameters from the Stribeck curve and the bristles, and the Coulomb level by point.
 
-    The factor is the mean level over the mean that the design states; its bounds hold the ratio at
-    every point too, so that a contact law that rises otherwise with pressure widens them.
+    The factor is the mean measured level over the mean of the design. Its bounds also cover the
+    ratio at every point, so a contact law with another pressure dependence widens them.
     """
     bench = identification.bench
     known = {name: _best(identification, name) for name in _ASKED}
@@ -239,7 +240,7 @@ def _from_fits(
     learned: list[Learned] = []
     left: dict[str, str] = {}
     if coulomb is None:
-        left["friction_coefficient"] = "the record does not part Coulomb from viscous friction"
+        left["friction_coefficient"] = "the record cannot separate Coulomb from viscous friction"
     else:
         factor = float(np.mean(level) / np.mean(stated))
         found = _times(coulomb[0], factor / middle)
@@ -262,9 +263,9 @@ def _from_fits(
 
 
 def _from_level(bench: Bench, points: Sequence[Point]) -> tuple[list[Learned], Array, list[str]]:
-    """The factor alone, from friction at one speed; its rise at other speeds as the design says.
+    """The factor alone, from friction at one speed; other speeds follow the design.
 
-    Where the design says that the speed is within that rise, the upper bound allows for none.
+    If the speed is within the design's Stribeck rise, the upper bound assumes no rise.
     """
     speed = np.array([one.speed for one in points])
     measured = np.array([one.friction * np.sign(one.velocity) for one in points])
@@ -279,17 +280,19 @@ def _from_level(bench: Bench, points: Sequence[Point]) -> tuple[list[Learned], A
     rise = float(np.mean(level / coulomb))
     known = rated(value, value - half, rise * value + half, error)
     at = f"{1e3 * float(np.mean(speed)):.3g} mm/s"
-    doubts = [f"friction at {at} alone: its viscous part at other speeds is the design's"]
+    doubts = [
+        f"friction measured at {at} only: its viscous part at other speeds comes from the design"
+    ]
     if rise > 1 + RISEN:
         doubts.append(
-            f"by the design's breakaway ratio and Stribeck speed friction at {at} is {rise:.2f} "
-            "times its Coulomb part: the factor rests on them"
+            f"the design's breakaway ratio and Stribeck speed make friction at {at} {rise:.2f} "
+            "times its Coulomb part: the factor depends on them"
         )
     return [_coefficient(known, bench, f"friction at {at}")], value * coulomb, doubts
 
 
 def _best(identification: Identification, name: str) -> tuple[Parameter, str] | None:
-    """A parameter from the fit that bounds it best, with the fit's name; None where none does."""
+    """A parameter from the fit with the tightest bounds, with the fit's name, or None."""
     fits = (("Stribeck fit", identification.stribeck), ("LuGre fit", identification.lugre))
     found = [
         (fit.parameters[name], source)
@@ -307,7 +310,7 @@ def _times(one: Parameter, factor: float) -> Parameter:
 
 
 def _ratio(over: Parameter, under: Parameter) -> Parameter:
-    """F_S/F_C with the bounds of both as if independent; by their logarithms, so above zero."""
+    """F_S/F_C, with both bounds taken as independent; in logarithms, so positive."""
     ratio = over.value / under.value
     up = hypot(log(over.upper / over.value), log(under.value / under.lower))
     down = hypot(log(over.value / over.lower), log(under.upper / under.value))
@@ -316,7 +319,7 @@ def _ratio(over: Parameter, under: Parameter) -> Parameter:
 
 
 def _coefficient(factor: Parameter, bench: Bench, source: str) -> Learned:
-    """One factor on every coefficient of rings and wipers."""
+    """One factor for all coefficients of rings and wipers."""
     stated = {ring.groove.path: float(ring["friction_coefficient"]) for ring in bench.rings}
     stated |= {one.path: float(one.coefficient) for one in bench.wipers}
     shares = {f"{path}friction_coefficient": value for path, value in stated.items()}
@@ -324,13 +327,13 @@ def _coefficient(factor: Parameter, bench: Bench, source: str) -> Learned:
 
 
 def _alike(name: str, known: Parameter, bench: Bench, source: str) -> Learned:
-    """The same number for every ring."""
+    """The same value for every ring."""
     before = {f"{ring.groove.path}{name}": float(ring[name]) for ring in bench.rings}
     return Learned(name, known, dict.fromkeys(before, 1.0), before, source)
 
 
 def _viscous(known: Parameter, bench: Bench, source: str) -> Learned:
-    """sigma_2 shared by circumference."""
+    """Distribution of sigma_2 by circumference."""
     whole = sum(float(ring["diameter"]) for ring in bench.rings)
     paths = [f"{ring.groove.path}viscous_friction" for ring in bench.rings]
     return Learned(

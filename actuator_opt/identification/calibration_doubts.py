@@ -1,4 +1,4 @@
-"""What the friction numbers of a calibrated design leave out or extrapolate, in sentences."""
+"""Caveats of a calibrated design: effects left out, and extrapolation."""
 
 from __future__ import annotations
 
@@ -15,21 +15,22 @@ from .points import Point
 from .stribeck_fit import StribeckFit
 
 FARTHER = 1.05
-"""Duties over the record's speed or pressure that are said (a choice: less is no extrapolation)."""
+"""Duty relative to the record's speed or pressure that is reported (a choice: less is no
+extrapolation)."""
 MISFIT = 0.1
-"""Share of F_C by which the contact law may miss the friction measured at other pressures before
-it is said (a choice: a third of what makes a parameter weakly identifiable)."""
+"""Deviation of the contact law at other pressures, as a share of F_C, that is reported (a choice: a
+third of what makes a parameter weakly identifiable)."""
 
 
 def of_curve(
     points: Sequence[Point], stribeck: StribeckFit, level: Array, stated: Array
 ) -> Iterator[str]:
-    """What the design's friction cannot follow: an offset, another rise with pressure."""
+    """Effects that the design's friction omits: an offset, another pressure dependence."""
     offset = stribeck.parameters.get("offset")
     if offset is not None and (offset.lower > 0 or offset.upper < 0):
         yield (
-            f"the offset of {offset.value:.3g} N between both ways is not in the design's "
-            "friction, which is their mean"
+            f"the offset of {offset.value:.3g} N between both directions is not in the design's "
+            "friction, which is the mean"
         )
     yield from _shape(points, stribeck)
     apart = level - float(np.mean(level) / np.mean(stated)) * stated
@@ -37,14 +38,14 @@ def of_curve(
     share = float(apart[worst] / np.mean(level))
     if abs(share) > MISFIT:
         yield (
-            f"the friction measured deviates from the contact law by {100 * share:+.0f} % of F_C "
-            f"at {points[worst].pressure / 1e5:.3g} bar: the factor is that of the means over the "
-            "record's pressures, and its bounds hold every ratio"
+            f"the measured friction deviates from the contact law by {100 * share:+.0f} % of F_C "
+            f"at {points[worst].pressure / 100000.0:.3g} bar: the factor is a mean over the "
+            "record's pressures, and its bounds cover all of them"
         )
 
 
 def _shape(points: Sequence[Point], stribeck: StribeckFit) -> Iterator[str]:
-    """An exponent that is not the design's, and how far friction is off for it."""
+    """Deviation of the Stribeck exponent from the design's, and the resulting error of friction."""
     found = stribeck.parameters.get("exponent")
     if found is None or found.lower <= STRIBECK_EXPONENT <= found.upper:
         return
@@ -57,25 +58,25 @@ def _shape(points: Sequence[Point], stribeck: StribeckFit) -> Iterator[str]:
     worst = float(np.max(np.abs(other / own - 1)))
     yield (
         f"the exponent of the Stribeck curve is {found.value:.2f} ({found.lower:.2f} to "
-        f"{found.upper:.2f}), the design's friction has {STRIBECK_EXPONENT:g}: off by up to "
+        f"{found.upper:.2f}), but {STRIBECK_EXPONENT:g} in the design: error up to "
         f"{100 * worst:.0f} % at the record's speeds"
     )
 
 
 def extrapolated(bench: Bench, points: Sequence[Point]) -> Iterator[str]:
-    """Duties of the design that the record does not reach."""
+    """Duties of the design beyond the record."""
     fastest = max(case.speed for case in bench.design.load_cases)
     speed, pressure = max(one.speed for one in points), max(one.pressure for one in points)
     if fastest > FARTHER * speed or bench.supply_pressure > FARTHER * pressure:
         yield (
-            f"the record reaches {1e3 * speed:.3g} mm/s and {pressure / 1e5:.3g} bar, the design "
-            f"{1e3 * fastest:.3g} mm/s and {bench.supply_pressure / 1e5:.3g} bar: beyond it "
-            "friction is extrapolated by contact law and Stribeck curve"
+            f"the record reaches {1000.0 * speed:.3g} mm/s and {pressure / 100000.0:.3g} bar, "
+            f"the design {1000.0 * fastest:.3g} mm/s and {bench.supply_pressure / 100000.0:.3g} "
+            "bar: beyond the record friction is extrapolated by contact law and Stribeck curve"
         )
 
 
 def weak(known: Mapping[str, Parameter]) -> Iterator[str]:
-    """Numbers that the record hardly shows."""
+    """Weakly determined numbers."""
     names = [name for name, one in known.items() if not one.identifiable]
     if names:
         yield f"only weakly known (bounds beyond 30 %): {', '.join(names)}"

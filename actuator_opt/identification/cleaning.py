@@ -1,4 +1,4 @@
-"""A channel without its faults: spikes, clipped samples; the step and the noise of its sensor."""
+"""Cleaning of a channel: spikes, clipped samples; resolution and noise of its sensor."""
 
 from __future__ import annotations
 
@@ -9,69 +9,71 @@ import numpy as np
 from ..base.numeric import Array
 
 SPIKE, QUANTA, RANGE = 6.0, 3.0, 1e-3
-"""A spike stands out of its neighbours' median by so many robust standard deviations, by so many
-steps of the sensor, and by so much of the channel's range (choices: one normal sample in 5e8 is as
-far; rounding alone makes two steps; usual noise of pressures is as high as that share)."""
+"""A spike exceeds its neighbours' median by so many robust standard deviations, by so many sensor
+steps, and by this share of the channel's range (choices: one normal sample in 5e8 is as far;
+rounding alone makes two steps; usual noise of pressures is as high as that share)."""
 JUMP, BURST, FLANK = 0.7, 0.45, 0.3
-"""A spike rises within a sample by so much of its height; by `BURST`, if its flanks do not go on
-outside with `FLANK` of the step at its edge (choices: three stray samples side by side rise by half
-or more, the top of a triangle as wide as the median's window by a third, of a half sine by 0.6)."""
+"""A spike rises within a sample by this share of its height; by `BURST` if its flanks do not
+continue outside with `FLANK` of the step at its edge (choices: three adjacent stray samples rise by
+half or more, the top of a triangle as wide as the median's window by a third, of a half sine by
+0.6)."""
 WINDOW = 5e-3
-"""Half the time over which neighbours are looked at [s] (a choice: a sixth of a 30 Hz period)."""
+"""Half the width of the neighbourhood [s] (a choice: a sixth of a 30 Hz period)."""
 SAMPLED = 100_000
-"""Samples of a channel that tell its spread (a choice: to 1 %)."""
+"""Samples used for a channel's spread (a choice: to 1 %)."""
 LEVELS = 20_000
-"""Samples that tell the step of a sensor (a choice: some per step of a fine one)."""
+"""Samples used for a sensor's resolution (a choice: some per step of a fine one)."""
 CROWD, GARBAGE = 0.15, 0.5
-"""Shares of spikes in two windows from which the rest is doubted, and is garbage (choices: of 5 %
-strays at random half come once in 1e10 samples, of 10 % once in 1e6; noise as high as the range is
+"""Shares of spikes in two windows above which the rest is doubtful, or useless (choices: of 5 %
+random strays half occur once in 1e10 samples, of 10 % once in 1e6; noise as high as the range is
 three quarters spikes)."""
 HELD = 6
-"""Samples for which a channel stands at its end to be clipped, at least (a choice: the filter takes
-away what lasts less, a fifth of a 30 Hz period at 1 kHz)."""
+"""Least number of constant samples at a channel's end to count as clipped (a choice: the filter
+removes shorter ones, a fifth of a 30 Hz period at 1 kHz)."""
 FLICKER = 0.6
-"""Noise in steps of the sensor from which a level held is no coincidence (a choice: a true plateau
+"""Noise in sensor steps above which a constant level is no coincidence (a choice: a true plateau
 would leave its step in two of five samples)."""
 LIVE = 0.2
-"""Share of a channel that must not stand at its ends to be judged by the rest (a choice: four
-times as many as strays)."""
+"""Share of a channel away from its ends that is needed to judge by the rest (a choice: four times
+as many as strays)."""
 TURNS = 0.3
-"""Share of its steps after which a noisy channel turns (a choice: half the 2/3 of white noise)."""
+"""Share of its steps after which a noisy channel reverses (a choice: half the 2/3 of white
+noise)."""
 ROBUST = 1.4826
 """Standard deviation of a normal variable over its median deviation, 1/0.67449 [derived]."""
 
 
 class Quality(NamedTuple):
-    """What a channel is worth."""
+    """Quality of a channel."""
 
     missing: int
     spikes: int
     clipped: int
     resolution: float
-    """Step of the sensor, SI; a trifle where it shows none."""
+    """Resolution of the sensor, SI; negligible if it shows none."""
     noise: float
-    """Standard deviation of a sample, what the filter takes away, SI."""
+    """Standard deviation of a sample that the filter removes, SI."""
 
     def told(self, name: str, samples: int) -> list[str]:
-        """What was taken out of the channel of a name, as notes."""
+        """Notes on the samples removed from a channel."""
         counts = ((self.missing, "missing"), (self.spikes, "spikes"), (self.clipped, "clipped"))
         return [f"{name}: {n} of {samples} samples are {what}" for n, what in counts if n]
 
 
 def clean(values: Array, step: float, *, pressure: bool) -> tuple[Array, Quality]:
-    """A channel without spikes and clipped samples, and how many there were.
+    """A channel without spikes and clipped samples, with its quality.
 
     Parameters
     ----------
     values : raw samples, NaN where missing
     step : of time [s]
-    pressure : a chamber open to the tank stands at its least pressure, which is no clipping
+    pressure : a chamber open to the tank stays at its least pressure, which is not clipping
 
     Returns
     -------
-    the samples, NaN where there is none to trust, and what the channel is worth
+    the samples, NaN where unreliable, and the quality of the channel
     """
-    from scipy.ndimage import median_filter  # slow to import, rarely needed
+    from scipy.ndimage import median_filter  # slow import, rarely used
 
     absent = ~np.isfinite(values)
     if absent.all():
@@ -94,18 +96,18 @@ def clean(values: Array, step: float, *, pressure: bool) -> tuple[Array, Quality
 
 
 def resolution(values: Array) -> float:
-    """Step of a sensor: the least gap between levels that it shows again and again.
+    """Resolution of a sensor: the least gap between recurring levels.
 
     Give the running median: a stray sample makes levels anywhere, the median hardly any. Where
     levels seldom come back there is no step to speak of: the lowest hundredth of the gaps and of
     the steps from sample to sample, the less.
     """
-    count = min(LEVELS, values.size)  # one of each part at random: an even stride would beat
+    count = min(LEVELS, values.size)  # a random sample of each part, as an even stride could alias
     parts = np.arange(count) + np.random.default_rng(0).random(count)
     picked = values[(parts * (values.size / count)).astype(int)]
     levels, counts = np.unique(picked, return_counts=True)
-    least = 1e-9 * float(levels[-1] - levels[0])  # less is rounding
-    counts = np.minimum(counts, 5)  # a rest counts no more than a passage
+    least = 1e-9 * float(levels[-1] - levels[0])  # smaller differences are rounding
+    counts = np.minimum(counts, 5)  # a rest counts no more than a pass
     again = counts > 1
     gaps = np.diff(levels[again])
     gaps = gaps[gaps > least]
@@ -123,15 +125,15 @@ def _hundredth(values: Array) -> float:
 
 
 def _levels(values: Array) -> tuple[Array, Array]:
-    """Where a channel comes to another level, and for how many samples it stays."""
+    """Samples at which a channel changes level, and how long it stays."""
     first = np.concatenate([[0], np.flatnonzero(np.diff(values)) + 1])
     return first, np.diff(first, append=values.size)
 
 
 def _live(values: Array) -> Array:
-    """Samples that do not stand at the channel's ends, which tell nothing of its noise.
+    """Samples away from the channel's ends, which carry no noise information.
 
-    All, where these are few: then the channel is one level, and strays.
+    All samples if only few are left: the channel is then one level with strays.
     """
     first, length = _levels(values)
     held = length >= HELD
@@ -157,7 +159,7 @@ def runs(flags: Array) -> tuple[Array, Array]:
 
 
 def _least(values: Array, middle: Array, quantum: float, live: Array) -> float:
-    """Least height of a spike over the median of its neighbours."""
+    """Least height of a spike over its neighbours' median."""
     apart = np.abs(values - middle)
     if not np.any(middle != middle[0]) and np.mean(apart > 0) < 0.01:
         return 0.0  # a constant with a few strays
@@ -167,12 +169,12 @@ def _least(values: Array, middle: Array, quantum: float, live: Array) -> float:
 
 
 def _spikes(values: Array, middle: Array, least: float) -> Array:
-    """Samples far from the median of their neighbours that rise at once, as no true peak does."""
+    """Samples far from their neighbours' median that rise abruptly, unlike any true peak."""
     apart = np.abs(values - middle)
     out = apart > least
     at = np.flatnonzero(out)
     before, after = np.maximum(at - 2, 0), np.minimum(at + 2, values.size - 1)
-    here = middle[at]  # a neighbour moves the median by a sample, a turn flattens it
+    here = middle[at]  # a neighbour shifts the median by a sample, a reversal flattens it
     passing = np.maximum(np.abs(middle[after] - here), np.abs(middle[before] - here))
     out[at] = apart[at] > least + passing
     for a, b in zip(*_peaks(values, apart, *runs(out)), strict=True):
@@ -181,7 +183,7 @@ def _spikes(values: Array, middle: Array, least: float) -> Array:
 
 
 def _strays(values: Array, spikes: Array, quantum: float, live: Array) -> Array:
-    """Single samples beside the straight line through their neighbours, spikes left out.
+    """Single samples off the straight line through their neighbours, spikes excluded.
 
     A stray h bends the line by -h/2, h, -h/2; a step by h/2, -h/2, a kink once.
     """
@@ -206,12 +208,12 @@ def _strays(values: Array, spikes: Array, quantum: float, live: Array) -> Array:
 
 
 def _garbage(values: Array, spikes: Array, least: float, size: int) -> Array:
-    """What else is no good where spikes crowd.
+    """Further unreliable samples where spikes are dense.
 
-    In a short crowd, samples outside what stands before and behind it, if that is calm; of a
-    long one all.
+    In a short group, samples outside the range before and after it, if that is calm; in a long one
+    all.
     """
-    from scipy.ndimage import maximum_filter1d, uniform_filter1d  # slow to import, rarely needed
+    from scipy.ndimage import maximum_filter1d, uniform_filter1d  # slow import, rarely used
 
     wide = 2 * size + 1
     dense = uniform_filter1d(spikes.astype(np.float32), wide, mode="constant")
@@ -225,13 +227,13 @@ def _garbage(values: Array, spikes: Array, least: float, size: int) -> Array:
         outside = (values[a:b] < ends[0] - least) | (values[a:b] > ends[1] + least)
         if np.any(outside & ~spikes[a:b]):
             rough = max(float(np.max(np.abs(np.diff(one, 2)))) for one in (left, right))
-            out[a:b] = outside & (rough <= 2 * least)  # else the channel itself is lively here
+            out[a:b] = outside & (rough <= 2 * least)  # else the channel itself varies fast
     core = dense > GARBAGE
     return out | maximum_filter1d(core, wide) if core.any() else out
 
 
 def _peaks(values: Array, apart: Array, first: Array, last: Array) -> tuple[Array, Array]:
-    """Those runs of outstanding samples that are the tops of true peaks."""
+    """Runs of outlying samples that are true peaks."""
     if not first.size:
         return first, last
     rise = np.abs(np.diff(values, prepend=values[0], append=values[-1]))
@@ -249,10 +251,10 @@ def _peaks(values: Array, apart: Array, first: Array, last: Array) -> tuple[Arra
 
 
 def _clipped(values: Array, spikes: Array, quantum: float, *, pressure: bool) -> Array:
-    """Samples at the end of a sensor's range.
+    """Samples at the limit of a sensor's range.
 
-    A channel is clipped where it stands still at its highest or lowest level, for longer than
-    anywhere else, and either its noise would not let it stand, or it comes there at full speed.
+    A channel is clipped if it stays at its highest or lowest level longer than anywhere else, and
+    either its noise rules that out, or it arrives at full speed.
     """
     out = np.zeros(values.shape, dtype=bool)
     first, length = _levels(values)
@@ -262,7 +264,7 @@ def _clipped(values: Array, spikes: Array, quantum: float, *, pressure: bool) ->
         return out
     ends = (level[held].max(),) if pressure else (level[held].max(), level[held].min())
     free = ~np.isin(level, [level[held].min(), level[held].max()])
-    if length[free].sum() < LIVE * values.size:  # little else than two levels: nothing to compare
+    if length[free].sum() < LIVE * values.size:  # hardly more than two levels: nothing to compare
         return out
     turns = np.sign(np.diff(values[np.repeat(free, length)]))
     turns = turns[turns != 0]
@@ -291,16 +293,16 @@ def _noise(values: Array, free: Array) -> float:
 
 
 def _stay(noise: float, quantum: float) -> float:
-    """Chance that noise leaves a sample on its step, P(|n| < q/2)."""
+    """Probability that noise leaves a sample on its step, P(|n| < q/2)."""
     from math import erf
 
     return erf(quantum / (2 * np.sqrt(2) * noise)) if noise > 0 else 1.0
 
 
 def _abrupt(values: Array, first: Array, length: Array, quantum: float) -> bool:
-    """Whether a channel comes to a level, or leaves it, without slowing down.
+    """Whether a channel reaches or leaves a level without slowing down.
 
-    The step into the level is cut short by it; of the two before, the later is no smaller.
+    The level cuts the last step short; of the two before, the later is no smaller.
     """
     came = first[first >= 3]
     goes = (first + length - 1)[first + length + 3 <= values.size]

@@ -1,4 +1,4 @@
-"""The friction coefficient behind a record, with the contact law it rests on."""
+"""The friction coefficient of a record, with its contact law."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from .balance import Sliding
 from .conditioning import Motion
 
 WINDOW = 0.1
-"""Time over which friction and contact force are averaged [s] (a choice: six independent samples at
-30 Hz; one alone is ill-posed)."""
+"""Averaging time of friction and contact force [s] (a choice: six independent samples at 30 Hz; a
+single one is ill-posed)."""
 LEAST_SPEED = 1e-3
-"""Least mean speed of a window [m/s] (a choice: ten steps of 10 um in it show its way)."""
+"""Least mean speed of a window [m/s] (a choice: ten steps of 10 um in it show its direction)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,10 +45,10 @@ class Coefficient:
 
 
 def coefficient(slidings: Sequence[Sliding], motion: Motion, bench: Bench) -> Coefficient | str:
-    """The friction coefficient of a record, or why there is none.
+    """The friction coefficient of a record, or the reason for none.
 
-    mu = F_r/sum f_i pi D_i, f the line loads of the design's contact laws at the chamber
-    pressures; squeeze and pressure both press the rings on, so none needs a pressure difference.
+    mu = F_r/sum f_i pi D_i, f the line loads of the design's contact laws at the chamber pressures.
+    Squeeze and pressure both load the rings, so no pressure difference is needed.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def coefficient(slidings: Sequence[Sliding], motion: Motion, bench: Bench) -> Co
 
     Returns
     -------
-    median over windows with its bounds by the order of the sample, or one line
+    median over windows with bounds from the order statistics, or the reason for none
     """
     rows = np.concatenate([_windows(one, motion) for one in slidings])
     if rows.shape[0] < 2:

@@ -13,7 +13,7 @@ from .csv_table import numbers, read_sheet
 from .record import CHANNELS, column_of, contradicted, converted, header_cells
 
 FEWEST = 2
-"""Samples of a course."""
+"""Least number of samples of a signal."""
 
 
 def parse_column(
@@ -34,8 +34,8 @@ def parse_column(
     Raises
     ------
     InputError
-        no such column, no time, no unit or one of another dimension, a unit that `units` and the
-        header state differently, times that do not rise, no samples
+        no such column, no time, no unit or one of another dimension, contradictory units, times
+        that do not increase, no samples
     """
     sheet = read_sheet(text, name)
     cells = header_cells(sheet)
@@ -78,9 +78,11 @@ def parse_column(
     table, lines = numbers(sheet, [clock, place])
     t, x = (column.values(table[:, k]) for k, column in enumerate(columns))
     if np.count_nonzero(np.isfinite(x)) < FEWEST:
-        raise fault(f'column "{shown(header)}" holds no course', "give two samples or more")
+        raise fault(
+            f'column "{shown(header)}" has fewer than two samples', "give two samples or more"
+        )
     for bad, message, remedy in (
-        (~np.isfinite(t), "no time", "give every sample its time"),
+        (~np.isfinite(t), "missing time", "give a time for every sample"),
         (np.diff(t, prepend=-np.inf) <= 0, *_FALLS),
     ):
         if np.any(bad):
@@ -89,5 +91,5 @@ def parse_column(
     return t, x
 
 
-_FALLS = ("the time does not rise", "sort the lines by time, leave repeated ones out")
+_FALLS = ("time does not increase", "sort the lines by time and remove repeated ones")
 _TIMES = ("t", *CHANNELS["t"].others)

@@ -14,19 +14,19 @@ from ..base.suggest import shown
 from ..design.yaml_source import MAX_BYTES, decode, parse
 
 SI = "SI"
-"""Word that stands for the SI unit of every column: m, s, Pa, N, m/s, K."""
+"""Word for SI units in every column: m, s, Pa, N, m/s, K."""
 _WHAT = "units"
 
 
 @dataclass(frozen=True, slots=True)
 class ColumnUnits:
-    """Units that a header leaves out; a unit in the header counts before them.
+    """Units missing from a header; a unit in the header takes precedence.
 
     Parameters
     ----------
     stated : unit by name of the column
-    si : whether every other column without a unit is in SI units
-    name : where the units are from, for messages
+    si : whether all other columns without a unit are SI
+    name : source of the units, for messages
     """
 
     stated: Mapping[str, str] = field(default_factory=dict)
@@ -34,7 +34,7 @@ class ColumnUnits:
     name: str = _WHAT
 
     def of(self, column: str, dimension: str) -> str:
-        """Unit of a column whose header states none; empty where none is known."""
+        """Unit of a column whose header states none; empty if unknown."""
         return self.stated.get(column) or (units.BASE[dimension] if self.si else "")
 
 
@@ -44,8 +44,8 @@ NONE = ColumnUnits()
 def column_units(source: str | Path | Mapping[str, str] | None) -> ColumnUnits:
     """Units of columns by ``"SI"``, by column, or from a file.
 
-    A YAML file (``.yaml``, ``.yml``) holds lines ``p1: bar``, any other lines ``p1,bar``: the
-    column's name as the header writes it, and its unit. Columns that a record lacks are no fault.
+    A YAML file (``.yaml``, ``.yml``) has lines ``p1: bar``, any other file lines ``p1,bar``: the
+    column's name as in the header, and its unit. Columns that a record lacks are ignored.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def column_units(source: str | Path | Mapping[str, str] | None) -> ColumnUnits:
     Raises
     ------
     InputError
-        no such file, a line that is no column with its unit, a column named twice
+        no such file, a line without column and unit, or a column named twice
     """
     if source is None:
         return NONE
@@ -97,7 +97,7 @@ def _csv(text: str, file: str) -> dict[str, str]:
         cells = [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
         message, remedy = "", "write the column and its unit, e.g. p1,bar"
         if len(cells) != 2 or not all(cells):
-            message = f'"{shown(line)}" is no column with its unit'
+            message = f'"{shown(line)}" is not a column with its unit'
         elif cells[0] in found:
             message, remedy = f'column "{shown(cells[0])}" is named twice', "delete one line"
         if message:

@@ -1,8 +1,8 @@
-"""From a raw record to evenly sampled, filtered motion: gaps, spikes, clipping, zero-phase filter.
+"""Conditioning of a raw record to evenly sampled, filtered motion: gaps, spikes, clipping.
 
-Every channel passes the same filter once, so that the force balance holds for filtered values:
-what comes out is the friction itself through that filter. Velocity and acceleration are central
-differences of the filtered position.
+Every channel passes the same zero-phase filter once, so the force balance holds for filtered values
+and yields the friction through that filter. Velocity and acceleration are central differences of
+the filtered position.
 """
 
 from __future__ import annotations
@@ -19,36 +19,37 @@ from .cleaning import ROBUST, Quality, clean, runs
 from .record import CHANNELS, Record
 
 CUTOFF, ORDER = 30.0, 4
-"""Cut-off [Hz] of the zero-phase Butterworth filter [Huang2017], and its order per pass (a choice:
-the source gives the cut-off alone)."""
+"""Cut-off [Hz] of the zero-phase Butterworth filter [Huang2017], and its order per pass (a choice,
+as the source gives only the cut-off)."""
 SLOWEST = 3.0
-"""Samples per period of the cut-off, at least (a choice: the cut-off is then 2/3 of Nyquist's)."""
+"""Least samples per period of the cut-off (a choice: the cut-off is then 2/3 of Nyquist's)."""
 SHORTEST = 6.0
-"""Periods of the cut-off that a piece lasts at least (a choice: `EDGE` each leave a third)."""
+"""Least length of a section in periods of the cut-off (a choice: `EDGE` at each end leaves a
+third)."""
 EDGE = 2.0
-"""Periods of the cut-off at both ends of a piece where the filter knows too little (a choice:
-there a step has settled within 0.2 %)."""
+"""Periods of the cut-off at both ends of a section where the filter is inaccurate (a choice: there
+a step has settled within 0.2 %)."""
 BRIDGE = 5
-"""Missing samples that a straight line bridges; more where they last less than a quarter of a
-period of the cut-off (choices: 5 ms at 1 kHz; a chord so long misses a sine at a tenth of the
-cut-off by 0.3 %)."""
+"""Missing samples that are interpolated linearly; more if they last less than a quarter of a period
+of the cut-off (choices: 5 ms at 1 kHz; such a chord misses a sine at a tenth of the cut-off by 0.3
+%)."""
 ORDERS = 10
-"""Highest order of a pass (a choice: beyond it the filter rings for longer than `EDGE`)."""
+"""Highest order of a pass (a choice: above it the filter rings for longer than `EDGE`)."""
 CROWDED = 3.0
-"""Mean step of time over the usual one (a choice: even steps then hold three times the samples)."""
+"""Mean over usual time step (a choice: even steps then have three times the samples)."""
 SAMPLED = 100_000
-"""Samples of a piece that tell its noise (a choice: to 0.3 %)."""
+"""Samples of a section used for its noise (a choice: to 0.3 %)."""
 LATEST = 0.1
-"""Largest lag that is taken off [s] (a choice: twenty times that of a pressure sensor)."""
+"""Largest lag that is corrected [s] (a choice: twenty times that of a pressure sensor)."""
 NEEDED = ("p1", "p2", "x", "F_L")
-"""Channels whose missing samples break a record."""
+"""Channels whose missing samples split a record."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Piece:
-    """An unbroken stretch of a record, evenly sampled, SI; arrays (samples).
+    """An uninterrupted section of a record, evenly sampled, SI; arrays (samples).
 
-    `channels` are filtered; `sound` leaves out the ends where the filter knows too little.
+    `channels` are filtered; `sound` excludes the ends where the filter is inaccurate.
     """
 
     time: Array
@@ -66,7 +67,7 @@ class Piece:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Motion:
-    """A conditioned record: its pieces, and what was done to it."""
+    """A conditioned record: its sections, and the notes on conditioning."""
 
     pieces: tuple[Piece, ...]
     sample_time: float
@@ -84,7 +85,7 @@ def pass_cutoff(*, cutoff: float, order: int) -> float:
 
     Parameters
     ----------
-    cutoff : wanted of both passes [Hz]
+    cutoff : required of both passes [Hz]
     order : n of each pass
 
     Returns
@@ -104,14 +105,14 @@ def pass_cutoff(*, cutoff: float, order: int) -> float:
 
 
 def low_pass(*, cutoff: float, order: int, sample_time: float, compensated: bool) -> Array:
-    """Second-order sections of one pass; with both, the gain at `cutoff` is exact at any sampling.
+    """Second-order sections of one pass; both passes together have the exact gain at `cutoff`.
 
-    The bilinear transform takes f to tan(pi f dt): compensated is what it makes of the cut-off.
-    Far below the Nyquist frequency that is f_c/(sqrt 2 - 1)^(1/2n).
+    The bilinear transform maps f to tan(pi f dt); the compensated cut-off allows for this. Far
+    below the Nyquist frequency it is f_c/(sqrt 2 - 1)^(1/2n).
     """
-    from scipy.signal import butter  # slow to import, rarely needed
+    from scipy.signal import butter  # slow import, rarely used
 
-    corner = math.tan(math.pi * cutoff * sample_time)  # as the bilinear transform bends it
+    corner = math.tan(math.pi * cutoff * sample_time)  # as warped by the bilinear transform
     if compensated:
         corner = pass_cutoff(cutoff=corner, order=order)
     return butter(
@@ -120,7 +121,7 @@ def low_pass(*, cutoff: float, order: int, sample_time: float, compensated: bool
 
 
 def zero_phase(sections: Array, values: Array, *, reach: int) -> Array:
-    """Forward and backward along the last axis; `reach` samples are mirrored at the ends."""
+    """Filter forward and backward along the last axis; `reach` samples are mirrored at the ends."""
     from scipy.signal import sosfiltfilt
 
     length = min(reach, values.shape[-1] - 1)
@@ -136,15 +137,15 @@ def condition(
     pressure_lag: float = 0.0,
     before: Motion | None = None,
 ) -> Motion:
-    """Evenly sampled, cleaned and filtered pieces of a record.
+    """Evenly sampled, cleaned and filtered sections of a record.
 
     Parameters
     ----------
     record : raw
     cutoff, order : of the zero-phase Butterworth filter [Hz], of each of its two passes
     compensated : whether both passes together are -3 dB at the cut-off, else -6 dB
-    pressure_lag : time by which pressures come late, taken off [s]
-    before : the same record with other choices, cleaned already
+    pressure_lag : time lag of the pressures, corrected [s]
+    before : the same record with other settings, already cleaned
 
     Returns
     -------
@@ -153,7 +154,7 @@ def condition(
     Raises
     ------
     InputError
-        time that does not increase, samples too few or too far apart, nothing left unbroken
+        time that does not increase, samples too few or too far apart, or no uninterrupted section
     """
     _choices(record, cutoff, order, pressure_lag)
     if "x" not in record:
@@ -168,7 +169,7 @@ def condition(
     else:
         cleaned, quality = before.cleaned, before.quality
     lost = [name for name in CHANNELS if name in record and name not in cleaned]
-    notes += [f"{name} has no sample: left out" for name in lost]
+    notes += [f"{name} has no samples: left out" for name in lost]
     sections = low_pass(cutoff=cutoff, order=order, sample_time=step, compensated=compensated)
     pieces, dropped = [], []
     for first, last in _breaks(time, cleaned, step, cutoff):
@@ -178,7 +179,7 @@ def condition(
             continue
         if span > CROWDED * step * (last - first):
             raise record.fault(
-                f"sample times are too uneven: most are {step:.3g} s apart, the mean is "
+                f"sample times are too uneven: most are {step:.3g} s apart, but the mean is "
                 f"{span / (last - first):.3g} s",
                 "give one line per sample, at even times",
                 first,
@@ -190,7 +191,7 @@ def condition(
     gaps = len(pieces) + len(dropped) - 1
     if gaps:
         short = f", {sum(dropped):.3g} s too short to use" if dropped else ""
-        notes.append(f"{gaps} gaps; {len(pieces)} pieces used{short}")
+        notes.append(f"{gaps} gaps; {len(pieces)} sections used{short}")
     notes += _timing(steps, step, cutoff)
     quality = {
         name: one._replace(noise=_noise(time, record[name], name, pieces))
@@ -201,19 +202,19 @@ def condition(
 
 
 def _timing(steps: Array, step: float, cutoff: float) -> list[str]:
-    """Notes on sample times that are left out or uneven."""
+    """Notes on missing or uneven sample times."""
     notes = []
     bridged = steps[steps < (_bridged(step, cutoff) + 1.5) * step]
     skipped = float(np.sum(np.round(bridged / step) - 1))
     if skipped > 0:
-        notes.append(f"time leaves out {skipped:.0f} samples: bridged")
+        notes.append(f"{skipped:.0f} samples are missing in time: interpolated")
     if np.abs(steps[steps < 1.5 * step] - step).max() > 0.01 * step:
-        notes.append(f"sample times are uneven: drawn to even steps of {1e3 * step:.4g} ms")
+        notes.append(f"sample times are uneven: resampled at {1000.0 * step:.4g} ms")
     return notes
 
 
 def _cleaned(record: Record, step: float) -> tuple[dict[str, Array], dict[str, Quality]]:
-    """Every channel without spikes and clipped samples, and what it is worth."""
+    """Every channel without spikes and clipped samples, with its quality."""
     cleaned: dict[str, Array] = {}
     quality: dict[str, Quality] = {}
     for name in CHANNELS:
@@ -223,12 +224,14 @@ def _cleaned(record: Record, step: float) -> tuple[dict[str, Array], dict[str, Q
             pressure = name in ("p1", "p2")
             cleaned[name], quality[name] = clean(record[name], step, pressure=pressure)
         elif name in NEEDED:
-            raise record.fault(f"{name} has no sample", "mend the sensor, or leave the column out")
+            raise record.fault(
+                f"{name} has no samples", "repair the sensor, or leave the column out"
+            )
     return cleaned, quality
 
 
 def _choices(record: Record, cutoff: float, order: int, lag: float) -> None:
-    """Refuse a filter that is none."""
+    """Reject invalid filter settings."""
     if not (math.isfinite(cutoff) and cutoff > 0):
         raise record.fault(f"a cut-off of {cutoff:g} Hz", 'give one above zero: --cutoff "30 Hz"')
     if not 1 <= order <= ORDERS or int(order) != order:
@@ -248,7 +251,7 @@ def _time(record: Record) -> Array:
         raise record.fault("one sample", "give a record of a second or more")
     lost = np.flatnonzero(~np.isfinite(time))
     if lost.size:
-        raise record.fault("no time", "give every sample its time", int(lost[0]))
+        raise record.fault("missing time", "give a time for every sample", int(lost[0]))
     back = np.flatnonzero(np.diff(time) <= 0)
     if back.size:
         at = int(back[0]) + 1
@@ -262,7 +265,7 @@ def _time(record: Record) -> Array:
 
 
 def _nothing(record: Record, quality: dict[str, Quality], shortest: float) -> InputError:
-    """Nothing is left unbroken: because of what."""
+    """The error that no uninterrupted section is left, with its cause."""
     worst = max(
         (
             (one.missing + one.spikes + one.clipped, name)
@@ -279,20 +282,20 @@ def _nothing(record: Record, quality: dict[str, Quality], shortest: float) -> In
             "samples"
         )
     return record.fault(
-        f"no stretch of {shortest:.2g} s is unbroken: {why}",
-        "mend the sensors, or give a longer record",
+        f"no section of {shortest:.2g} s is uninterrupted: {why}",
+        "repair the sensors, or give a longer record",
     )
 
 
 def _sampling(record: Record, time: Array, step: float, cutoff: float) -> None:
-    """Refuse a record the filter cannot work on."""
+    """Reject a record that the filter cannot handle."""
     span, shortest = float(time[-1] - time[0]), SHORTEST / cutoff
     if step * cutoff * SLOWEST > 1:
         most = 1 / (SLOWEST * step)
         hint = "; or is t in ms?" if step >= 0.1 and 1e-3 * step * cutoff * SLOWEST <= 1 else ""
         raise record.fault(
             f"{1 / step:.4g} samples per second are too few for a cut-off of {cutoff:g} Hz",
-            f'sample faster, or filter lower: --cutoff "{_floor(most):g} Hz" at most{hint}',
+            f'sample faster, or lower the cut-off: --cutoff "{_floor(most):g} Hz" at most{hint}',
         )
     if span < shortest:
         hint = "; or is t in s?" if step < 2e-5 and 1e3 * span >= shortest else ""
@@ -309,14 +312,14 @@ def _floor(value: float) -> float:
 
 
 def _bridged(step: float, cutoff: float) -> int:
-    """Missing samples that a straight line bridges."""
+    """Missing samples that are interpolated linearly."""
     return max(BRIDGE, round(0.25 / (cutoff * step)))
 
 
 def _breaks(
     time: Array, channels: dict[str, Array], step: float, cutoff: float
 ) -> list[tuple[int, int]]:
-    """First and one past the last sample of every unbroken stretch."""
+    """First and one past the last sample of every uninterrupted section."""
     torn = np.zeros(time.size, dtype=bool)
     longest = _bridged(step, cutoff)
     for name, values in channels.items():
@@ -340,7 +343,7 @@ def _piece(
     sections: Array,
     pressure_lag: float,
 ) -> Piece:
-    """One stretch on even steps of time, filtered and differentiated."""
+    """One section resampled at even time steps, filtered and differentiated."""
     count = int(np.floor((time[-1] - time[0]) / step + 1e-6)) + 1
     even = time[0] + step * np.arange(count)
     reach = round(3 / (cutoff * step))
@@ -360,7 +363,7 @@ def _piece(
 
 
 def _noise(time: Array, values: Array, name: str, pieces: Sequence[Piece]) -> float:
-    """Standard deviation of a sample about the filtered channel, robust."""
+    """Robust standard deviation of a sample about the filtered channel."""
     apart = []
     for piece in pieces:
         if name in piece:

@@ -1,4 +1,4 @@
-"""Text of a bench's CSV file as cells: separators, decimal comma, quotes, comments, line ends."""
+"""Cells of a test record's CSV file: separators, decimal comma, quotes, comments, line ends."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..base.numeric import Array
 from ..base.suggest import shown
 
 ABSENT = {"", "-", "--", "na", "n/a", "nan", "-nan", "null", "none", "#n/a", "inf", "-inf", "+inf"}
-"""Cells that say that a sample is missing, in small letters."""
+"""Cells that mark a missing sample, in small letters."""
 
 _BATCH = 50_000
 """Lines read at once (a choice: keeps a record of an hour within memory)."""
@@ -22,29 +22,29 @@ _BINARY = re.compile(r"[\x00-\x08\x0e-\x1f\x7f]")
 _ZIP = b"PK\x03\x04"
 _COMMENT = re.compile(r"\s*#(?!n/a)", re.IGNORECASE)
 _MISREAD = (("Âµ", "µ"), ("Î¼", "µ"), ("Â°", "°"), ("Â²", "²"), ("Â·", "·"))
-"""UTF-8 signs as a program writes them that took them for Latin-1."""
+"""UTF-8 characters as written by a program that took them for Latin-1."""
 
 
 def decode_record(data: bytes, name: str, *, most: int | None = None) -> str:
-    """Text of a file's bytes: UTF-8, UTF-16 with its mark, else the Western code page.
+    """Text of a file's bytes: UTF-8, UTF-16 with a byte order mark, else the Western code page.
 
     Parameters
     ----------
     data : of the file
     name : of the file, for messages
-    most : bytes that are read at most
+    most : maximum number of bytes
 
     Raises
     ------
     InputError
-        a workbook or another archive, too large a file
+        a workbook or another archive, or a file that is too large
     """
     if most is not None and len(data) > most:
         message = f"the file is larger than {most / 1e6:.0f} MB"
-        remedy = "leave out columns and digits that nothing needs, or give a part of the record"
+        remedy = "leave out unneeded columns and digits, or give a part of the record"
         raise InputError(Diagnostic(message, remedy, file=name))
     if data.startswith(_ZIP):
-        message = "a workbook or an archive, not text"
+        message = "the file is a workbook or an archive, not text"
         raise InputError(Diagnostic(message, "save the sheet as CSV", file=name))
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         return data.decode("utf-16", "replace")
@@ -62,10 +62,10 @@ class Sheet:
     ----------
     name : of the file
     header, header_line : cells of the header, and its line from 1
-    units : of a line of their own below, by column; None without one
+    units : from a separate line below, by column; None without one
     separator : of columns
     lines, first : of the file, and the index of the first line of samples
-    width : columns with those of the header that have no name
+    width : columns, including those without a header
     """
 
     name: str
@@ -79,7 +79,7 @@ class Sheet:
 
 
 def read_sheet(text: str, name: str) -> Sheet:
-    """Header, units and place of the samples of a CSV file.
+    """Header, units and first sample line of a CSV file.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def read_sheet(text: str, name: str) -> Sheet:
     strange = _BINARY.search(text)
     if strange is not None:
         line = text.count("\n", 0, strange.start()) + 1
-        message = f"no text: byte 0x{ord(strange[0]):02x}"
+        message = f"not text: byte 0x{ord(strange[0]):02x}"
         raise InputError(Diagnostic(message, "export the record as CSV", file=name, line=line))
     for wrong, right in _MISREAD:
         text = text.replace(wrong, right)
@@ -114,7 +114,7 @@ def read_sheet(text: str, name: str) -> Sheet:
 
 
 def is_number(cell: str) -> bool:
-    """Whether a cell is a number, with a decimal point or comma; nan and inf are."""
+    """Whether a cell is a number, with a decimal point or comma; nan and inf count."""
     try:
         float(cell.strip().replace(",", "."))
     except ValueError:
@@ -123,7 +123,7 @@ def is_number(cell: str) -> bool:
 
 
 def numbers(sheet: Sheet, places: Sequence[int]) -> tuple[Array, Array]:
-    """Some columns of a sheet as numbers (samples, places), NaN where there is none.
+    """Some columns of a sheet as numbers (samples, places), NaN where missing.
 
     Returns
     -------
@@ -132,7 +132,7 @@ def numbers(sheet: Sheet, places: Sequence[int]) -> tuple[Array, Array]:
     Raises
     ------
     InputError
-        a line with too few or too many cells, a cell of these columns that is no number
+        a line with too few or too many cells, or a cell of these columns that is not a number
     """
     tables, found = [np.empty((0, len(places)))], [np.empty(0, dtype=int)]
     for begin in range(sheet.first, len(sheet.lines), _BATCH):
@@ -153,7 +153,7 @@ def _batch(sheet: Sheet, lines: Sequence[str], at: Array, places: Sequence[int])
     for k, place in enumerate(places):
         column = flat[place::count]
         try:
-            if "_" in "".join(column):  # 1_000 is a number to Python alone
+            if "_" in "".join(column):  # Python alone reads 1_000 as a number
                 raise ValueError
             out[:, k] = np.fromiter(map(float, column), float, len(column))
         except ValueError:
@@ -165,7 +165,7 @@ def _batch(sheet: Sheet, lines: Sequence[str], at: Array, places: Sequence[int])
 
 
 def _flat(sheet: Sheet, lines: Sequence[str], at: Array) -> tuple[list[str], int]:
-    """All cells of some lines one after the other, and how many each line has."""
+    """All cells of some lines in sequence, and their number per line."""
     separator, named = sheet.separator, len(sheet.header)
     count = lines[0].count(separator) + 1
     text = separator.join(lines)
@@ -180,14 +180,14 @@ def _flat(sheet: Sheet, lines: Sequence[str], at: Array) -> tuple[list[str], int
 
 
 def _even(sheet: Sheet, lines: Sequence[str], at: Array) -> Iterator[str]:
-    """Cells of uneven lines, as many of each as the header names."""
+    """Cells of uneven lines, cut or filled to the header's columns."""
     named = len(sheet.header)
     for line, number in zip(lines, at.tolist(), strict=True):
         cells = _cells(line, sheet.separator)
         while len(cells) > sheet.width and not cells[-1]:
             cells.pop()
         if not named <= len(cells) <= sheet.width:
-            message = f"{len(cells)} cells, the header has {named} columns"
+            message = f"{len(cells)} cells, but the header has {named} columns"
             remedy = "give every line as many cells as the header"
             if sheet.separator == "," and len(cells) > named:
                 remedy += "; with decimal commas, separate columns by semicolons"
@@ -203,15 +203,15 @@ def _number(cell: str, name: str, line: int) -> float:
     except ValueError:
         if cell.lower() in ABSENT:
             return float("nan")
-    message, remedy = f'"{shown(cell)}" is no number', "write a number, or leave the cell empty"
+    message, remedy = f'"{shown(cell)}" is not a number', "write a number, or leave the cell empty"
     if re.match(r"\d+[:/-]\d+", cell):
         message = f'"{shown(cell)}" is a clock time or a date'
-        remedy = "write the time as a number from the beginning of the record, e.g. in s"
+        remedy = "write the time as a number from the start of the record, e.g. in s"
     raise InputError(Diagnostic(message, remedy, file=name, line=line))
 
 
 def _skipped(line: str, separator: str = ",") -> bool:
-    """Whether a line holds no sample: blank, nothing but separators, a comment."""
+    """Whether a line has no sample: blank, separators only, or a comment."""
     bare = line.strip(" ,\t\xa0" + separator)
     return not bare or ("#" in line and _COMMENT.match(line) is not None)
 
@@ -224,7 +224,7 @@ def _next(lines: Sequence[str], first: int) -> int:
 
 
 def _commented(lines: Sequence[str], at: int, name: str) -> tuple[int, str, int]:
-    """The header in the last comment above the first sample, where it has one."""
+    """The header from the last comment above the first sample, if it has one."""
     above = [k for k in range(at) if lines[k].strip()]
     if above:
         header = lines[above[-1]].strip().lstrip("#").strip()
@@ -232,13 +232,13 @@ def _commented(lines: Sequence[str], at: int, name: str) -> tuple[int, str, int]
         columns = len(_cells(header, separator))
         if columns > 1 and columns == len(_cells(lines[at], separator)):
             return above[-1], header, at
-    message = "no header: the first line that is no comment begins with a number"
+    message = "no header: the first line that is not a comment begins with a number"
     remedy = 'name the columns with their units, e.g. "t [s],p1 [bar],p2 [bar],x [mm]"'
     raise InputError(Diagnostic(message, remedy, file=name, line=at + 1))
 
 
 def _separator(header: str, following: str) -> str:
-    """What separates columns: what cuts the header and the line below into as many cells."""
+    """The column separator: the one that splits the header and the next line alike."""
     found = [one for one in "\t;," if one in header]
     for one in found:
         if len(_cells(header, one)) == len(_cells(following, one)):
@@ -252,13 +252,13 @@ def _cells(line: str, separator: str) -> list[str]:
     if '"' in line:
         try:
             cells = next(csv.reader([line], delimiter=separator, skipinitialspace=True), cells)
-        except csv.Error:  # a cell beyond its limit of length
+        except csv.Error:  # a cell above the length limit
             cells = line.split(separator)
     return [cell.strip().strip('"').strip() for cell in cells]
 
 
 def _units_row(line: str, separator: str, count: int) -> list[str] | None:
-    """The units that stand in a line of their own, if they do."""
+    """The units from a separate line, if present."""
     cells = [cell.strip("[]() ") for cell in _cells(line, separator)]
     while len(cells) > count and not cells[-1]:
         cells.pop()

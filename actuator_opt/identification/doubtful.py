@@ -1,4 +1,4 @@
-"""What a record cannot tell, whatever its scatter: bounds beyond those of the linearised model."""
+"""Limits of a record's information, with wider bounds than those of the linearised model."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from ..base.numeric import Array
 from .points import ALIKE, Point
 
 REACH = 1.5
-"""Stribeck speeds that a record must reach for F_C and sigma_2 to part: there the Stribeck part is
+"""Stribeck speeds that a record must reach to separate F_C from sigma_2: there the Stribeck part is
 e^(-1.5^2) = 0.1 of its height at exponent 2 (a choice)."""
 SPREAD, APART = 0.2, 3.0
-"""Least range of the pressure that can show an effect: of its highest value, and of the pressure
-that friction itself takes, without a load (choices: effects of pressure stand out of scatter)."""
+"""Least pressure range that can show an effect: relative to its highest value, and to the pressure
+that overcomes friction alone (choices: effects of pressure then exceed scatter)."""
 UNEQUAL = 2e-3
-"""Share of the area from which an error of it is named (a choice: below it, seals that rub
-unequally both ways by a fifth of their rise with pressure look alike)."""
+"""Area error, as a share, that is reported (a choice: below it, seals with a direction-dependent
+pressure effect of a fifth look alike)."""
 MISSED, BEYOND = 0.3, 5.0
-"""Share of friction, and times their errors, by which a curve may miss the points (choices: the
-share by which a parameter is known, `WEAK`, and more than errors too small by half do)."""
+"""Misfit of a curve, as a share of friction and a multiple of errors, that is reported (choices:
+the share by which a parameter is known, `WEAK`, and more than errors too small by half explain)."""
 SIGNED = ("offset", "pressure_slope")
 """Parameters that may be 0."""
 PARTED = ("coulomb", "viscous", "stribeck_speed", "exponent")
 
 
 def opened(parameters: Mapping[str, Parameter], names: Iterable[str]) -> dict[str, Parameter]:
-    """Parameters of which those named are not known at all."""
+    """Parameters with those named marked as unknown."""
     found = dict(parameters)
     for name in names:
         if name in found:
@@ -40,7 +40,7 @@ def opened(parameters: Mapping[str, Parameter], names: Iterable[str]) -> dict[st
 def widened(
     parameters: Mapping[str, Parameter], more: Mapping[str, float], quantile: float
 ) -> dict[str, Parameter]:
-    """Parameters with a standard error more, independent of theirs."""
+    """Parameters with an additional, independent standard error."""
     found = dict(parameters)
     for name, extra in more.items():
         one = found[name]
@@ -52,7 +52,7 @@ def widened(
 
 
 def agreed(parameters: Mapping[str, Parameter], told: Mapping[str, Parameter]) -> list[str]:
-    """Parameters that others know too, and within their bounds; about 0 bounds alone must do."""
+    """Parameters that agree with other sources within bounds; about 0 bounds alone count."""
     return [
         name
         for name, one in parameters.items()
@@ -63,7 +63,7 @@ def agreed(parameters: Mapping[str, Parameter], told: Mapping[str, Parameter]) -
 
 
 class Unequal(NamedTuple):
-    """A force that grows with a chamber's pressure alike both ways, over its area: no friction."""
+    """A force that grows with a chamber's pressure in both directions, so it is not friction."""
 
     chamber: int
     share: float
@@ -71,24 +71,25 @@ class Unequal(NamedTuple):
     sure: bool
 
     def says(self, area: float, plunger: bool) -> str:
-        """In one line, with the diameter that would leave none: D' = D sqrt(1 - e)."""
+        """Describe it in one line, with the corrected diameter D' = D sqrt(1 - e)."""
         stated = 1e3 * np.sqrt(4 * area / np.pi)
         what = "plunger" if plunger else "bore"
         return (
-            f"pressure leaves friction unequal both ways by {100 * abs(self.share):.2g} % of its "
-            f"force: the {what} looks like {stated * np.sqrt(1 - self.share):.4g} mm "
-            f"({stated:.4g} stated), or a pressure or force sensor reads as much off; mend it first"
+            f"pressure makes friction differ between directions by {100 * abs(self.share):.2g} % "
+            f"of its force: the {what} seems to be {stated * np.sqrt(1 - self.share):.4g} mm "
+            f"({stated:.4g} stated), or a pressure or force sensor has such an error; correct "
+            "this first"
         )
 
 
 def spread(points: Sequence[Point], pressures: Sequence[float], area: float) -> float:
-    """Range of a pressure over the least that shows an effect."""
+    """Pressure range relative to the least one that shows an effect."""
     own = APART * max(abs(one.friction) for one in points) / area
     return (max(pressures) - min(pressures)) / max(SPREAD * max(pressures), own, 1.0)
 
 
 def unequal(points: Sequence[Point], area: float) -> Unequal | None:
-    """Whether friction holds a share of the hydraulic force: areas or sensors are wrong.
+    """Detect a share of the hydraulic force in the friction: areas or sensors are wrong.
 
     Least squares F = sgn v [f_k + s (p - p_0)] + F_0 + e A p_i, f_k free at every speed; friction
     is odd in the velocity, an error of an area or a gain is even [derived].
@@ -100,7 +101,7 @@ def unequal(points: Sequence[Point], area: float) -> Unequal | None:
 
     Returns
     -------
-    the share e; None where no chamber's pressure varies enough both ways
+    the share e; None if no chamber's pressure varies enough in both directions
     """
     way = np.array([np.sign(one.velocity) for one in points])
     both = [[one for one in points if one.velocity * w > 0] for w in (1, -1)]
@@ -138,7 +139,7 @@ def unequal(points: Sequence[Point], area: float) -> Unequal | None:
 
 
 def _groups(speed: Array) -> Array:
-    """Number of the group of like speeds of every point."""
+    """Index of the group of similar speeds for every point."""
     order = np.argsort(speed)
     first, number = 0.0, -1
     found = np.zeros(speed.size, dtype=int)
@@ -150,7 +151,7 @@ def _groups(speed: Array) -> Array:
 
 
 def hidden(parameters: Mapping[str, Parameter], fastest: float, falls: bool) -> str | None:
-    """Why F_C and sigma_2 cannot be parted, if they cannot.
+    """Why F_C and sigma_2 cannot be separated, or None.
 
     Parameters
     ----------
@@ -160,20 +161,20 @@ def hidden(parameters: Mapping[str, Parameter], fastest: float, falls: bool) -> 
 
     Returns
     -------
-    one line; None where they can
+    one line; None if they can
     """
     speed = parameters.get("stribeck_speed")
     if speed is None:
         if falls and "viscous" in parameters:
             return (
-                f"friction falls up to {1e3 * fastest:.3g} mm/s and its rise towards rest is not "
-                "resolved: F_C and σ₂ are not known; give more speeds, and faster ones"
+                f"friction falls up to {1000.0 * fastest:.3g} mm/s and its rise towards rest is "
+                "not resolved: F_C and σ₂ are unknown; give more and faster speeds"
             )
         return None
     if fastest < REACH * speed.value:
         return (
-            f"the record ends at {1e3 * fastest:.3g} mm/s, within the Stribeck rise (v_s "
-            f"{1e3 * speed.value:.3g} mm/s): F_C, σ₂ and v_s are not parted; move faster"
+            f"the record ends at {1000.0 * fastest:.3g} mm/s, within the Stribeck rise (v_s "
+            f"{1000.0 * speed.value:.3g} mm/s): F_C, σ₂ and v_s cannot be separated; move faster"
         )
     return None
 
@@ -181,7 +182,7 @@ def hidden(parameters: Mapping[str, Parameter], fastest: float, falls: bool) -> 
 def misled(
     parameters: Mapping[str, Parameter], friction: Array, residuals: Array, errors: Array
 ) -> Iterator[str]:
-    """What no friction does, in lines.
+    """Yield findings that contradict friction.
 
     Parameters
     ----------
@@ -194,33 +195,33 @@ def misled(
         least = float(np.min(np.abs(fitted - value)))
         if (lower > 0 or upper < 0) and abs(value) >= least:
             yield (
-                f"an offset of {value:.3g} N, friction is {least:.3g} N at its least: it would "
-                "drive the rod one way; check the bore and the zeros of the sensors"
+                f"the offset is {value:.3g} N, but the least friction is {least:.3g} N: it would "
+                "drive the rod in one direction; check the bore and the zeros of the sensors"
             )
     missed = float(np.std(residuals))
     scatter = float(np.sqrt(np.mean((residuals / errors) ** 2)))
     if scatter > BEYOND and missed > MISSED * float(np.median(np.abs(fitted))):
         yield (
-            f"the curve misses the points by {missed:.3g} N, their errors are "
+            f"the curve misses the points by {missed:.3g} N, but their errors are "
             f"{float(np.median(errors)):.2g} N: friction depends on more than speed and pressure"
         )
 
 
 def ways(parameters: Mapping[str, Parameter], even: Unequal | None) -> Iterator[str]:
-    """What is not known for want of both ways, or by their difference, in lines."""
+    """Yield limits due to a missing direction, or a difference between directions."""
     if "offset" not in parameters:
-        yield "one way only: an error of the sensors' zeros counts as friction"
+        yield "one direction only: a zero error of a sensor counts as friction"
         return
     offset = parameters["offset"]
     if (even is not None and even.sure) or offset.lower <= 0 <= offset.upper:
         return
     if even is None:
         yield (
-            "an offset between both ways: zeros of the sensors, areas, or seals that rub "
-            "unequally; the record cannot tell which"
+            "an offset between both directions: sensor zeros, areas, or direction-dependent "
+            "seals; the record cannot tell which"
         )
     else:
         yield (
-            "an offset between both ways that does not grow with pressure: zeros of the sensors, "
-            "or seals that rub unequally; not the areas"
+            "an offset between both directions that does not grow with pressure: sensor zeros, "
+            "or direction-dependent seals, but not the areas"
         )

@@ -1,4 +1,4 @@
-"""From a test record to friction, damping and models with their bounds."""
+"""Identification of friction, damping and models from a test record, with bounds."""
 
 from __future__ import annotations
 
@@ -24,28 +24,28 @@ from .spectrum import spectrum
 from .stribeck_fit import StribeckFit, different, fit_stribeck
 
 LAWS = {"power_law": fit_power_law, "double_exponential": fit_double_exponential}
-"""Laws of the secant damping over speed."""
+"""Models of the secant damping over speed."""
 LEAST_SPEEDS = 3
-"""Different speeds that a law of two parameters is asked of, one to spare."""
+"""Different speeds needed for a model of two parameters, one to spare."""
 WARMER = 10.0
-"""Difference of temperature that is said [K] (a choice: rubber softens by some percent)."""
+"""Temperature difference that is reported [K] (a choice: rubber softens by some per cent)."""
 OUTSIDE = 0.02
-"""Share of the stroke by which a position may lie beyond its ends."""
+"""Share of the stroke by which a position may exceed its ends."""
 STEPS, NOISES = 2.0, 10.0
-"""Steps of the position sensor, and standard deviations of the filtered position, by which a rod at
-rest may seem to move (a choice: the range of 10 000 normal samples is 8 deviations)."""
+"""Apparent travel of a rod at rest, in sensor steps and in standard deviations of the filtered
+position (a choice: the range of 10 000 normal samples is 8 deviations)."""
 PACE = 0.05
 """Share by which a channel v may differ from the slope of x (a choice)."""
 
 
 def identify(record: Record, bench: Bench, settings: Settings | None = None) -> Identification:
-    """Friction and damping of a test record.
+    """Identify friction and damping from a test record.
 
     Parameters
     ----------
     record : with p1, x and F_L (or `load_force`), p2 unless the rod is a plunger
-    bench : the design it was made with
-    settings : how it is read
+    bench : the design tested
+    settings : evaluation settings
 
     Returns
     -------
@@ -54,8 +54,8 @@ def identify(record: Record, bench: Bench, settings: Settings | None = None) -> 
     Raises
     ------
     InputError
-        a channel missing, a record too short or too slow, channels turned round, no motion, travel
-        beyond the stroke, a mass or a lag that is none
+        a missing channel, a record too short or too slow, wrong signs, no motion, travel beyond the
+        stroke, or an invalid mass or lag
     """
     own = settings or Settings()
     _channels(record, bench, own)
@@ -113,18 +113,19 @@ def identify(record: Record, bench: Bench, settings: Settings | None = None) -> 
 def _moving(
     record: Record, motion: Motion, slidings: Sequence[Sliding], bench: Bench, mass: float
 ) -> None:
-    """Refuse a record of a rod at rest, beyond its stroke, or with channels turned round."""
+    """Reject a record of a rod at rest, beyond its stroke, or with wrong signs."""
     travel = max(float(np.ptp(one["x"][one.sound])) for one in motion.pieces)
     quality = motion.quality["x"]
     band = min(2 * motion.cutoff * motion.sample_time, 1.0)
     if travel <= max(STEPS * quality.resolution, NOISES * quality.noise * np.sqrt(band)):
         raise record.fault(
-            f"the rod never moves: x changes by {1e3 * travel:.2g} mm, as its steps and noise do",
+            f"the rod never moves: x changes by {1000.0 * travel:.2g} mm, within its resolution "
+            "and noise",
             "give a record of a moving rod, and x with more digits",
         )
     if travel > (1 + OUTSIDE) * bench.stroke:
         raise record.fault(
-            f"x travels {1e3 * travel:.4g} mm, more than the stroke of {1e3 * bench.stroke:.4g} mm",
+            f"x travels {1000.0 * travel:.4g} mm, but the stroke is {1000.0 * bench.stroke:.4g} mm",
             "check the unit of x, and cylinder.stroke of the design",
         )
     if any(one.moving.any() for one in slidings):
@@ -138,7 +139,7 @@ def _remarks(
     slidings: Sequence[Sliding],
     points: Sequence[Point],
 ) -> list[str]:
-    """What a reader of the record should know beside its quality."""
+    """Notes for the reader, beyond the quality of the record."""
     return [
         *_outside(slidings, bench),
         *_warmth(record, bench),
@@ -148,19 +149,20 @@ def _remarks(
 
 
 def _outside(slidings: Sequence[Sliding], bench: Bench) -> list[str]:
-    """A note where the position leaves the stroke."""
+    """A note if the position leaves the stroke."""
     place = np.concatenate([one.piece["x"] for one in slidings])
     beyond = OUTSIDE * bench.stroke
     if place.min() >= -beyond and place.max() <= bench.stroke + beyond:
         return []
     return [
-        f"x runs from {1e3 * place.min():.1f} to {1e3 * place.max():.1f} mm, the stroke is "
-        f"{1e3 * bench.stroke:.1f} mm: its zero is not the cap end, no stiffness there"
+        f"x ranges from {1000.0 * place.min():.1f} to {1000.0 * place.max():.1f} mm, but the "
+        f"stroke is {1000.0 * bench.stroke:.1f} mm: its zero is not at the cap end; no stiffness "
+        "outside the stroke"
     ]
 
 
 def _blurred(points: Sequence[Point], motion: Motion) -> list[str]:
-    """A note where no point is left at a low cut-off."""
+    """A note if a low cut-off leaves no points."""
     shortest = 2 * BLURRED / motion.cutoff + LASTING / 2
     if points or shortest <= 2 * LASTING:
         return []
@@ -171,7 +173,7 @@ def _blurred(points: Sequence[Point], motion: Motion) -> list[str]:
 
 
 def _warmth(record: Record, bench: Bench) -> list[str]:
-    """A note where the oil was warmer or colder than the design's first load case takes it."""
+    """A note if the oil temperature differs from the design's first load case."""
     if "T" not in record:
         return []
     mean = float(np.nanmean(record["T"]))
@@ -179,13 +181,13 @@ def _warmth(record: Record, bench: Bench) -> list[str]:
         return []
     kelvin = 273.15
     return [
-        f"T is {mean - kelvin:.0f} degC, the design's first load case "
-        f"{bench.temperature - kelvin:.0f} degC: contact forces and stiffness are of the latter"
+        f"T is {mean - kelvin:.0f} degC, but {bench.temperature - kelvin:.0f} degC in the "
+        "design's first load case, which contact forces and stiffness use"
     ]
 
 
 def _pace(motion: Motion) -> list[str]:
-    """A note where a channel v is not the slope of x: least squares over what moves.
+    """A note if channel v is not the slope of x, by least squares over moving samples.
 
     v = k dx/dt, k = sum v x'/sum x'^2 with the noise of x' taken off.
     """
@@ -194,13 +196,13 @@ def _pace(motion: Motion) -> list[str]:
         return []
     stated, found = (np.concatenate(one) for one in zip(*both, strict=True))
     power = float(np.mean(found**2)) - velocity_noise(motion) ** 2
-    if power <= 0.5 * float(np.mean(found**2)):  # hardly more than noise says nothing
+    if power <= 0.5 * float(np.mean(found**2)):  # too close to noise to judge
         return []
     slope = float(np.mean(stated * found)) / power
     if abs(slope - 1) <= PACE:
         return []
-    slope = round(slope, 2) + 0.0  # never -0.00
-    return [f"v is {slope:.2f} times the slope of x: check its unit and sign; v is not used"]
+    slope = round(slope, 2) + 0.0  # avoids -0.00
+    return [f"v is {slope:.2f} times the slope of x: check its unit and sign; v is ignored"]
 
 
 def _models(
@@ -210,7 +212,7 @@ def _models(
     lag_known: bool,
     settling: float = SETTLED,
 ) -> tuple[tuple[Point, ...], StribeckFit | str, LuGreFit | str]:
-    """Points of steady sliding, and the models through them."""
+    """Points of steady sliding, and the models fitted to them."""
     points = steady_points(slidings, motion, settling)
     stribeck = fit_stribeck(points, area)
     lugre = fit_lugre(slidings, motion, points, stribeck, lag_known=lag_known, settling=settling)
@@ -218,7 +220,7 @@ def _models(
 
 
 def _channels(record: Record, bench: Bench, settings: Settings) -> None:
-    """Refuse a record that lacks what the balance asks, or says it twice."""
+    """Reject a record that lacks a channel of the force balance, or states it twice."""
     bent = ", or --span for a bending test" if "w" in record else ""
     for name, what in (("p1", "pressure of the cap end"), ("x", "position")):
         if name not in record:
@@ -231,7 +233,7 @@ def _channels(record: Record, bench: Bench, settings: Settings) -> None:
             'name it with --column "p2=...", or write "count: 0" in seals.piston for a plunger',
         )
     if "F_L" in record and settings.load_force is not None:
-        message = "a load is stated, and the record measures it in column F_L"
+        message = "a load is stated, but the record measures it in column F_L"
         raise record.fault(message, "leave out --load-force (load_force), or the column")
     if "F_L" not in record and settings.load_force is None:
         raise record.fault(
@@ -241,7 +243,7 @@ def _channels(record: Record, bench: Bench, settings: Settings) -> None:
 
 
 def _mass(record: Record, bench: Bench, settings: Settings) -> float:
-    """What moves inside the force sensor [kg]; forces and masses that are none are refused."""
+    """Moving mass inside the force sensor [kg]; invalid forces and masses are rejected."""
     if settings.mass is not None and not (np.isfinite(settings.mass) and settings.mass >= 0):
         raise record.fault(f"a moving mass of {settings.mass:g} kg", "give 0 kg or more")
     if settings.load_force is not None and not np.isfinite(settings.load_force):
@@ -259,7 +261,7 @@ def _read(
     lag: float,
     before: Motion | None,
 ) -> tuple[Motion, list[Sliding]]:
-    """The conditioned record with friction along it; `before` with another lag."""
+    """The conditioned record with its friction; `before` is the same with another lag."""
     motion = condition(
         record,
         cutoff=settings.cutoff,
@@ -274,11 +276,10 @@ def _read(
 def _sizes(
     slidings: Sequence[Sliding], motion: Motion, settling: float
 ) -> tuple[Mean, float, bool]:
-    """Mean of |F_r| in sliding, by means of batches, its largest value, and whether the rod slides.
+    """Mean |F_r| in sliding, by batch means, its largest value, and whether the rod slides.
 
-    Until the rod has moved `BENDS` breakaway travels after a reversal or rest it is pre-sliding,
-    which counts for the largest value alone. Of a record without sliding the mean is that of the
-    moving rod.
+    Until the rod has moved `BENDS` breakaway travels after a reversal or rest it is in pre-sliding,
+    which only counts for the largest value. Without sliding the mean is that of the moving rod.
     """
     bent = BENDS / SETTLING * settling
     moving = any(one.moving.any() for one in slidings)
@@ -299,7 +300,7 @@ def _fits(points: Sequence[Point]) -> dict[str, Fit | str]:
     """Fits of the secant damping over speed, weighted by relative errors."""
     speeds = different([one.speed for one in points])
     if len(speeds) < LEAST_SPEEDS:
-        why = f"{len(speeds)} different speeds: a law of damping over speed needs {LEAST_SPEEDS}"
+        why = f"{len(speeds)} different speeds: a model of damping over speed needs {LEAST_SPEEDS}"
         return dict.fromkeys(LAWS, why)
     speed = np.array([one.speed for one in points])
     damping = np.array([one.damping for one in points])

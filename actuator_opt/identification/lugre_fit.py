@@ -1,7 +1,7 @@
-"""LuGre bristles from reversals: integrated along the record, filtered as the record is.
+"""LuGre bristles from reversals: integrated along the record, with the record's filter.
 
-Stiffness and damping of the bristles, and the time by which the pressures come late, are fitted to
-windows about the reversals, together with what the steady points say of the Stribeck curve.
+Bristle stiffness and damping, and the lag of the pressures, are fitted to windows about the
+reversals, together with the Stribeck parameters from the steady points.
 """
 
 from __future__ import annotations
@@ -30,17 +30,18 @@ __all__ = [
 ]
 
 BLUR = 40e-3
-"""Time by which a turn may be hidden for a lag to be looked for [s] (a choice: ten usual lags)."""
+"""Longest hidden reversal for which a lag is fitted [s] (a choice: ten usual lags)."""
 SURER = 10.0
-"""Akaike information by which a falling level must better one level (a choice: very strong)."""
+"""Gain in Akaike information required for a falling over a constant level (a choice: very
+strong)."""
 SLID = 0.95
-"""Share of the level that friction must reach for the level to be seen (a choice)."""
+"""Share of the level that friction must reach for the level to be identifiable (a choice)."""
 FAR = 3.0
-"""Stribeck speeds at which no more is left of F_S - F_C than 5 % at exponent 1 (a choice)."""
+"""Stribeck speeds at which at most 5 % of F_S - F_C remain at exponent 1 (a choice)."""
 
 
 def settling_distance(lugre: LuGreFit | str) -> float:
-    """Distance after a reversal from which sliding is steady [m], by bristles that are known."""
+    """Distance after a reversal from which sliding is steady [m], for known bristles."""
     if isinstance(lugre, str) or not lugre.parameters["bristle_stiffness"].identifiable:
         return SETTLED
     level = max(lugre.values.get("static", 0.0), lugre.values["coulomb"])
@@ -56,24 +57,24 @@ def fit_lugre(
     lag_known: bool,
     settling: float = SETTLED,
 ) -> LuGreFit | str:
-    """The LuGre model of a record, or why there is none.
+    """The LuGre model of a record, or the reason for none.
 
     Least squares over points of steady sliding and windows about reversals, each weighted by its
     own scatter [AaltoThesis] eq. 27-31. Without a Stribeck curve, as in pre-sliding, the windows
-    alone give F_C and the bristles. In stuck contact sigma_0 z + sigma_1 dz/dt is sigma_0 z a time
-    sigma_1/sigma_0 earlier, as if the pressures came that much sooner: one of the two is asked for.
+    alone give F_C and the bristles. In stuck contact sigma_0 z + sigma_1 dz/dt is sigma_0 z
+    advanced by sigma_1/sigma_0, like early pressures, so only one of the two is fitted.
 
     Parameters
     ----------
-    slidings, motion : friction along the record, and how it was filtered
+    slidings, motion : friction along the record, and its filter
     points : of steady sliding
-    stribeck : the curve through them, where the search begins
-    lag_known : whether to ask for sigma_1; else for the lag of the pressures, sigma_1 held at 0
+    stribeck : the curve through them, the start of the search
+    lag_known : fit sigma_1; else fit the lag of the pressures, with sigma_1 fixed at 0
     settling : distance after a reversal from which sliding is steady [m]
 
     Returns
     -------
-    the fit, or one line that says what is missing
+    the fit, or the reason for none
     """
     curve_known = stribeck if isinstance(stribeck, StribeckFit) else None
     reference = 0.0 if curve_known is None else curve_known.reference_pressure
@@ -93,15 +94,15 @@ def fit_lugre(
     if lag_known or seen:
         return fit
     doubt = (
-        f"steps of the position sensor hide the turns for {1e3 * found.blur:.0f} ms: no lag of the "
-        f"pressures is looked for, bounds allow for {1e3 * USUAL:.0f} ms; move faster or state "
-        "--pressure-lag"
+        f"the position resolution hides reversals for {1000.0 * found.blur:.0f} ms: no lag of "
+        f"the pressures is fitted, but bounds allow for {1000.0 * USUAL:.0f} ms; move faster or "
+        "state --pressure-lag"
     )
     return replace(fit, doubts=(*fit.doubts, doubt))
 
 
 def _level(found: Windows, lag_known: bool, lag_seen: bool) -> LuGreFit:
-    """The model of windows alone: one level of friction, or one that falls from F_S."""
+    """The model from windows alone: a constant friction level, or one that falls from F_S."""
     fit = LugreProblem(found, (), None, lag_known, lag_seen).solve()
     slid = fit.misfit + found.largest > SLID * fit.values["coulomb"]
     if slid:
@@ -118,16 +119,16 @@ def _level(found: Windows, lag_known: bool, lag_seen: bool) -> LuGreFit:
         if found.fastest < FAR * fit.values["stribeck_speed"]:
             fit = replace(fit, parameters=opened(fit.parameters, PARTED))
         doubt = (
-            f"F_C is the level at {fastest:.3g} mm/s with what is viscous there: one speed cannot "
-            "part them; give plateaus or sweeps of other speeds"
+            f"F_C is the level at {fastest:.3g} mm/s, including viscous friction, as one speed "
+            "cannot separate them; give plateaus or sweeps of other speeds"
         )
     elif slid:
         doubt = (
-            f"F_C is the level of friction up to {fastest:.3g} mm/s, between F_C and F_S: give "
+            f"F_C is the friction level up to {fastest:.3g} mm/s, between F_C and F_S: give "
             "plateaus or sweeps of other speeds"
         )
     else:
-        doubt = "the rod hardly slides: bristles alone are seen, no level of friction"
+        doubt = "the rod hardly slides: the record shows bristles, but no friction level"
         fit = replace(fit, parameters=opened(fit.parameters, ("coulomb",)))
     return replace(fit, doubts=(*fit.doubts, doubt))
 
@@ -135,15 +136,15 @@ def _level(found: Windows, lag_known: bool, lag_seen: bool) -> LuGreFit:
 def _falling(
     found: Windows, lag_known: bool, lag_seen: bool, exponent: float | None = None
 ) -> LuGreFit:
-    """The model of windows alone with a level that falls, its exponent held where one is given."""
+    """The model from windows alone with a falling level, with a fixed exponent if given."""
     held = None if exponent is None else {"exponent": exponent}
     return LugreProblem(found, (), None, lag_known, lag_seen, falling=True, held=held).solve()
 
 
 def _any_exponent(fit: LuGreFit, found: Windows, lag_known: bool, lag_seen: bool) -> LuGreFit:
-    """A level that falls, with bounds that allow for another exponent than the one held.
+    """A falling level with bounds that allow for exponents other than the fixed one.
 
-    Each parameter is as uncertain as in the less certain fit, and by the difference of both.
+    Each parameter has the larger uncertainty of both fits, plus their difference.
     """
     other = _falling(found, lag_known, lag_seen, OTHER)
     more = held_error(fit.parameters, other.values)
@@ -151,26 +152,26 @@ def _any_exponent(fit: LuGreFit, found: Windows, lag_known: bool, lag_seen: bool
         apart = [one.parameters[name].standard_error ** 2 for one in (fit, other)]
         if np.isfinite(apart).all():
             more[name] = float(np.sqrt(extra**2 + max(apart[1] - apart[0], 0.0)))
-    doubt = f"the exponent is held at {EXPONENT:g}, bounds allow for {OTHER:g}"
+    doubt = f"the exponent is fixed at {EXPONENT:g}, bounds allow for {OTHER:g}"
     parameters = widened(fit.parameters, more, NORMAL)
     return replace(fit, parameters=parameters, doubts=(*fit.doubts, doubt))
 
 
 def _as_the_points(fit: LuGreFit, stribeck: StribeckFit, points: Sequence[Point]) -> LuGreFit:
-    """The model without what the points of steady sliding deny it."""
+    """The model without parameters that the points of steady sliding rule out."""
     level, speed = stribeck.parameters["coulomb"], fit.parameters.get("stribeck_speed")
     doubts = list(fit.doubts)
     parameters = dict(fit.parameters)
     if stribeck.doubted:
         told = agreed(parameters, stribeck.parameters)
         parameters = opened(parameters, set(parameters) - set(told))
-        doubts.append("areas or sensors are wrong, by the points of steady sliding")
+        doubts.append("areas or sensors are wrong, according to the points of steady sliding")
     elif not np.isfinite(level.upper) and not (speed is not None and speed.identifiable):
         if np.isfinite(parameters["coulomb"].upper):
             fastest = 1e3 * max(one.speed for one in points)
             doubts.append(
-                f"F_C is the level of friction up to {fastest:.3g} mm/s: steady sliding there does "
-                "not part it from F_S and σ₂; give more speeds, and faster ones"
+                f"F_C is the friction level up to {fastest:.3g} mm/s: steady sliding there does "
+                "not separate it from F_S and σ₂; give more and faster speeds"
             )
         parameters = opened(parameters, PARTED)
     return replace(fit, parameters=parameters, doubts=tuple(doubts))
@@ -184,7 +185,7 @@ def _parted(
     lag_known: bool,
     lag_seen: bool,
 ) -> LuGreFit:
-    """F_S and sigma_0 with what they move by if F_C and sigma_2, not parted, are held."""
+    """F_S and sigma_0, with the change due to fixing F_C and sigma_2 if those are not separated."""
     held = {"viscous": 0.0, "exponent": EXPONENT}
     other = LugreProblem(found, points, stribeck, lag_known, lag_seen, held=held).solve()
     more = {

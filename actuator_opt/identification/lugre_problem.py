@@ -16,37 +16,38 @@ from .points import Point
 from .stribeck_fit import EXPONENT, EXPONENTS, SHARED, SPEEDS, Steady, StribeckFit
 
 TRAVELS = (1e-6, 3e-3)
-"""Travel F_S/sigma_0 of the bristles searched [m] (a choice: nearly two decades about 50 um)."""
+"""Bristle travels F_S/sigma_0 searched [m] (a choice: nearly two decades about 50 um)."""
 DAMPING_TIMES = (1e-6, 0.3)
-"""sigma_1/sigma_0 searched [s] (a choice: from none to all of a window's time)."""
+"""sigma_1/sigma_0 searched [s] (a choice: from none to the length of a window)."""
 USUAL = 5e-3
-"""Standard deviation of the lag that pressures commonly have [s] (a choice: sensors and lines of a
-bench, up to 10 ms): what bounds allow for where a record does not show it."""
+"""Usual standard deviation of the pressure lag [s] (a choice: sensors and lines of a test bench, up
+to 10 ms): included in bounds if a record does not show the lag."""
 STEP = 1e-4
-"""Step of the central differences over the size of a parameter (a choice: they err by 1e-8)."""
+"""Relative step of central differences (a choice: error 1e-8)."""
 SYMBOLS = {"bristle_stiffness": "σ₀", "bristle_damping": "σ₁", "lag": "τ"}
-"""Parameters beside those of the Stribeck curve: N/m, N s/m, s."""
+"""Parameters in addition to those of the Stribeck curve: N/m, N s/m, s."""
 MODEL = 1e-3
-"""Least scatter of the windows over the largest friction (a choice, as of the points): below it the
-filtered motion limits the model, not noise."""
+"""Least scatter of the windows relative to the largest friction (a choice, as of the points): below
+it the filtered motion limits the model, not noise."""
 BENDS = 3.0
-"""Breakaway travels after which 95 % of the force is there, 1 - e^-3: they must take time."""
+"""Breakaway travels that give 95 % of the force, 1 - e^-3: the record must resolve them in time."""
 LATE = 1.5
-"""Times its standard error by which a lag is known (a choice, by records of known friction: with
-25 kPa of noise and steps of 10 um z of the lag found scatters by 1.3 to 1.9); a sample's time
-counts beside it as dt/sqrt 12, for a turn falls anywhere within one."""
+"""Multiple of its standard error by which a lag is uncertain (a choice, from records of known
+friction: with 25 kPa of noise and steps of 10 um z of the fitted lag scatters by 1.3 to 1.9); the
+sampling adds dt/sqrt 12, as a reversal falls anywhere within a sample."""
 NOISY, MISSED = 2.0, 0.02
-"""Times its noise and share of its largest value by which the model may miss the friction in the
-windows (a choice, by records of known friction: position steps cost up to 3 times the noise)."""
+"""Allowed misfit in the windows, as a multiple of noise and a share of the largest friction (a
+choice, from records of known friction: position steps cost up to 3 times the noise)."""
 TOLD = 3
-"""Parameters that the windows tell: stiffness, lag or damping, level."""
+"""Parameters determined by the windows: stiffness, lag or damping, level."""
 RCOND = 1e-6
-"""Least ratio of singular values by which a lag moves parameters (a choice: far above rounding)."""
+"""Least ratio of singular values by which a lag affects parameters (a choice: far above
+rounding)."""
 ROUNDS = 2
-"""Searches, each with the windows weighed by their scatter about the last (a choice: the second
-changes the weights by a few percent)."""
+"""Searches, each with windows weighted by their scatter in the last (a choice: the second changes
+the weights by a few per cent)."""
 LOGARITHMIC = ("bristle_stiffness", "bristle_damping", "stribeck_speed")
-"""Parameters searched by their logarithm."""
+"""Parameters searched by logarithm."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,10 +58,10 @@ class LuGreFit:
     ----------
     parameters : fitted, by name: those of the Stribeck curve, `bristle_stiffness`,
         `bristle_damping` and the pressures' `lag`
-    held : values not asked for
-    count : windows looked at
+    held : fixed values
+    count : number of windows
     misfit : standard deviation of the friction about the model in the windows [N]
-    doubts : what is not known
+    doubts : unknown parameters and other caveats
     """
 
     parameters: Mapping[str, Parameter]
@@ -71,7 +72,7 @@ class LuGreFit:
 
     @property
     def values(self) -> dict[str, float]:
-        """All parameters, fitted or held."""
+        """All parameters, fitted or fixed."""
         return {**self.held, **{name: one.value for name, one in self.parameters.items()}}
 
 
@@ -138,7 +139,7 @@ class LugreProblem:
         self.sizes = sizes(self.names, self.largest, self.steady)
 
     def _ask_for_static(self, stribeck: StribeckFit) -> None:
-        """F_S and v_s begin at what the windows show, where the points do not know them."""
+        """Start F_S and v_s from the windows if the points do not give them."""
         seen = stribeck.parameters.get("static")
         if self.held.pop("exponent", None) is not None:
             self.begin["exponent"] = EXPONENT
@@ -182,7 +183,7 @@ class LugreProblem:
         return ((found[: x.size] - found[x.size :]) / (2 * STEP * self.sizes[:, None])).T
 
     def limits(self) -> tuple[Array, Array]:
-        """Ends of the search."""
+        """Limits of the search."""
         stiffest, softest = (self.largest / one for one in TRAVELS)
         ends = {
             "coulomb": (1e-3 * self.largest, np.inf),
@@ -249,13 +250,13 @@ class LugreProblem:
         return max(float(np.sqrt(square)), MODEL * self.largest)
 
     def whitened(self, residuals: Array, slopes: Array) -> Array:
-        """Slopes J' of as many independent unit residuals that know as much: J'^T J' = cov^-1.
+        """Slopes J' of equally informative independent unit residuals: J'^T J' = cov^-1.
 
         cov = H^-1 J^T R J H^-1, H = J^T J, R the residuals' covariance: points are independent,
         lanes share one autocovariance c_k = sum r_t r_(t+k)/n [SeberWild1989]. With J = U S V^T,
         J' = L^-1 S V^T, L L^T = U^T R U [derived].
         """
-        from scipy.linalg import solve_triangular, toeplitz  # slow to import, rarely needed
+        from scipy.linalg import solve_triangular, toeplitz  # slow import, rarely used
 
         lanes, count = self.windows.judged.shape
         split = residuals.size - lanes * count
@@ -271,10 +272,10 @@ class LugreProblem:
         return solve_triangular(root, singular[:, None] * right, lower=True) / self.sizes
 
     def lanes(self, residuals: Array, slopes: Array) -> Array:
-        """Standard errors by lanes that are independent, whatever happens within them.
+        """Standard errors from independent lanes, whatever the correlation within them.
 
         cov = H^-1 sum (J_l^T r_l)(J_l^T r_l)^T H^-1 n/(n - 3) of n lanes [SeberWild1989]: steps of
-        the position sensor shift a whole turn. Of few lanes nothing is said: zeros.
+        the position sensor shift a whole reversal. Zeros for too few lanes.
         """
         lanes, count = self.windows.judged.shape
         split = residuals.size - lanes * count
@@ -294,23 +295,23 @@ class LugreProblem:
 
     @property
     def missed(self) -> str | None:
-        """Why the windows say nothing, where the model misses them by more than their noise."""
+        """Why the windows are unusable, if the model misses them by more than their noise."""
         if self.steady is None or self.spread <= NOISY * self.noise + MISSED * self.largest:
             return None
         return (
-            f"the model misses friction at turns by {self.spread:.3g} N, noise is "
+            f"the model misses friction at reversals by {self.spread:.3g} N, but noise is "
             f"{self.noise:.2g} N: the rod moves too fast there for the filter to show F_S, v_s "
-            "and \u03c3\u2080"
+            "and σ₀"
         )
 
     def travel(self, x: Array) -> float:
-        """Distance over which the bristles bend [m]."""
+        """Deflection distance of the bristles [m]."""
         found = {name: float(one[0]) for name, one in self.values(x[None]).items()}
         level = min(max(found["static"], found["coulomb"]), self.largest)
         return BENDS * level / found["bristle_stiffness"]
 
     def moved(self, x: Array, chain: Array, misfit: Array) -> dict[str, float]:
-        """Size by which parameters move when windows miss by another friction [N]."""
+        """Change of parameters for a misfit of the windows [N]."""
         before = self.one(x)
         lanes = (misfit / self.spread).reshape(-1)
         change = np.zeros_like(before)
@@ -319,7 +320,7 @@ class LugreProblem:
         return dict(zip(self.names, np.abs(moved * self.sizes * chain), strict=True))
 
     def bounded(self, x: Array) -> dict[str, Parameter]:
-        """Parameters with bounds: by the residuals, by lanes, by steps of the position sensor."""
+        """Parameters with bounds from residuals, lanes and position resolution."""
         found = {name: float(one[0]) for name, one in self.values(x[None]).items()}
         own = {name: found[name] for name in self.names}
         chain = np.array([own[name] if name in LOGARITHMIC else 1.0 for name in self.names])
@@ -360,15 +361,15 @@ class LugreProblem:
 
     @property
     def used(self) -> int:
-        """Windows that are judged."""
+        """Number of windows in use."""
         return int(np.sum(np.any(self.windows.judged > 0, axis=-1)))
 
     def _lag_error(self, x: Array, chain: Array, scatter: float) -> float:
-        """Standard error of the lag: scatter, position, velocity and sampling [s].
+        """Standard error of the lag from scatter, position, velocity and sampling [s].
 
-        Steps of the position sensor shift all turns alike, its white noise each turn on its own. A
-        velocity of a lower cut-off than the pressures' begins early, which looks like a lag: by how
-        much, the velocity of the record's own cut-off shows.
+        Resolution of the position sensor shifts all reversals alike, its white noise each one
+        separately. A velocity with a lower cut-off than the pressures' starts early, which looks
+        like a lag; the velocity at the record's own cut-off shows the difference.
         """
         values, windows = self.values(x[None]), self.windows
         distance = float(np.hypot(windows.grain, windows.noise / np.sqrt(max(self.used, 1))))
@@ -377,7 +378,7 @@ class LugreProblem:
         return float(np.hypot(np.hypot(whole, self._early(x)), windows.sample_time / np.sqrt(12)))
 
     def _early(self, x: Array) -> float:
-        """Difference of the lag by the velocity of the record's own cut-off [s]."""
+        """Change of the lag with the velocity at the record's own cut-off [s]."""
         windows = self.windows
         if np.array_equal(windows.velocity, windows.options[0]):
             return 0.0
@@ -388,7 +389,7 @@ class LugreProblem:
         return apart
 
     def solve(self) -> LuGreFit:
-        """Search, weigh the windows by their own scatter, search again, and bound."""
+        """Search, weight the windows by their scatter, search again, and compute bounds."""
         x = self.start()
         for _ in range(ROUNDS):
             self.windows = self.windows.chosen(self.values(x[None]))
@@ -414,7 +415,9 @@ class LugreProblem:
             if name in LOGARITHMIC[:2] and not one.identifiable
         ]
         if self.windows.quick:
-            doubts.append("the rod starts too fast for the filter to show bristles: turn it slowly")
+            doubts.append(
+                "the rod starts too fast for the filter to show bristles: reverse it slowly"
+            )
         doubts += [one for one in (why, missed) if one is not None]
         lanes = self.windows.velocity.shape[0]
         return LuGreFit(parameters, self.held, lanes, self.spread, tuple(doubts))

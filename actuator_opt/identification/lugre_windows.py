@@ -1,4 +1,4 @@
-"""Windows about reversals: where bristles show, and the LuGre model integrated along them."""
+"""Windows about reversals, where bristles show, and the LuGre model integrated along them."""
 
 from __future__ import annotations
 
@@ -15,42 +15,42 @@ from .pace import velocities
 from .points import SETTLED, settled
 
 BEFORE, AFTER = 0.1, 0.4
-"""Time of a window before and after the rod turns or starts [s] (a choice: at 30 Hz 26 independent
-samples, most of them after the turn)."""
+"""Length of a window before and after the rod reverses or starts [s] (a choice: at 30 Hz 26
+independent samples, most of them after the reversal)."""
 MOST = 24
-"""Windows looked at, spread over the record (a choice: twice as many cost twice the time for bounds
+"""Maximum windows, spread over the record (a choice: twice as many cost twice the time for bounds
 30 % narrower)."""
 LAG = 20e-3
-"""Largest lag of the pressures looked for [s] (a choice: five times that of a usual sensor)."""
+"""Largest pressure lag searched [s] (a choice: five times that of a usual sensor)."""
 PER_PERIOD = 12
-"""Steps of the integration per period of the cut-off, at least (a choice: a second-order step errs
-by (2 pi/12)^2/12 = 2 % at the cut-off itself)."""
+"""Least integration steps per period of the cut-off (a choice: a second-order step has an error of
+(2 pi/12)^2/12 = 2 % at the cut-off itself)."""
 SAMPLES, LEFT = 2.0, 0.05
-"""Independent samples that a rod must take for a few breakaway travels, and their share that may
-still count as rest (a choice)."""
+"""Independent samples that a few breakaway travels must take, and their share that may still count
+as rest (a choice)."""
 LEAST = 4
-"""Independent samples of a window, at least (a choice: one more than stiffness, lag and level)."""
+"""Least independent samples of a window (a choice: one more than stiffness, lag and level)."""
 GRAIN = 0.35
-"""Least share of the position's error by its steps that shifts all turns alike (a choice, by
-records of known friction): over the breakaway travel it is an error of the bristles' stiffness,
-over the speed there one of the lag."""
+"""Least share of the position error due to resolution that shifts all reversals alike (a choice,
+from records of known friction): over the breakaway travel it is an error of the bristles'
+stiffness, over the speed there one of the lag."""
 LASTING = 0.05
-"""Time for which a way must last to be one [s] (a choice: three independent samples at 30 Hz)."""
+"""Least duration of motion in one direction [s] (a choice: three independent samples at 30 Hz)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Windows:
-    """Stretches of a record side by side, SI; arrays (lanes, samples).
+    """Sections of a record side by side, SI; arrays (lanes, samples).
 
-    `hydraulic` has `margin` samples more at both ends, so that it can be shifted in time; `kept`
-    are the samples that are judged: independent ones, away from the ends. `blur` is the time by
-    which the steps of the position sensor hide a turn, sqrt(2 q/a) [s]. `options` (cut-offs, lanes,
-    samples) are velocities by lower cut-offs of the position, `velocity` the ones taken; `turn` is
-    the sample at which the rod turns or starts. `steady`
-    (lanes, kept) is 0 where points of steady sliding say the same, else 1; `judged` is 0 also in
-    windows that are left out, `quick` says that all should be; `grain` is the error of the
-    position by its steps that shifts all turns alike [m], `noise` its error by white noise of the
-    sensor, another in every turn [m], `sample_time` that of the record [s].
+    `hydraulic` has `margin` extra samples at both ends, so that it can be shifted in time. `kept`
+    are the samples in use: independent ones, away from the ends. `blur` is the time for which the
+    position resolution hides a reversal, sqrt(2 q/a) [s]. `options` (cut-offs, lanes, samples) are
+    velocities at lower cut-offs of the position, `velocity` those selected; `turn` is the sample at
+    which the rod reverses or starts. `steady` (lanes, kept) is 0 where points of steady sliding
+    give the same information, else 1; `judged` is also 0 in windows left out, `quick` means that
+    all should be left out. `grain` is the position error due to resolution that shifts all
+    reversals alike [m], `noise` that due to white sensor noise, different in every reversal [m],
+    `sample_time` that of the record [s].
     """
 
     velocity: Array
@@ -83,9 +83,10 @@ class Windows:
         return float(np.max(np.abs(self.measured(np.zeros(1))[..., self.kept])))
 
     def resolved(self, travel: float) -> Windows:
-        """Without windows in which the rod takes less than `SAMPLES` for a distance from its turn.
+        """Drop windows in which the rod takes under `SAMPLES` for a distance after reversal.
 
-        There the filter has blurred the motion that bends the bristles. All, where none is left.
+        There the filter has blurred the motion that bends the bristles. Keeps all if none would be
+        left.
         """
         place = np.cumsum(self.velocity, axis=-1) * self.step
         gone = np.abs(place - place[:, self.turn, None])[:, self.turn :]
@@ -96,14 +97,14 @@ class Windows:
         return replace(self, judged=judged if slow.any() else self.steady, quick=not slow.any())
 
     def short(self, distance: float) -> Windows:
-        """With a turn or start that lacks a distance [m], as a position sensor's step hides it."""
+        """Add a distance [m] missing at a reversal or start, hidden by the position resolution."""
         velocity = self.velocity.copy()
         way = np.sign(np.sum(velocity[:, self.turn :], axis=-1))
         velocity[:, self.turn] -= way * distance / self.step
         return replace(self, velocity=velocity)
 
     def measured(self, lag: Array) -> Array:
-        """Friction with the hydraulic force taken `lag` later (rows,) -> (rows, lanes, samples).
+        """Friction with the hydraulic force shifted `lag` later (rows,) -> (rows, lanes, samples).
 
         Cubic interpolation between samples.
         """
@@ -128,9 +129,9 @@ class Windows:
         return np.stack(rows) - self.resisting
 
     def misfit(self, values: Mapping[str, Array]) -> Array:
-        """Friction of the model less the measured, at judged samples (rows, lanes, kept).
+        """Model friction less the measured one, at samples in use (rows, lanes, kept).
 
-        Parameters (rows,). The model's friction passes the filter that the record has passed.
+        Parameters (rows,). The model's friction passes the same filter as the record.
         """
         measured = self.measured(values["lag"])
         found = self._integrated({n: v[:, None, None] for n, v in values.items()}, measured)
@@ -138,10 +139,10 @@ class Windows:
         return (smooth - measured)[..., self.kept] * self.judged
 
     def chosen(self, values: Mapping[str, Array]) -> Windows:
-        """With the velocity in every lane under which the model follows the friction best.
+        """Select for every lane the velocity with which the model fits friction best.
 
-        In slow motion the steps of the position sensor pass the record's filter and look like
-        motion, at a start a lower cut-off blurs the motion: the friction tells which.
+        In slow motion the position resolution passes the record's filter and looks like motion,
+        while at a start a lower cut-off blurs the motion. The friction shows which is better.
         """
         costs = [
             np.sum(replace(self, velocity=one).misfit(values)[0] ** 2, axis=-1)
@@ -153,7 +154,7 @@ class Windows:
     def _integrated(self, values: Mapping[str, Array], measured: Array) -> Array:
         """LuGre friction along every window: the exact step of `models.lugre.lugre_step`.
 
-        Each begins with the bristles as bent as the friction measured there says.
+        Each starts with the bristle deflection of the friction measured there.
         """
         between = (self.velocity[:, 1:] + self.velocity[:, :-1]) / 2
         change = (self.change[:, 1:] + self.change[:, :-1]) / 2
@@ -190,18 +191,18 @@ def windows(
     slowest: float = np.inf,
     settling: float = SETTLED,
 ) -> Windows | None:
-    """Windows about moments at which the rod turns or starts; else spread over the record.
+    """Windows where the rod reverses or starts; else spread over the record.
 
     Parameters
     ----------
-    slidings, motion : friction along the record, and how it was filtered
+    slidings, motion : friction along the record, and its filter
     reference : pressure from which changes are counted [Pa]
-    slowest : speed from which points of steady sliding say what settled sliding says [m/s]
+    slowest : speed above which points of steady sliding cover settled sliding [m/s]
     settling : distance after a reversal from which sliding is steady [m]
 
     Returns
     -------
-    the windows, None where the record has no room for one
+    the windows, or None if the record is too short for any
     """
     stride = max(1, int(1 / (PER_PERIOD * motion.cutoff * motion.sample_time)))
     step = stride * motion.sample_time
@@ -257,9 +258,9 @@ def _kept(motion: Motion, step: float, count: int) -> Array:
 
 
 def no_windows(motion: Motion) -> str:
-    """Why a record has no window: one holds `LEAST` samples for (T - 2/f) 2 f = n, f = (n + 4)/2T.
+    """Why a record has no window: one has `LEAST` samples for (T - 2/f) 2 f = n, f = (n + 4)/2T.
 
-    The ends of a window, 1/f each, are the filter's; 2 f samples per second are independent.
+    The filter affects the ends of a window, 1/f each; 2 f samples per second are independent.
     """
     lowest = (LEAST + 4) / (2 * (BEFORE + AFTER))
     if motion.cutoff <= lowest:
@@ -270,14 +271,14 @@ def no_windows(motion: Motion) -> str:
             f"no windows at this cut-off: {motion.cutoff:.3g} Hz blur the half second about a "
             f"reversal in which bristles show; {remedy}"
         )
-    return "no half second of an unbroken record about a reversal: bristles show only there"
+    return "no uninterrupted half second about a reversal, where bristles show"
 
 
 def _grain(places: Sequence[float], step: float) -> float:
-    """Error of the position by its steps that shifts all turns alike [m].
+    """Position error due to resolution that shifts all reversals alike [m].
 
-    q/sqrt 12 sqrt(sum n_i^2)/n of n turns, n_i on one step: turns on other steps are as many
-    independent errors [derived].
+    q/sqrt 12 sqrt(sum n_i^2)/n of n reversals, n_i on one step: different steps are independent
+    errors [derived].
     """
     if step == 0:
         return 0.0
@@ -287,7 +288,7 @@ def _grain(places: Sequence[float], step: float) -> float:
 
 
 def _sections(motion: Motion, step: float) -> Array:
-    """The record's filter at the windows' steps."""
+    """The record's filter at the windows' sampling."""
     return low_pass(
         cutoff=motion.cutoff, order=motion.order, sample_time=step, compensated=motion.compensated
     )
@@ -296,7 +297,7 @@ def _sections(motion: Motion, step: float) -> Array:
 def _lanes(
     slidings: Sequence[Sliding], motion: Motion, room: tuple[int, int]
 ) -> list[tuple[Sliding, int]]:
-    """Pieces and samples of windows: turns and starts, else places spread over the record."""
+    """Sections and samples of windows: reversals and starts, else spread over the record."""
     places = [(one, at) for one in slidings for at in _turns(one, motion) if _fits(one, at, room)]
     if not places:
         places = [
@@ -312,21 +313,21 @@ def _lanes(
 
 
 def _settled_above(sliding: Sliding, slowest: float, settling: float) -> Array:
-    """Samples of settled sliding that is no slower than a speed."""
+    """Samples of settled sliding above a speed."""
     found = np.zeros(sliding.piece.time.size, dtype=bool)
     found[settled(sliding, settling)] = True
     return found & (np.abs(sliding.piece.velocity) >= slowest)
 
 
 def _fits(sliding: Sliding, at: int, room: tuple[int, int]) -> bool:
-    """Whether a window about a sample lies within the piece's sound part."""
+    """Whether a window about a sample lies within the usable part of the section."""
     first, last = at - room[0], at + room[1]
     sound = sliding.piece.sound
     return first >= 0 and last < sound.size and bool(sound[first] and sound[last])
 
 
 def _turns(sliding: Sliding, motion: Motion) -> list[int]:
-    """Samples at which lasting sliding begins, after the other way or rest."""
+    """Samples at which lasting sliding begins, after a reversal or rest."""
     way = np.where(sliding.moving, np.sign(sliding.piece.velocity), 0.0)
     begins = np.flatnonzero((way != 0) & (np.diff(way, prepend=0.0) != 0))
     lasting = round(LASTING / motion.sample_time)

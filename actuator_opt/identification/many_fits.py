@@ -1,4 +1,4 @@
-"""Many small least-squares problems at once, each from its own start: fits of resamples."""
+"""Many small least-squares problems at once, each with its own start: refits of resamples."""
 
 from __future__ import annotations
 
@@ -10,17 +10,18 @@ import numpy as np
 from ..base.numeric import Array
 
 SETTLED = 1e-6
-"""Share of its cost that a step must win to go on (a choice: with 100 residuals what is left is a
-hundredth of a standard error)."""
+"""Relative cost reduction that a step must achieve to continue (a choice: with 100 residuals the
+rest is a hundredth of a standard error)."""
 FIRM, LIGHT, HEAVY = 1e-4, 1e-12, 1e8
-"""First, least and greatest damping of a step over the curvature (a choice, as in Marquardt's)."""
+"""First, least and greatest damping of a step relative to the curvature (a choice, as in
+Marquardt's)."""
 LOST = 1e3
-"""Damping at which no step has bettered a problem and it is left (a choice: steps are then a
-thousandth of the undamped one)."""
+"""Damping at which a problem without progress is given up (a choice: steps are then a thousandth of
+the undamped one)."""
 
 
 class FitSearch(NamedTuple):
-    """Searched numbers with their ends."""
+    """Searched numbers with their limits."""
 
     names: tuple[str, ...]
     low: Array
@@ -34,17 +35,17 @@ def relaxed(
     search: FitSearch,
     steps: int,
 ) -> tuple[Array, Array]:
-    """Least squares of many problems at once, each from its row, within the ends.
+    """Solve many least-squares problems at once, each from its row, within limits.
 
-    Levenberg-Marquardt steps; a number at an end that the cost pushes it to stays there.
+    Levenberg-Marquardt steps; a number that the cost pushes against a limit stays there.
 
     Parameters
     ----------
-    misfit : residuals of rows (rows, residuals), of the problems whose places are given
+    misfit : residuals of rows (rows, residuals), for the problems with the given indices
     slopes : derivatives at rows (rows or 1, residuals, searched)
-    rows : where each begins (problems, searched)
-    search : ends
-    steps : at most
+    rows : start of each problem (problems, searched)
+    search : limits
+    steps : maximum number
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Velocity of slow motion: below the record's cut-off the steps of the position sensor show."""
+"""Velocity of slow motion, where the position resolution shows below the record's cut-off."""
 
 from __future__ import annotations
 
@@ -8,26 +8,26 @@ from ..base.numeric import Array
 from .conditioning import Motion, Piece, low_pass, zero_phase
 
 CUTOFFS = (1 / 3, 1 / 8, 1 / 20)
-"""Lower cut-offs over the record's (a choice: down to 1.5 Hz, some ten times the pace of a slow
-bench, 2 to 3 times apart)."""
+"""Lower cut-offs relative to the record's (a choice: down to 1.5 Hz, some ten times the pace of a
+slow test, 2 to 3 times apart)."""
 BENT = 1.5
-"""Mean square by which a lower cut-off may move the position, over that of the sensor's errors (a
-choice: 1 if nothing but the errors goes)."""
+"""Mean square change of the position by a lower cut-off, relative to the sensor's errors, that is
+allowed (a choice: 1 if only errors are removed)."""
 PADDING = 1.5
-"""Periods of a lower cut-off beside a stretch that its filter sees (a choice: a step has settled
+"""Periods of a lower cut-off beside a section that affect its filter (a choice: a step has settled
 within 0.5 % there)."""
 
 
 def velocities(piece: Piece, motion: Motion, first: int, last: int) -> Array:
-    """Velocity along a stretch of a piece by the record's and by lower cut-offs.
+    """Velocity along a section at the record's cut-off and at lower ones.
 
-    A cut-off that moves the position by more than the sensor's errors is left out: the one before
-    stands in its place.
+    A cut-off that moves the position by more than the sensor's errors is replaced by the one
+    before.
 
     Parameters
     ----------
     piece, motion : conditioned record
-    first, last : first and one past the last sample of the stretch
+    first, last : first and one past the last sample of the section
 
     Returns
     -------
@@ -53,9 +53,9 @@ def velocities(piece: Piece, motion: Motion, first: int, last: int) -> Array:
 
 
 def position_error(velocity: Array, motion: Motion) -> float:
-    """Mean square of the filtered position's error along a velocity [m^2].
+    """Mean square error of the filtered position along a velocity [m^2].
 
-    White noise s^2 passes the filter by 2 f_c dt. Steps q pass whole, q^2/12, while the rod takes
+    White noise s^2 passes the filter by 2 f_c dt. Steps q pass fully, as q^2/12, if the rod takes
     longer than 1/f_c for one; else as white noise [derived].
     """
     quality, cutoff = motion.quality["x"], motion.cutoff

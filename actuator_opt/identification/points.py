@@ -1,4 +1,4 @@
-"""Steady sliding: friction over speed and pressure, by plateaus or sweeps."""
+"""Steady sliding: friction over speed and pressure, from plateaus or sweeps."""
 
 from __future__ import annotations
 
@@ -13,45 +13,45 @@ from .conditioning import Motion
 from .pace import velocities
 
 STEADY, FLOOR = 0.04, 2e-5
-"""A plateau keeps its speed within this share, or this speed [m/s] (choices: viscous friction then
-changes by no more than that share; two steps of 10 um in a second)."""
+"""Speed tolerance of a plateau, relative and absolute [m/s] (choices: viscous friction then changes
+by at most that share; two steps of 10 um in a second)."""
 LASTING = 0.15
-"""Least time of a plateau [s]; its first and last fifth are left out, and what has not slid
-`SETTLED` where enough is left (choices: five independent samples are left at 30 Hz; the ramps
-beside reach into the fifths)."""
+"""Least duration of a plateau [s]; its first and last fifth are excluded, and samples that have not
+slid `SETTLED` if enough remain (choices: five independent samples are left at 30 Hz; the adjacent
+ramps reach into the fifths)."""
 ALIKE = 0.06
-"""Plateaus within this share of speed are one point (a choice: more than `STEADY`, less than the
-steps between speeds of a test)."""
+"""Relative speed difference within which plateaus merge into one point (a choice: more than
+`STEADY`, less than the steps between speeds of a test)."""
 PER_DECADE = 8
-"""Speeds per decade of a sweep's points (a choice: a third apart, so that a Stribeck part that
+"""Points per decade of speed in a sweep (a choice: a third apart, so that a Stribeck part that
 falls within a decade shows in several)."""
 BLURRED = 1.0
-"""Periods of the cut-off at both ends of a plateau, at least, that the filter mixes with the ramps
-beside it (a choice: there a step has settled within 2 %)."""
+"""Least periods of the cut-off at both ends of a plateau that the filter mixes with the adjacent
+ramps (a choice: there a step has settled within 2 %)."""
 SETTLED = 5e-4
-"""Distance after a reversal from which sliding is steady [m] (a choice: ten breakaway travels of
-50 um); of a record with known bristles `SETTLING` of its own."""
+"""Distance after a reversal from which sliding is steady [m] (a choice: ten breakaway travels of 50
+um); with known bristles `SETTLING` of the record's own."""
 SLIDES = 2e-4
-"""Least travel of a plateau [m] (a choice: four breakaway travels of 50 um; less may be bristles
-that bend)."""
+"""Least travel of a plateau [m] (a choice: four breakaway travels of 50 um; less may be bristle
+deflection)."""
 SETTLING = 8.0
 """Breakaway travels F_S/sigma_0 after which sliding is steady (a choice: 2 e^-8 is below 0.1 %)."""
 LEVELS = 0.1
 """Pressures within this share of the highest are one level (a choice: less than the steps between
 loads of a test, more than friction itself changes them by)."""
 PRIOR = 8
-"""Independent samples that the scatter usual in the record counts for in a point's own (a choice:
-some points have four)."""
+"""Weight of the record's usual scatter in a point's own, in independent samples (a choice: some
+points have four)."""
 
 Kind = Literal["plateau", "sweep"]
 
 
 class Point(NamedTuple):
-    """Friction in steady sliding, signed as the velocity; SI.
+    """Friction in steady sliding, with the sign of the velocity; SI.
 
-    `error` is the standard error of the friction; `weight` the time behind it [s]; `pressure` the
-    higher of both chambers, gauge; `spread` the standard deviation of the velocities behind a
-    sweep's point: over a bend of the curve the mean friction is not that of the mean velocity.
+    `error` is the standard error of the friction; `weight` its duration [s]; `pressure` the higher
+    of both chambers, gauge; `spread` the standard deviation of the velocities in a sweep's point:
+    where the curve bends, the mean friction is not that of the mean velocity.
     """
 
     velocity: float
@@ -66,7 +66,7 @@ class Point(NamedTuple):
 
     @property
     def speed(self) -> float:
-        """Without direction [m/s]."""
+        """Absolute velocity [m/s]."""
         return abs(self.velocity)
 
     @property
@@ -78,14 +78,14 @@ class Point(NamedTuple):
 def steady_points(
     slidings: Sequence[Sliding], motion: Motion, settling: float = SETTLED
 ) -> tuple[Point, ...]:
-    """Points of steady sliding: of plateaus where they are, else of sweeps through the speeds.
+    """Points of steady sliding: from plateaus if present, else from sweeps through the speeds.
 
-    A record whose plateaus hold three speeds or most of the moving time is one of plateaus.
+    A record counts as plateaus if these contain three speeds or most of the moving time.
 
     Parameters
     ----------
-    slidings : friction by piece
-    motion : for the filter's memory
+    slidings : friction by section
+    motion : gives the filter's memory
     settling : distance after a reversal from which sliding is steady [m]
 
     Returns
@@ -117,7 +117,7 @@ def independent(count: float, motion: Motion) -> float:
 
 
 def _moderated(points: Sequence[Point], motion: Motion) -> list[Point]:
-    """Points with errors drawn towards the record's usual scatter: few samples tell their own ill.
+    """Points with errors shrunk towards the record's usual scatter, as few samples are unreliable.
 
     s^2 = (n_0 s_0^2 + n s_i^2)/(n_0 + n), s_0^2 the median [Smyth2004].
     """
@@ -131,7 +131,7 @@ def _moderated(points: Sequence[Point], motion: Motion) -> list[Point]:
 
 
 def _plateaus(sliding: Sliding, motion: Motion, settling: float) -> Iterator[tuple[Point, float]]:
-    """Stretches of constant velocity in one piece, with what is left of the bristles' settling."""
+    """Sections of constant velocity, with the remainder of the bristles' settling."""
     from scipy.signal import savgol_filter
 
     step = motion.sample_time
@@ -170,10 +170,11 @@ def _plateaus(sliding: Sliding, motion: Motion, settling: float) -> Iterator[tup
 
 
 def _unsettled(friction: float, gone: Array, settling: float) -> float:
-    """What may be left of bristles turned over in a mean friction, 2 F mean e^(-8 d/settling) [N].
+    """Possible remainder of reversed bristles in a mean friction, 2 F mean e^(-8 d/settling) [N].
 
-    After a turn friction is F (1 - 2 e^(-d sigma_0/F)) [derived from dz/dt = v (1 - sigma_0 z/F)],
-    `SETTLING` of F/sigma_0 are the distance of settling; d is counted from the plateau's begin.
+    After a reversal friction is F (1 - 2 e^(-d sigma_0/F)) [derived from dz/dt = v (1 - sigma_0
+    z/F)], `SETTLING` times F/sigma_0 is the settling distance; d counts from the start of the
+    plateau.
     """
     return float(2 * abs(friction) * np.mean(np.exp(-SETTLING * np.abs(gone) / settling)))
 
@@ -202,7 +203,7 @@ def _point(sliding: Sliding, motion: Motion, at: Array, kind: Kind) -> Point:
 
 
 def _merged(points: Sequence[Point]) -> list[Point]:
-    """Points of like velocity and pressure as one, weighted by their time."""
+    """Points of similar velocity and pressure merged, weighted by their duration."""
     highest = max((one.pressure for one in points), default=0.0)
     groups: list[list[Point]] = []
     for one in sorted(points, key=lambda x: x.velocity):
@@ -218,7 +219,7 @@ def _merged(points: Sequence[Point]) -> list[Point]:
 
 
 def _mean(group: Sequence[Point]) -> Point:
-    """One point of several of like velocity and pressure: scatter between them counts too."""
+    """One point from several of similar velocity and pressure; includes their scatter."""
     if len(group) == 1:
         return group[0]
     weights = np.array([one.weight for one in group])
@@ -235,10 +236,10 @@ def _mean(group: Sequence[Point]) -> Point:
 
 
 def _swept(slidings: Sequence[Sliding], motion: Motion, settling: float) -> list[Point]:
-    """Means over bins of velocity and pressure, rising and falling speed with equal weight.
+    """Means over bins of velocity and pressure, with equal weight of rising and falling speed.
 
-    A bin passed one way only is left out: there a lag would count as friction. The velocity is that
-    by the lowest cut-off that the position bears: steps of its sensor would blur slow bins.
+    A bin passed in one way only is left out, as a lag would count as friction there. The velocity
+    is that of the lowest cut-off the position allows; its resolution would blur slow bins.
     """
     parts = [settled(one, settling) for one in slidings]
     if not any(at.size for at in parts):
@@ -292,7 +293,7 @@ def _swept(slidings: Sequence[Sliding], motion: Motion, settling: float) -> list
 
 
 def _alike(at: Array, speed: Array, rising: Array) -> tuple[Array, Array] | None:
-    """Samples of rising and of falling speed, both over the speeds that both pass."""
+    """Samples of rising and of falling speed, over the speeds that both cover."""
     if rising.all() or not rising.any():
         return None
     low = max(float(speed[rising].min()), float(speed[~rising].min()))
@@ -302,7 +303,7 @@ def _alike(at: Array, speed: Array, rising: Array) -> tuple[Array, Array] | None
 
 
 def _halves(both: Sequence[Point]) -> Point:
-    """Rising and falling speed as one point of equal weights: what lags cancels.
+    """Rising and falling speed as one point of equal weights, so that a lag cancels.
 
     To first order: a quarter of their difference counts as error (a choice).
     """
@@ -316,7 +317,7 @@ def _halves(both: Sequence[Point]) -> Point:
 
 
 def settled(sliding: Sliding, settling: float = SETTLED) -> Array:
-    """Samples that have slid a distance [m] since the last reversal or rest."""
+    """Samples after sliding a distance [m] since the last reversal or rest."""
     piece, moving = sliding.piece, sliding.moving
     way = np.where(moving, np.sign(piece.velocity), 0.0)
     begins = np.flatnonzero(np.diff(way, prepend=0.0) != 0)

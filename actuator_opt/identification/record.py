@@ -1,4 +1,4 @@
-"""Test records: named columns with units as a bench writes them, read into SI."""
+"""Test records: named columns with units as written by a test bench, converted to SI."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .csv_table import Sheet, numbers, read_sheet
 
 
 class Channel(NamedTuple):
-    """A quantity that a record can hold: dimension, usual unit, label, other names it goes by."""
+    """A quantity of a record: dimension, usual unit, label, alternative names."""
 
     dimension: str
     unit: str
@@ -61,16 +61,16 @@ _HEADER = re.compile(
     r"(?P<name>.*?)\s*(?:\[(?P<square>[^\[\]]*)\]|\((?P<round>(?:[^()]|\([^()]*\))*)\))\s*"
 )
 _LONGEST = 200
-"""Letters of a header cell that may hold a unit (a choice: what is longer is no header)."""
+"""Maximum letters of a header cell with a unit (a choice: longer text is not a header)."""
 _OPTIONAL = ("v", "T")
-"""Channels that nothing asks for: a column called "Speed [rpm]" is another speed."""
+"""Optional channels: a column called "Speed [rpm]" is another speed."""
 _ABSOLUTE = re.compile(
     r"(?i)(?P<unit>(?:[mkh]?pa|m?bar|psi))[\s_]*\(?(?P<kind>a|abs|absolute|g|gauge)\)?\.?"
 )
 _SIGNS = (("µ", "u"), ("μ", "u"), ("℃", "°C"), ("℉", "°F"), ("º", "°"))
 _SECONDS = {"sec": "s", "secs": "s", "second": "s", "seconds": "s", "msec": "ms"}
 _LARGEST = 1e30
-"""What is larger, SI, is a missing sample: loggers write 1e38 for none (a choice)."""
+"""Larger values, SI, are missing samples: loggers write 1e38 (a choice)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -80,11 +80,11 @@ class Record:
     Parameters
     ----------
     time : (samples) [s]
-    channels : by name of `CHANNELS`, `t` left out (samples)
+    channels : by name of `CHANNELS`, without `t` (samples)
     name : of the file
     notes : what the reader left out
-    first_line : of the samples in the file; None for a record that came from no file
-    lines : of every sample in the file, where comments or blank lines stand between them
+    first_line : of the samples in the file; None for a record without a file
+    lines : of every sample in the file, if comments or blank lines lie between
     """
 
     time: Array
@@ -102,7 +102,7 @@ class Record:
 
     @property
     def file_name(self) -> str:
-        """Name of its file without the folders, fit for a page and a design file."""
+        """Name of its file without folders, suitable for a page and a design file."""
         return shown(Path(self.name).name.strip(), 100) or "record"
 
     def line(self, sample: int) -> int | None:
@@ -112,7 +112,7 @@ class Record:
         return None if self.first_line is None else self.first_line + sample
 
     def fault(self, message: str, remedy: str, sample: int | None = None) -> InputError:
-        """A fault of this record, with its place."""
+        """An error about this record, with its place."""
         line = None if sample is None else self.line(sample)
         return InputError(Diagnostic(message, remedy, file=self.name, line=line))
 
@@ -128,31 +128,31 @@ def parse_record(
 ) -> Record:
     """A record from the text of a CSV file.
 
-    The first line that is no comment names the columns with their units, ``p1 [bar]`` or
-    ``p1 (bar)`` or ``p1 / bar``; units may also stand in a line of their own below. Columns are
-    separated by commas, semicolons or tabs; with the latter two a decimal comma is read. Absolute
-    pressures, ``bara`` or ``psi abs``, become gauge by the standard atmosphere, which a note says.
+    The first line that is not a comment names the columns with their units, ``p1 [bar]`` or ``p1
+    (bar)`` or ``p1 / bar``; units may also stand in a separate line below. Columns are separated by
+    commas, semicolons or tabs; with the latter two, decimal commas are accepted. Absolute
+    pressures, ``bara`` or ``psi abs``, become gauge by the standard atmosphere, with a note.
 
     Parameters
     ----------
     text : of the file
     name : of the file, for messages
-    columns : header by channel, where it is none of the known names; ``"Channel 3 [bar]"`` states
-        the unit of a column ``Channel 3`` without one
-    channels : those that are looked for, ``t`` among them
+    columns : header by channel, if it is not a known name; ``"Channel 3 [bar]"`` states the unit of
+        a column ``Channel 3`` without one
+    channels : those to read, including ``t``
     units : of columns whose header states none
-    needed : channels whose missing unit is a fault, beside ``t`` and those of `columns`; others
+    needed : channels that must have a unit, beside ``t`` and those of `columns`; others without one
         are left out; default: all but ``v`` and ``T``
 
     Returns
     -------
-    the record; columns that are no channel or have no unit are named in its notes
+    the record; notes list columns that are not channels or have no unit
 
     Raises
     ------
     InputError
-        no header, an unknown or doubled column, a missing or wrong unit, a unit that `units` and
-        the header state differently, a cell that is no number
+        no header, an unknown or repeated column, a missing or wrong unit, contradictory units, or a
+        cell that is not a number
     """
     sheet = read_sheet(text, name)
     asked = set(channels) - set(_OPTIONAL) if needed is None else set(needed)
@@ -163,7 +163,8 @@ def parse_record(
         raise InputError(Diagnostic(message, "give one line per sample", file=name))
     values = {channel: one.values(table[:, k]) for k, (channel, one) in enumerate(found.items())}
     notes += [
-        f"{channel}: absolute pressure, less the standard atmosphere of 1.01325 bar"
+        f"{channel}: absolute pressure, converted to gauge with the standard atmosphere of "
+        "1.01325 bar"
         for channel, one in found.items()
         if one.absolute
     ]
@@ -174,14 +175,14 @@ def parse_record(
 
 
 class Column(NamedTuple):
-    """Where a channel stands, and in what unit."""
+    """Column and unit of a channel."""
 
     place: int
     unit: units.Unit
     absolute: bool
 
     def values(self, written: Array) -> Array:
-        """SI values, pressures gauge; what is not finite is missing."""
+        """SI values, pressures gauge; values that are not finite count as missing."""
         with np.errstate(over="ignore", invalid="ignore"):
             found = np.asarray(self.unit.to_si(written))
             if self.absolute:
@@ -190,12 +191,12 @@ class Column(NamedTuple):
 
 
 def converted(unit: str, dimension: str, place: int) -> Column:
-    """A column in a unit as a header writes it; raises `UnitError`."""
+    """A column with a unit as written in a header; raises `UnitError`."""
     return Column(place, *_unit(unit, dimension))
 
 
 def header_cells(sheet: Sheet) -> list[tuple[str, str]]:
-    """Name and unit of every column; the unit may stand in a line of its own."""
+    """Name and unit of every column; units may stand in a separate line."""
     own = [_named(cell) for cell in sheet.header]
     if sheet.units is None:
         return own
@@ -203,7 +204,7 @@ def header_cells(sheet: Sheet) -> list[tuple[str, str]]:
 
 
 def _named(cell: str) -> tuple[str, str]:
-    """Name and unit of a header cell; no unit is empty."""
+    """Name and unit of a header cell; empty without a unit."""
     match = _HEADER.fullmatch(cell) if len(cell) <= _LONGEST else None
     if match is not None:
         return match["name"], (match["square"] or match["round"] or "").strip()
@@ -212,12 +213,12 @@ def _named(cell: str) -> tuple[str, str]:
 
 
 def _plain(name: str) -> str:
-    """A name without case, blanks and signs."""
+    """A name in lower case without blanks and symbols."""
     return re.sub(r"[\W_]", "", name).lower()
 
 
 def _unit(text: str, dimension: str) -> tuple[units.Unit, bool]:
-    """The unit a header writes, and whether it is an absolute pressure."""
+    """The unit in a header, and whether it is an absolute pressure."""
     text = " ".join(text.split())
     for sign, plain in _SIGNS:
         text = text.replace(sign, plain)
@@ -244,7 +245,7 @@ def _fits(text: str, dimension: str) -> bool:
 
 
 def _channel(name: str, unit: str, channels: Mapping[str, Channel]) -> str | None:
-    """The channel a header name means; the unit decides between t and T."""
+    """The channel of a header name; the unit decides between t and T."""
     plain = _plain(name)
     alike = [c for c, one in channels.items() if plain in (_plain(c), *one.others)]
     fitting = [c for c in alike if _fits(unit, channels[c].dimension)]
@@ -256,12 +257,12 @@ def _channel(name: str, unit: str, channels: Mapping[str, Channel]) -> str | Non
 
 
 def column_of(sheet: Sheet, own: list[tuple[str, str]], header: str) -> tuple[int, str]:
-    """Column of a header that the caller names, and the unit it states with it.
+    """Column of a header named by the caller, and the unit stated with it.
 
     Raises
     ------
     LookupError
-        with the number of columns that bear the name
+        with the number of columns of that name
     """
     wanted, unit = _named(header)
     names = [one[0] for one in own]
@@ -286,7 +287,7 @@ def _columns(
     given: ColumnUnits,
     needed: Collection[str],
 ) -> tuple[dict[str, Column], list[str]]:
-    """Column and unit of every channel; what was left out or read by `given`, as notes."""
+    """Column and unit of every channel; notes on columns left out or read by `given`."""
     faults: list[Diagnostic] = []
 
     def fault(message: str, remedy: str, file: str = sheet.name) -> None:
@@ -322,7 +323,10 @@ def _columns(
                 fault(message, shown(error.remedy, 120), place)
             else:
                 if other:
-                    message = f'column "{header}" is in {shown(unit)} by the header, not {other}'
+                    message = (
+                        f'column "{header}" is in {shown(unit)} according to the header, not '
+                        f"{other}"
+                    )
                     fault(message, "correct one of them", given.name)
     if faults:
         raise InputError(faults)
@@ -330,7 +334,7 @@ def _columns(
     by_units = [shown(own[i][0]) for i in places.values() if i not in unitless and not before[i][1]]
     if by_units:
         whose = "SI units" if given.si else f"units of {shown(Path(given.name).name)}"
-        notes.append(f"{whose}, the header states none: {_list(by_units)}")
+        notes.append(f"{whose} used, as the header states none: {_list(by_units)}")
     return read, notes
 
 
@@ -342,7 +346,7 @@ def _place_by_header(
     channels: Mapping[str, Channel],
     fault: Callable[[str, str], None],
 ) -> None:
-    """Add the channels that the header names to `places`; a channel named twice is a fault."""
+    """Add the channels named by the header to `places`; a channel named twice is an error."""
     taken = set(places.values())
     doubled = set()
     for i, (header, unit) in enumerate(own):
@@ -369,16 +373,16 @@ def _place_by_header(
 
 
 def _column_notes(sheet: Sheet, used: set[int], unitless: Sequence[str]) -> list[str]:
-    """Which columns are no channel, and which were left out for lack of a unit."""
+    """Notes on columns that are not channels or have no unit."""
     unused = [cell for k, cell in enumerate(sheet.header) if cell and k not in used]
-    notes = [f"columns that are no channel: {_list(unused)}"] if unused else []
+    notes = [f"columns that are not channels: {_list(unused)}"] if unused else []
     if unitless:
         notes.append(f"columns without a unit, left out: {_list(unitless)}")
     return notes
 
 
 def contradicted(column: Column, name: str, given: ColumnUnits) -> str:
-    """The unit that `given` states for a column read in another one; empty where it agrees."""
+    """The unit in `given` that contradicts a column's own; empty if it agrees."""
     stated = given.stated.get(name, "")
     if not stated:
         return ""
@@ -398,11 +402,11 @@ def _stated_places(
     channels: Mapping[str, Channel],
     fault: Callable[[str, str], None],
 ) -> dict[str, int]:
-    """Columns the caller names; their units go into `own`."""
+    """Columns named by the caller; their units are added to `own`."""
     places: dict[str, int] = {}
     for channel, header in stated.items():
         if channel not in channels:
-            fault(f'"{shown(channel)}" is no channel', f"use one of {', '.join(channels)}")
+            fault(f'"{shown(channel)}" is not a channel', f"use one of {', '.join(channels)}")
             continue
         try:
             place, unit = column_of(sheet, own, header)
@@ -417,12 +421,14 @@ def _stated_places(
         for other, taken in places.items():
             if taken == place:
                 title = shown(sheet.header[place])
-                fault(f'column "{title}" is named for {other} and {channel}', "name two columns")
+                fault(
+                    f'column "{title}" is given for both {other} and {channel}', "name two columns"
+                )
         places[channel] = place
         own[place] = own[place][0], unit
     return places
 
 
 def _list(names: Sequence[str]) -> str:
-    """Names in quotes, as many as a line holds."""
+    """Names in quotes, as many as fit in a line."""
     return shown(", ".join(f'"{name}"' for name in names))

@@ -1,4 +1,4 @@
-"""What a record told: friction, its coefficient, damping, models, each with bounds."""
+"""Results of an identification: friction, coefficient, damping and models, each with bounds."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ from .stribeck_fit import StribeckFit
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """How a record is read, SI.
+    """Settings of an identification, SI.
 
     Parameters
     ----------
     cutoff, order, compensated : of the zero-phase filter
     mass : inside the force sensor [kg]; default: rod, piston and fastening, without a force
         channel also the design's load
-    load_force : on the rod, where no channel measures it [N]
-    pressure_lag : of the pressures [s]; None looks for it in the record
-    bootstrap : resampled records for the bounds; 0 takes those of the linearised model
+    load_force : on the rod, if no channel measures it [N]
+    pressure_lag : of the pressures [s]; None fits it to the record
+    bootstrap : resampled records for the bounds; 0 for those of the linearised model
     seed : of the resampling
     """
 
@@ -63,19 +63,19 @@ class Identification:
 
     Parameters
     ----------
-    record, bench, settings : what was read, and with what
+    record, bench, settings : inputs of the identification
     motion, slidings : conditioned record, and friction along it
-    mass : taken as moving inside the force sensor [kg]
-    pressure_lag : taken off the pressures [s]
-    lag_seen : lag of the pressures as found, before any was taken off [s]; None where none was
-        looked for; bounds are infinite where the record cannot show one
-    spectrum : what the cut-off keeps and loses
-    mean, largest : of |F_r| in sliding, its pre-sliding stretches left out, and throughout [N]
+    mass : moving mass used, inside the force sensor [kg]
+    pressure_lag : lag corrected in the pressures [s]
+    lag_seen : lag of the pressures as fitted, before any correction [s]; None if not fitted;
+        infinite bounds if the record cannot show one
+    spectrum : effect of the cut-off on motion and noise
+    mean, largest : of |F_r| in sliding, without pre-sliding sections, and overall [N]
     slides : whether the rod slides at all; else the mean is that of the whole record
     points : of steady sliding
-    coefficient, stribeck, lugre : or one line that says why there is none
-    fits : of the secant damping over speed, by name; one line where there is none
-    notes : what was left out, mended or assumed
+    coefficient, stribeck, lugre : or one line with the reason for none
+    fits : of the secant damping over speed, by name; one line if there is none
+    notes : what was left out, repaired or assumed
     """
 
     record: Record
@@ -99,21 +99,21 @@ class Identification:
     notes: tuple[str, ...]
 
     def stiffness_along(self, sliding: Sliding) -> Array:
-        """Stiffness with ports closed at the pressures along a piece; NaN beyond the stroke."""
+        """Stiffness with closed ports at the pressures along a section; NaN beyond the stroke."""
         piece, bench = sliding.piece, self.bench
         second = piece["p2"] if "p2" in piece else 0.0 * piece["p1"]
         inside = (piece["x"] >= 0) & (piece["x"] <= bench.stroke)
         return np.where(inside, bench.stiffness(piece["x"], piece["p1"], second), np.nan)
 
     def growth_along(self, sliding: Sliding) -> Array:
-        """Growth of the bore's radius at the piston seal along a piece."""
+        """Growth of the bore radius at the piston seal along a section."""
         return self.bench.growth * sliding.pressure
 
     def series(self) -> dict[str, Array]:
-        """Quantities over time, one array each: what a CSV of the result holds, SI.
+        """Quantities over time, one array each, for the CSV of the result, SI.
 
-        `stiffness` with ports closed at the record's pressures, NaN where the position lies beyond
-        the stroke; `growth` of the bore's radius at the piston seal.
+        `stiffness` with closed ports at the record's pressures, NaN if the position lies beyond the
+        stroke; `growth` of the bore radius at the piston seal.
         """
         pieces = [one.piece for one in self.slidings]
 
@@ -136,7 +136,7 @@ class Identification:
         return found
 
     def to_dict(self) -> dict[str, Any]:
-        """As plain data for JSON, SI; what has no value is null with its reason beside it."""
+        """As plain data for JSON, SI; a missing value is null, with its reason beside it."""
         series = self.series()
         return {
             "record": self.record.name,
@@ -179,7 +179,7 @@ class Identification:
 
 
 def _coefficient(found: Coefficient | str) -> dict[str, Any]:
-    """The coefficient of friction; null and why, where there is none."""
+    """The coefficient of friction, or null and the reason."""
     if isinstance(found, str):
         return {"mu": None, "mu_why": found}
     return {
@@ -196,7 +196,7 @@ def _coefficient(found: Coefficient | str) -> dict[str, Any]:
 
 
 def _model(name: str, found: StribeckFit | LuGreFit | str) -> dict[str, Any]:
-    """The parameters of a friction model; null and why, where there is none."""
+    """The parameters of a friction model, or null and the reason."""
     if isinstance(found, str):
         return {name: None, f"{name}_why": found}
     return {
@@ -230,6 +230,6 @@ def _fit(fit: Fit | str) -> dict[str, Any]:
 
 
 def _range(values: Array) -> dict[str, float] | None:
-    """Least and largest value of a quantity over time; None where it has none."""
+    """Least and largest value of a quantity over time, or None."""
     known = values[np.isfinite(values)]
     return {"min": float(known.min()), "max": float(known.max())} if known.size else None

@@ -1,4 +1,4 @@
-"""What was bent in a bending test: a bar on two supports, or a part of a design."""
+"""Specimen of a bending test: a bar on two supports, or a part of a design."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from ..models import column, rod
 
 Part = Literal["rod", "barrel"]
 POISSON = 0.3
-"""Poisson's ratio of the shear coefficient where none is stated (a choice: from 0 to 0.5 the
-coefficient of a round section changes by 9 %)."""
+"""Default Poisson's ratio for the shear coefficient (a choice: from 0 to 0.5 the coefficient of a
+round section changes by 9 %)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Specimen:
-    """What was bent, SI: a round bar or tube, or any section by its second moment.
+    """The specimen, SI: a round bar or tube, or any section by its second moment.
 
     Parameters
     ----------
@@ -28,12 +28,12 @@ class Specimen:
     outer_diameter, inner_diameter : of the round section [m]
     second_moment : I about the neutral axis, or of `equivalent_second_moment`, in place of the
         diameters [m^4]
-    depth : of such a section in the plane of bending [m]; without it strains are not known
+    depth : of such a section in the plane of bending [m]; without it strains are unknown
     shear_modulus : G of the round section [Pa]
     poissons_ratio : of its shear coefficient [-]
     shear_compliance : 1/(kappa G A), in place of `shear_modulus` [1/N]
-    local_compliance : C of dents, supports and frame, deflection per force [m/N]
-    expected_modulus : what the material states, to compare with [Pa]
+    local_compliance : C of indentation, supports and frame, deflection per force [m/N]
+    expected_modulus : the material's value, for comparison [Pa]
     """
 
     span: float
@@ -48,7 +48,7 @@ class Specimen:
     expected_modulus: float | None = None
 
     def __post_init__(self) -> None:
-        """Refuse what is no specimen."""
+        """Reject invalid dimensions."""
         above = ("span", "outer_diameter", "second_moment", "depth", "shear_modulus")
         for name in (*above, "expected_modulus"):
             one = getattr(self, name)
@@ -66,13 +66,13 @@ class Specimen:
             )
         if outer is not None and self.inner_diameter >= outer:
             _refuse(
-                f"the inner diameter, {1e3 * self.inner_diameter:g} mm, leaves no material inside "
-                f"the outer, {1e3 * outer:g} mm",
+                f"the inner diameter of {1000.0 * self.inner_diameter:g} mm leaves no material "
+                f"within the outer one of {1000.0 * outer:g} mm",
                 "swap or correct the diameters",
             )
         if self.shear_modulus is not None and (outer is None or self.shear_compliance is not None):
             _refuse(
-                "shear_modulus needs the diameters, and no shear_compliance beside it",
+                "shear_modulus needs the diameters, and excludes shear_compliance",
                 "state shear_compliance alone, 1/(kappa G A)",
             )
 
@@ -91,7 +91,7 @@ class Specimen:
 
     @property
     def shear(self) -> float | None:
-        """1/(kappa G A) [1/N], where known."""
+        """1/(kappa G A) [1/N], if known."""
         outer, inner = self.outer_diameter, self.inner_diameter
         if self.shear_modulus is None or outer is None:
             return self.shear_compliance
@@ -100,12 +100,12 @@ class Specimen:
         return float(1 / (kappa * self.shear_modulus * area))
 
     def deflection(self, strain: float) -> float | None:
-        """Deflection of the middle at a strain of the outer fibre, e L^2/(6 D) [ISO178], [m]."""
+        """Mid-span deflection at a strain of the outer fibre, e L^2/(6 D) [ISO178], [m]."""
         return None if self.height is None else strain * self.span**2 / (6 * self.height)
 
 
 def specimen_of(subject: PreparedDesign, part: Part, span: float) -> Specimen:
-    """A part of a design as a bar; of one metal its moduli too, G = E/(2 (1 + nu)).
+    """A part of a design as a bar; of a single metal its moduli too, G = E/(2 (1 + nu)).
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What a cut-off frequency keeps of the motion and lets through of the noise."""
+"""Effect of a cut-off frequency: motion kept, noise passed."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from .conditioning import Motion
 from .record import Record
 
 SHARE = 0.999
-"""Share of the velocity's power that counts as the motion (a choice: what lies above then holds
-3 % of the velocity)."""
+"""Share of the velocity's power that counts as motion (a choice: the rest then has 3 % of the
+velocity)."""
 ABOVE = 4.0
-"""Times its noise that the velocity's spectrum shows motion (a choice: a line of white noise is as
-high in one of 55 by a single periodogram, hardly ever by the mean of many)."""
+"""Multiple of its noise at which the velocity's spectrum shows motion (a choice: white noise
+reaches it in one of 55 lines of a single periodogram, hardly ever in the mean of many)."""
 
 
 class Spectrum(NamedTuple):
@@ -24,7 +24,7 @@ class Spectrum(NamedTuple):
     Parameters
     ----------
     motion : 99.9 % of the velocity's power lies below
-    floor : above the motion the position's spectrum is noise from here on; 0 where it never is
+    floor : above the motion, the position's spectrum is noise from here on; 0 if it never is
     kept : share of the velocity's power that passes the filter
     """
 
@@ -33,27 +33,28 @@ class Spectrum(NamedTuple):
     kept: float
 
     def says(self, cutoff: float) -> str:
-        """Whether a cut-off [Hz] fits the record, in one line."""
+        """Judge a cut-off [Hz] for the record, in one line."""
         if self.motion == 0:
             return "the position shows no motion above its noise"
         if self.motion > cutoff:
             return (
-                f"the motion reaches {self.motion:.3g} Hz, beyond the cut-off: raise --cutoff, "
-                "or what is fast is lost"
+                f"the motion reaches {self.motion:.3g} Hz, above the cut-off: raise --cutoff, or "
+                "fast motion is lost"
             )
         if 0 < self.floor < cutoff:
             return (
-                f"99.9 % of the motion lies below {self.motion:.3g} Hz and the position is noise "
-                f"from {self.floor:.3g} Hz: a cut-off between them loses nothing and is quieter"
+                f"99.9 % of the motion lies below {self.motion:.3g} Hz, and the position is "
+                f"noise above {self.floor:.3g} Hz: a cut-off between them loses nothing and "
+                "reduces noise"
             )
         return f"99.9 % of the motion lies below {self.motion:.3g} Hz, within the cut-off"
 
 
 def spectrum(record: Record, motion: Motion) -> Spectrum:
-    """Where motion ends and noise begins, by Welch's method on the longest piece.
+    """Frequencies at which motion ends and noise begins, by Welch's method on the longest section.
 
-    The velocity's spectrum less that of white noise of the position, (2 sin(pi f dt)/dt)^2 times a
-    level that the upper half of the band shows.
+    Uses the velocity's spectrum less that of white noise of the position, (2 sin(pi f dt)/dt)^2
+    times a level from the upper half of the band.
 
     Parameters
     ----------
@@ -64,7 +65,7 @@ def spectrum(record: Record, motion: Motion) -> Spectrum:
     -------
     the frequencies
     """
-    from scipy.signal import welch  # slow to import, rarely needed
+    from scipy.signal import welch  # slow import, rarely used
 
     step, noise = motion.sample_time, motion.quality["x"].noise
     piece = max(motion.pieces, key=lambda one: one.time.size)
@@ -93,10 +94,10 @@ def spectrum(record: Record, motion: Motion) -> Spectrum:
 
 
 def _moves(frequency: Array, power: Array, slope: Array, loud: Array, variance: float) -> Array:
-    """Frequencies at which what stands above the white noise is motion.
+    """Frequencies at which the excess over white noise is motion.
 
-    The steps q of a sensor draw lines at v/q that hold up to q^2/(2 pi^2) of the position's power,
-    less than their variance q^2/12: past the motion's own hill a line counts from there on.
+    A sensor step q causes lines at v/q with up to q^2/(2 pi^2) of the position's power, less than
+    their variance q^2/12. Beyond the motion's own peak a line must exceed that to count.
     """
     place = np.where(loud, power / np.where(slope > 0, slope, 1.0), 0.0)
     peak = int(np.argmax(place))

@@ -15,51 +15,52 @@ from .cleaning import ROBUST
 from .record import Record
 
 TERMS = 8
-"""Cosines of a long-run variance (a choice: few enough for noise that remembers an eighth of a
+"""Cosines of a long-run variance (a choice: few enough for noise correlated over an eighth of a
 branch, at the price of bounds 18 % wider than those of known noise)."""
 PER_TERM = 4
-"""Spare samples per cosine at least (a choice: so much may short records remember)."""
+"""Least spare samples per cosine (a choice: the longest correlation in short records)."""
 MEMORY = 0.99
-"""Largest correlation of neighbouring residuals counted with (a choice: beyond it the fit itself
-takes the noise for part of the slope)."""
+"""Largest correlation of neighbouring residuals allowed for (a choice: beyond it the fit takes the
+noise for part of the slope)."""
 FEWEST = 5
-"""Samples of a branch without which it has no slope (a choice: three spare)."""
+"""Least samples of a branch for a slope (a choice: three spare)."""
 OUTSTANDING, PART = 10.0, 0.02
-"""A spike stands out of five neighbours' median by so many robust standard deviations and by this
-share of the range (a choice: far outside noise, well inside what would move a slope)."""
+"""A spike exceeds five neighbours' median by so many robust standard deviations and by this share
+of the range (a choice: far outside noise, well inside what would move a slope)."""
 
 SHARES = (0.2, 0.8)
-"""Shares of the highest force between which it is taken where the test stops short of the strains
-or the depth is not known (a choice: the toe and the turn at the top lie outside)."""
+"""Shares of the highest force for the slope if the test does not reach the strains or the depth is
+unknown (a choice: the toe and the reversal at the top lie outside)."""
 BENT = 0.02
-"""Change of slope along the straight part that is let pass (a choice: the chord is then within
-1 % of the tangents at both ends)."""
+"""Allowed change of slope along the straight part (a choice: the chord is then within 1 % of the
+tangents at both ends)."""
 FOLLOWS = 0.3
 """Least correlation of force and deflection (a choice: 90 % of approach leave 0.46)."""
 TOP, BEGUN = 0.9, 0.05
-"""Shares of the highest force: what follows the last of the first is slip or failure, and where
-the search for zero begins (a choice: both beyond usual noise)."""
+"""Shares of the highest force: data after the last of the first is slip or failure; the second is
+where the search for zero begins (a choice: both beyond usual noise)."""
 BACK = 0.25
-"""Share of a range that a way back takes to be an unloading, and that lies on either side of zero
-where a specimen is bent both ways (a choice: both far from noise and from offsets)."""
+"""Share of a range that a return must cover to be an unloading, and that lies on either side of
+zero for a specimen bent both ways (a choice: both far from noise and from offsets)."""
 WON = 0.02
-"""Share of its work that a loop may win by noise and coarse samples (a choice as `BENT`)."""
+"""Share of its work that a loop may gain by noise and coarse samples (a choice as `BENT`)."""
 USUAL = (1e-12, 1e12)
-"""Ranges of force [N] and deflection [m] of any sensor and machine (a choice: far beyond)."""
+"""Largest ranges of force [N] and deflection [m] of any sensor and machine (a choice: far
+beyond)."""
 CUTS = ((0.0, 1.0), (0.25, 1.0), (0.0, 0.75), (0.5, 1.0), (0.25, 0.75), (0.0, 0.5))
-"""Parts of the range that are tried in turn until one is straight (a choice: the longest first, a
-toe sooner than a top)."""
+"""Parts of the range tried in turn until one is straight (a choice: the longest first, cutting the
+toe before the top)."""
 
 
 class Branch(NamedTuple):
-    """Samples from one turn of the deflection to the next."""
+    """Samples between two reversals of the deflection."""
 
     samples: slice
     loading: bool
 
 
 class Term(NamedTuple):
-    """A coefficient of a polynomial with its variance and the degrees of freedom behind that."""
+    """A polynomial coefficient with its variance and degrees of freedom."""
 
     value: float
     variance: float
@@ -67,8 +68,8 @@ class Term(NamedTuple):
 
 
 def despiked(values: Array) -> Array:
-    """A channel without single samples that stand out (NaN there)."""
-    from scipy.ndimage import maximum_filter1d, median_filter  # slow to import, rarely needed
+    """A channel with single outliers set to NaN."""
+    from scipy.ndimage import maximum_filter1d, median_filter  # slow import, rarely used
 
     known = np.isfinite(values)
     kept = values[known]
@@ -78,7 +79,7 @@ def despiked(values: Array) -> Array:
     apart = np.abs(kept - middle)
     low, high = np.percentile(middle, (1, 99))
     least = max(OUTSTANDING * ROBUST * float(np.median(apart)), PART * float(high - low))
-    # the median lags where the channel turns or ends
+    # the median lags where the channel reverses or ends
     passing = 2 * maximum_filter1d(np.abs(np.gradient(middle)), 5)
     out = np.array(values, dtype=float)
     out[known] = np.where(apart > least + passing, np.nan, kept)
@@ -86,7 +87,7 @@ def despiked(values: Array) -> Array:
 
 
 def branches(deflection: Array, least: float) -> list[Branch]:
-    """Stretches between turns after which the deflection goes back by `least` or more."""
+    """Sections between reversals after which the deflection returns by `least` or more."""
     values = deflection.tolist()
     turns: list[int] = []
     low = high = way = 0
@@ -108,12 +109,13 @@ def branches(deflection: Array, least: float) -> list[Branch]:
 
 
 def term(x: Array, y: Array, degree: int) -> Term:
-    """Coefficient of x^degree of a least-squares polynomial, for noise that remembers.
+    """Coefficient of x^degree of a least-squares polynomial, with correlated noise.
 
-    The variance is that of the scores c e (c the column free of lower powers, e the residuals) at
-    frequency zero, as the mean over the first cosines of the samples in order [Mueller2007],
-    [Lazarus2018], and Student's t has a degree of freedom for each. What the fit takes away of each
-    is made up for as of noise with the memory of the residuals [derived]; no less than for white.
+    The variance is that of the scores c e (c the column orthogonal to lower powers, e the
+    residuals) at frequency zero, as the mean over the first cosines of the samples in order
+    [Mueller2007], [Lazarus2018]. Student's t has a degree of freedom for each. The loss by the fit
+    is compensated for noise with the residuals' correlation [derived]; the variance is at least
+    that of white noise.
     """
     scale = float(np.ptp(x)) / 2
     size = (x - np.mean(x)) / scale
@@ -136,7 +138,7 @@ def term(x: Array, y: Array, degree: int) -> Term:
 
 
 def _memory(rest: Array, degree: int) -> float:
-    """Correlation of neighbouring residuals, with what a polynomial's fit takes of it put back.
+    """Correlation of neighbouring residuals, corrected for the loss by a polynomial's fit.
 
     A constant takes (1 + 3 r)/n, a trend (2 + 4 r)/n [MarriottPope1954]; so on by degree.
     """
@@ -148,7 +150,7 @@ def _memory(rest: Array, degree: int) -> float:
 
 def _remembered(rows: Array, memory: float) -> Array:
     """Rows times the correlations memory^|i - j|."""
-    from scipy.signal import lfilter  # slow to import, rarely needed
+    from scipy.signal import lfilter  # slow import, rarely used
 
     ahead = lfilter([1.0], [1.0, -memory], rows, axis=-1)
     back = lfilter([1.0], [1.0, -memory], rows[..., ::-1], axis=-1)[..., ::-1]
@@ -165,12 +167,12 @@ def mean(terms: Sequence[Term]) -> Term:
 
 
 def pooled(groups: Sequence[Sequence[Term]]) -> Term:
-    """Mean of the means of groups; where members scatter beyond their noise, that scatter counts.
+    """Mean of the means of groups; includes scatter of members beyond their noise.
 
-    Beyond: by the F test at 95 %. Members of one place in their groups, loading and unloading of a
-    cycle, are taken to move together.
+    Beyond means by the F test at 95 %. Members with the same index in their groups, loading and
+    unloading of a cycle, are taken as correlated.
     """
-    from scipy.special import fdtri  # slow to import, rarely needed
+    from scipy.special import fdtri  # slow import, rarely used
 
     found = mean([mean(one) for one in groups])
     spare = sum(len(one) - 1 for one in groups)
@@ -196,8 +198,8 @@ class Part(NamedTuple):
 class Straight(NamedTuple):
     """The straight part.
 
-    Its samples, its ends as deflections from zero force [m], the change of slope along it over the
-    slope, what of that is more than noise, and whether a part of the range was left out.
+    Its samples, its ends as deflections from zero force [m], the change of slope along it relative
+    to the slope, the part of that beyond noise, and whether part of the range was left out.
     """
 
     parts: list[Part]
@@ -217,7 +219,7 @@ class Loop:
         self.branches = [self._kept(one) for one in branches(self.deflection, self.least)]
 
     def _kept(self, branch: Branch) -> Branch:
-        """A loading branch up to its highest force: what follows is slip or failure."""
+        """A loading branch up to its highest force; slip or failure follows."""
         if not branch.loading:
             return branch
         first, force = branch.samples.start, self.force[branch.samples]
@@ -262,10 +264,10 @@ class Loop:
         return float(np.median([a - b for a, b in zip(tops, zeros, strict=True) if isfinite(b)]))
 
     def hysteresis(self) -> float | None:
-        """Work lost over work done on loading, mean of the loops; None where none is told.
+        """Work lost over work done on loading, mean of the loops; None if not available.
 
-        Of an unloading after a loading, or of a reloading, over the deflections that both pass: the
-        integral of F dw around over those of F dw above zero.
+        From an unloading after a loading, or a reloading, over the deflections that both cover: the
+        integral of F dw around the loop over that of F dw above zero.
         """
         pairs, shares = list(pairwise(self.branches)), []
         for both in [one for one in pairs if one[0].loading] or pairs:
@@ -288,13 +290,13 @@ def slopes(parts: Sequence[Part], degree: int, record: Record) -> Term:
     if not groups:
         most = max((one.deflection.size for one in parts), default=0)
         message = f"{most} samples in the straight part of the longest loading"
-        remedy = "sample faster, load slower, or look after noise and units of the channels"
+        remedy = "sample faster, load slower, or check noise and units of the channels"
         raise record.fault(f"{message}, {FEWEST} are needed", remedy)
     return pooled(list(groups.values()))
 
 
 def by_way(parts: Sequence[Part], degree: int) -> dict[bool, list[Term]]:
-    """Coefficients of the branches, by loading."""
+    """Coefficients of the branches, by direction of loading."""
     groups: dict[bool, list[Term]] = {}
     for one in parts:
         if one.deflection.size >= FEWEST and np.unique(one.deflection).size > degree + 1:
@@ -303,7 +305,7 @@ def by_way(parts: Sequence[Part], degree: int) -> dict[bool, list[Term]]:
 
 
 def scatter(parts: Sequence[Part]) -> float:
-    """1 - r^2 of force over deflection, least of the branches: both ways of regression differ so.
+    """Least 1 - r^2 of force over deflection of the branches: difference between both regressions.
 
     Noise of the deflection alone lowers the slope by this share [derived].
     """
@@ -315,9 +317,9 @@ def scatter(parts: Sequence[Part]) -> float:
     return min(found, default=0.0)
 
 
-@np.errstate(over="ignore", invalid="ignore")  # what overflows is refused as no usual range
+@np.errstate(over="ignore", invalid="ignore")  # an overflow is rejected as an unusual range
 def _channels(record: Record) -> tuple[Array, Array]:
-    """Deflection and force of the samples that have both, in one sense."""
+    """Deflection and force of complete samples, with one sign convention."""
     for name in ("F_L", "w"):
         if name not in record:
             message = f"no column {name}, the {'deflection' if name == 'w' else 'force'}"
@@ -331,17 +333,17 @@ def _channels(record: Record) -> tuple[Array, Array]:
     for values, name in ((w, "w"), (force, "F_L")):
         reach = float(np.ptp(values))
         if reach == 0:
-            message = f"{name} stands still, single samples apart"
+            message = f"{name} is constant, except for single samples"
             raise record.fault(message, "give a record of a loaded specimen")
         if not USUAL[0] <= reach <= USUAL[1]:
             message = f"{name} spans {reach:.3g} {'m' if name == 'w' else 'N'}"
-            raise record.fault(f"{message}: no bending test does", "check its unit")
+            raise record.fault(f"{message}, which no bending test reaches", "check its unit")
     most = int(np.argmax(np.abs(force - force[0]))) + 1  # before a failure
     most = most if most >= 2 * FEWEST else w.size
     follows = float(np.corrcoef(w[:most], force[:most])[0, 1]) if np.ptp(w[:most]) else 0.0
     if follows <= -FOLLOWS:
-        remedy = "turn the sign of F_L or w: both grow as the specimen is bent"
-        raise record.fault("F_L falls as w grows", remedy)
+        remedy = "reverse the sign of F_L or w: both increase as the specimen is bent"
+        raise record.fault("F_L decreases as w increases", remedy)
     if follows < FOLLOWS:
         message = f"F_L does not follow w (correlation {follows:.2f})"
         raise record.fault(message, "check both columns")
@@ -349,10 +351,11 @@ def _channels(record: Record) -> tuple[Array, Array]:
 
 
 def _turned(w: Array, force: Array) -> tuple[Array, Array, float, bool]:
-    """Deflection and force growing as the specimen is bent, its force at rest; if bent both ways.
+    """Deflection and force increasing with bending, the force at rest; whether bent both ways.
 
-    It rests at first, whatever the offsets, but on a single pass towards zero force (unloading).
-    Bent both ways it rests where both channels are zero at once, else at first.
+    It is at rest at the start, whatever the offsets, except for a single pass towards zero force
+    (unloading). Bent both ways it is at rest where both channels are zero at once, else at the
+    start.
     """
 
     def inside(values: Array, one: float) -> bool:
@@ -376,7 +379,7 @@ def _turned(w: Array, force: Array) -> tuple[Array, Array, float, bool]:
 
 
 def straight(loop: Loop, zeros: Sequence[float], low: float, high: float) -> Straight:
-    """The longest part of a range along which the slope does not change, else all of it."""
+    """The longest part of a range with constant slope, else the whole range."""
     found: list[Straight] = []
     for first, last in CUTS:
         ends = low + first * (high - low), low + last * (high - low)

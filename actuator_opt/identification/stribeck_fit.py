@@ -15,24 +15,27 @@ from .doubtful import PARTED, hidden, misled, opened, spread, unequal, ways, wid
 from .points import Point
 
 STATIC_MOST = 3.0
-"""Largest F_S over the largest friction measured (a choice: one further above it is a guess)."""
+"""Largest F_S relative to the largest friction measured (a choice: a higher one is a guess)."""
 SPEEDS, EXPONENTS = (2e-4, 5e-2), (0.5, 2.5)
-"""Range of the Stribeck speed [m/s] and of its exponent searched (choices: a decade and more about
+"""Search ranges of the Stribeck speed [m/s] and of its exponent (choices: a decade and more about
 the few mm/s of seals; half a unit beyond the 1 and 2 of the usual laws)."""
 EXPONENT = 2.0
-"""Exponent where the points cannot tell it ([MECE5005], [Huang2017] Table 2)."""
+"""Exponent if the points cannot determine it ([MECE5005], [Huang2017] Table 2)."""
 SHARED = 0.85
-"""Least scatter of a sweep's points about the curve, over their errors: neighbours share noise by
-the filter, so they lie smoother than they are sure (a choice, by records of known friction)."""
+"""Least scatter of a sweep's points about the curve, relative to their errors: the filter
+correlates neighbours, so they look smoother than they are (a choice, from records of known
+friction)."""
 OTHER = 0.5
-"""Exponent that bounds allow for where it is held: 0.5 to 1 by Bo and Pavelescu, 1 by Tustin, 2 by
-others [ArmstrongHelouvry1994]."""
+"""Other exponent that bounds allow for if it is fixed: 0.5 to 1 by Bo and Pavelescu, 1 by Tustin, 2
+by others [ArmstrongHelouvry1994]."""
 DIFFERENT = 0.05
-"""Speeds further apart than this share are different (a choice: more than `points.STEADY`)."""
+"""Relative difference above which speeds count as different (a choice: more than
+`points.STEADY`)."""
 MODEL = 1e-3
-"""Error of a point over the largest friction beside its scatter (a choice: no curve is better)."""
+"""Error of a point relative to the largest friction, beside its scatter (a choice: no curve is
+better)."""
 _LEVELS = (("coulomb", "viscous"), ("static", "stribeck_speed"), ("exponent",))
-"""What is asked of the points, one group after the other."""
+"""Parameters fitted, one group after the other."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,14 +44,14 @@ class StribeckFit:
 
     Parameters
     ----------
-    parameters : by name of `SYMBOLS`, those the points were asked for
-    held : values that were not asked for: exponent 2, no Stribeck part, no offset
+    parameters : fitted ones, by name of `SYMBOLS`
+    held : fixed ones: exponent 2, no Stribeck part, no offset
     covariance : of the parameters in their order
     reference_pressure : p_0 [Pa]
     residuals : measured less fitted [N], by point
     errors : standard error of each point as weighted [N]
-    doubts : why something was not asked for, or is not known
-    doubted : whether it doubts the friction itself: areas or sensors are wrong
+    doubts : why some parameter was not fitted, or is unknown
+    doubted : whether the friction itself is doubtful, because areas or sensors are wrong
     """
 
     parameters: Mapping[str, Parameter]
@@ -63,7 +66,7 @@ class StribeckFit:
 
     @property
     def values(self) -> dict[str, float]:
-        """All parameters, fitted or held."""
+        """All parameters, fitted or fixed."""
         return {**self.held, **{name: one.value for name, one in self.parameters.items()}}
 
     @property
@@ -115,12 +118,12 @@ def curve(
 
 
 def fit_stribeck(points: Sequence[Point], area: float) -> StribeckFit | str:
-    """The Stribeck curve through points of steady sliding, or why there is none.
+    """The Stribeck curve through points of steady sliding, or the reason for none.
 
-    Asked of the points: F_C and sigma_2; F_S and v_s where there are five speeds or more and they
-    better the fit (corrected Akaike information), with the exponent where there are seven: asked
-    for only where it betters the fit it would be biased, and F_S with it; an offset where the rod
-    runs both ways; an effect of pressure where it varies by a fifth.
+    Fitted are F_C and sigma_2; F_S and v_s with five speeds or more if they improve the fit
+    (corrected Akaike information), and with seven speeds the exponent too: fitted only where it
+    improves the fit it would be biased, and F_S with it; an offset if the rod runs both ways; a
+    pressure effect if pressure varies by a fifth.
 
     Parameters
     ----------
@@ -129,7 +132,7 @@ def fit_stribeck(points: Sequence[Point], area: float) -> StribeckFit | str:
 
     Returns
     -------
-    the fit, or one line that says what is missing
+    the fit, or the reason for none
     """
     speeds = different([one.speed for one in points])
     if len(speeds) < 2:
@@ -155,12 +158,13 @@ def fit_stribeck(points: Sequence[Point], area: float) -> StribeckFit | str:
         if exponent is None or not exponent.identifiable:
             best = _unsure(best, points)
     if len(fits) < 2:
-        doubts.append(f"{len(speeds)} speeds do not show F_S and v_s: five or more do")
+        doubts.append(f"{len(speeds)} speeds cannot show F_S and v_s; five or more can")
     elif "static" not in best.parameters:
-        doubts.append("no rise of friction towards rest: F_S and v_s are not seen")
+        doubts.append("no rise of friction towards rest: F_S and v_s are not observable")
     elif "exponent" not in best.parameters:
         doubts.append(
-            f"the exponent is held at {EXPONENT:g}, bounds allow for {OTHER:g}: seven speeds tell"
+            f"the exponent is fixed at {EXPONENT:g}, bounds allow for {OTHER:g}: seven speeds "
+            "would determine it"
         )
     slowest, *_, fastest = sorted(points, key=lambda one: one.speed)
     falls = abs(fastest.friction) < abs(slowest.friction)
@@ -172,7 +176,7 @@ def fit_stribeck(points: Sequence[Point], area: float) -> StribeckFit | str:
 
 
 def _doubted(fit: StribeckFit, points: Sequence[Point], area: float) -> StribeckFit:
-    """With what is wrong with the friction itself: areas, sensors, more than speed and pressure."""
+    """The fit with doubts about the friction itself: areas, sensors, other influences."""
     even = unequal(points, area)
     plunger = all(one.pressure_2 == 0 for one in points)
     wrong = [] if even is None or not even.sure else [even.says(area, plunger)]
@@ -185,14 +189,14 @@ def _doubted(fit: StribeckFit, points: Sequence[Point], area: float) -> Stribeck
 
 
 def _unsure(fit: StribeckFit, points: Sequence[Point]) -> StribeckFit:
-    """With bounds that allow for another exponent than the one held."""
+    """The fit with bounds that allow for another exponent than the fixed one."""
     names = tuple(name for name in fit.parameters if name != "exponent")
     more = held_error(fit.parameters, _fit(points, names, OTHER).values)
     return replace(fit, parameters=widened(fit.parameters, more, fit.quantile))
 
 
 def held_error(parameters: Mapping[str, Parameter], other: Mapping[str, float]) -> dict[str, float]:
-    """Standard error by a held exponent: an even chance of any value between two fits, d/sqrt 3."""
+    """Standard error due to a fixed exponent: uniform between two fits, d/sqrt 3."""
     return {
         name: abs(other[name] - one.value) / float(np.sqrt(3))
         for name, one in parameters.items()
@@ -210,7 +214,7 @@ def different(speeds: Sequence[float]) -> list[float]:
 
 
 def _beside(points: Sequence[Point], area: float) -> list[str]:
-    """Offset and effect of pressure, where the points can show them."""
+    """Offset and pressure effect, if the points can show them."""
     ways = {one.velocity > 0 for one in points}
     found = ["offset"] if len(ways) == 2 else []
     for way in ways:
@@ -250,7 +254,7 @@ class Steady:
 
 
 def _held(names: Sequence[str], coulomb: float, exponent: float) -> dict[str, float]:
-    """Values of what is not asked for."""
+    """Values of parameters that are not fitted."""
     held = {"exponent": exponent, "pressure_slope": 0.0, "offset": 0.0}
     if "static" not in names:
         held |= {"static": coulomb, "stribeck_speed": SPEEDS[0]}
@@ -265,7 +269,7 @@ def _fit(points: Sequence[Point], names: tuple[str, ...], exponent: float) -> St
 
     def values(x: Array) -> dict[str, float]:
         found = dict(zip(names, x * [scale[name] for name in names], strict=True))
-        if "static" in names:  # searched as the rise over F_C, which keeps F_S >= F_C
+        if "static" in names:  # searched as the excess over F_C, which keeps F_S >= F_C
             found["static"] = found["coulomb"] + found["static"]
         return _held(names, found["coulomb"], exponent) | found
 
@@ -306,7 +310,7 @@ def _fit(points: Sequence[Point], names: tuple[str, ...], exponent: float) -> St
 
 
 def _limits(names: Sequence[str], scale: Mapping[str, float]) -> tuple[list[float], list[float]]:
-    """Ends of the search, over the sizes of the parameters."""
+    """Limits of the search, relative to the sizes of the parameters."""
     low = {"coulomb": 1e-6, "static": 0.0, "viscous": 0.0}
     low |= {"stribeck_speed": SPEEDS[0] / scale["stribeck_speed"], "exponent": EXPONENTS[0]}
     high = {"static": STATIC_MOST, "exponent": EXPONENTS[1]}
@@ -318,7 +322,7 @@ def _limits(names: Sequence[str], scale: Mapping[str, float]) -> tuple[list[floa
 
 
 def _scales(data: Steady) -> dict[str, float]:
-    """Size of each parameter in a record like this."""
+    """Typical size of each parameter for the record."""
     speed = float(np.max(np.abs(data.velocity)))
     pressure = max(float(np.max(np.abs(data.change))), 1.0)
     return {
@@ -333,7 +337,7 @@ def _scales(data: Steady) -> dict[str, float]:
 
 
 def _search(data: Steady, names: Sequence[str], held: float) -> dict[str, float]:
-    """Start values: over a grid of Stribeck speeds and exponents the rest is linear."""
+    """Start values: on a grid of Stribeck speeds and exponents the rest is linear."""
     way, speed = np.sign(data.velocity), np.abs(data.velocity)
     columns = {"coulomb": way, "viscous": data.velocity}
     if "offset" in names:
@@ -345,7 +349,7 @@ def _search(data: Steady, names: Sequence[str], held: float) -> dict[str, float]
         exponents = np.linspace(*EXPONENTS, 6) if "exponent" in names else [held]
         grid = [(v, d) for v in np.geomspace(*SPEEDS, 30) for d in exponents]
     best, least = {}, np.inf
-    from scipy.optimize import lsq_linear  # slow to import, rarely needed
+    from scipy.optimize import lsq_linear  # slow import, rarely used
 
     for stribeck_speed, exponent in grid:
         own = dict(columns)

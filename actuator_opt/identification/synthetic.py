@@ -1,4 +1,4 @@
-"""Records as a bench would write them, of known friction: to plan a test, to check a method."""
+"""Synthetic test records of known friction, to plan a test or to check a method."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .record import Record
 
 @dataclass(frozen=True, slots=True)
 class Truth:
-    """Friction of a made-up cylinder: LuGre with a Stribeck level, SI."""
+    """Friction of a synthetic cylinder: LuGre with a Stribeck level, SI."""
 
     coulomb: float
     static: float
@@ -31,15 +31,15 @@ class Truth:
 
 @dataclass(frozen=True, slots=True)
 class Sensors:
-    """What sensors do to a record.
+    """Sensor errors of a synthetic record.
 
     Parameters
     ----------
     pressure_range : of the pressure sensors [Pa]
     pressure_noise : standard deviation over that range
-    position_step : of the position sensor [m]
+    position_step : resolution of the position sensor [m]
     force_noise : of the force sensor [N]
-    pressure_lag : by which pressures come late [s]
+    pressure_lag : time lag of the pressures [s]
     spikes : share of samples that are spikes, in every channel
     pressure_offset : of p1 [Pa]
     """
@@ -78,8 +78,8 @@ def plateaus(
     Parameters
     ----------
     speeds : [m/s]
-    travel : of a stroke out [m]
-    begin : position of its beginning [m]
+    travel : of an outward stroke [m]
+    begin : initial position [m]
     step : of time [s]
     ramp : time from rest to speed, half a cosine [s]
     rest : time at rest between strokes [s]
@@ -99,14 +99,14 @@ def plateaus(
 
 
 def course(velocity: Array, *, begin: float, step: float) -> Course:
-    """The motion of a velocity from a first position, SI."""
+    """The motion of a velocity from an initial position, SI."""
     time = step * np.arange(velocity.size)
     gone = np.concatenate([[0.0], np.cumsum((velocity[1:] + velocity[:-1]) / 2) * step])
     return Course(time, begin + gone, velocity, np.gradient(velocity, step))
 
 
 def friction_along(truth: Truth, course: Course, pressure: Array) -> Array:
-    """Friction of the truth along a motion at the higher chamber pressures [N]."""
+    """True friction along a motion at the higher chamber pressures [N]."""
     between = (course.velocity[1:] + course.velocity[:-1]) / 2
     change = (pressure[1:] + pressure[:-1]) / 2 - truth.reference_pressure
     level = friction.stribeck_level(
@@ -139,8 +139,8 @@ def pressures(
 ) -> tuple[Array, Array]:
     """Chamber pressures that drive a mass against a force [Pa], the lower one at `back_pressure`.
 
-    The higher pressure and the bore it grows are found together. A plunger is pushed by p1 alone:
-    what draws it back is the load.
+    The higher pressure and the resulting bore growth are solved together. A plunger is pushed by p1
+    alone; the load returns it.
     """
     needed = force + mass * course.acceleration
     if bench.plunger:
@@ -169,7 +169,7 @@ def record(
     rng: np.random.Generator | None = None,
     name: str = "synthetic",
 ) -> Record:
-    """What sensors write of a motion with known friction.
+    """Sensor readings of a motion with known friction.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
-"""Joints of the barrel's ends: one module each, listed in `kinds.JOINTS`.
+"""Joints of the barrel ends: one module each, listed in `kinds.JOINTS`.
 
-This package lies below `design`, so that the words, fields and faults of the design file can read
-the same `Joint` as the evaluation, and its functions know no design: they take plain sizes, the
-numbers of materials and forces, as an `End` and a `Loaded` end. So all of a joint stands in one
-module, and a new one is a module with `JOINT = Joint(...)` and one line in `kinds`.
+This package lies below `design`: the design file and the evaluation read the same `Joint`. Its
+functions do not know the design; their arguments are sizes, material properties and forces, as an
+`End` and a `Loaded` end. A joint is complete in its module: a new joint is a module with
+`JOINT = Joint(...)` and a line in `kinds`.
 """

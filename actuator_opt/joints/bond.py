@@ -1,4 +1,4 @@
-"""Skirts of the caps glued over the barrel's outside."""
+"""Skirts of the caps bonded over the outside of the barrel."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ def _mass(end: End, materials: Materials) -> dict[str, Array]:
 
 
 def _overlap(loaded: Loaded) -> Overlap | str:
-    """The skirt over the barrel, or why it cannot be judged."""
+    """The bonded overlap of skirt and barrel, or why it cannot be assessed."""
     end, materials = loaded.end, loaded.materials
     if end.material is None:
-        return "a bond needs its adhesive: add retention.material"
+        return "a bond needs an adhesive: add retention.material"
     modulus = materials.get(end.cap, "youngs_modulus")
     glue = (materials.get(end.material, key) for key in ("bond_strength", "shear_modulus"))
     if any(value is None for value in (modulus, *glue)):
@@ -62,7 +62,7 @@ def _strength(loaded: Loaded) -> Strength | str:
 
 
 def _envelope(loaded: Loaded, burst: Mapping[str, Array]) -> dict[str, Array]:
-    """One wall at a time, which says as much where both are as stiff."""
+    """Bond factors with either wall alone, which coincide if both are equally stiff."""
     overlap = _overlap(loaded)
     if isinstance(overlap, str):
         return {}
@@ -75,14 +75,14 @@ def _envelope(loaded: Loaded, burst: Mapping[str, Array]) -> dict[str, Array]:
 
 JOINT = Joint(
     name="bond",
-    help="skirts glued over it",
+    help="bonded skirts over the barrel",
     noun="a bond",
     fields=(
         JointField("length"),
         JointField("wall"),
         JointField(
             "material",
-            "missing: a bond needs its adhesive",
+            "missing: a bond needs an adhesive",
             'add e.g. "material: epoxy_structural"',
         ),
     ),

@@ -1,4 +1,4 @@
-"""What a joint of the barrel's ends is: every piece that the rest of the program asks for.
+"""Interface of a joint of the barrel ends: everything that the program requires of it.
 
 Lengths in m, forces in N, stresses in Pa; numbers are floats or arrays (designs,).
 """
@@ -14,13 +14,13 @@ from ..base.numeric import Array
 from ..base.quantities import Quantity
 
 LEAST_METAL = 1e-3
-"""Least wall beside or under a groove or thread, least rod wall, bore of a laminated rod and room
+"""Least wall beside or under a groove or thread, least rod wall, bore of a laminated rod, and gap
 between rod and bore (m): a choice for turned parts in this size range."""
 
 NOT_BONDED = "the caps are not bonded"
 
 ROUNDING = 1e-5
-"""Relative room for an optimum that stands on the limit."""
+"""Relative tolerance for an optimum on its limit."""
 
 
 class JointSizes(Protocol):
@@ -31,28 +31,28 @@ class JointSizes(Protocol):
     def __getitem__(self, key: str) -> Array: ...
 
     def get(self, key: str, default: Array) -> Array:
-        """The number of a key, or `default` where the design does not state it."""
+        """The number of a key, or `default` if the design does not state it."""
         ...
 
 
 class Materials(Protocol):
-    """Numbers of materials by name, in SI."""
+    """Material properties by material name, in SI."""
 
     def kind(self, name: str) -> str:
         """Kind of a material: metal, ply, polymer, adhesive."""
         ...
 
     def get(self, name: str, *properties: str, default: Array = None) -> Array:
-        """The first stated of some properties; `default` where none is."""
+        """The first stated property of several; `default` if none is stated."""
         ...
 
     def allowable(self, name: str, *properties: str, cold: bool = False) -> Array:
-        """A strength after its knock-downs, hottest or coldest; None where none is stated."""
+        """A strength after its knock-downs, hottest or coldest; None if not stated."""
         ...
 
 
 class Stated(Protocol):
-    """A design file as the faults read it: values by place, None where unusable."""
+    """A design file during fault checks: values by place, None if unusable."""
 
     def has(self, *loc: str | int) -> bool:
         """Whether the file states a value here."""
@@ -72,22 +72,22 @@ class Stated(Protocol):
 
 
 class Known(Protocol):
-    """What is known of the materials that a design file names."""
+    """Data of the materials that a design file names."""
 
     def kind(self, name: str) -> str | None:
-        """Kind of a material; None where there is none of this name."""
+        """Kind of a material; None if the name is unknown."""
         ...
 
     def properties(self, name: str) -> Iterable[str]:
-        """Names of its stated properties; none where they cannot be read."""
+        """Names of the stated properties; empty if unreadable."""
         ...
 
 
 class JointField(NamedTuple):
     """A key of `retention` that a joint uses.
 
-    `missing` and `remedy` are said where a file leaves out a key that the joint needs; both empty:
-    it may. A key that no other joint has states its `quantity` and `help`.
+    `missing` and `remedy` are the fault of a file without a required key; both empty: optional. A
+    key that no other joint has states its `quantity` and `help`.
     """
 
     key: str
@@ -98,14 +98,14 @@ class JointField(NamedTuple):
 
 
 class Judged(NamedTuple):
-    """What a safety factor is on: the `measure`, and `of` which parts."""
+    """Basis of a safety factor: the `measure`, and the parts that it applies `of`."""
 
     measure: str
     of: str = ""
 
 
 class Usual(NamedTuple):
-    """A ratio that stays within a range in sensible designs; `path` is the value to look at."""
+    """A ratio with a usual range in sensible designs; `path` is the value to check."""
 
     path: str
     what: str
@@ -124,10 +124,10 @@ class BarrelLayer(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class End:
-    """An end of the barrel and what is joined there.
+    """An end of the barrel with its joint.
 
-    `material` is the one named beside the joint, `cap` the cap's; `layers` are those of the barrel,
-    from the bore outwards.
+    `material` is that of the joint, `cap` that of the cap; `layers` are those of the barrel, from
+    the bore outwards.
     """
 
     sizes: JointSizes
@@ -140,15 +140,15 @@ class End:
     plate: Array
     """Thickness of the end plate."""
     known: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
-    """Results that a joint derives from these numbers and uses again, by a word of its own."""
+    """Intermediate results of a joint that it uses again, by its own key."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fit:
-    """Dimensions that the joint gives cap and barrel; the drawing knows these alone.
+    """Dimensions that the joint gives cap and barrel, and all that the drawing uses.
 
-    A skirt has an inner `radius`, to which the barrel is turned down where its outside is larger,
-    `length` and `wall`. `own` are further dimensions that the joint's outline needs.
+    A skirt has `length`, `wall` and an inner `radius`, to which a larger barrel is turned down.
+    `own` are further dimensions for the outline of the joint.
     """
 
     plate_radius: Array
@@ -159,9 +159,9 @@ class Fit:
 
 
 class Span(NamedTuple):
-    """Where an end lies in the drawing [m]: the barrel's face, the way into the barrel (1 or -1).
+    """Position of an end in the drawing [m]: barrel face, direction into the barrel (1 or -1).
 
-    `outside` and `opposite` are the outer faces of this plate and of the other end's.
+    `outside` and `opposite` are the outer faces of this end plate and of the other.
     """
 
     face: float
@@ -185,7 +185,7 @@ def rectangle(start: float, stop: float, low: float, high: float) -> Polygon:
 
 
 class Drawn(NamedTuple):
-    """A piece of the half-section; `bars` counts round bars about the axis, 0 is a turned part."""
+    """A part of the half-section; `bars` counts round bars about the axis, 0 is a turned part."""
 
     part: str
     material: str
@@ -195,9 +195,9 @@ class Drawn(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Clamp:
-    """What clamps the barrel between both ends, such as tie rods.
+    """Parts that clamp the barrel between both ends, such as tie rods.
 
-    Preload and largest force of all at supply pressure [N]; preload over its loss at proof.
+    Total preload and largest total force at supply pressure [N]; preload over its loss at proof.
     """
 
     preload: Array
@@ -209,9 +209,9 @@ class Clamp:
 class Loaded:
     """An end under load.
 
-    `force` is the largest that tears it off [N], `paths` the axial forces in the barrel's wall per
-    pressure [m^2] by load path; `line_stiffness` is E t of the wall along its axis [N/m],
-    `expansion` its thermal expansion there [1/K], None where not known.
+    `force` is the largest separating force [N]; `paths` the axial forces in the barrel wall per
+    pressure [m^2] by load path; `line_stiffness` the axial E t of the wall [N/m]; `expansion` its
+    axial thermal expansion [1/K], None if unknown.
     """
 
     end: End
@@ -224,7 +224,7 @@ class Loaded:
 
 
 class Pulsed(NamedTuple):
-    """Stress of a metal while the pressure comes and goes: range and mean [Pa]."""
+    """Stress of a metal under pulsating pressure: range and mean [Pa]."""
 
     place: str
     material: str
@@ -233,25 +233,25 @@ class Pulsed(NamedTuple):
 
 
 class Life(NamedTuple):
-    """Cycles to failure, and strength over the stress amplitude."""
+    """Cycles to failure, and strength over stress amplitude."""
 
     cycles: Array
     factor: Array
 
 
 Thermal = Callable[[Array, bool], Array]
-"""Strength over load by a warming [K] alone, at the coldest (True) or the hottest."""
+"""Strength over load under temperature change [K] alone, at the coldest (True) or the hottest."""
 
 
 class Fatigue(NamedTuple):
-    """What pulsates, judged by the metals' own data, and places with an endurance of their own."""
+    """Pulsating stresses, assessed by metal data, and places with their own fatigue strength."""
 
     pulsed: tuple[Pulsed, ...] = ()
     lives: Mapping[str, Life] = {}
 
 
 class WallPressures(NamedTuple):
-    """Pressures at which the barrel yields and bursts beside the joint, by place [Pa]."""
+    """Pressures at which the barrel yields and bursts at the joint, by place [Pa]."""
 
     yields: Mapping[str, Array] = {}
     bursts: Mapping[str, Array] = {}
@@ -261,8 +261,8 @@ class WallPressures(NamedTuple):
 class Strength:
     """Strength over load of an end, by place.
 
-    `working` are elastic limits and `burst` breaking loads over the largest force, `thermal` is
-    strength over load by temperature, or why there is none.
+    `working` are elastic limits and `burst` breaking loads over the largest force; `thermal` is
+    strength over load by temperature, or why it is unknown.
     """
 
     working: Mapping[str, Array]
@@ -272,100 +272,100 @@ class Strength:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Joint:
-    """A joint of the barrel's ends.
+    """A joint of the barrel ends.
 
-    A field without default is a piece that every joint must give; what it does not have it gives
-    as empty, `nothing` or None. Pieces of one end count once for each end.
+    Every joint must state the fields without default; if not applicable as empty, `nothing` or
+    None. Data of an end count once for each end.
     """
 
     name: str
     help: str
     noun: str
-    """As messages name it: `a bond`, or a plural."""
+    """Noun in messages: `a bond`, or a plural."""
     fields: tuple[JointField, ...]
-    """Keys of `retention` that it uses; every other one is a fault."""
+    """Keys of `retention` that it uses; any other key is a fault."""
     kinds: tuple[str, ...]
-    """Kinds of material that `retention.material` may be; empty: it has none."""
+    """Allowed kinds of `retention.material`; empty: no material."""
     without: Mapping[str, tuple[str, str]]
-    """Fault and remedy of a key that it does not use, where the usual words say too little."""
+    """Fault and remedy of an unused key, where the usual text is too short."""
     faults: Callable[[Stated], Iterable[Fault]]
-    """Of the values of a file."""
+    """Faults of the values of a file."""
     material_faults: Callable[[Stated, Known], Iterable[Fault]]
-    """That show when the library is asked."""
+    """Faults that depend on the material library."""
     skirts: bool
-    """Whether the caps have skirts over the barrel's outside."""
+    """Whether the caps have skirts over the outside of the barrel."""
     fit: Callable[[End], Fit]
     stiffness: Callable[[End, Materials], Array] | None
-    """Axial stiffness of what clamps the barrel between both ends [N/m]; None: nothing does."""
+    """Axial stiffness of the clamp of the barrel between both ends [N/m]; None: no clamp."""
     mass: Callable[[End, Materials], Mapping[str, Array]]
-    """Mass [kg] of one end's joint, by the part that it belongs to: barrel, caps or fastening."""
+    """Mass [kg] of the joint at one end, by part: barrel, caps or fastening."""
     outline: Callable[[End, Fit, Span], Iterable[Drawn]]
-    """What it adds to the half-section at one end."""
+    """Its parts in the half-section at one end."""
     notes: Callable[[End], Iterable[str]]
-    """Sentences on what the section does not show."""
+    """Sentences on details that the section does not show."""
     strength: Callable[[Loaded], Strength | str]
-    """Or why it cannot be judged."""
+    """Strength of an end, or why it cannot be assessed."""
     yields: Callable[[Loaded], Mapping[str, Array]]
     """Further elastic limits over working stress, by place."""
     wall: Callable[[Loaded], WallPressures]
-    """What the barrel itself bears beside the joint."""
+    """Strength of the barrel itself at the joint."""
     fatigue: Callable[[Loaded], Fatigue]
     own: Callable[[Loaded], Mapping[str, Array]]
-    """Its own metrics by name: the keys of `metrics`."""
+    """Names of its own metrics: the keys of `metrics`."""
     envelope: Callable[[Loaded, Mapping[str, Array]], Mapping[str, Array]] | None
-    """`Strength.working` from above, from `burst`, where itself is not convex; None: not needed."""
+    """Upper bound of `Strength.working` from `burst` if the former is not convex; None: unused."""
     metrics: Mapping[str, str]
-    """Its own metrics, with the reason why other joints have none; all give the factors."""
+    """Its own metrics, with the reason why other joints lack them; all joints give the factors."""
     judged: tuple[Judged, Judged]
-    """What the working and the burst factor are on."""
+    """Basis of the working and the burst factor."""
     models: Mapping[tuple[str, str], str]
-    """Leading model behind a metric at a place, such as `rod.section_area`."""
+    """Main model of a metric at a place, such as `rod.section_area`."""
     usual: tuple[Usual, ...]
     warnings: Callable[[Loaded, Mapping[str, Quantity]], Iterable[tuple[str, str]]]
-    """Metric and sentence for what is doubtful; given every metric by name."""
+    """Metric and sentence for each doubt; the argument has every metric by name."""
 
     @property
     def plural(self) -> bool:
-        """Whether the noun is one."""
+        """Whether the noun is plural."""
         return not self.noun.startswith(("a ", "an "))
 
 
 def nothing(*_: object) -> Iterator[Any]:
-    """A piece that a joint does not have."""
+    """An empty function of a joint."""
     return iter(())
 
 
 def check(joints: Iterable[Joint]) -> None:
-    """Refuse joints of which two claim one metric, place of a model or key.
+    """Refuse joints that claim the same metric, place of a model or key.
 
     Raises
     ------
     ValueError
-        what is claimed twice, and by which joint
+        duplicate claim, with both joints
     """
     seen: dict[object, str] = {}
     for joint in joints:
         own = [field.key for field in joint.fields if field.quantity]
         for claim in (*own, *joint.metrics, *joint.models):
             if claim in seen:
-                raise ValueError(f"joint {joint.name}: {claim} is of {seen[claim]} already")
+                raise ValueError(f"joint {joint.name}: {claim} already belongs to {seen[claim]}")
             seen[claim] = joint.name
 
 
 def chosen(stated: Stated, path: str) -> bool:
-    """Whether a file lists a value among its choices."""
+    """Whether a file lists this value among its choices."""
     return stated.has("choices", path)
 
 
 def judged_later(stated: Stated, moved: Iterable[str]) -> bool:
-    """Whether these sizes (PATHs) move in every combination of choices: the search keeps limits."""
+    """Whether choices vary these sizes (PATHs) in every combination, as the search keeps limits."""
     paths = tuple(moved)
     free = any(stated.has("variables", path) for path in paths)
     return free and any(chosen(stated, path) for path in (*paths, "retention.type"))
 
 
 def models_at(joints: Iterable[Joint], metric: str) -> dict[str, str]:
-    """Leading models of a metric by place, of all joints."""
+    """Main models of a metric by place, for all joints."""
     return {
         place: model
         for joint in joints
@@ -375,7 +375,7 @@ def models_at(joints: Iterable[Joint], metric: str) -> dict[str, str]:
 
 
 def judged_on(joints: Iterable[Joint], index: int) -> str:
-    """What the working (0) or burst factor (1) of all joints is on, in words."""
+    """Basis of the working (0) or burst factor (1) of all joints, in words."""
     groups: dict[str, list[str]] = {}
     for joint in joints:
         judged = joint.judged[index]
@@ -387,7 +387,7 @@ def judged_on(joints: Iterable[Joint], index: int) -> str:
 
 
 def _alternatives(parts: Sequence[str]) -> str:
-    """Parts as alternatives; lists among them are kept apart.
+    """Parts as alternatives; lists among them are separated by commas.
 
     >>> _alternatives(["threads", "tie rods"]), _alternatives(["threads and skirt", "tie rods"])
     ('threads or tie rods', 'threads and skirt, or of tie rods')

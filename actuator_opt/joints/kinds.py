@@ -1,4 +1,4 @@
-"""Every joint that a design file may name, in the order in which lists show them."""
+"""All joints of a design file, in listing order."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Bonded overlaps: of caps with the barrel, of metal fittings with a laminated rod.
+"""Bonded overlaps: caps on the barrel, metal fittings in a laminated rod.
 
 Shear at both edges of the overlap under force, and without force at the coldest and the hottest.
-The two are not added: their elastic sum overstates an adhesive that yields before it breaks.
+They are not added: their elastic sum is too high for an adhesive that yields before it breaks.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ class Overlap:
     """A bonded overlap of a metal part with a tube.
 
     `tube` and `metal` are axial E t at the bond's diameter [N/m]; `mismatch` is the metal's
-    expansion less the tube's [1/K], None where one is not known; `names` are tube and metal part.
+    expansion minus the tube's [1/K], None if unknown; `names` are tube and metal part.
     """
 
     adhesive: str
@@ -33,7 +33,7 @@ class Overlap:
     names: tuple[str, str]
 
     def _adhesive(self, materials: Materials) -> dict[str, Array]:
-        """The overlap as the models take it."""
+        """The overlap as input of the models."""
         return {
             "length": self.length,
             "shear_modulus": materials.get(self.adhesive, "shear_modulus"),
@@ -60,7 +60,7 @@ class Overlap:
         return factors
 
     def least_peak_ratio(self, materials: Materials, stiffness: Array) -> Array:
-        """Peak over mean shear from below, from the stiffness of one of the walls."""
+        """Lower bound of peak over mean shear, from the stiffness of either wall."""
         return lap_joint.least_bond_peak_ratio(
             membrane_stiffness=stiffness, **self._adhesive(materials)
         )
@@ -71,7 +71,7 @@ class Overlap:
         return strength * (pi * self.diameter * self.length) / force
 
     def thermal_factor(self, materials: Materials, warming: Array, cold: bool) -> Array:
-        """Strength over edge shear without load, from joining to a temperature."""
+        """Strength over edge shear without load, from joining temperature to a temperature."""
         stress = lap_joint.bond_thermal_shear(
             strain_difference=self.mismatch * warming,
             membrane_stiffness_1=self.tube,
@@ -82,13 +82,13 @@ class Overlap:
         return load_multiplier(absolute(stress) / strength)
 
     def thermal(self, materials: Materials) -> Thermal | str:
-        """`thermal_factor` of these materials, or why there is none."""
+        """`thermal_factor` of these materials, or why it is unknown."""
         if self.mismatch is None:
             return f"thermal expansion of the {' or of the '.join(self.names)} is not known"
         return partial(self.thermal_factor, materials)
 
 
 def mismatch(materials: Materials, metal: str, along: Array) -> Array:
-    """Expansion of the metal less that of the tube along the axis; None where not known."""
+    """Axial expansion of the metal minus that of the tube; None if unknown."""
     own = materials.get(metal, "thermal_expansion")
     return None if own is None or along is None else own - along

@@ -1,4 +1,4 @@
-"""Skirts of the caps over the barrel's outside: what a bond and a thread have in common."""
+"""Skirts of the caps over the outside of the barrel: common to bond and thread."""
 
 from __future__ import annotations
 
@@ -11,27 +11,27 @@ from .joint import Drawn, End, Fit, Loaded, Materials, Span
 
 
 def fit(end: End, radius: Array) -> Fit:
-    """A skirt of an inner radius, over the barrel's end."""
+    """A skirt with this inner radius over the end of the barrel."""
     wall = end.sizes["wall"]
     return Fit(plate_radius=radius + wall, radius=radius, length=end.sizes["length"], wall=wall)
 
 
 def weight(end: End, materials: Materials, radius: Array) -> Array:
-    """Mass of one skirt [kg]."""
+    """Mass of a skirt [kg]."""
     density = materials.get(end.cap, "density")
     section = mass.layer_area(inner_radius=radius, thickness=end.sizes["wall"])
     return density * section * end.sizes["length"]
 
 
 def outline(end: End, fit: Fit, span: Span) -> Iterator[Drawn]:
-    """The skirt of one end."""
+    """The skirt at one end."""
     length, inner = float(fit.length), float(fit.radius)
     if length > 0:
         yield Drawn("caps", end.cap, span.over(length, inner, inner + float(fit.wall)))
 
 
 def yields(loaded: Loaded) -> dict[str, Array]:
-    """Yield over stress of the skirt, pulled by the force of the end."""
+    """Yield over stress of the skirt under the force of the end."""
     end = loaded.end
     strength = loaded.materials.allowable(end.cap, "yield_strength")
     if strength is None:

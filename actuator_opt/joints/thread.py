@@ -1,9 +1,9 @@
-"""Skirts of the caps screwed over the barrel: threads on barrel and skirts, walls under both.
+"""Skirts of the caps screwed over the barrel: threads of barrel and skirts, and their walls.
 
-The thread is cut into the barrel's outermost layer, which is turned down to `thread.diameter` where
-that is smaller. It is taken to carry all of the force. Oil stands under it up to the ends of the
-barrel; inner layers are taken to hold none of its pressure there. A thread is cut into metal, and
-leaves metal under it: other files are refused.
+The thread is cut into the outermost layer of the barrel, which is turned down to
+`thread.diameter` if that is smaller. It is assumed to carry the whole force. Oil pressure acts
+under it up to the ends of the barrel, and inner layers are assumed to carry none of it. A thread
+must be cut into metal and leave metal under it: other files are refused.
 """
 
 from __future__ import annotations
@@ -42,21 +42,21 @@ from .joint import (
 )
 
 NEEDED = ("yield_strength", "ultimate_strength")
-"""What a metal states, so that a thread in it can be judged."""
+"""Properties of a metal that the assessment of its thread needs."""
 
 OTHERWISE = "bond the caps (type: bond), or clamp them (type: tie_rods)"
 
 LANDS = ("geometry_barrel_thread", "geometry_skirt_thread")
 CREST = "geometry_thread_crest"
-"""Metrics of the metal left under both roots, and of the overlap of their flanks."""
+"""Metrics of the metal left under both roots, and of the flank overlap."""
 
 HARD = 830e6
-"""Tensile strength from which a metal counts as hard [Pa] (a choice, for the grades of
+"""Least tensile strength of a hard metal [Pa] (a choice, for the grades of
 [Shigley2011] table 8-16)."""
 
 CUT, CUT_HARD = 3.0, 3.8
 """Fatigue notch factors of a cut thread root: [Shigley2011] table 8-16 has 2.8 for soft steel and
-3.8 for hard steel; 3 below `HARD` covers other metals too, for which no table was found."""
+3.8 for hard steel; 3 below `HARD` is also used for other metals, which have no table."""
 
 
 # --- faults of the file ---------------------------------------------------------------------
@@ -64,7 +64,7 @@ CUT, CUT_HARD = 3.0, 3.8
 
 @dataclass(frozen=True, slots=True)
 class _Stated:
-    """Barrel's outside, thickness of its outermost layer, thread and skirt [m]."""
+    """Outside of the barrel, thickness of its outermost layer, thread and skirt [m]."""
 
     outside: float
     layer: float
@@ -83,7 +83,7 @@ def _layer(view: Stated) -> tuple[str, str, int]:
 
 
 def _stated(view: Stated) -> _Stated | None:
-    """The sizes of the joint; None where one is missing or faulty."""
+    """Sizes of the joint; None if a size is missing or faulty."""
     count = len(view.items("barrel", "layup"))
     layers = [view.number("barrel", "layup", index, "thickness") for index in range(count)]
     known = [layer for layer in layers if layer is not None]
@@ -97,12 +97,12 @@ def _stated(view: Stated) -> _Stated | None:
 
 
 def _faults(view: Stated) -> Iterator[Fault]:
-    """The thread is cut on the barrel's outside, and its turns engage."""
+    """The thread fits the outside of the barrel, and its turns engage."""
     pitch, length = view.number("retention", "thread", "pitch"), view.number("retention", "length")
     if pitch is not None and length is not None and length < (1 + thread.RUN_OUT) * pitch:
         yield Fault(
             ("retention", "length"),
-            f"{_text(length)}: no whole turn of the thread engages, whose pitch is {_text(pitch)}",
+            f"{_text(length)}: less than one turn of the thread engages at pitch {_text(pitch)}",
             f"write at least {_text((1 + thread.RUN_OUT) * pitch)}",
         )
     sizes = _stated(view)
@@ -117,16 +117,16 @@ def _faults(view: Stated) -> Iterator[Fault]:
         text = _text(sizes.outside)
         yield Fault(
             ("retention", "thread", "diameter"),
-            f"{_text(sizes.diameter)}: larger than the barrel's outside ({text}), which it "
-            "is cut into",
-            f"write at most {text}, or leave it out: then it is the outside",
+            f"{_text(sizes.diameter)}: larger than the outside of the barrel ({text}), which "
+            "has the thread",
+            f"write at most {text}, or remove it to use the outside",
         )
 
 
 def _material_faults(view: Stated, known: Known) -> Iterator[Fault]:
-    """Both threads are cut into a metal that states its strengths, and leave enough of it."""
+    """Both threads are cut into a metal with known strengths, and leave enough metal."""
     sizes, layer = _stated(view), _layer(view)
-    caps = "caps" if view.has("caps") else "piston"  # whose material caps have by default
+    caps = "caps" if view.has("caps") else "piston"  # the default material of the caps
     if _metal(view, known, (*layer, "material")) and sizes is not None:
         yield from _under(view, sizes)
     if _metal(view, known, (caps, "material")) and sizes is not None:
@@ -135,7 +135,7 @@ def _material_faults(view: Stated, known: Known) -> Iterator[Fault]:
         view,
         known,
         (*layer, "material"),
-        "the barrel's outermost layer, which is",
+        "the outermost layer of the barrel, which is",
         f"barrel.layup[{layer[-1]}]",
     )
     yield from _into(view, known, (caps, "material"), "the caps' skirts, which are", caps)
@@ -149,17 +149,16 @@ def _metal(view: Stated, known: Known, loc: tuple[str | int, ...]) -> bool:
 def _into(
     view: Stated, known: Known, loc: tuple[str | int, ...], part: str, path: str
 ) -> Iterator[Fault]:
-    """A thread cut into what is no metal, or a metal without strengths; `path` is the part's."""
+    """A thread in a material that is no metal or has no strengths; `path` is that of the part."""
     name = view.text(*loc)
     kind = None if name is None else known.kind(name)
     if name is None or kind is None:
         return
     if kind != "metal":
-        what = "of plies, whose fibres it severs" if kind == "ply" else f"of a {kind}"
+        what = "of plies, with fibres that the thread cuts" if kind == "ply" else f"of a {kind}"
         yield Fault(
             loc,
-            f"{name}: retention.type thread cuts into {part} {what}; a thread is cut into metal "
-            "only",
+            f"{name}: retention.type thread cuts into {part} {what}; a thread needs metal",
             f"make {path} of metal, {OTHERWISE}",
         )
         return
@@ -168,13 +167,13 @@ def _into(
     if missing:
         yield Fault(
             loc,
-            f"{name} states no {' nor '.join(missing)}: a thread in it cannot be judged",
+            f"{name} has no {' nor '.join(missing)}: its thread cannot be assessed",
             f'add e.g. "{missing[0]}: 355 MPa" under materials.{name}, {OTHERWISE}',
         )
 
 
 def _under(view: Stated, sizes: _Stated) -> Iterator[Fault]:
-    """Too little metal under the thread, in the layer it is cut into."""
+    """Too little metal under the thread, in its layer."""
     root = thread.root_diameter(diameter=min(sizes.diameter, sizes.outside), pitch=sizes.pitch)
     left = sizes.layer - (sizes.outside - root) / 2
     layer = _layer(view)
@@ -184,24 +183,24 @@ def _under(view: Stated, sizes: _Stated) -> Iterator[Fault]:
         yield Fault(
             (*layer, "thickness"),
             f"{_text(sizes.layer)} of {name}: the thread leaves {rest} of it, "
-            f"{_text(LEAST_METAL)} is the least",
+            f"but {_text(LEAST_METAL)} is needed",
             f"write a thickness of at least {_text(sizes.layer + LEAST_METAL - left)}, a finer "
             f"pitch, {OTHERWISE}",
         )
 
 
 def _over(view: Stated, sizes: _Stated) -> Iterator[Fault]:
-    """Too little metal over the thread of the skirts."""
+    """Too little metal around the thread of the skirts."""
     if sizes.wall < LEAST_METAL * (1 - ROUNDING) and not judged_later(view, ["retention.wall"]):
         yield Fault(
             ("retention", "wall"),
-            f"{_text(sizes.wall)}: the least metal over a thread is {_text(LEAST_METAL)}",
+            f"{_text(sizes.wall)}: a thread needs {_text(LEAST_METAL)} of metal around it",
             f"write at least {_text(LEAST_METAL)}",
         )
 
 
 def _moved(view: Stated) -> Iterator[str]:
-    """PATHs of the sizes on which the wall under the thread and its crests depend."""
+    """PATHs of the sizes that determine the wall under the thread and its crests."""
     outermost = _layer(view)[-1]
     yield "retention.thread.pitch"
     yield f"barrel.layup[{outermost}].thickness"
@@ -216,7 +215,7 @@ def _moved(view: Stated) -> Iterator[str]:
 
 
 def _radius(end: End) -> Array:
-    """Of the barrel under the skirt: its outside, or what it is turned down to."""
+    """Radius of the barrel under the skirt, turned down if needed."""
     if "thread.diameter" in end.sizes:
         return minimum(end.sizes["thread.diameter"] / 2, end.outer_radius)
     return end.outer_radius
@@ -227,7 +226,7 @@ def _fit(end: End) -> Fit:
 
 
 def _mass(end: End, materials: Materials) -> dict[str, Array]:
-    """The skirt, less the ring that is turned off the barrel."""
+    """The skirt, minus the ring that is turned off the barrel."""
     radius = _radius(end)
     caps = {"caps": skirt.weight(end, materials, radius)}
     if radius is end.outer_radius:
@@ -249,25 +248,25 @@ def _notes(end: End) -> Iterator[str]:
 
 @dataclass(frozen=True, slots=True)
 class Thread:
-    """The thread of an end: sizes [m], areas [m^2], and the metals it is cut into."""
+    """The thread of an end: sizes [m], areas [m^2], and metals."""
 
     male: str
     female: str
     diameter: Array
     root_diameter: Array
     skirt_wall: Array
-    """Wall of the skirts over the thread."""
+    """Wall of the skirt around the thread."""
     engagement: Array
     male_area: Array
     female_area: Array
     flank_area: Array
     barrel_section: Array
-    """Section of the threaded layer under its root."""
+    """Section of the threaded layer under the thread root."""
     skirt_section: Array
     layer_radius: Array
     """Inner radius of the threaded layer."""
     overlap: Array
-    """Of the flanks, over that of full crests."""
+    """Flank overlap over that of full crests."""
     bore_radius: Array
 
 
@@ -315,7 +314,7 @@ def _strengths(materials: Materials, name: str) -> tuple[Array, Array]:
 
 
 def _judged(loaded: Loaded) -> Thread | str:
-    """The thread of an end, or why it has no factor; judged once."""
+    """The thread of an end, or why it has no factor; assessed once."""
     known = loaded.end.known
     if "judged" not in known:
         known["judged"] = _verdict(loaded)
@@ -327,9 +326,9 @@ def _verdict(loaded: Loaded) -> Thread | str:
     cut, materials = derive(loaded.end), loaded.materials
     for name in (cut.male, cut.female):
         if materials.kind(name) != "metal":
-            return f"{name} is no metal: a thread is cut into metal only"
+            return f"{name} is not a metal: a thread needs metal"
         if any(strength is None for strength in _strengths(materials, name)):
-            return f"{name} states no yield or ultimate strength"
+            return f"{name} has no yield or ultimate strength"
     return cut
 
 
@@ -349,14 +348,14 @@ def _yields(loaded: Loaded) -> dict[str, Array]:
 
 
 def _own(loaded: Loaded) -> dict[str, Array]:
-    """Metal left under either root and overlap of the flanks, limits that no search gives up."""
+    """Metal left under either root, and flank overlap: limits that every search keeps."""
     cut = derive(loaded.end)
     walls = (cut.root_diameter / 2 - cut.layer_radius, cut.skirt_wall)
     return dict(zip(LANDS, walls, strict=True)) | {CREST: cut.overlap}
 
 
 def _working(materials: Materials, cut: Thread, force: Array) -> dict[str, Array]:
-    """Elastic limit over stress: both threads in shear, and their flanks."""
+    """Elastic limit over stress: shear of both threads, and flank pressure."""
     male, female = (_strengths(materials, name)[0] for name in (cut.male, cut.female))
     return {
         "barrel thread": male / sqrt(3) * cut.male_area / force,
@@ -366,7 +365,7 @@ def _working(materials: Materials, cut: Thread, force: Array) -> dict[str, Array
 
 
 def _burst(materials: Materials, cut: Thread, force: Array) -> dict[str, Array]:
-    """Strength at rupture over the force: both threads, and the skirt they tear and spread."""
+    """Ultimate strength over force: both threads, and the skirt, which they tear and spread."""
     male, female = (_strengths(materials, name)[1] for name in (cut.male, cut.female))
     ratio = female * cut.female_area / (male * cut.male_area)
     of_male, of_female = thread.stripping_reductions(strength_ratio=ratio)
@@ -382,12 +381,12 @@ def _burst(materials: Materials, cut: Thread, force: Array) -> dict[str, Array]:
 def _wall(loaded: Loaded) -> WallPressures:
     """Pressures at which the barrel yields and bursts under its thread, by load path.
 
-    The layer carries the axial forces alone, with the pressure p r_i/r_l on its inner radius r_l
-    that inner layers without hoop stress would leave.
+    The layer carries the axial forces alone. Its inner radius r_l has the pressure p r_i/r_l that
+    inner layers without hoop stress would transmit.
 
-    It yields as if the skirt were not there. At burst both are plastic, and the skirt adds the
-    pressure p_s that it would burst at: the turns, cut through, carry no hoop stress and pass it
-    on as p_s d/d_3 (balance of forces; no axial force is taken in the skirt, which lowers p_s).
+    Yield ignores the skirt. At burst both are plastic, and the skirt adds its own burst pressure
+    p_s: the turns carry no hoop stress and transmit it as p_s d/d_3 (balance of forces; the skirt
+    is assumed without axial force, which would lower p_s).
     """
     cut, materials = _judged(loaded), loaded.materials
     if isinstance(cut, str):
@@ -422,7 +421,7 @@ def _wall(loaded: Loaded) -> WallPressures:
 
 
 def _fatigue(loaded: Loaded) -> Fatigue:
-    """Axial stress at either root while the force pulsates; the notch raises the range alone."""
+    """Axial stress at either root under pulsating force; the notch raises only the range."""
     cut = _judged(loaded)
     if isinstance(cut, str):
         return Fatigue()
@@ -438,7 +437,7 @@ def _fatigue(loaded: Loaded) -> Fatigue:
 
 
 def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
-    """A thread that leaves too little metal: free sizes may start there, no search ends there."""
+    """A thread that leaves too little metal: a search may start there, but cannot end there."""
     own = _own(loaded)
     for name in LANDS:
         least = float(np.min(np.real(own[name])))
@@ -446,21 +445,21 @@ def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tu
             label = quantities[name]
             yield (
                 "retention_factor",
-                f"{label.label}: {label.text(least)}, {label.text(LEAST_METAL)} is the least: "
-                "such a thread cannot be cut, and its factors do not count",
+                f"{label.label}: {label.text(least)}, but {label.text(LEAST_METAL)} is needed: "
+                "such a thread cannot be cut, and its factors are void",
             )
 
 
-_ABSENT = "the caps are not screwed on"
+_ABSENT = "the caps are not threaded"
 
 JOINT = Joint(
     name="thread",
-    help="skirts screwed over it",
+    help="threaded skirts over the barrel",
     noun="a thread",
     fields=(
         JointField("length"),
         JointField("wall"),
-        JointField("thread", "missing: thread needs it", 'add a block "thread:" with pitch'),
+        JointField("thread", "missing: required by a thread", 'add a block "thread:" with pitch'),
         JointField("thread.diameter"),
         JointField("thread.pitch"),
     ),
@@ -507,7 +506,7 @@ JOINT = Joint(
             "turns of the thread",
             5.0,
             60.0,
-            "choice: start and run-out take two, the first turns carry most",
+            "choice: start and run-out take two turns, the first turns carry most of the load",
             lambda end: end.sizes["length"] / end.sizes["thread.pitch"],
         ),
     ),

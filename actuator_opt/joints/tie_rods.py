@@ -1,4 +1,4 @@
-"""Rods outside the barrel that clamp it between cap and head."""
+"""Tie rods outside the barrel that clamp it between cap and head."""
 
 from __future__ import annotations
 
@@ -32,18 +32,18 @@ from .joint import (
 
 
 def _fit(end: End) -> Fit:
-    """Plates two rods wider than the barrel."""
+    """End plates wider than the barrel by two rod diameters."""
     radius = end.outer_radius
     return Fit(plate_radius=radius + 2 * end.sizes["thread.diameter"], radius=radius)
 
 
 def _length(end: End) -> Array:
-    """From plate to plate."""
+    """Length from plate to plate."""
     return end.barrel_length + 2 * end.plate
 
 
 def _stiffness(end: End, materials: Materials) -> Array:
-    """Of all rods: n E (pi d^2/4)/L."""
+    """Stiffness of all rods: n E (pi d^2/4)/L."""
     assert end.material is not None
     modulus = materials.get(end.material, "youngs_modulus")
     diameter = end.sizes["thread.diameter"]
@@ -51,7 +51,7 @@ def _stiffness(end: End, materials: Materials) -> Array:
 
 
 def _mass(end: End, materials: Materials) -> dict[str, Array]:
-    """Half of the rods at either end."""
+    """Half of the rods, for each end."""
     assert end.material is not None
     rods = mass.tie_rod_mass(
         density=materials.get(end.material, "density"),
@@ -72,7 +72,7 @@ def _outline(end: End, fit: Fit, span: Span) -> Iterator[Drawn]:
 
 
 def _notes(end: End) -> Iterator[str]:
-    yield "Tie rods pass the plates; their holes are not drawn."
+    yield "Tie rods pass through the plates; their holes are not drawn."
 
 
 def _stress(end: End, force: Array) -> Array:
@@ -102,7 +102,7 @@ def _strength(loaded: Loaded) -> Strength | str:
 
 
 def _fatigue(loaded: Loaded) -> Fatigue:
-    """Of the rods' threads while the pressure comes and goes."""
+    """Fatigue of the rod threads under pulsating pressure."""
     end, clamp = loaded.end, _clamp(loaded)
     diameter = end.sizes["thread.diameter"]
     amplitude = _stress(end, (clamp.largest - clamp.preload) / 2)
@@ -122,29 +122,30 @@ def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tu
         force = float(np.max(np.real(_clamp(loaded).preload)))
         yield (
             "joint_factor",
-            f"no tie-rod preload stated: taken {force / 1e3:.1f} kN, which keeps the joint closed "
+            f"no tie-rod preload stated: assumed {force / 1e3:.1f} kN, which keeps the "
+            "joint closed "
             "at proof pressure",
         )
 
 
 JOINT = Joint(
     name="tie_rods",
-    help="rods outside clamp it between cap and head",
+    help="rods outside the barrel clamp it between cap and head",
     noun="tie rods",
     fields=(
         JointField("length"),
         JointField(
             "material",
-            "missing: tie rods need their material",
+            "missing: tie rods need a material",
             'add e.g. "material: steel_bolt_10_9"',
         ),
         JointField("count"),
         JointField(
             "thread",
-            "missing: tie_rods needs it",
+            "missing: required by tie_rods",
             'add a block "thread:" with diameter, pitch',
         ),
-        JointField("thread.diameter", "missing: tie rods need it", 'add e.g. "diameter: 6 mm"'),
+        JointField("thread.diameter", "missing: required by tie rods", 'add e.g. "diameter: 6 mm"'),
         JointField("thread.pitch"),
         JointField("preload"),
     ),

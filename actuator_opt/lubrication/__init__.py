@@ -1,6 +1,6 @@
 """Elastohydrodynamic lubrication of reciprocating seals: films, tandem seals, back-up rings.
 
-NumPy only. Pressures are absolute; forces are per circumference unless a name says otherwise.
+NumPy only. Pressures are absolute; forces are per circumference unless stated otherwise.
 """
 
 from .film import Film, solve_film

@@ -1,7 +1,7 @@
-"""The lubricated film under one seal: solve it at a speed, read drag, flow and profiles.
+"""The lubricated film under a seal: solution at a speed, with drag, flow and profiles.
 
-The static contact pressure of the seal is an input. At speed 0 the film is the limit of a seal at
-rest that leaks: no flow by motion, and the asperities hold the friction.
+The static contact pressure of the seal is an input. At speed 0 the film is the limit of a leaking
+seal at rest: no flow by motion, and all friction is at the asperities.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from .newton import Bed, FilmState, Outcome, contact_pressure, follow, newton, w
 from .reynolds import Flow, Vector, flux
 
 LEAST_CONTACT = 1e-12
-"""Static pressure over the asperity stiffness below which surfaces count as barely touching."""
+"""Static pressure over asperity stiffness below which the surfaces count as barely touching."""
 SLOWEST = 1e-4
-"""Speed at which the continuation of a cold start begins, m/s."""
+"""Initial speed of the continuation of a cold start, m/s."""
 
 
 @dataclass(frozen=True, slots=True)
 class Film:
-    """A solved film, or the reason why there is none.
+    """A solved film, or the reason for a failure.
 
     Forces are per circumference. `flow` is the mass flow over the density at zero pressure,
-    positive towards the outer side. Never use the numbers of a film that did not converge.
+    positive towards the outer side. The numbers of a film that did not converge are unusable.
     """
 
     contact: Contact
@@ -60,7 +60,7 @@ class Film:
 
     @property
     def cavitated_fraction(self) -> Vector:
-        """Part of the gap without oil [-]."""
+        """Share of the gap without oil [-]."""
         return self.state.cavitation
 
     @property
@@ -81,13 +81,13 @@ class Film:
 
 
 def pressure_scale(contact: Contact) -> float:
-    """Largest absolute pressure of the contact above that of cavitation [Pa]."""
+    """Largest absolute contact pressure above the cavitation pressure [Pa]."""
     pressures = (contact.sealed_pressure, contact.outer_pressure, *contact.static_pressure)
     return max(float(real(p)) for p in pressures) - float(real(contact.cavitation_pressure))
 
 
 def scaled(contact: Contact, scales: Contact | None = None) -> tuple[Flow, Bed]:
-    """Scaled equations of a contact; `scales` fixes the scales while a contact carries a step."""
+    """Scaled equations of a contact; `scales` sets fixed scales, for complex steps."""
     base = scales or contact
     pressure = pressure_scale(base)
     film = float(base.surface.roughness)
@@ -155,7 +155,7 @@ def _slope(values: Vector) -> Vector:
 
 
 def _at_rest(contact: Contact, bed: Bed) -> FilmState:
-    """A first guess: a straight pressure, and a film whose asperities carry the rest."""
+    """Initial guess: linear pressure, and a film whose asperities carry the remaining load."""
     nodes = len(contact.static_pressure)
     straight = np.linspace(bed.sealed, bed.outer, nodes)
     pressure = np.minimum(straight, np.maximum(0.9 * bed.static_pressure, 0.0))
@@ -167,7 +167,7 @@ def _at_rest(contact: Contact, bed: Bed) -> FilmState:
 
 
 def _starved(cavitation: Vector, contact: Contact) -> Vector:
-    """Cavitated fractions with those of the ends put in."""
+    """Cavitated fractions with the given values at the ends."""
     ends = [contact.sealed_cavitation], [contact.outer_cavitation]
     return np.concatenate([ends[0], cavitation[1:-1], ends[1]])
 
@@ -186,7 +186,7 @@ def _solved(contact: Contact, state: FilmState) -> Outcome:
 
 
 def _cold(contact: Contact) -> Outcome:
-    """From rest at once, or else along the speed."""
+    """Solution from rest directly, or else by continuation in speed."""
     _, bed = scaled(contact)
     rest = _at_rest(contact, bed)
     outcome = _solved(contact, rest)
@@ -209,11 +209,11 @@ def solve_film(contact: Contact, start: Film | None = None) -> Film:
     Parameters
     ----------
     contact : seal, surfaces, oil and operating point
-    start : a converged film of a near point, to begin from; as many nodes
+    start : converged film of a nearby point as initial state; same number of nodes
 
     Returns
     -------
-    film; with `converged` False and a reason in words where no balance was found
+    film; with `converged` False and a reason if no equilibrium exists or was reached
     """
     wrong = fault(contact)
     if wrong:

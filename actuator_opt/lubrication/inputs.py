@@ -1,6 +1,6 @@
-"""What a lubricated contact is made of: oil, two rough surfaces, an elastic seal, its conditions.
+"""Inputs of a lubricated contact: oil, two rough surfaces, an elastic seal, operating conditions.
 
-Every number may be a Python float or, inside `sensitivities`, carry a complex step.
+Every number is a Python float or, inside `sensitivities`, has a complex step.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from ..models.oil_laws import VISCOSITY_LAWS
 from ..models.rough_surface import asperity_stiffness
 
 FLAT = 0.43
-"""F_3/2 at film ratio 0, where the mean planes of both surfaces meet."""
+"""F_3/2 at film ratio 0, where the mean planes of both surfaces coincide."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,9 +24,9 @@ class Lubricant:
 
     Parameters
     ----------
-    dynamic_viscosity : at zero pressure [Pa s]
-    pressure_law : of the viscosity, a word of `oil_laws.VISCOSITY_LAWS`
-    pressure_coefficient : of that law at zero pressure [1/Pa]
+    dynamic_viscosity : dynamic viscosity at zero pressure [Pa s]
+    pressure_law : viscosity law, a name of `oil_laws.VISCOSITY_LAWS`
+    pressure_coefficient : coefficient of the law at zero pressure [1/Pa]
     density_c_a, density_c_b : rho = rho_0 [1 + c_a p/(1 + c_b p)] ([Huang2017] eq. 3) [1/Pa];
         both 0 for an incompressible oil
     """
@@ -38,7 +38,7 @@ class Lubricant:
     density_c_b: float = 0.0
 
     def viscosity_ratio(self, pressure: Array) -> Array:
-        """Viscosity at a pressure over that at zero pressure."""
+        """Viscosity over its value at zero pressure."""
         law = VISCOSITY_LAWS[self.pressure_law].model
         if law is None:
             return 1.0 + 0.0 * pressure
@@ -47,7 +47,7 @@ class Lubricant:
         return value / viscosity
 
     def density_ratio(self, pressure: Array) -> Array:
-        """Density at a pressure over that at zero pressure."""
+        """Density over its value at zero pressure."""
         return 1 + self.density_c_a * pressure / (1 + self.density_c_b * pressure)
 
 
@@ -59,7 +59,7 @@ class Surface:
     ----------
     roughness : composite root-mean-square roughness of seal and rod [m]
     asperity_density : summits per area [1/m^2]
-    asperity_radius : of the summits [m]
+    asperity_radius : radius of the summits [m]
     rod_share : (sigma_rod/sigma)^2 [-]; 0 for a rough seal on a smooth rod
     """
 
@@ -71,7 +71,7 @@ class Surface:
 
 @dataclass(frozen=True, slots=True)
 class Elastic:
-    """The sealing body; the rod is rigid beside it.
+    """The elastic seal; the rod is assumed rigid.
 
     Parameters
     ----------
@@ -90,18 +90,18 @@ class Elastic:
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """One seal at one operating point. Pressures are absolute.
+    """A seal at an operating point. Pressures are absolute.
 
     Parameters
     ----------
-    width : of the contact [m]; x = 0 at the sealed side
+    width : contact width [m]; x = 0 at the sealed side
     static_pressure : static contact pressure at uniform nodes from x = 0 to the width [Pa]
-    elastic, surface, lubricant : what meets there
-    speed : of the rod [m/s]; positive outstroke, from the sealed to the outer side
-    sealed_pressure, outer_pressure : at the ends [Pa]
-    cavitation_pressure : below which the oil ruptures [Pa]
-    sealed_cavitation, outer_cavitation : part of the gap without oil at an end that is starved,
-        where the pressure is that of cavitation [-]; floats
+    elastic, surface, lubricant : seal, roughness and oil
+    speed : rod speed [m/s]; positive outstroke, from the sealed to the outer side
+    sealed_pressure, outer_pressure : pressures at the ends [Pa]
+    cavitation_pressure : pressure below which the oil film ruptures [Pa]
+    sealed_cavitation, outer_cavitation : share of the gap without oil at a starved end, whose
+        pressure is the cavitation pressure [-]; floats
     """
 
     width: Array
@@ -129,7 +129,7 @@ class Contact:
 
 
 def fault(contact: Contact) -> str:
-    """Why a contact cannot be solved as stated, in one line; empty when it can."""
+    """Why a contact is invalid, in one line; empty if it is valid."""
     if contact.lubricant.pressure_law not in VISCOSITY_LAWS:
         return (
             f"pressure law {contact.lubricant.pressure_law!r} of the lubricant: "
@@ -162,13 +162,16 @@ def _range_fault(contact: Contact) -> str:
         if not value > 0:
             return f"{name} {value:g}: must be above zero"
     if np.min(contact.static_pressure) < -1e-9 * np.max(contact.static_pressure):
-        return f"static pressure {np.min(contact.static_pressure):g} Pa: absolute, not below zero"
+        return (
+            f"static pressure {np.min(contact.static_pressure):g} Pa: must be absolute, not "
+            "negative"
+        )
     flat = np.max(contact.static_pressure) / contact.asperity_stiffness
     if flat > FLAT:
         return (
             f"static pressure {np.max(contact.static_pressure):g} Pa presses the asperities flat: "
-            f"they carry {FLAT * contact.asperity_stiffness:g} Pa where the mean planes meet; "
-            "give more, sharper or stiffer asperities"
+            f"they carry {FLAT * contact.asperity_stiffness:g} Pa when the mean planes meet; "
+            "use more, sharper or stiffer asperities"
         )
     for name in ("sealed_cavitation", "outer_cavitation"):
         if not 0 <= getattr(contact, name) < 1:

@@ -1,16 +1,16 @@
-"""Newton's method for a film: pressure, cavitated fraction, film and rigid shift at once.
+"""Newton's method for a film: pressure, cavitated fraction, film and rigid shift together.
 
-Per node the unknowns are pressure p, cavitated fraction theta and film h; for the whole seal the
-rigid shift C. In scaled form the equations are
+The unknowns are pressure p, cavitated fraction theta and film h per node, and the rigid shift C of
+the seal. In scaled form the equations are
 
     flux out - flux in = 0 at the inner nodes, p given at the ends,
     p + theta - sqrt(p^2 + theta^2) = 0 (p >= 0, theta >= 0, p theta = 0),
     h = h_s + C + K d, d = p + p_c(h) - p_sc,
     sum of weights times d = 0.
 
-The linear step is solved for the change g of d: the film follows as dh = dC + K g, the pressure as
-dp = g - p_c' dh, and theta locally where the film is full. What remains is one dense system of
-about as many rows as nodes, and one more per cavitated node.
+The linear step is solved for the change g of d: then dh = dC + K g, dp = g - p_c' dh, and theta
+follows locally where the film is full. This leaves a dense system with about one row per node, and
+one more per cavitated node.
 """
 
 from __future__ import annotations
@@ -27,17 +27,17 @@ from ..models.rough_surface import asperity_integral
 from .reynolds import Flow, Vector, banded, faces, flux
 
 TOLERANCE = 1e-9
-"""Of every scaled residual of a converged film."""
+"""Largest scaled residual of a converged film."""
 MOST_ITERATIONS = 60
 _GROWTH, _LEAST_GROWTH = 8.0, 1.02
-"""First and smallest factor of the steps of a continuation."""
+"""Initial and smallest step factor of a continuation."""
 _CLOSED, _PRESSURE_STEP = 0.5, 0.6
-"""Largest fall of a film in one step over the film; largest change of a scaled pressure."""
+"""Largest relative decrease of a film in one step; largest change of a scaled pressure."""
 
 
 @dataclass(frozen=True, slots=True)
 class Bed:
-    """What carries the film: the elastic seal on asperities, in scaled form.
+    """Support of the film: the elastic seal on asperities, in scaled form.
 
     The static pressure is the load to balance; `compliance` is
     (1 - nu^2) L p_scale/(pi E film_scale),
@@ -52,7 +52,7 @@ class Bed:
     roughness_ratio: Array
     sealed: Array
     outer: Array
-    held: bool = False  # the film is held where it is: no rigid shift, no balance of the load
+    held: bool = False  # the film is fixed: no rigid shift, no load balance
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +78,7 @@ class Residual:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """Where Newton's method ended; `reason` is empty when it converged."""
+    """Final state of Newton's method; `reason` is empty if it converged."""
 
     state: FilmState
     reason: str
@@ -89,9 +89,9 @@ class Outcome:
 
 @lru_cache(maxsize=16)
 def kernel(nodes: int) -> Vector:
-    """Film over unit pressure, -int ln(x - s)^2 ds over each node's cell on a unit width.
+    """Film per unit pressure, -int ln(x - s)^2 ds over each node's cell on a unit width.
 
-    Another width only adds a constant times the integral of d, which the load balance makes zero.
+    Another width only adds a constant times the integral of d, which the load balance sets to zero.
     """
     places = np.linspace(0, 1, nodes)
     edges = np.concatenate([[0.0], (places[1:] + places[:-1]) / 2, [1.0]])
@@ -113,7 +113,7 @@ def weights(nodes: int) -> Vector:
 
 
 def contact_pressure(bed: Bed, film: Vector) -> Vector:
-    """Scaled pressure of the asperities."""
+    """Scaled asperity contact pressure."""
     if np.all(bed.stiffness == 0):
         return 0 * film
     return bed.stiffness * asperity_integral(film_ratio=film / bed.roughness_ratio)
@@ -148,19 +148,19 @@ def _complementarity_slopes(state: FilmState) -> tuple[Vector, Vector]:
 
 
 def _spread(bands: tuple[Vector, Vector, Vector], matrix: Vector) -> Vector:
-    """Rows of the inner nodes of a tridiagonal matrix times a dense one."""
+    """Rows of the inner nodes: tridiagonal matrix times dense matrix."""
     lower, middle, upper = (band[:, None] for band in bands)
     return lower * matrix[:-2] + middle * matrix[1:-1] + upper * matrix[2:]
 
 
 def _along(bands: tuple[Vector, Vector, Vector], vector: Vector) -> Vector:
-    """Rows of the inner nodes of a tridiagonal matrix times a vector."""
+    """Rows of the inner nodes: tridiagonal matrix times vector."""
     lower, middle, upper = bands
     return lower * vector[:-2] + middle * vector[1:-1] + upper * vector[2:]
 
 
 def _widened(bands: tuple[Vector, Vector, Vector]) -> Vector:
-    """A tridiagonal matrix of the inner rows as a dense one."""
+    """A tridiagonal matrix of the inner rows as a dense matrix."""
     lower, middle, upper = bands
     rows = np.arange(len(middle))
     result = np.zeros((len(middle), len(middle) + 2))
@@ -169,7 +169,7 @@ def _widened(bands: tuple[Vector, Vector, Vector]) -> Vector:
 
 
 class Linear:
-    """The linearised equations at a state; `solve` gives the change that cancels residuals."""
+    """Linearised equations at a state; `solve` gives the change that cancels residuals."""
 
     def __init__(self, flow: Flow, bed: Bed, state: FilmState) -> None:
         nodes = self.nodes = flow.nodes
@@ -257,7 +257,7 @@ class Linear:
 
 
 def _allowed(state: FilmState, change: FilmState) -> float:
-    """Part of a Newton step that neither closes the film nor throws the pressure away."""
+    """Share of a Newton step that keeps the film open and the pressure within limits."""
     fall = np.max(-change.film / state.film)
     jump = np.max(np.abs(change.pressure))
     return float(min(1.0, _CLOSED / max(fall, 1e-300), _PRESSURE_STEP / max(jump, 1e-300)))
@@ -277,7 +277,7 @@ def _measures(
 
 
 def newton(flow: Flow, bed: Bed, state: FilmState) -> Outcome:
-    """Solve the film from a starting state; a lost trial ends with a reason, not with a warning."""
+    """Solve the film from a starting state; a failure returns a reason."""
     with np.errstate(all="ignore"):
         return _newton(flow, bed, state)
 
@@ -305,19 +305,19 @@ def _newton(flow: Flow, bed: Bed, state: FilmState) -> Outcome:
             state.shift + part * change.shift,
         )
     residuals = f"flux spread {spread:.1e}, load {load:.1e}"
-    reason = f"no balance within {MOST_ITERATIONS} iterations ({residuals})"
+    reason = f"no equilibrium within {MOST_ITERATIONS} iterations ({residuals})"
     return Outcome(state, reason, MOST_ITERATIONS, spread, load)
 
 
 def follow(
     solve: Callable[[float, FilmState], Outcome], state: FilmState, first: float, last: float
 ) -> Outcome:
-    """Follow a film from a first to a last positive value, in factors that adapt.
+    """Continuation of a film from the first to the last positive value, with adaptive factors.
 
     Parameters
     ----------
-    solve : outcome at a value, from a starting state
-    state : where to start at the first value
+    solve : outcome at a value, from an initial state
+    state : initial state at the first value
     first, last : values, such as speeds
     """
     outcome = solve(first, state)
@@ -332,6 +332,6 @@ def follow(
             continue
         growth = growth**0.5
         if growth < _LEAST_GROWTH:
-            reason = f"{trial.reason}; lost on the way at {reached:.2e}"
+            reason = f"{trial.reason}; continuation failed at {reached:.2e}"
             return replace(trial, reason=reason, iterations=taken)
     return replace(outcome, iterations=taken)

@@ -1,11 +1,11 @@
-"""Reynolds equation of a film along one seal: flux between nodes and its slopes.
+"""Reynolds equation of a film along a seal: flux between nodes and its derivatives.
 
 Finite volumes on uniform nodes. The flux of a face is
 
     m = -M dp/dx + (U/2) mean(r T) (1 - theta of the upwind node),
 
 M = r phi_x h^3/(12 eta), T = h_T + sigma phi_s, r the density over that at zero pressure, theta the
-cavitated fraction: what is left of a ruptured film moves with the rod, so mass is conserved where
+cavitated fraction: the rest of a ruptured film moves with the rod, so mass is conserved where
 the film ruptures and where it forms again. Everything is scaled: pressure by `pressure_scale` above
 the cavitation pressure, film by `film_scale`, length by the width.
 """
@@ -69,7 +69,7 @@ class Flow:
 
 @dataclass(frozen=True, slots=True)
 class Faces:
-    """Flux through the faces, and its slopes over the states of the node before and after."""
+    """Flux through the faces, and its derivatives by the states of both neighbouring nodes."""
 
     flux: Vector
     pressure: tuple[Vector, Vector]
@@ -89,7 +89,7 @@ def flux(flow: Flow, pressure: Vector, cavitation: Vector, film: Vector) -> Vect
 
 
 def faces(flow: Flow, pressure: Vector, cavitation: Vector, film: Vector) -> Faces:
-    """Flux and slopes of a real state; the local laws are differentiated by a complex step."""
+    """Flux and its derivatives for a real state; local laws use a complex step."""
     density, fluidity = flow.oil(pressure + 1j * STEP)
     opening, carried = flow.gap(film + 1j * STEP)
     density_slope, fluidity_slope = density.imag / STEP, fluidity.imag / STEP

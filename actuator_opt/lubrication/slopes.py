@@ -1,4 +1,4 @@
-"""Exact slopes of a solved film over its inputs, by the implicit-function theorem."""
+"""Exact derivatives of a solved film by its inputs, from the implicit-function theorem."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from .reynolds import Vector
 
 
 def sensitivities(film: Film, stepped: Sequence[Contact]) -> Vector:
-    """Slopes of viscous drag, contact load, flow and mean film, a row per direction.
+    """Derivatives of viscous drag, contact load, flow and mean film, one row per direction.
 
-    Each direction is the film's contact with a complex step on any of its numbers, such as
+    Each direction is the contact of the film with a complex step on any number, such as
     ``width * (1 + 1j * STEP)``. The change of the state is -J^-1 times the step of the residual at
     the solved state; one factorisation serves all directions.
 
     Parameters
     ----------
     film : a converged film
-    stepped : its contact under a complex step of size `numeric.STEP`, per direction
+    stepped : its contact with a complex step of size `numeric.STEP`, per direction
 
     Returns
     -------
@@ -35,7 +35,7 @@ def sensitivities(film: Film, stepped: Sequence[Contact]) -> Vector:
         The film did not converge.
     """
     if not film.converged:
-        raise ValueError(f"no slopes of a film that did not converge: {film.reason}")
+        raise ValueError(f"no slopes for a film that did not converge: {film.reason}")
     problems = [scaled(contact, film.contact) for contact in stepped]
     steps = [_imaginary(residual(flow, bed, film.state)) for flow, bed in problems]
     changes = Linear(*scaled(film.contact), film.state).solve(steps)
@@ -47,7 +47,7 @@ def sensitivities(film: Film, stepped: Sequence[Contact]) -> Vector:
 
 
 def _imaginary(found: Residual) -> Residual:
-    """Slopes of residuals along a step."""
+    """Derivatives of residuals along a step."""
     flow, complementarity, bent = (
         np.imag(part) / STEP for part in (found.flow, found.complementarity, found.film)
     )

@@ -1,4 +1,4 @@
-"""Smooth films: a gap of given shape, a slider, and the elastic back-up ring on its rod."""
+"""Smooth films: a gap of given shape, a slider, and an elastic back-up ring on its rod."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from .newton import Bed, FilmState, Outcome, follow, kernel, newton, weights
 from .reynolds import Flow, Vector
 
 _NARROWEST = 0.04
-"""Square of the narrowest half width over the width at which the pressure is started."""
+"""Square of the smallest relative half width of the initial pressure."""
 _FASTER = (1.0, 30.0)
-"""Multiples of the speed at which a loaded film is tried first, thicker and thicker."""
+"""Multiples of the speed for the initial guess of a loaded film, with increasing thickness."""
 
 
 @dataclass(frozen=True, slots=True)
 class SmoothFilm:
-    """A solved smooth film, or the reason why there is none. Forces are per circumference."""
+    """A solved smooth film, or the reason for a failure. Forces are per circumference."""
 
     converged: bool
     reason: str
@@ -42,14 +42,14 @@ class Gap:
 
     Parameters
     ----------
-    width : [m]
-    profile : height of the unloaded face over the rod at uniform nodes [m]; its level counts only
-        where the gap is held
+    width : width of the face [m]
+    profile : height of the unloaded face above the rod at uniform nodes [m]; its level matters
+        only for a fixed gap
     lubricant : oil
-    speed : of the rod [m/s], positive outstroke
-    sealed_pressure, outer_pressure : at the ends [Pa]
-    line_load : int p dx that the film has to carry [N/m]; None holds the gap where it is
-    elastic : of the ring; None for a rigid one
+    speed : rod speed [m/s], positive outstroke
+    sealed_pressure, outer_pressure : pressures at the ends [Pa]
+    line_load : load int p dx on the film [N/m]; None: fixed gap
+    elastic : elasticity of the ring; None: rigid
     cavitation_pressure : [Pa]
     """
 
@@ -65,16 +65,16 @@ class Gap:
 
 
 def fault(gap: Gap) -> str:
-    """Why a gap cannot be solved as stated, in one line; empty when it can."""
+    """Why a gap is invalid, in one line; empty if it is valid."""
     for name, value in (
         ("width", gap.width),
         ("viscosity", gap.lubricant.dynamic_viscosity),
-        ("least film of a held gap", np.min(gap.profile) if gap.line_load is None else 1.0),
+        ("least film of a fixed gap", np.min(gap.profile) if gap.line_load is None else 1.0),
     ):
         if not value > 0:
             return f"{name} {value:g}: must be above zero"
     if min(gap.sealed_pressure, gap.outer_pressure) < gap.cavitation_pressure:
-        return "an end pressure lies below the cavitation pressure"
+        return "an end pressure is below the cavitation pressure"
     if gap.line_load is None:
         return ""
     static = gap.width * (gap.sealed_pressure + gap.outer_pressure) / 2
@@ -84,24 +84,24 @@ def fault(gap: Gap) -> str:
             f"{static:g} N/m, so the ring lifts off"
         )
     if gap.elastic is not None and np.ptp(gap.profile) == 0:
-        return "a flat elastic face leaves no wedge to draw oil in: round the edges of its profile"
-    return "" if gap.speed != 0 else "speed 0: no film carries a load at rest"
+        return "a flat elastic face has no wedge to draw in oil: round the edges of its profile"
+    return "" if gap.speed != 0 else "speed 0: a film at rest carries no load"
 
 
 def solve_gap(gap: Gap, nodes: int = 0) -> SmoothFilm:
     """Film, drag and flow of a smooth gap.
 
     The film is h = h_0 + profile - (1 - nu^2)/(pi E) int p ln(x - s)^2 ds, h_0 from the line load
-    ([Huang2017] eq. 19 to 22, with density and viscosity in their places).
+    ([Huang2017] eq. 19 to 22, with local density and viscosity).
 
     Parameters
     ----------
     gap : shape, oil, operating point
-    nodes : 0 for as many as the profile has
+    nodes : number of nodes; 0: as in the profile
 
     Returns
     -------
-    film; with `converged` False and a reason in words where no balance was found
+    film; with `converged` False and a reason if no equilibrium was reached
     """
     if nodes and nodes != len(gap.profile):
         old, new = np.linspace(0, 1, len(gap.profile)), np.linspace(0, 1, nodes)
@@ -118,7 +118,7 @@ def solve_gap(gap: Gap, nodes: int = 0) -> SmoothFilm:
 
 
 def _scales(gap: Gap) -> float:
-    """Largest of the pressures that are known before [Pa]."""
+    """Largest pressure known in advance [Pa]."""
     mean = (gap.line_load or 0.0) / gap.width
     highest = max(gap.sealed_pressure, gap.outer_pressure, mean) - gap.cavitation_pressure
     shear = gap.lubricant.dynamic_viscosity * abs(gap.speed) * gap.width
@@ -169,9 +169,9 @@ def _held(gap: Gap, film: float) -> SmoothFilm:
 
 
 def _loaded(gap: Gap) -> SmoothFilm:
-    """From the pressure of dry contact, on the film its slope would leave; else from a thick film.
+    """Initial state from dry contact with its inlet film; else from a thick film.
 
-    At the inlet a film of h* = sqrt(8 eta U/(9 w)) is left by a pressure that rises by w.
+    At the inlet a pressure gradient w leaves a film of h* = sqrt(8 eta U/(9 w)).
     """
     pressure = _scales(gap)
     rise = 4 * (gap.line_load or 0.0) / gap.width**2
@@ -190,12 +190,14 @@ def _loaded(gap: Gap) -> SmoothFilm:
         taken += outcome.iterations
         if not outcome.reason:
             break
-    reason = outcome.reason and f"{outcome.reason}; a film near {film:.1e} m may want more nodes"
+    reason = (
+        outcome.reason and f"{outcome.reason}; a film of about {film:.1e} m may need more nodes"
+    )
     return _found(gap, film, pressure, replace(outcome, reason=reason, iterations=taken))
 
 
 def _dry(gap: Gap, flow: Flow, bed: Bed, least: float) -> FilmState:
-    """Half an ellipse of pressure as wide as the contact of a cylinder, and the film over it."""
+    """Elliptic pressure over the contact width of a cylinder, and the film above it."""
     place = np.linspace(0, 1, flow.nodes)
     ends = bed.sealed + (bed.outer - bed.sealed) * place
     relief = float(np.mean(gap.profile[[0, -1]]) - np.min(gap.profile))

@@ -1,4 +1,4 @@
-"""Two seals in a row: the pressure between them at which both pass the same flow."""
+"""Two seals in series: the pressure between them at which both have the same flow."""
 
 from __future__ import annotations
 
@@ -11,33 +11,33 @@ from .inputs import Contact, Elastic, Lubricant, Surface
 from .reynolds import Vector
 
 HIGHEST = 1.5
-"""Largest pressure between the seals that is looked for, over the higher of the end pressures,
-unless told otherwise."""
+"""Largest interseal pressure that is tried, over the higher end pressure,
+by default."""
 MATCH = 1e-8
-"""Difference at which two flows are equal, over the larger of them and what the rod carries."""
+"""Difference at which two flows count as equal, over the larger flow and the flow of the rod."""
 _MOST_TRIALS = 60
 _EMPTY = 0.9
-"""Part without oil of the room between the seals at which a starved film is looked for first."""
+"""Initial share without oil in the space between the seals for starved films."""
 _NO_LIMIT = (
-    "the inner seal still passes more than the outer one at {:.4g} Pa: "
-    "the pressure between them has no limit below that"
+    "the inner seal still passes more than the outer seal at {:.4g} Pa: "
+    "the pressure between them exceeds this value"
 )
 _JUMP = (
-    "room between the seals {:.3f} empty: the film jumps from starved to flooded there, "
+    "space between the seals {:.3f} empty: the film jumps from starved to flooded, "
     "with flows that differ by {:.1e} of the larger"
 )
-_NO_SUPPLY = "at {:.4g} Pa oil leaves the room between the seals on both sides: it runs dry"
+_NO_SUPPLY = "at {:.4g} Pa oil leaves the space between the seals on both sides: it runs dry"
 
 
 @dataclass(frozen=True, slots=True)
 class SealElement:
-    """One seal of a row.
+    """A seal of a row.
 
     Parameters
     ----------
-    static : width [m] and static pressure at uniform nodes [Pa], of the sealed and outer pressure
-        (all pressures absolute)
-    elastic, surface : of the seal
+    static : function of sealed and outer pressure: width [m] and static pressure at uniform nodes
+        [Pa] (all pressures absolute)
+    elastic, surface : elasticity and roughness of the seal
     """
 
     static: Callable[[float, float], tuple[float, Vector]]
@@ -47,20 +47,20 @@ class SealElement:
 
 @dataclass(frozen=True, slots=True)
 class Tandem:
-    """Two films with the same flow, or the reason why there are none."""
+    """Two films with the same flow, or the reason for a failure."""
 
     converged: bool
     reason: str
     pressure: float  # between the seals, absolute [Pa]
-    cavitation: float  # part of the room between the seals without oil, where it is starved [-]
+    cavitation: float  # share of the space between the seals without oil, if starved [-]
     inner: Film | None
     outer: Film | None
-    match_residual: float  # difference of the flows over the larger of them and the carried flow
+    match_residual: float  # difference of the flows over the larger flow and the carried flow
 
 
 @dataclass(slots=True)
 class _Row:
-    """Both films at a pressure between the seals, each begun from the last one."""
+    """Both films at an interseal pressure, each starting from the previous solution."""
 
     inner: SealElement
     outer: SealElement
@@ -72,7 +72,7 @@ class _Row:
     films: tuple[Film | None, Film | None] = (None, None)
 
     def solve(self, pressure: float, cavitation: float = 0.0) -> tuple[Film, Film]:
-        """Films of both seals; the one that draws from the room between them may be starved."""
+        """Films of both seals; the seal that draws oil from the space between may be starved."""
         draws_out = self.speed > 0
         first = self._film(
             self.inner, self.sealed_pressure, pressure, self.films[0],
@@ -117,25 +117,25 @@ def solve_tandem(
     highest: float = HIGHEST,
     start: Tandem | None = None,
 ) -> Tandem:
-    """Pressure between two seals at which the outer passes what the inner does.
+    """Pressure between two seals at which both have the same flow.
 
-    Secant steps kept inside a bracket from the cavitation pressure to `highest` times the sealed
-    pressure; what the inner seal passes more than the outer falls with that pressure. Where one
-    seal would draw more than the other gives even at the cavitation pressure, the room between
-    them is starved: it stays at that pressure, filled in part.
+    Secant steps inside a bracket from the cavitation pressure to `highest` times the sealed
+    pressure; the surplus flow of the inner seal falls with the interseal pressure. If one seal
+    draws more than the other supplies even at the cavitation pressure, the space between them is
+    starved: it stays at that pressure, partly filled.
 
     Parameters
     ----------
-    inner, outer : seal on the pressurised side, seal behind it
-    lubricant : of both
-    speed : of the rod [m/s], positive outstroke
-    sealed_pressure, outer_pressure, cavitation_pressure : absolute [Pa]
-    highest : largest pressure between the seals looked for, over the higher end pressure [-]
-    start : a tandem of a near point, to begin from
+    inner, outer : seal on the pressure side, seal behind it
+    lubricant : oil of both seals
+    speed : rod speed [m/s], positive outstroke
+    sealed_pressure, outer_pressure, cavitation_pressure : absolute pressures [Pa]
+    highest : largest interseal pressure tried, over the higher end pressure [-]
+    start : tandem of a nearby point, as initial state
 
     Returns
     -------
-    tandem; with `converged` False and a reason in words where the flows cannot be matched
+    tandem; with `converged` False and a reason if the flows cannot be matched
     """
     row = _Row(inner, outer, lubricant, speed, sealed_pressure, outer_pressure, cavitation_pressure)
     guess = (sealed_pressure + outer_pressure) / 2
@@ -164,7 +164,7 @@ def _search(row: _Row, guess: float, low: float, high: float) -> Tandem:
         if pressure == high and surplus > 0:
             return _lost(_NO_LIMIT.format(pressure))
         if len(tried) >= _MOST_TRIALS:
-            return _lost(f"flows differ by {off:.1e} of the larger after many trials")
+            return _lost(f"flows differ by {off:.1e} of the larger after many iterations")
         bottom, top = (pressure, top) if surplus > 0 else (bottom, pressure)
         pressure = _next(tried, bottom, top)
 
@@ -172,8 +172,8 @@ def _search(row: _Row, guess: float, low: float, high: float) -> Tandem:
 def _next(tried: list[tuple[float, float]], bottom: float, top: float) -> float:
     """The next pressure: a secant through the last two trials, or the middle of the bracket.
 
-    The end of the bracket is tried early where all trials lie to one side, and every fifth
-    step halves the bracket.
+    If all trials lie on one side, the end of the bracket is tried early; every fifth step halves
+    the bracket.
     """
     middle = (bottom + top) / 2
     if len(tried) < 2:
@@ -192,10 +192,10 @@ def _next(tried: list[tuple[float, float]], bottom: float, top: float) -> float:
 
 
 def _starved(row: _Row, first: Film, second: Film, pressure: float) -> Tandem:
-    """The part of the room between the seals that stays without oil, by regula falsi.
+    """Share without oil of the space between the seals, by regula falsi.
 
-    A flooded and a starved film may both exist at one supply: the starved one is followed, from
-    a room almost empty.
+    A flooded and a starved film may both exist at the same supply: the starved film is followed,
+    from an almost empty space.
     """
     outward = row.speed > 0
     given, drawn = (first, second) if outward else (second, first)
@@ -208,7 +208,7 @@ def _starved(row: _Row, first: Film, second: Film, pressure: float) -> Tandem:
         first, second = row.solve(pressure, cavitation)
         if not (first.converged and second.converged):
             reason = first.reason or second.reason
-            return _lost(f"room between the seals {cavitation:.3f} empty: {reason}")
+            return _lost(f"space between the seals {cavitation:.3f} empty: {reason}")
         given, drawn = (first, second) if outward else (second, first)
         excess = sign * (drawn.flow - given.flow)
         off = abs(excess / given.flow)

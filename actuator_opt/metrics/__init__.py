@@ -1,4 +1,4 @@
-"""What an evaluation computes: the table of metrics."""
+"""Metrics: everything that an evaluation computes."""
 
 from .metric import MetricRow
 from .table import METRICS, of_metric

@@ -1,4 +1,4 @@
-"""What a metric states about itself."""
+"""Declaration of a metric."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from ..base.quantities import INFINITY, Quantity, Sense
 from ..base.units import BASE, unit
 
 Feed = Literal["wall", "oil", "own"]
-"""Whose validity warnings a metric inherits: those of the barrel's wall model (bore growth), those
-of the oil's bulk modulus; "own": a warning about the metric is about its own model."""
+"""Source of the validity warnings that a metric inherits: the barrel's wall model (bore growth),
+or the oil's bulk modulus; "own": a warning about the metric concerns its own model."""
 
 Wall = Literal["layered", "thin_laminate"]
 """Wall models of a laminated barrel."""
 
 CRITERION = "criterion"
-"""Stands for the model of the failure criterion that the design chooses."""
+"""Placeholder for the failure criterion that the design selects."""
 
 
 @dataclass(frozen=True, slots=True)
 class CheckLine:
-    """A line of the check list: its number, its words, its limit (SI) with source.
+    """A line of the check list: number, title, limit (SI) and its source.
 
-    Without `limit` only the design's author can set one. `advice` lines are shown and warned
-    about, but are no constraint of the optimiser.
+    Without `limit`, only the author of a design can set a limit. `advice` lines are shown and give
+    warnings, but do not constrain the optimiser.
     """
 
     number: str
@@ -37,17 +37,17 @@ class CheckLine:
 
     def __post_init__(self) -> None:
         if (self.limit is None) != (not self.source):
-            raise ValueError(f"check {self.name}: state the limit with its source, or neither")
+            raise ValueError(f"check {self.name}: state both limit and source, or neither")
 
     @property
     def order(self) -> tuple[int, ...]:
-        """Chapter and line, for sorting: ``"10.2"`` comes after ``"9.1"``."""
+        """Chapter and line as numbers, for sorting: ``"10.2"`` after ``"9.1"``."""
         return tuple(int(part) for part in self.number.split("."))
 
 
 @dataclass(frozen=True, slots=True)
 class Least:
-    """The least value (SI) that a part needs to be made, with the source of the number."""
+    """Least value (SI) for a part that can be made, with the source of the number."""
 
     value: float
     source: str
@@ -55,21 +55,21 @@ class Least:
 
 @dataclass(frozen=True, slots=True)
 class MetricRow:
-    """A metric with everything about it; all else that knows metrics is a view of these rows.
+    """Everything about a metric; all other tables of metrics are derived from these rows.
 
-    Every field without a default must be stated, so that forgetting one fails at import.
+    Fields without a default must be stated: a missing field fails at import.
 
     Attributes
     ----------
     name, symbol, dimension, unit, label, lower, upper : its quantity (`quantities.Quantity`)
-    worst : which of its values over load cases and places is the worst
+    worst : which value over load cases and places is the worst
     model : ``"module.function"`` of `actuator_opt.models`; None for plain geometry
-    feeds : whose warnings it inherits
-    check : its line of the check list; None where there is none
-    by_wall : the model instead, by wall model of a laminated barrel
-    at : the model instead, by place; a place may be a pattern (``"* yield, *"``)
-    at_stops : whether it is also computed at both stops where their loads differ
-    least : the least value a part needs to be made (`geometry_…` only)
+    feeds : source of inherited warnings
+    check : its line of the check list; None if it has no check
+    by_wall : replaces `model`, by wall model of a laminated barrel
+    at : replaces `model`, by place; a place may be a pattern (``"* yield, *"``)
+    at_stops : whether it is also computed at both stops if their loads differ
+    least : least value for a part that can be made (`geometry_…` only)
     short : shorter label for a tile of a report
     """
 
@@ -99,17 +99,19 @@ class MetricRow:
             unit(self.unit, self.dimension)  # raises UnitError
         for model in filter(None, (self.model, *self.by_wall.values(), *self.at.values())):
             if model != CRITERION and model.count(".") != 1:
-                raise ValueError(f"metric {self.name}: {model} is no module.function")
+                raise ValueError(f"metric {self.name}: {model} is not module.function")
         if self.worst not in get_args(Sense):
-            raise ValueError(f"metric {self.name}: its worst value is min or max")
+            raise ValueError(f"metric {self.name}: its worst value must be min or max")
         if not {*self.feeds} <= {*get_args(Feed)}:
-            raise ValueError(f"metric {self.name}: feeds are {', '.join(get_args(Feed))}")
+            raise ValueError(
+                f"metric {self.name}: feeds must be one of {', '.join(get_args(Feed))}"
+            )
         if self.name.startswith("geometry_") != (self.least is not None):
-            raise ValueError(f"metric {self.name}: state `least`, for geometry_… and no other")
+            raise ValueError(f"metric {self.name}: state `least` for geometry_… metrics only")
 
     @property
     def quantity(self) -> Quantity:
-        """What tables and texts need of it."""
+        """Quantity for tables and texts."""
         return Quantity(
             self.name,
             self.symbol,
@@ -127,17 +129,17 @@ def table(rows: Iterable[MetricRow]) -> Mapping[str, MetricRow]:
 
     Raises
     ------
-    ValueError : two metrics of a name, or two checks of a number
+    ValueError : duplicate name of a metric or number of a check
     """
     found: dict[str, MetricRow] = {}
     numbers: dict[str, str] = {}
     for row in rows:
         if row.name in found:
-            raise ValueError(f"metric {row.name}: stated twice")
+            raise ValueError(f"metric {row.name}: duplicate name")
         if row.check is not None:
             other = numbers.setdefault(row.check.number, row.name)
             if other != row.name:
-                raise ValueError(f"check {row.check.number}: both {other} and {row.name}")
+                raise ValueError(f"check {row.check.number}: used by {other} and {row.name}")
         found[row.name] = row
     return MappingProxyType(found)
 

@@ -1,8 +1,7 @@
-"""Every metric, one row each: quantity, worst value, model, warnings it inherits, check, words.
+"""All metrics, one row each: quantity, worst value, model, inherited warnings, check, labels.
 
-The evaluation, the check list, the optimiser's limits, warnings, tables, reports, the JSON Schema
-and the help read this table. A metric is added by a row here and a line that computes it
-(`MetricArrays.put`).
+The evaluation, check list, optimiser limits, warnings, tables, reports, JSON Schema and help read
+this table. A new metric is a row here and a line that computes it (`MetricArrays.put`).
 """
 
 from __future__ import annotations
@@ -68,7 +67,7 @@ ROWS = table((
     MetricRow("seal_squeeze_max", "C_max", "ratio", "%", "largest seal squeeze at assembly",
               worst="max", model="gland_range.squeeze_extremes", feeds=(),
               check=CheckLine("5.2", "largest seal squeeze", 0.25,
-                          "choice: 25 %, the most that gland tables give (at 1.78 mm)")),
+                          "choice: 25 %, the largest value of gland tables (at 1.78 mm)")),
     MetricRow("seal_fill", "phi", "ratio", "%", "largest groove fill",
               worst="max", model="gland.gland_fill", feeds=(),
               check=CheckLine("5.3", "groove fill", 0.85, "common limit 85 %")),
@@ -86,9 +85,9 @@ ROWS = table((
     MetricRow("film_thickness", "h", "length", "um", "mean oil film under the running seal",
               worst="min", model="flow_factors.pressure_flow_factor", feeds=(), check=None),
     MetricRow("seal_wear", "pL", "line_load", "N/mm",
-              "contact pressure times sliding distance, a double stroke", worst="max",
+              "contact pressure times sliding distance, per double stroke", worst="max",
               model="wear.sliding_severity", feeds=(), check=None),
-    MetricRow("rod_leakage", "V_l", "volume", "mm^3", "oil the rod leaves outside, a double stroke",
+    MetricRow("rod_leakage", "V_l", "volume", "mm^3", "rod leakage, per double stroke",
               worst="max", model="flow_factors.pressure_flow_factor", feeds=(), check=None),
     MetricRow("inter_seal_pressure", "p_i", "pressure", "bar", "pressure between the seals of a pair",
               worst="max", model="flow_factors.pressure_flow_factor", feeds=(), check=None),
@@ -109,7 +108,7 @@ ROWS = table((
               worst="min", model="loop.load_mode", feeds=("oil",),
               check=CheckLine("6.7", "damping ratio", 0.0, "negative damping is stick-slip")),
     MetricRow("natural_frequency", "f_0", "frequency", "Hz",
-              "lowest natural frequency at the load mass over the stroke", worst="min",
+              "lowest natural frequency over the stroke, with load mass", worst="min",
               model="dynamics.natural_frequency", feeds=("wall", "oil"), at_stops=True,
               check=CheckLine("6.5", "natural frequency at the load mass"),
               short="natural frequency, loaded"),
@@ -117,14 +116,14 @@ ROWS = table((
               "dynamic stiffness at the frequency of the load case", worst="min",
               model="linear.dynamic_stiffness", feeds=("oil",), check=None),
     MetricRow("dynamic_phase", "phi", "angle", "deg",
-              "phase by which the force leads at that frequency", worst="max", lower=-pi, upper=pi,
+              "phase lead of the force at that frequency", worst="max", lower=-pi, upper=pi,
               model="linear.dynamic_stiffness", feeds=("oil",), check=None),
     MetricRow("ultimate_gain", "K_u", "signal_gain", "V/m",
-              "gain at which the position loop begins to swing", worst="min",
+              "gain at the stability limit of the position loop", worst="min",
               model="loop.ultimate_gain", feeds=("oil",), check=None),
     MetricRow("position_gain", "K_p", "signal_gain", "V/m", "gain of the position loop",
               worst="min", model="loop.ultimate_gain", feeds=(), check=None),
-    MetricRow("gain_margin", "K_u/K_p", "ratio", "", "ultimate over present gain of the position loop",
+    MetricRow("gain_margin", "K_u/K_p", "ratio", "", "ultimate over actual gain of the position loop",
               worst="min", model="loop.ultimate_gain", feeds=("oil",),
               check=CheckLine("6.8", "gain margin of the position loop", 10 ** (6 / 20), "choice: 6 dB")),
     MetricRow("phase_margin", "phi_m", "angle", "deg", "phase margin of the position loop",
@@ -149,7 +148,7 @@ ROWS = table((
     MetricRow("first_ply_factor", "S_fpf", "ratio", "", "first-ply pressure over working pressure",
               worst="min", model="strength_modes.max_stress_modes", feeds=("wall", "own"),
               check=CheckLine("2.4", "first-ply (leak) pressure", 1.5,
-                          "choice: no matrix crack up to proof pressure"),
+                          "choice: no matrix cracks up to proof pressure"),
               by_wall={"layered": CRITERION, "thin_laminate": CRITERION}),
     MetricRow("yield_factor", "S_y", "ratio", "", "yield over working stress of metal parts",
               worst="min", model="barrel.von_mises", feeds=("wall",),
@@ -163,10 +162,10 @@ ROWS = table((
               worst="min", model="endurance.fatigue_factor", feeds=(),
               check=CheckLine("10.2", "fatigue strength")),
     MetricRow("ply_fatigue_factor", "S_pf", "ratio", "",
-              "fatigue strength of the wall's fibres over their stress amplitude", worst="min",
+              "fatigue strength over stress amplitude of the wall's fibres", worst="min",
               model="layered_tube.ply_stresses_at_faces", feeds=(),
               check=CheckLine("10.3", "fibre fatigue of the wall", 1.0,
-                          "the material's own fatigue strength at its cycles, after knock-downs "
+                          "fatigue strength of the material at its stated cycles, after knock-downs "
                           "(rule of thumb)")),
     MetricRow("cycle_life", "N", "ratio", "", "pressure cycles to failure",
               worst="min", model="endurance.cycles_to_failure", feeds=("own",),
@@ -217,7 +216,7 @@ ROWS = table((
     MetricRow("line_pressure_drop", "dp", "pressure", "bar", "pressure drop of the lines",
               worst="max", model="lines.line_pressure_drop", feeds=(), check=None),
     MetricRow("line_hammer", "dp_J", "pressure", "bar",
-              "pressure rise when the line's flow is stopped at once", worst="max",
+              "pressure rise when the line flow stops suddenly", worst="max",
               model="water_hammer.joukowsky_pressure", feeds=("oil",), check=None),
     MetricRow("line_resonance", "f_l", "frequency", "Hz", "quarter-wave resonance of the line",
               worst="min", model="elements.quarter_wave_frequency", feeds=("oil",), check=None),
@@ -228,7 +227,7 @@ ROWS = table((
               check=CheckLine("8.1", "piston speed", 0.5, "standard seals and cylinders: 0.5 m/s")),
     MetricRow("power", "P", "power", "W", "mechanical output power",
               worst="min", model="forces.power", feeds=(), check=None),
-    MetricRow("end_stop_energy", "E_end", "energy", "J", "energy to absorb at the end of stroke",
+    MetricRow("end_stop_energy", "E_end", "energy", "J", "energy absorbed at the end of stroke",
               worst="max", model="endurance.end_stop_energy", feeds=(),
               check=CheckLine("8.3", "end-stop energy")),
     MetricRow("end_stop_pressure", "p_end", "pressure", "bar", "peak pressure at the end stop",
@@ -241,7 +240,7 @@ ROWS = table((
               check=CheckLine("11.3", "liner/laminate mismatch", 1.0, "liner yield under cool-down"),
               by_wall={"layered": "layered_tube.tube_state"}),
     MetricRow("liner_bond_factor", "S_bd", "ratio", "",
-              "strength over the pull of the liner on its plies after cool-down", worst="min",
+              "ply strength over tension from the liner after cool-down", worst="min",
               model=None, feeds=(), check=CheckLine("11.4", "liner bond after cool-down", 1.0,
                           "transverse strength of the ply at the liner"),
               by_wall={"layered": "layered_tube.tube_state"}),
@@ -263,7 +262,7 @@ ROWS = table((
     MetricRow("joint_factor", "S_j", "ratio", "", "tie-rod preload over its loss at proof pressure",
               worst="min", model="barrel_ends.tie_rod_forces", feeds=(),
               check=CheckLine("11.7", "tie-rod joint stays closed", 1.0,
-                          "preload over what proof pressure takes from it")),
+                          "preload over its loss at proof pressure")),
     MetricRow("local_buckling_factor", "S_w", "ratio", "",
               "wall buckling load of the rod over largest push load", worst="min",
               model="shell_buckling.local_shell_force", feeds=(),
@@ -284,43 +283,43 @@ ROWS = table((
               check=CheckLine("3.6", "bonds over the temperature range", 1.0,
                           "choice: elastic edge shear without load within the strength")),
     MetricRow("winding_margin", "-", "angle", "deg",
-              "winding angle less the smallest that can be wound", worst="min", model=None, feeds=(),
-              check=CheckLine("12.1", "winding angles", 0.0, "manufacture: least angle of the ply")),
+              "winding angle minus the smallest feasible angle", worst="min", model=None, feeds=(),
+              check=CheckLine("12.1", "winding angles", 0.0, "manufacture: smallest angle of the ply")),
     MetricRow("ply_thickness_margin", "-", "ratio", "%",
-              "layer thickness over the least that can be laid, less one", worst="min", model=None,
+              "layer thickness over the smallest feasible thickness, minus one", worst="min", model=None,
               feeds=(),
-              check=CheckLine("12.2", "layer thicknesses", 0.0, "manufacture: least of the ply")),
+              check=CheckLine("12.2", "layer thicknesses", 0.0, "manufacture: smallest thickness of the ply")),
     MetricRow("growth_at_seal", "u_s", "length", "um", "radial bore growth at the piston seal",
               worst="max", model="barrel_ends.pressure_step_factor", feeds=(), check=None,
               by_wall={"layered": "barrel_ends.pressure_step_factor"}),
     MetricRow("clearance_min", "c_min", "length", "um",
               "smallest radial clearance of piston and head over the temperature range", worst="min",
               model=None, feeds=(), check=CheckLine("9.1", "clearance over the temperature range", 5e-6,
-                          "choice: 5 um of oil film left where piston and barrel expand unequally")),
+                          "choice: 5 um left for an oil film after unequal thermal expansion")),
     MetricRow("blocked_port_factor", "S_bl", "ratio", "",
-              "proof pressure over rod-side pressure with its port blocked", worst="min", model=None,
+              "proof pressure over rod-side pressure with blocked port", worst="min", model=None,
               feeds=(),
-              check=CheckLine("8.4", "rod-side pressure with its port blocked", 1.0,
-                          "advice: supply on the cap side alone makes p A_A/A_B; "
-                          "a relief valve bounds it", advice=True)),
+              check=CheckLine("8.4", "rod-side pressure with blocked port", 1.0,
+                          "advice: supply on the cap side alone gives p A_A/A_B; "
+                          "a relief valve limits it", advice=True)),
     MetricRow("temperature_margin", "dT", "temperature_difference", "K",
-              "distance to the service limits of every material", worst="min", model=None, feeds=(),
-              check=CheckLine("11.1", "temperature range", 0.0, "service limits of every material used")),
+              "distance to the service limits of all materials", worst="min", model=None, feeds=(),
+              check=CheckLine("11.1", "temperature range", 0.0, "service limits of all materials used")),
     MetricRow("oil_viscosity", "nu", "kinematic_viscosity", "mm^2/s",
               "oil viscosity at the case temperature", worst="max",
               model="fluid.viscosity_astm_d341", feeds=(), check=None),
     MetricRow("cavitation_margin", "p-p_v", "pressure", "bar",
-              "lowest absolute chamber pressure less the vapour pressure of the oil", worst="min",
+              "lowest absolute chamber pressure minus the vapour pressure of the oil", worst="min",
               model="fluid.vapour_pressure", feeds=(),
               check=CheckLine("7.5", "cavitation in the chambers", 0.0,
-                          "the oil boils below its vapour pressure; dissolved air leaves it earlier")),
-    MetricRow("extrusion_factor", "g_max/g", "ratio", "", "allowed over present extrusion gap",
+                          "the oil boils below its vapour pressure; dissolved air is released earlier")),
+    MetricRow("extrusion_factor", "g_max/g", "ratio", "", "allowable over actual extrusion gap",
               worst="min", model="extrusion.extrusion_gap_limit", feeds=("wall",),
               check=CheckLine("2.7", "extrusion of the seals (gap against pressure and hardness)", 1.0,
                           "compound data: largest gap at pressure")),
     MetricRow("end_stop_factor", "S_end", "ratio", "", "proof pressure over peak end-stop pressure",
               worst="min", model="endurance.end_stop_peak_pressure", feeds=(),
-              check=CheckLine("8.2", "end-stop peak pressure, the case's load still acting", 1.0,
+              check=CheckLine("8.2", "end-stop peak pressure, with the load of the case", 1.0,
                           "choice: peak within proof pressure")),
     MetricRow("trapped_factor", "S_tr", "ratio", "", "proof pressure over trapped-oil pressure",
               worst="min", model="density.thermal_pressure_slope", feeds=(),
@@ -341,44 +340,44 @@ ROWS = table((
     MetricRow("closed_length", "L_0", "length", "mm", "length pin to pin, retracted",
               worst="max", model=None, feeds=(), check=None, short="closed length, pin to pin"),
     MetricRow("joint_torque_min", "M_min", "torque", "N*m",
-              "least joint torque the actuator delivers over its stroke", worst="min",
+              "least joint torque of the actuator over its stroke", worst="min",
               model="linkage.joint_torque", feeds=(), check=None),
-    MetricRow("joint_range", "d_theta", "angle", "deg", "angle the joint turns over the stroke",
+    MetricRow("joint_range", "d_theta", "angle", "deg", "joint angle range over the stroke",
               worst="min", model="linkage.linkage_angle", feeds=(), check=None),
-    MetricRow("geometry_rod_in_bore", "-", "length", "mm", "radial room between rod and bore",
+    MetricRow("geometry_rod_in_bore", "-", "length", "mm", "radial clearance between rod and bore",
               worst="min", model=None, feeds=(), check=None, least=_LEAST_WALL),
     MetricRow("geometry_rod_wall", "-", "length", "mm", "rod wall thickness",
               worst="min", model=None, feeds=(), check=None, least=_LEAST_WALL),
-    MetricRow("geometry_rod_bore", "-", "length", "mm", "bore left inside the layers of the rod",
+    MetricRow("geometry_rod_bore", "-", "length", "mm", "remaining bore inside the layers of the rod",
               worst="min", model=None, feeds=(), check=None, least=_LEAST_WALL),
     MetricRow("geometry_piston_groove", "-", "length", "mm",
-              "wall left beside the grooves of the piston", worst="min", model=None, feeds=(),
+              "remaining wall beside the piston grooves", worst="min", model=None, feeds=(),
               check=None, least=_LEAST_WALL),
-    MetricRow("geometry_piston_core", "-", "length", "mm", "wall left under the piston groove",
+    MetricRow("geometry_piston_core", "-", "length", "mm", "remaining wall under the piston groove",
               worst="min", model=None, feeds=(), check=None, least=_LEAST_WALL),
-    MetricRow("geometry_head_groove", "-", "length", "mm", "wall left beside the grooves of the head",
+    MetricRow("geometry_head_groove", "-", "length", "mm", "remaining wall beside the head grooves",
               worst="min", model=None, feeds=(), check=None, least=_LEAST_WALL),
-    MetricRow("geometry_head_wall", "-", "length", "mm", "wall left over the rod seal groove",
+    MetricRow("geometry_head_wall", "-", "length", "mm", "remaining wall around the rod seal groove",
               worst="min", model=None, feeds=(), check=None, least=_LEAST_WALL),
-    MetricRow("geometry_skirts", "-", "length", "mm", "barrel left between the skirts of both ends",
+    MetricRow("geometry_skirts", "-", "length", "mm", "remaining barrel length between the skirts",
               worst="min", model=None, feeds=(), check=None, least=_LEAST_WALL),
     MetricRow("geometry_barrel_thread", "-", "length", "mm",
-              "metal left under the barrel's thread, in the layer it is cut into", worst="min",
+              "remaining metal under the barrel thread, in its layer", worst="min",
               model=None, feeds=(), check=None, least=_LEAST_WALL),
     MetricRow("geometry_skirt_thread", "-", "length", "mm",
-              "metal left over the thread of the caps' skirts", worst="min", model=None, feeds=(),
+              "remaining metal around the thread of the caps' skirts", worst="min", model=None, feeds=(),
               check=None, least=_LEAST_WALL),
     MetricRow("geometry_dead_point", "-", "length", "mm",
-              "actuator length left to the dead points of the linkage", worst="min", model=None,
+              "remaining actuator length to the dead points of the linkage", worst="min", model=None,
               feeds=(), check=None,
-              least=Least(LEAST_METAL, "choice: 1 mm before a dead point, where no force turns")),
+              least=Least(LEAST_METAL, "choice: 1 mm before a dead point, where force gives no torque")),
     MetricRow("geometry_joint_angle", "-", "ratio", "%",
-              "stroke left beyond the joint angle of a load case", worst="min", model=None, feeds=(),
+              "remaining stroke beyond the joint angle of a load case", worst="min", model=None, feeds=(),
               check=None, least=Least(0.0, "the joint reaches the angle of the load case")),
     MetricRow("geometry_thread_crest", "-", "ratio", "%",
-              "overlap of the caps' threads over that of full crests", worst="min", model=None,
+              "thread overlap of the caps over that of full crests", worst="min", model=None,
               feeds=(), check=None,
-              least=Least(LEAST_OVERLAP, "choice: crests within the tolerance 6g")),
+              least=Least(LEAST_OVERLAP, "choice: crests within tolerance class 6g")),
 ))
 # fmt: on
 """Every metric by name."""
@@ -394,21 +393,21 @@ CHECKS: tuple[tuple[MetricRow, CheckLine], ...] = tuple(
         key=lambda line: line[1].order,
     )
 )
-"""The check list in its order; a check's limit is against the metric's worst value."""
+"""The check list in order; a limit applies to the worst value of its metric."""
 
 WALL_FED = tuple(fed_by("wall", ROWS))
 """Metrics that inherit the error of the barrel's wall model."""
 
 AT_STOPS = tuple(name for name, row in ROWS.items() if row.at_stops)
-"""Metrics that are also computed at both stops where their loads differ."""
+"""Metrics that are also computed at both stops if their loads differ."""
 
 OIL_FED = tuple(fed_by("oil", ROWS))
 """Metrics that inherit the error of the bulk modulus."""
 
 OWN = frozenset(fed_by("own", ROWS))
-"""Metrics whose warnings are about their own model, not one before it."""
+"""Metrics whose warnings concern their own model, not an earlier model."""
 
 
 def of_metric(name: str) -> Quantity:
-    """The quantity of a metric; an undeclared one (a user's own) is a plain ratio."""
+    """Quantity of a metric; an undeclared metric of the user is a plain ratio."""
     return METRICS.get(name) or Quantity(name, "", "ratio", "", name.replace("_", " "))

@@ -1,4 +1,4 @@
-"""What happens along the barrel: axial force, tie rods, growth beside a pressure step.
+"""Axial effects in the barrel: axial force, tie rods, growth beside a pressure step.
 
 The barrel's axial force follows from how the cylinder is mounted, never from a fixed "open" or
 "closed" end; the wall's growth at the piston seal is the far-field growth times a step factor.

@@ -1,7 +1,7 @@
 """Three-point bending test: from the slope of force over deflection to a modulus, and back.
 
-The specimen lies on two supports a span L apart and is loaded in the middle. Bending, shear and
-the dents at load and supports are springs in series.
+The specimen lies on two supports a span L apart and is loaded in the middle. Bending, shear and the
+indentation at load and supports are springs in series.
 """
 
 from __future__ import annotations

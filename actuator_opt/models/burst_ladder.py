@@ -1,4 +1,4 @@
-"""Climbing to burst by ply discount, for one design or for many at once, on any wall mechanics.
+"""Burst by ply discount, for one design or many at once, with any wall mechanics.
 
 The load grows from zero. The most stressed mode (maximum stress) fails first: a matrix or shear
 failure softens every ply of that material and |angle|, a fibre failure ends the ladder; burst is

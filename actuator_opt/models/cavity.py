@@ -1,4 +1,4 @@
-"""Where oil without air tears: a cavity that opens below atmospheric pressure and closes above."""
+"""Cavitation of oil without air: a cavity opens below atmospheric pressure and closes above."""
 
 from __future__ import annotations
 

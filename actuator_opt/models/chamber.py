@@ -1,4 +1,4 @@
-"""A chamber that keeps its mass: oil with entrained air over pressure.
+"""Mass balance of a chamber: oil with entrained air over pressure.
 
 The state is the reference volume, the volume the content takes at zero gauge pressure; it grows
 by the net inflow times `density_ratio` at the pressure the flow comes from. Pressures are gauge.

@@ -1,4 +1,4 @@
-"""The ply failure criteria by name, all called alike.
+"""The ply failure criteria by name, with a common interface.
 
 A criterion takes the stress of the load, in material axes, and the residual stress that does not
 grow with it (cure, cool-down, what yielding has frozen), and gives the utilisation 1/SR of every

@@ -1,4 +1,4 @@
-"""The load on the oil spring in closed form."""
+"""Dynamics of the load on the oil spring, in closed form."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""End stops in time: spring and damper that only push, and a cushion.
+"""End stops in the time domain: a spring and damper that only push, and a cushion.
 
 Position runs from 0 (retracted) to the stroke; forces are positive when they extend. Energy and
 peak force of an undamped stop are in `endurance`.

@@ -1,4 +1,4 @@
-"""Life and extremes: pressure cycles and the end of the stroke."""
+"""Fatigue life and impact: pressure cycles and the end of the stroke."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Largest gap that a seal bears before it is pressed out, over pressure and hardness.
+"""Largest extrusion gap of a seal over pressure and hardness.
 
-A table of limits is an argument: rows of a hardness with points of pressure and gap, as the maker
-of the seal states them. The gap is radial, half the diametral clearance of a centred piston.
+A table of limits is an argument: rows of a hardness with points of pressure and gap, from the maker
+of the seal. The gap is radial, half the diametral clearance of a centred piston.
 """
 
 from __future__ import annotations

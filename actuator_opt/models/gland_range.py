@@ -1,4 +1,4 @@
-"""The gland over its range of use: heat and cold, and the tolerances of ring and groove."""
+"""Gland over its range of use: hot and cold, with the tolerances of ring and groove."""
 
 from __future__ import annotations
 

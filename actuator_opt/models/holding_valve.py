@@ -1,4 +1,4 @@
-"""A valve that holds a load still: its edges feed what leaks; linearised there."""
+"""Valve holding a load at rest: its edges supply the leakage; linearised there."""
 
 from __future__ import annotations
 

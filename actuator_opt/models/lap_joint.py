@@ -1,4 +1,4 @@
-"""Shear in the adhesive of a bonded overlap: under axial force, and from unlike expansion."""
+"""Shear in the adhesive of a bonded overlap: from axial force, and from differential expansion."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Loads on the exact layered tube, and what they do in it: strains and stresses at every face.
+"""Response of the exact layered tube to loads: strains and stresses at every face.
 
 Hoop strain and radial stress are carried through the layers of `tube_elements` once for each
 unknown (bore strain, axial strain, twist) and once for the loads; the outer face, the axial force

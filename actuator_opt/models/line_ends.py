@@ -1,6 +1,6 @@
-"""What ends a line: closed, a conductance, an accumulator, a reducing valve, or several of them.
+"""Terminations of a line: closed, conductance, accumulator, reducing valve, or several of them.
 
-A line end is the ratio of two polynomials in s, so that it stands in the linear model as it is.
+A line end is a ratio of two polynomials in s, so it can be used directly in the linear model.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Modes of the held actuator and the position loop closed over it: margins and bandwidth.
+"""Modes of the held actuator, and its position loop: margins and bandwidth.
 
 Roots are found on real parts; the imaginary step of the coefficients is carried to each result by
 the implicit-function theorem, so every figure here has its exact derivative.

@@ -1,4 +1,4 @@
-"""Masses and volumes of parts, in closed forms one can check by hand.
+"""Masses and volumes of parts, in closed forms that can be checked by hand.
 
 Masses are density times volume; `oil_mass` is reported apart from the dry mass.
 """

@@ -1,6 +1,6 @@
-"""How an oil changes with pressure: the laws of bulk modulus and of viscosity a design may name.
+"""Pressure dependence of an oil: laws of bulk modulus and viscosity that a design may name.
 
-A new law is an entry here: words, the properties it needs, its formula, its range.
+A new law is an entry here: its name, the properties it needs, its formula, its range.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Pressure reducing valve in the time domain, relieving where its line is above its set pressure.
+"""Pressure reducing valve in the time domain; it relieves when its line exceeds the set pressure.
 
 Its small signals are those of `line_ends.reducing_valve_end`.
 """

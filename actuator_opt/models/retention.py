@@ -1,4 +1,4 @@
-"""What holds the ends on: tie rods, pins; and what guides the rod.
+"""Retention of the ends by tie rods or pins, and guidance of the rod.
 
 Bonds live in `lap_joint`, the rod's thread in `rod`, that of the caps in `thread`, plates in
 `end_plate`, fatigue and the end of the stroke in `endurance`.

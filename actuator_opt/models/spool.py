@@ -1,4 +1,4 @@
-"""The spool of a proportional valve: its motion, and what its edges open."""
+"""Spool of a proportional valve: its motion, and the opening of its edges."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Criteria that join all stresses in one quadratic form: Tsai-Wu, in 3-D.
+"""Failure criteria with all stresses in one quadratic form: Tsai-Wu, in 3-D.
 
 F_12* = F_12/sqrt(F_11 F_22) is the only constant of Tsai-Wu that no uniaxial test gives. It is
 -0.5 here unless another value is passed, which makes the form that of von Mises for equal

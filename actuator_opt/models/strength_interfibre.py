@@ -1,4 +1,4 @@
-"""Criteria that part fibre failure from failure between the fibres: Hashin, Puck (plane stress).
+"""Criteria that separate fibre failure from inter-fibre failure: Hashin, Puck (plane stress).
 
 The sign of sigma_2 at failure decides which surface holds. Without residual stress that is the
 sign of the load's sigma_2. With it, the load leads from the residual stress across sigma_2 = 0

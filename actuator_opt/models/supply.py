@@ -1,6 +1,6 @@
 """Pressure supply: relief valve and pressure-controlled pump.
 
-Pressures are gauge, or the tank's taken off. A supply line of volume V_S and bulk modulus K closes
+Pressures are gauge, or relative to the tank. A supply line of volume V_S and bulk modulus K closes
 the loop: (V_S/K) dp_S/dt = delivery - relief flow - demand. Accumulators are in `accumulator`.
 """
 

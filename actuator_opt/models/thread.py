@@ -1,4 +1,4 @@
-"""Two engaged ISO 60 degree threads: what shears off each, their flanks, and what they spread.
+"""Two engaged ISO 60 degree threads: shear areas, flank pressure, and radial spreading.
 
 Each thread is judged by its own metal. The wall under a thread is a tube (`rod.section_area`,
 `barrel.bore_stresses`) between its other face and the thread's root.

@@ -1,4 +1,4 @@
-"""Round lines as functions of frequency: distributed, and what they show at one end.
+"""Round lines as functions of frequency: distributed model, and impedance at one end.
 
 Results are complex; arguments are real and the convention is e^(+i omega t), so that a result at
 -f is the conjugate of that at f. Pressure and flow at the near end follow from those at the far

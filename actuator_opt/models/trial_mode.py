@@ -1,4 +1,4 @@
-"""Critical load of a stepped column from above, by a shape that need not be its own."""
+"""Upper bound on the critical load of a stepped column, from any trial shape."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Stiffness of two closed chambers in one wall from above, by a motion that need not be its own.
+"""Upper bound on the stiffness of two closed chambers in one wall, from a trial motion.
 
-The piston moves by 1; the wall of one chamber grows by the volume that the other's shrinks; the
-end that a chamber's pressure pulls at moves along. Energy is that of oil and wall [Gurtin1972].
+The piston moves by 1; the wall of one chamber grows by the volume by which the other's shrinks; the
+end loaded by a chamber's pressure moves along. Energy is that of oil and wall [Gurtin1972].
 """
 
 from __future__ import annotations

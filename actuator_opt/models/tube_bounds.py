@@ -1,7 +1,7 @@
-"""What no layered tube of given layers can beat: bore growth, axial stiffness, pressure.
+"""Bounds for all layered tubes of given layers: bore growth, axial stiffness, pressure.
 
-Energy bounds: any displacement that fits together stores at least the energy of the true one, any
-stress in balance the complementary energy [Gurtin1972]. They are sums over the layers, so that
+Energy bounds: any compatible displacement stores at least the energy of the true one, any
+equilibrium stress at least the complementary energy [Gurtin1972]. They are sums over the layers, so
 they hold for every thickness and radius at once.
 """
 

@@ -1,4 +1,4 @@
-"""Controllers from the ultimate point of a loop, where it just swings for ever.
+"""Controller tuning from the ultimate point of a loop, its limit of stability.
 
 The controller is u = K (e + (1/T_i) integral of e + T_d de/dt).
 """

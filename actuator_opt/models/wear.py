@@ -1,4 +1,4 @@
-"""Wear of seals, as far as it can be told without a wear test."""
+"""Wear of seals, as far as it can be estimated without a wear test."""
 
 from __future__ import annotations
 

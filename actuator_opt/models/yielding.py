@@ -1,4 +1,4 @@
-"""Yield of a metal that already holds a stress: von Mises, exact along the way of the load."""
+"""Yield of a pre-stressed metal: von Mises, exact along the load path."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""The way to the optimum: a generic solver, and the actuator as its problem."""
+"""Optimisation: a generic solver, and the actuator formulated as its problem."""

@@ -18,12 +18,12 @@ from ..evaluation.values import Values as Numbers
 from .problem import BoxProblem, ParametricProblem, Values
 
 Fault = Callable[[str, str, str], Diagnostic]
-"""Makes a Diagnostic of a variable's (path, message, remedy) at its place in the file."""
+"""Builds the Diagnostic of a variable at its place in the file, from path, message and remedy."""
 
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """What is minimised: metrics with weights, each divided by its scale; sign −1 maximises."""
+    """The objective: weighted metrics, each divided by its scale; sign −1 maximises."""
 
     weights: Mapping[str, float]
     scales: Mapping[str, float]
@@ -31,12 +31,12 @@ class Goal:
 
     @property
     def aim(self) -> Sense:
-        """Whether the metrics are wanted small or large."""
+        """Whether the metrics are minimised or maximised."""
         return "min" if self.sign > 0 else "max"
 
     @property
     def single(self) -> str | None:
-        """The metric, where there is only one."""
+        """The metric of an objective with only one, else None."""
         return next(iter(self.weights)) if len(self.weights) == 1 else None
 
     def value(self, computed: MetricArrays, cases: tuple[str, ...]) -> Array:
@@ -66,7 +66,7 @@ def worst_value(computed: MetricArrays, metric: str, cases: tuple[str, ...], aim
         raise InputError(
             Diagnostic(
                 f"{metric} cannot be an objective here: {reason}",
-                "choose a metric that `actuator-opt evaluate` shows a value for",
+                "choose a metric that `actuator-opt evaluate` lists with a value",
                 path="objective",
             )
         )
@@ -91,7 +91,7 @@ def goal_of(subject: PreparedDesign) -> Goal:
 
 @dataclass
 class Refusals:
-    """How often the user's own metrics that count gave no number where the models of mass do."""
+    """Counts points where the user's own metrics gave no value although the mass models did."""
 
     names: frozenset[str] = frozenset()
     points: int = 0
@@ -110,10 +110,10 @@ class Refusals:
                 self.raised.setdefault(name, computed.why[name])
 
     def warnings(self) -> tuple[str, ...]:
-        """What to tell, one line for each metric that was missing somewhere."""
+        """The warnings, one line for each metric that was missing somewhere."""
         return tuple(
-            f"{name} gave no number at {100 * lost / self.points:.3g} % of the points tried, which "
-            f"count as not allowed" + (f": {self.raised[name]}" if name in self.raised else "")
+            f"{name} gave no value at {100 * lost / self.points:.3g} % of the points tried, "
+            "which count as infeasible" + (f": {self.raised[name]}" if name in self.raised else "")
             for name, lost in sorted(self.missing.items())
             if lost
         )
@@ -121,22 +121,22 @@ class Refusals:
 
 @dataclass(frozen=True)
 class ActuatorProblem:
-    """A design with variables, as the generic solver sees it, and back."""
+    """A design with variables as a problem of the generic solver, and the way back."""
 
     subject: PreparedDesign
     goal: Goal
     paths: tuple[str, ...]
     rows: tuple[LimitRow, ...]
     fixed: tuple[LimitRow, ...]
-    """Rows no variable changes: met or missed for good."""
+    """Rows that no variable changes: always met, or always missed."""
     problem: BoxProblem
     wanted: frozenset[str] | None
-    """Metrics of objective and rows; None where a user's own metric may read any."""
+    """Metrics of objective and rows; None where a custom metric may read any of them."""
     refusals: Refusals = field(default_factory=Refusals)
-    """What the user's own metrics had no number for."""
+    """Points where custom metrics had no value."""
 
     def parametric(self, parameters: tuple[str, ...]) -> ParametricProblem:
-        """The same problem with prices asked for the numbers at `parameters`."""
+        """The same problem, with the numbers at `parameters` to be priced."""
 
         def evaluate(points: Array, values: Array) -> Values:
             varied = dict(zip(parameters, values, strict=True))
@@ -153,7 +153,7 @@ class ActuatorProblem:
     ) -> Values:
         """Objective and constraint margins of points (variables, designs).
 
-        What was computed is added to `seen`.
+        Adds the computed metrics to `seen`.
         """
         varied = dict(parameters or {}) | dict(zip(self.paths, points, strict=True))
         numbers = self.subject.values(varied)
@@ -170,9 +170,9 @@ class ActuatorProblem:
 
 
 def _bounded(margin: Array) -> Array:
-    """A margin as the solver sees it: m below 0, m/(1 + m) above, so that infinity is 1.
+    """A margin scaled for the solver: m below 0, m/(1 + m) above, so that infinity is 1.
 
-    Same sign, and same value and slope where the limit holds exactly.
+    Keeps the sign, and both value and slope where the limit is just met.
     """
     large = real(margin) > 1e9
     held = where(large, 0.0, margin)
@@ -187,7 +187,7 @@ def _margins(
     count: int,
     reserves: Mapping[str, float],
 ) -> Array:
-    """Margins of the wanted rows beyond their reserves (rows, designs), all in one go."""
+    """Margins of the wanted rows less their reserves (rows, designs), all in one pass."""
     if not wanted:
         return np.empty((0, count))
     complex_ = any(np.iscomplexobj(value) for value in numbers.varied.values())
@@ -208,14 +208,14 @@ def _margins(
     return _bounded(beyond)
 
 
-@np.errstate(all="ignore")  # what has no finite answer is the solver's to judge
+@np.errstate(all="ignore")  # the solver handles values that are not finite
 def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProblem:
-    """The optimisation problem of a design.
+    """Build the optimisation problem of a design.
 
     Parameters
     ----------
     subject : the prepared design
-    fault : places a variable's fault in its file; default: by PATH only
+    fault : locates a variable's fault in the file; default: by PATH only
 
     Raises
     ------
@@ -226,7 +226,7 @@ def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProble
     if not design.variables:
         raise InputError(
             Diagnostic(
-                "the design has no variables: nothing may move",
+                "the design has no variables, so nothing can be optimised",
                 "add a `variables` block with lower and upper bounds",
                 path="variables",
             )
@@ -252,7 +252,7 @@ def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProble
     _check_read(numbers, paths, fault)
     rows = tuple(row for row in everything if np.size(row.margin) > 1)
     fixed = tuple(row for row in everything if np.size(row.margin) == 1)
-    missed = [  # a check that no variable can mend is reported, not optimised against
+    missed = [  # a check that no variable can fix is reported, but does not constrain the search
         row
         for row in fixed
         if row.limit_of.origin != "check"
@@ -279,7 +279,7 @@ def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProble
 
 
 def idle_metrics(actuator: ActuatorProblem) -> tuple[str, ...]:
-    """Metrics of the objective that no variable enters, however little it would move them."""
+    """Metrics of the objective that no variable affects at all."""
     start = actuator.problem.start
     assert start is not None
     moved = {path: np.array([x, x]) for path, x in zip(actuator.paths, start, strict=True)}
@@ -292,18 +292,18 @@ def idle_metrics(actuator: ActuatorProblem) -> tuple[str, ...]:
 
 
 def require_movable_objective(actuator: ActuatorProblem) -> None:
-    """Some variable must enter the objective.
+    """Reject an objective that no variable affects.
 
     Raises
     ------
     InputError
-        none does
+        no variable affects it
     """
     goal = actuator.goal
     if len(idle_metrics(actuator)) == len(goal.weights):
         raise InputError(
             Diagnostic(
-                f"no variable affects {' and '.join(goal.weights)}: nothing to search for",
+                f"no variable affects {' and '.join(goal.weights)}: nothing to optimise",
                 "choose another objective, or free a dimension that it depends on",
                 path="objective",
             )
@@ -311,12 +311,12 @@ def require_movable_objective(actuator: ActuatorProblem) -> None:
 
 
 def _check_read(numbers: Numbers, paths: tuple[str, ...], fault: Fault | None) -> None:
-    """Every variable must be read by some model."""
+    """Reject a variable that no model reads."""
     faults = []
     for path in paths:
         if path not in numbers.read:
-            message = "no model reads this variable for this design"
-            remedy = "remove it, or check that the part it belongs to is used"
+            message = "no model of this design reads this variable"
+            remedy = "remove it, or check that the design uses the part it belongs to"
             place = fault(path, message, remedy) if fault else None
             faults.append(place or Diagnostic(message, remedy, path=f"variables.{path}"))
     if faults:

@@ -1,10 +1,10 @@
-"""The best point of a problem some of whose variables may only take listed values.
+"""The best point of a problem with variables that only take listed values.
 
-Branch and bound from the continuous optimum, the most promising box first, and of those about as
-promising the newest, which is the deepest. The bound of a box is its continuous optimum,
-re-optimised from that of the box around it. That optimum is a local one, so the result is the best
-found and no proof. All roundings up and down come before, at once. A small box that leaves nothing
-to optimise is evaluated whole, in one call of the model.
+Branch and bound from the continuous optimum. The most promising box comes first; among nearly equal
+boxes the newest, which is the deepest. The bound of a box is its continuous optimum, re-optimised
+from that of the enclosing box. As this optimum is local, the result is the best found, without
+proof. All roundings up and down are tried first, together. A small box with no other free variables
+is evaluated whole, in one model call.
 """
 
 from __future__ import annotations
@@ -29,39 +29,39 @@ from .resolve.hessians import ScaledHessian, hessian_at
 from .resolve.steps import valley_at
 
 MOST_SOLVES = 400
-"""Most re-optimisations of one search."""
+"""Maximum re-optimisations of one search."""
 
 MOST_NEIGHBOURS = 256
-"""Most roundings up and down tried at once: all of them up to eight listed variables."""
+"""Maximum roundings up and down tried at once: all of them up to eight listed variables."""
 
 MOST_MISSED = 4
-"""Most assignments looked at closely to say what the nearest one misses."""
+"""Maximum assignments examined to explain what the nearest one misses."""
 
 MOST_LISTED = 1024
-"""Most assignments of a box that are evaluated together, where nothing else may move."""
+"""Maximum assignments of a box that are evaluated together, if no other variable is free."""
 
 TIE = 0.01
-"""Bounds this near are as promising: a share of the distance from the least bound to the best
-design, so that it holds on every scale of the objective. A choice."""
+"""Bounds this close count as equally promising. The difference is relative to the distance from the
+least bound to the best design, so it suits any scale of the objective. A choice."""
 
 CLOSE = 1e-7
-"""Relative difference to a bound that counts as none: bounds are known so well."""
+"""Relative difference between bounds that counts as none: the accuracy of the bounds."""
 
 
 @dataclass
 class Found:
-    """The best point, every assignment tried with its objective, and how far the search went.
+    """The best point, every assignment tried with its objective, and the extent of the search.
 
     Parameters
     ----------
-    x, objective, assignment : of the best; None where nothing feasible was found
-    tried : objective of each assignment, infinite where none was feasible
+    x, objective, assignment : of the best; None without a feasible one
+    tried : objective of each assignment, infinite if infeasible
     solves : re-optimisations, of boxes and of assignments
-    complete : whether the search ended by itself, not at a limit
-    nearest, missed : where nothing feasible was found: the assignment that misses least of those
-        looked at closely, and the point where it does
-    ends : where every box ended, its optimum or the point that misses least, with what it was
-        evaluated by; empty where a box has neither
+    complete : whether the search finished before reaching a limit
+    nearest, missed : without a feasible one, the least infeasible of the assignments examined, and
+        its point
+    ends : result of every box, its optimum or least infeasible point, with its evaluator; empty
+        where a box has neither
     """
 
     x: Vector | None
@@ -94,8 +94,8 @@ def search(
     x : the continuous optimum (n,)
     most : limit of re-optimisations
     until : time of `time.perf_counter` to stop at
-    below : only a better objective than this one is of interest
-    memory : of searches of problems much like this one, with the same rows; gets what this finds
+    below : ignore objectives that are not better than this
+    memory : results of searches of similar problems with the same rows; extended by this search
     """
     remembered = memory is not None and memory.hessian is not None
     run = _Run(problem, listed, x, most, until, below, memory or Memory())
@@ -119,7 +119,7 @@ def search(
 
 
 class _Boxes:
-    """Boxes left to search, by their bounds and by their age."""
+    """Boxes left to search, by bound and by age."""
 
     def __init__(self) -> None:
         self._entries: dict[int, tuple[float, Box, Vector]] = {}
@@ -140,7 +140,7 @@ class _Boxes:
         heapq.heappush(self._lowest, (bound, number))
 
     def take(self, best: float) -> tuple[float, Box, Vector]:
-        """The newest box where it is as promising as any, else the one of least bound."""
+        """The newest of the most promising boxes."""
         while self._lowest[0][1] not in self._entries:
             heapq.heappop(self._lowest)
         least, number = self._lowest[0]
@@ -159,18 +159,18 @@ def at(
 
 @dataclass
 class Memory:
-    """Where the boxes of a search ended, from where those of a problem much like it are near."""
+    """Results of the boxes of a search, as starting points for similar problems."""
 
     hessian: ScaledHessian | None = None
     ends: dict[Box, tuple[Evaluator, Point]] = field(default_factory=dict)
     hessians: dict[Box, ScaledHessian | None] = field(default_factory=dict)
     missed: dict[Box, Vector] = field(default_factory=dict)
-    """The least violated points of boxes without a feasible one."""
+    """The least infeasible points of boxes without a feasible one."""
     visited: tuple[Box, ...] = ()
-    """The boxes whose continuous optimum the last search wanted."""
+    """Boxes whose continuous optimum the last search needed."""
 
     def near(self, box: Box) -> tuple[Vector, ScaledHessian | None] | None:
-        """The optimum in a box of another problem, and its Hessian."""
+        """The optimum in the same box of another problem, and its Hessian."""
         end = self.ends.get(box)
         if end is None:
             return None
@@ -179,7 +179,7 @@ class Memory:
         return end[1].x, self.hessians[box]
 
     def note(self, box: Box, evaluator: Evaluator, found: Nearest) -> None:
-        """Keep where a box ended, unless it was easily reached from what is known."""
+        """Store the result of a box, unless steps from known results reach it easily."""
         if found.optimum is not None and not (found.followed and box in self.ends):
             self.ends[box] = evaluator, found.optimum
             self.hessians.pop(box, None)
@@ -236,7 +236,7 @@ class _Run:
         self.least = min(self.tried.values()) if worse else min(self.least, objective)
 
     def beaten(self, bound: float) -> bool:
-        """Whether nothing above a bound can improve on what is known."""
+        """Whether no design above a bound can improve on the best one."""
         best = self.best
         return best < np.inf and bound >= best - CLOSE * abs(best)
 
@@ -246,7 +246,7 @@ class _Run:
         return np.concatenate([one.rows[row] for one, row in pairs])
 
     def neighbours(self) -> None:
-        """Try every rounding up and down, all at once where the problem allows."""
+        """Try every rounding up and down, all at once if the problem allows."""
         sides = [one.around(self.x[list(one.index)]) for one in self.listed]
         chosen = list(itertools.islice(itertools.product(*sides), MOST_NEIGHBOURS))
         for assignment, near in self.together(chosen):
@@ -257,7 +257,7 @@ class _Run:
         self.confirmed()
 
     def together(self, chosen: list[Assignment]) -> list[tuple[Assignment, Vector | None]]:
-        """Re-optimise assignments at once; what is left, with a start each (None: none nearby)."""
+        """Re-optimise assignments at once; return the rest, each with a start or None."""
         here = self.x[self.index]
         point, evaluator = self._near(here, here, self.x)
         names = [self.problem.names[i] for i in self.index]
@@ -299,7 +299,7 @@ class _Run:
         return self.tried[assignment]
 
     def confirmed(self) -> Assignment | None:
-        """The best assignment, once its point is known too; None where none is feasible."""
+        """The best assignment, with its point verified; None without a feasible one."""
         while True:
             best = min(self.tried, key=lambda one: self.tried[one], default=None)
             if best is None or not self.tried[best] < self.below:
@@ -309,7 +309,7 @@ class _Run:
             self.assigned(best, self.near.get(best, self.x))
 
     def look_ahead(self) -> None:
-        """Re-optimise the boxes of the last search at once: most of them are wanted again."""
+        """Re-optimise the boxes of the last search at once, as most of them are needed again."""
         tasks = [self._task(box, *self._bounds(box), self.x, ROUGH) for box in self.memory.visited]
         ends = resolve_boxes(tasks)
         self.ahead = dict(zip(self.memory.visited, zip(tasks, ends, strict=True), strict=True))
@@ -319,7 +319,7 @@ class _Run:
         return self.only_listed and math.prod(map(len, box)) <= MOST_LISTED
 
     def evaluate(self, box: Box) -> None:
-        """Evaluate every assignment of a box that leaves nothing to optimise."""
+        """Evaluate every assignment of a box without other free variables."""
         chosen = list(itertools.product(*box))
         points = np.repeat(self.x[:, None], len(chosen), axis=1)
         for one, rows in zip(self.listed, np.array(chosen).T, strict=True):
@@ -331,10 +331,10 @@ class _Run:
             self.tried.setdefault(assignment, objective)
         self.least = min(self.least, *objectives)
         self.solves += 1
-        self.ends.append((self.reference, None))  # no optimum of a box to compare with
+        self.ends.append((self.reference, None))  # the box has no optimum to compare with
 
     def relax(self, parts: Sequence[Box], near: Vector, boxes: _Boxes) -> None:
-        """Add the boxes whose continuous optimum may improve on what is known."""
+        """Add the boxes whose continuous optimum may improve on the best design."""
         large = []
         for box in parts:
             if self.evaluates(box):
@@ -354,7 +354,7 @@ class _Run:
         return lower, np.concatenate([rows.max(axis=0) for rows in left])
 
     def parts(self, box: Box, x: Vector, objective: float) -> list[Box]:
-        """What is left to search of a box, given its continuous optimum."""
+        """The parts of a box left to search, given its continuous optimum."""
         widest: float = ON
         halves: tuple[int, list[list[int]]] | None = None
         for k, (one, rows) in enumerate(zip(self.listed, box, strict=True)):
@@ -369,12 +369,12 @@ class _Run:
                         [r for r in rows if of[r] >= above],
                     ]
                     halves = k, parts if x[index] - below > above - x[index] else parts[::-1]
-        if halves is not None:  # the nearer one last
+        if halves is not None:  # the nearer part last
             return [with_rows(box, halves[0], tuple(half)) for half in halves[1]]
         found = [
             one.at(x[list(one.index)], rows) for one, rows in zip(self.listed, box, strict=True)
         ]
-        if None in found:  # every value is listed, but not together
+        if None in found:  # each value is listed, but not this combination
             k = found.index(None)
             one, rows = self.listed[k], box[k]
             nearest = min(rows, key=lambda r: float(np.abs(one.rows[r] - x[list(one.index)]).sum()))
@@ -390,7 +390,7 @@ class _Run:
         return left
 
     def found(self, *, complete: bool) -> Found:
-        """What the search comes to."""
+        """The result of the search."""
         self.memory.visited = tuple(self.visited)
         best = self.confirmed()
         x, objective, nearest, missed = None, None, None, None
@@ -404,7 +404,7 @@ class _Run:
         return Found(x, objective, best, tried, solves, complete, nearest, missed, ends)
 
     def nearest(self) -> tuple[Assignment, Point] | tuple[None, None]:
-        """The assignment that misses least of the first ones, and the point where it does."""
+        """The least infeasible of the first assignments, and its point."""
         found = []
         for assignment in list(self.tried)[:MOST_MISSED]:
             box = tuple((row,) for row in assignment)
@@ -422,7 +422,7 @@ class _Run:
         return assignment, point
 
     def _within(self, lower: Vector, upper: Vector) -> Evaluator:
-        """The problem with the listed variables in bounds."""
+        """The problem with bounds on its listed variables."""
         least, most = self.problem.lower.copy(), self.problem.upper.copy()
         least[self.index], most[self.index] = lower, upper
         evaluator = Evaluator(replace(self.problem, lower=least, upper=most, start=None))
@@ -432,14 +432,14 @@ class _Run:
         return evaluator
 
     def _near(self, lower: Vector, upper: Vector, near: Vector) -> tuple[Point, Evaluator]:
-        """The point within bounds of the listed variables that is nearest to another."""
+        """The point nearest to another, within bounds of the listed variables."""
         evaluator = self._within(lower, upper)
         return evaluator.point(evaluator.space.to_z(evaluator.problem.inside(near))), evaluator
 
     def _task(
         self, box: Box, lower: Vector, upper: Vector, near: Vector, criteria: Criteria
     ) -> BoxTask:
-        """A box to re-optimise, near a point or where a like problem ended."""
+        """A box to re-optimise, from a nearby point or the result of a similar problem."""
         known = self.memory.near(box)
         hopeless = known is None and box in self.memory.missed
         x, hessian = known or (self.memory.missed.get(box, near), self.memory.hessian)
@@ -451,7 +451,7 @@ class _Run:
     def _descended(
         self, bounds: Sequence[tuple[Box, Vector, Vector]], near: Vector, criteria: Criteria
     ) -> list[Point | None]:
-        """The optimum in boxes, near a point or where a like problem ended; None without."""
+        """The optimum in each box, from a nearby point or a similar problem; None without one."""
         known = self.ahead if criteria is ROUGH else {}
         tasks = {
             box: self._task(box, lower, upper, near, criteria)

@@ -1,4 +1,4 @@
-"""The certificate of an optimum in words and numbers: the proven bound, what the starts say."""
+"""The certificate of an optimum: its proven bound, and the evidence of the starts."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from .outcome import Solution
 from .result import Certificate, Optimisation
 
 CHANCE = 0.95
-"""Probability at which the evidence of the starts is stated."""
+"""Probability for the evidence of the starts."""
 
 SAME = 1e-3
-"""Relative difference of objectives up to which two starts found one optimum."""
+"""Relative difference of objectives up to which two starts reached the same optimum."""
 
 
 def certified(actuator: ActuatorProblem, solution: Solution) -> Certificate:
-    """Prove how far a design that meets its requirements is from the best possible.
+    """Bound the distance of a feasible design from the best possible one.
 
     Parameters
     ----------
@@ -27,26 +27,26 @@ def certified(actuator: ActuatorProblem, solution: Solution) -> Certificate:
     evidence = _evidence(solution)
     reason = _unsuited(actuator, solution)
     if reason:
-        return Certificate(f"nothing is proven: {reason}", evidence)
-    from .certificate.certify import certify  # with its solver, only where asked for
+        return Certificate(f"no proof: {reason}", evidence)
+    from .certificate.certify import certify  # loads the LP solver, so only on request
     from .certificate.relaxation import Unknown
 
     quantity = actuator.subject.quantities[actuator.goal.single or ""]
     best = solution.objective
 
     def told(value: float) -> None:
-        tell("proving how good that is", math.exp(value) / best)
+        tell("proving the bound", math.exp(value) / best)
 
     try:
         relaxed, found = certify(actuator, solution.x, best, seconds=math.inf, report=told)
     except Unknown as error:
-        return Certificate(f"nothing is proven: {error}", evidence)
+        return Certificate(f"no proof: {error}", evidence)
     bound = min(math.exp(found.bound), best)
     gap = max(1 - bound / best, 0.0)
     chosen = " with these choices" if actuator.subject.design.choices else ""
     words = (
-        f"no design within its bounds{chosen} that meets the covered limits has less than "
-        f"{quantity.text(bound, 5)} ({quantity.label}): the design found is within "
+        f"no design within the bounds{chosen} that meets the covered limits has a "
+        f"{quantity.label} below {quantity.text(bound, 5)}: this design is within "
         f"{_percent(gap)} of the best possible"
     )
     covers = tuple(dict.fromkeys(claim.limit.name for claim in relaxed.covered))
@@ -55,26 +55,26 @@ def certified(actuator: ActuatorProblem, solution: Solution) -> Certificate:
 
 
 def enumerated(found: Optimisation, goal: Goal) -> Certificate | None:
-    """What trying all combinations of the choices proves, where nothing else may move."""
+    """The certificate from trying all combinations of the choices, if nothing else is free."""
     choices = found.choices
     if choices is None or not found.evaluation.met:
         return None
     if choices.count("not tried"):
-        return Certificate("nothing is proven: not every combination was evaluated", "")
+        return Certificate("no proof: not every combination was evaluated", "")
     words = f"all {len(choices.combinations)} combinations were evaluated: "
     wish, value = goal.sign, found.objective_value
     met = [one.objective for one in choices.combinations if one.feasible and one.objective]
     best = min((wish * one for one in met), default=wish * value)
-    words += "none that meets every requirement is better"
-    if best < wish * value:  # a check that some combination meets counts before the objective
-        words += ", but for such as miss more of the check list"
+    words += "none that meets all requirements is better"
+    if best < wish * value:  # a check that some combination meets outranks the objective
+        words += ", except those that miss more of the check list"
     if goal.single is None or wish < 0 or not value > 0:
         return Certificate(words, "")
     return Certificate(words, "", best, 1 - best / value)
 
 
 def _percent(share: float) -> str:
-    """A gap as people read it, never smaller than it is."""
+    """A gap in per cent, rounded upwards."""
     percent = 100 * share
     if percent < 0.01:
         return "0.01 %"
@@ -83,18 +83,18 @@ def _percent(share: float) -> str:
 
 
 def _unsuited(actuator: ActuatorProblem, solution: Solution) -> str:
-    """Why there is no bound for an objective."""
+    """Why an objective has no bound; empty if it has one."""
     if actuator.goal.single is None:
-        return "a weighted sum of metrics has no bound yet; minimise one metric"
+        return "a weighted sum of metrics cannot be bounded yet; minimise one metric"
     if actuator.goal.sign < 0:
-        return "a metric that is maximised has no bound yet; minimise one"
+        return "a maximised metric cannot be bounded yet; minimise a metric"
     if not solution.objective > 0:
-        return "the objective is not above zero"
+        return "the objective is not positive"
     return ""
 
 
 def _evidence(solution: Solution) -> str:
-    """What the starts say of a better optimum elsewhere."""
+    """The evidence of the starts against a better optimum elsewhere."""
     count = len(solution.starts)
     if count == 0:
         return ""
@@ -105,7 +105,7 @@ def _evidence(solution: Solution) -> str:
     )
     missed = 1 - (1 - CHANCE) ** (1 / count)
     return (
-        f"{same} of {count} starts led to this optimum, none to a better one; a better one that "
-        f"more than {100 * missed:.0f} % of all starts lead to would have shown with "
-        f"{100 * CHANCE:.0f} % probability (evidence, no proof)"
+        f"{same} of {count} starts reached this optimum, none a better one. A better optimum "
+        f"reached by more than {100 * missed:.0f} % of all starts would have been seen with "
+        f"{100 * CHANCE:.0f} % probability (evidence, not proof)"
     )

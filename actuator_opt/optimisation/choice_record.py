@@ -1,4 +1,4 @@
-"""What became of every combination of the choices, in words and numbers."""
+"""The outcome of every combination of the choices."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .result import Choices, Combination, How
 
 
 def record(found: ChoiceSearch, design: Design) -> Choices:
-    """Every combination, the best first.
+    """All combinations, the best first.
 
     Parameters
     ----------
@@ -49,51 +49,51 @@ def record(found: ChoiceSearch, design: Design) -> Choices:
 
 
 def _status(look: Look, mendable: frozenset[str], sized: bool) -> str:
-    """How a combination was looked into, and what it came to."""
+    """How a combination was searched, and its outcome."""
     if look.fault:
         return f"not possible: {look.fault}"
     if look.how == "not tried":
-        return "not tried: the time was up"
+        return "not tried: time limit reached"
     checks = ", ".join(sorted(look.checks & mendable))
     if look.feasible:
         said = (
-            "every requirement is met" if look.solution is None else look.solution.outcome.sentence
+            "all requirements are met" if look.solution is None else look.solution.outcome.sentence
         )
         if look.sizing:
             said = f"{said}; {_SIZING[look.sizing]}"
         elif look.rounded is None and sized:
-            said = f"{said}; left, as listed sizes cannot better this"
+            said = f"{said}; not searched further, as listed sizes cannot improve on the best"
         if checks:
             said = f"misses the check {checks}, which other choices meet; {said}"
     else:
         by = f" by {100 * look.violation:.2g} %" if math.isfinite(look.violation) else ""
-        said = f"misses {look.missed}{by}" if look.missed else "no point has finite values"
+        said = f"misses {look.missed}{by}" if look.missed else "no finite values at any point"
     return _WAYS[look.how] + said
 
 
 _SIZING = {
-    "found": "the best of its listed sizes",
+    "found": "best with listed sizes",
     "sizes of the best": "with the sizes of the best",
     "none better": "none better with listed sizes",
     "none": "none with listed sizes",
-    "no size fits": "its bounds hold no listed size",
+    "no size fits": "no listed size within its bounds",
 }
-"""What the search for listed sizes came to."""
+"""Result of the search for listed sizes."""
 
 _WITHOUT = ("none", "none better", "no size fits")
-"""Where there is no design to compare."""
+"""Combinations without a design to compare."""
 
 _WAYS: dict[How, str] = {"multistart": "many starts: ", "quick": "quick look: ", "evaluated": ""}
 
 
 def _sentence(made: Choices) -> str:
-    """How many combinations there are, how many fit, and how they were looked into."""
+    """How many combinations exist, how many are feasible, and how they were searched."""
     total, fit = len(made.combinations), made.feasible
-    first = f"none of {total} combinations meets every requirement; the nearest is kept"
+    first = f"none of {total} combinations meets all requirements; the nearest one is shown"
     if fit:
-        first = f"the best of {total} combinations; {fit} meet every requirement"
+        first = f"the best of {total} combinations; {fit} meet all requirements"
     counts = ", ".join(_counts(made))
-    proof = "; a quick look is no proof" if made.count("quick") else ""
+    proof = "; a quick look proves nothing" if made.count("quick") else ""
     return f"{first}; {counts}{proof}"
 
 
@@ -101,9 +101,9 @@ def _counts(made: Choices) -> Iterator[str]:
     words: dict[How, str] = {
         "evaluated": "evaluated",
         "multistart": "solved from many starts",
-        "quick": "looked at quickly",
+        "quick": "quick look only",
         "not possible": "not possible",
-        "not tried": "not tried in the time given",
+        "not tried": "not tried within the time limit",
     }
     for how, said in words.items():
         if count := made.count(how):

@@ -1,8 +1,8 @@
-"""The best combination of the choices where variables keep to listed sizes.
+"""The best combination of choices when variables take listed sizes.
 
-The combinations are searched best first, each from its continuous optimum, which bounds what its
-sizes can come to: those whose bound is no better than the best design of listed sizes so far are
-left. The bounds are local optima, and mostly of a quick look: the best found, no proof.
+Combinations are searched best first, each from its continuous optimum, which bounds its result with
+sizes. Those whose bound does not beat the best sized design so far are skipped. The bounds are
+local optima, mostly of a quick look, so the result is the best found, without proof.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from .quick_look import Look
 from .rounding import RUNNERS_UP, Sizes, Wanted, sizes_of
 
 _NOTHING_BETTER = Found(None, None, None, {}, 0, complete=True)
-"""Of a combination whose sizes come to what those of another one came to."""
+"""Same result as another combination."""
 
 
 @dataclass(frozen=True)
 class Sized:
-    """A combination with its sizes and what the search of them came to."""
+    """A combination with its sizes and their search result."""
 
     look: Look
     sizes: Sizes
@@ -34,14 +34,14 @@ class Sized:
 
 
 def best_of_sizes(choices: ChoiceSearch, wanted: Wanted, settings: Settings) -> Sized | None:
-    """The combination with the best design of listed sizes, solved from many starts.
+    """Find the combination with the best design of listed sizes, solved from many starts.
 
-    Where none has any, that with the best continuous optimum; None where no variable has sizes.
+    If none fits, the combination with the best continuous optimum; None if no variable has sizes.
 
     Raises
     ------
     InputError
-        the sizes that are asked fit no combination
+        the requested sizes fit no combination
     """
     searched = list(_searched(choices, wanted, settings))
     better = [sized for sized in searched if sized.found.objective is not None]
@@ -56,7 +56,7 @@ def best_of_sizes(choices: ChoiceSearch, wanted: Wanted, settings: Settings) -> 
 
 
 def _searched(choices: ChoiceSearch, wanted: Wanted, settings: Settings) -> Iterator[Sized]:
-    """Every combination that is worth it, searched for something better than those before."""
+    """Search each promising combination for a better design than those before."""
     error: InputError | None = None
     memories: dict[object, Memory] = {}
     alike: dict[object, list[Evidence]] = {}
@@ -100,7 +100,7 @@ def _searched(choices: ChoiceSearch, wanted: Wanted, settings: Settings) -> Iter
 
 
 def _runners_up(winner: Sized, searched: Sequence[Sized]) -> None:
-    """What the sizes of the best cost in the combinations that come next."""
+    """Add the cost of the best sizes in the next best combinations."""
     assert winner.found.assignment is not None
     others = [sized for sized in searched if sized.look.sizing == "none better"]
     for sized in others[:RUNNERS_UP]:

@@ -1,8 +1,8 @@
-"""The best combination of the design's choices: every one is looked at, the best solved in full.
+"""The best combination of the design's choices: quick look at each, full solution of the best.
 
-A quick look descends from the nearest design already known, which mostly finds the optimum of a
-combination but proves nothing. The combinations that come near the best one are then solved from
-many starts, the winner always. What each combination got is told in its record.
+A quick look descends from the nearest known design. It usually finds the optimum of a combination
+but proves nothing. Combinations close to the best one are then solved from many starts, the winner
+always. The record of each combination shows how it was searched.
 """
 
 from __future__ import annotations
@@ -29,27 +29,27 @@ from .quick_look import DOUBTFUL, Look, Start, hessian_of, look_quickly
 from .solver import solve
 
 NEAR = 0.05
-"""Distance from the best, relative, within which a combination is solved from many starts."""
+"""Relative distance from the best within which a combination is solved from many starts."""
 
 MOST_DOUBTFUL = 2
-"""Most combinations solved from many starts in vain: a search that finds nothing takes long."""
+"""Maximum combinations solved from many starts without success, as such searches take long."""
 
 MOST_SOLVED = 6
-"""Most combinations solved from many starts."""
+"""Maximum combinations solved from many starts."""
 
 BETTER = 1e-3
-"""Improvement by many starts, relative, after which all that fit get a second quick look."""
+"""Relative gain by many starts that triggers a second quick look at all feasible combinations."""
 
 LEAST_SECONDS = 0.1
-"""Time that the first look and the winner get, whatever the limit."""
+"""Least time for the first look and the winner, whatever the limit."""
 
 EQUAL = 1e-6
-"""Relative difference of objectives that counts as none: the first of the file's order wins."""
+"""Relative difference of objectives that counts as none: the first in the file wins."""
 
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """How the combinations that matter are solved; `until` is a time of `time.perf_counter`."""
+    """Settings for solving the best combinations; `until` is a time of `time.perf_counter`."""
 
     algorithm: str
     starts: int
@@ -58,7 +58,7 @@ class Settings:
     until: float | None
 
     def left(self, share: float = 1.0, began: float = 0.0) -> float | None:
-        """Seconds left of this share of the time since `began`."""
+        """Seconds left of a share of the time since `began`."""
         if self.until is None:
             return None
         return began + share * (self.until - began) - time.perf_counter()
@@ -72,14 +72,14 @@ class ChoiceSearch:
     looks: list[Look] = field(default_factory=list)
 
     def mendable(self) -> frozenset[str]:
-        """Missed checks that some combination meets, so that choosing can mend them."""
+        """Missed checks that some combination meets, so that a choice can fix them."""
         lists = [
             look.checks for look in self.looks if look.how not in ("not tried", "not possible")
         ]
         return frozenset().union(*lists) - frozenset.intersection(*lists) if lists else frozenset()
 
     def ranked(self) -> list[Look]:
-        """The best first: requirements met, then checks, then the objective; equals as listed."""
+        """Best first: requirements, then checks, then the objective; ties in file order."""
         mendable = self.mendable()
 
         def rank(look: Look) -> tuple[bool, float, int, float, int]:
@@ -107,12 +107,12 @@ class ChoiceSearch:
 
 
 def possible(subject: PreparedDesign) -> list[Look]:
-    """Every combination of the choices, with its design or why there is none.
+    """All combinations of the choices, each with its design or the reason why it is impossible.
 
     Raises
     ------
     InputError
-        there is none at all
+        every combination is impossible
     """
     library = load_library()
     looks = []
@@ -151,20 +151,20 @@ def _require_one(looks: Sequence[Look]) -> None:
         raise InputError(Diagnostic(message, "change the values listed there", path="choices"))
 
 
-@np.errstate(all="ignore")  # what has no finite answer is never the best
+@np.errstate(all="ignore")  # a design without finite values is never the best
 def search(subject: PreparedDesign, settings: Settings, most: int = MOST_SOLVED) -> ChoiceSearch:
-    """Look at every combination of the choices, solve the best ones from many starts.
+    """Look at every combination of the choices, and solve the best ones from many starts.
 
     Parameters
     ----------
     subject : the design with its choices
-    settings : how the best are solved
-    most : how many of them at most
+    settings : settings for solving the best
+    most : maximum number solved
 
     Raises
     ------
     InputError
-        no combination is a possible design
+        every combination is impossible
     """
     found = ChoiceSearch(goal_of(subject), possible(subject))
     moving = bool(subject.design.variables)
@@ -187,7 +187,7 @@ def search(subject: PreparedDesign, settings: Settings, most: int = MOST_SOLVED)
 
 
 def _with_goal(actuator: ActuatorProblem, goal: Goal) -> ActuatorProblem:
-    """The problem with the objective that all combinations share, whose weights have one scale."""
+    """The problem with the common objective, so that all combinations weigh metrics alike."""
     shared = replace(actuator, goal=goal)
     return replace(shared, problem=replace(actuator.problem, evaluate=shared.evaluate))
 
@@ -201,7 +201,7 @@ def _missed_checks(rows: Sequence[LimitRow]) -> frozenset[str]:
 
 
 def _evaluate(look: Look, goal: Goal) -> None:
-    """The one design of a combination that leaves nothing to move."""
+    """Evaluate a combination without free variables."""
     subject = look.subject
     assert subject is not None
     values = subject.values()
@@ -224,7 +224,7 @@ def _evaluate(look: Look, goal: Goal) -> None:
 
 
 def _look_at_all(found: ChoiceSearch, settings: Settings) -> None:
-    """A quick look at every combination, in half of the time there is."""
+    """Look quickly at every combination, in half of the available time."""
     began = time.perf_counter()
     for look in found.looks:
         left = settings.left(0.5, began)
@@ -244,10 +244,11 @@ def _any(found: ChoiceSearch) -> bool:
 
 
 def _starts(found: ChoiceSearch, look: Look) -> list[Start]:
-    """Where the combinations that differ in the fewest values ended.
+    """Starts from the combinations that differ in the fewest values.
 
-    A neighbour that meets everything is gone down from; one as near that does not tells best how
-    near this one comes to it. The last one as near, whose values change least, may be followed.
+    A feasible neighbour is a start for a descent. An infeasible one shows best how close this
+    combination comes to feasibility. The last one, which changes least, may be followed step by
+    step.
     """
     known = [other for other in found.looks if other.x is not None and other is not look]
 
@@ -275,7 +276,7 @@ def _starts(found: ChoiceSearch, look: Look) -> list[Start]:
 
 
 def _solve_best(found: ChoiceSearch, settings: Settings, most: int) -> None:
-    """Many starts for the winner and for what comes near it, best first."""
+    """Solve the winner and combinations close to it from many starts, best first."""
     second = True
     for _ in range(most):
         look = _promising(found)
@@ -298,7 +299,7 @@ def _solve_best(found: ChoiceSearch, settings: Settings, most: int) -> None:
 
 
 def _promising(found: ChoiceSearch) -> Look | None:
-    """The next combination worth many starts; None where the rest is clearly worse."""
+    """The next combination worth many starts; None if the rest is clearly worse."""
     ranked, mendable = found.ranked(), found.mendable()
     best = ranked[0]
     if best.solution is None:
@@ -319,7 +320,7 @@ def _promising(found: ChoiceSearch) -> Look | None:
 
 
 def many_starts(look: Look, settings: Settings) -> None:
-    """Solve a combination from many starts, the best point known among them."""
+    """Solve a combination from many starts, including its best known point."""
     assert look.actuator is not None
     left = settings.left()
     known = [] if look.x is None else [look.x]

@@ -1,9 +1,9 @@
-"""Which fixed dimension, or which choice, alone makes an infeasible actuator possible.
+"""Remedies for an infeasible actuator: a fixed dimension or a choice whose change is enough.
 
-A dimension is freed by solving with it as a variable, from the design that needs the smallest joint
-relaxation, in the direction in which it helps there. A choice is tried in place of the value of the
-file. Every cure was met by a design, all limits and checks at their values. The effort is bounded
-by counts, so that the same input gives the same cures; what was not tried is named.
+A dimension becomes a variable and may move in the direction that helps, from the design with the
+smallest joint relaxation. A choice replaces the value of the file. Each remedy is confirmed by a
+design that meets all limits and checks. Counts limit the effort, so the same input gives the same
+remedies; what was not tried is listed.
 """
 
 from __future__ import annotations
@@ -39,26 +39,27 @@ DIMENSIONS = (
     "bore", "wall_thickness", "winding_angle", "rod_diameter", "rod_inner_diameter", "part_length",
     "radial_clearance", "thread_diameter", "squeeze", "diameter",
 )  # fmt: skip
-"""Quantities of dimensions that may be freed. Stroke and what a duty asks are none: a choice."""
+"""Quantities of dimensions that may be freed; stroke and duty are excluded. A choice."""
 
 PARTS = re.compile(r"(cylinder|barrel|rod|piston|head|caps|retention|clevis|seals|lines)\b")
-"""What these dimensions belong to."""
+"""Parts that these dimensions belong to."""
 
 MOST_DIMENSIONS = 8
-"""Most dimensions freed, those that help most first: a choice, for the time it takes."""
+"""Maximum dimensions freed, most helpful first: a choice, to limit the time."""
 
 MOST_CHOICES = 4
-"""Most choices solved, those that miss least first: a choice, for the time it takes."""
+"""Maximum choices solved, least infeasible first: a choice, to limit the time."""
 
 ENOUGH = 3
-"""Cures of one kind after which no more of that kind are sought: a choice."""
+"""Remedies of one kind after which the search for that kind stops: a choice."""
 
 WORTH = 0.1
-"""Share of the missed margins that a number at twice, or half, its value must close by its slope:
-what closes less is no cure alone, and is not tried. A choice."""
+"""Share of the missed margins that a number at twice, or half, its value must close by its slope. A
+number that closes less cannot be enough alone and is not tried. A choice."""
 
 DIGITS = 4
-"""Digits of a dimension, at which it is solved again: what is printed is what was met."""
+"""Digits of a dimension, which is solved again as rounded, so that the printed value is
+feasible."""
 
 SUBSTITUTES = {
     "metal": ("al_7075_t6", "ti_6al4v", "steel_42crmo4", "steel_17_4ph_h1025"),
@@ -66,17 +67,17 @@ SUBSTITUTES = {
     "seal": ("nbr_70", "nbr_90", "hnbr_75", "fkm_90"),
     "adhesive": ("epoxy_structural",),
 }
-"""Materials of the library tried in place of one of their kind: a choice, few and usual."""
+"""Library materials tried in place of one of the same kind: a choice, few and common."""
 
 BACK_UP = "back_up_ptfe"
-"""Material of a back-up ring where the design has none: the usual one, a choice."""
+"""Material of a back-up ring if the design has none: the common one, a choice."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cure:
-    """What alone is enough: a fixed dimension at another value (SI), or another choice.
+    """A sufficient change: a fixed dimension at another value (SI), or another choice.
 
-    `beside` has what a choice needs to be stated with it, by PATH, as a file has it.
+    `beside` lists further entries that a choice needs, by PATH, as in a file.
     """
 
     path: str
@@ -87,9 +88,9 @@ class Cure:
 
 @dataclass(frozen=True, slots=True)
 class Cures:
-    """Dimensions and choices that alone are enough, and the PATHs that were not tried.
+    """Dimensions and choices that are enough alone, and the PATHs not tried.
 
-    `together` has dimensions of which none alone, but all at once are enough.
+    `together` lists dimensions that are enough only together.
     """
 
     dimensions: tuple[Cure, ...] = ()
@@ -99,12 +100,12 @@ class Cures:
 
 
 def cures(actuator: ActuatorProblem, found: Infeasibility) -> Cures:
-    """The fixed dimensions and the choices of which one alone is enough.
+    """The fixed dimensions and choices of which one alone is enough.
 
     Parameters
     ----------
     actuator : the infeasible problem
-    found : why nothing fits
+    found : its infeasibility
     """
     if found.laws or not found.joint:
         return Cures()
@@ -143,7 +144,7 @@ def _gains(actuator: ActuatorProblem, found: Infeasibility) -> dict[str, float]:
 def _dimensions(
     actuator: ActuatorProblem, x: Vector, gains: Mapping[str, float]
 ) -> tuple[tuple[Cure, ...], tuple[Cure, ...], list[str]]:
-    """Dimensions that alone are enough, the least change first; else together; those not tried."""
+    """Dimensions enough alone, least change first; else together; and those not tried."""
     design = actuator.subject.design
     candidates = sorted(
         (
@@ -166,7 +167,7 @@ def _dimensions(
     for number, (path, place) in enumerate(zip(tried, limits, strict=True)):
         if len(enough) == ENOUGH:
             return _least_first(enough), (), candidates[number:]
-        tell("nothing fits: which fixed dimension alone would do", number / len(tried))
+        tell("infeasible: searching for a sufficient fixed dimension", number / len(tried))
         enough += freed(problem, start, {place: limits[place]}, {place: path}, design)
     together: list[Cure] = []
     if not enough and len(tried) > 1:
@@ -175,7 +176,7 @@ def _dimensions(
 
 
 def _limit(quantity: Quantity, now: float, gain: float) -> float:
-    """How far a dimension may go the way it helps, within the range of its quantity."""
+    """Limit of a dimension's change in the helpful direction, within its valid range."""
     limit = now * repairs.WIDEST if gain > 0 else now / repairs.WIDEST
     limit = limit if quantity.lower is None else max(limit, quantity.lower)
     return float(limit if quantity.upper is None else min(limit, quantity.upper))
@@ -188,15 +189,15 @@ def freed(
     paths: Mapping[int, str],
     design: Design,
 ) -> list[Cure]:
-    """The least change of some fixed variables with which all is met; none where there is none.
+    """The least change of some fixed variables that meets all limits; empty if there is none.
 
-    The values are rounded outwards, and a design is found again at the rounded ones.
+    Values are rounded outwards, and a design is confirmed at the rounded values.
 
     Parameters
     ----------
-    problem, start : the problem with these variables fixed, and a point of it
-    limits, paths : how far each may go, and its PATH, by place
-    design : where the quantities of PATHs are looked up
+    problem, start : the problem with these variables fixed, and one of its points
+    limits, paths : limit of each change and its PATH, by index
+    design : gives the quantities of PATHs
     """
     places = [place for place, limit in limits.items() if limit != start[place]]
     if not places:
@@ -232,7 +233,7 @@ def freed(
 
 
 def rounded_outward(quantity: Quantity, value: float, *, upwards: bool) -> float:
-    """A value (SI) rounded outwards in the unit it is shown in."""
+    """A value (SI) rounded outwards in its display unit."""
     shown = outward(quantity.to_display(value), DIGITS, upwards)
     return unit(quantity.unit, quantity.dimension).to_si(shown) if quantity.unit else shown
 
@@ -244,9 +245,9 @@ def _least_first(enough: Sequence[Cure]) -> tuple[Cure, ...]:
 
 
 def opened(actuator: ActuatorProblem, paths: Sequence[str]) -> BoxProblem:
-    """The problem with more variables, each still at its value.
+    """The problem with more variables, each starting at its value.
 
-    Rows that only these move count too, but for checks that were missed for good before.
+    Rows that only these variables affect count too, except for checks that cannot be met anyway.
     """
     subject, numbers = actuator.subject, actuator.subject.numbers
     at = {path: numbers[path] for path in paths}
@@ -274,7 +275,7 @@ def _kept(actuator: ActuatorProblem, lost: frozenset[str]) -> BoxProblem:
 
 
 def _lost(actuator: ActuatorProblem) -> frozenset[str]:
-    """Checks that no variable can mend, by their rows."""
+    """Checks that no variable can fix, by their rows."""
     return frozenset(
         row.label
         for row in actuator.fixed
@@ -283,7 +284,7 @@ def _lost(actuator: ActuatorProblem) -> frozenset[str]:
 
 
 def outward(value: float, digits: int, upwards: bool) -> float:
-    """A number rounded to some digits, upwards or downwards (but for rounding itself).
+    """A number rounded to some digits, upwards or downwards (beyond floating-point noise).
 
     >>> outward(283.0994, 4, True), outward(9.98645, 4, False), outward(400.00000001, 4, True)
     (283.1, 9.986, 400.0)
@@ -300,7 +301,7 @@ def outward(value: float, digits: int, upwards: bool) -> float:
 def _choices(
     actuator: ActuatorProblem, found: Infeasibility, gains: Mapping[str, float]
 ) -> tuple[tuple[Cure, ...], list[str]]:
-    """Choices that alone are enough, those that miss least first; those not tried."""
+    """Choices enough alone, least infeasible first; and those not tried."""
     subject, library = actuator.subject, load_library()
     before = _missed(actuator.problem, found.x)
     offered: list[tuple[float, Cure, BoxProblem]] = []
@@ -319,14 +320,14 @@ def _choices(
         if len(enough) == ENOUGH or number == MOST_CHOICES:
             rest = dict.fromkeys(one.path for _, one, _ in offered[number:])
             return tuple(enough), [path for path in rest if path not in {c.path for c in enough}]
-        tell("nothing fits: which choice alone would do", number / len(offered))
+        tell("infeasible: searching for a sufficient choice", number / len(offered))
         if repairs.near(problem, found.x) is not None:
             enough.append(cure)
     return tuple(enough), []
 
 
 def _missed(problem: BoxProblem, x: Vector) -> float:
-    """Sum of the margins missed at a point; infinite where the models have no answer."""
+    """Sum of the missed margins at a point; infinite where the models have no result."""
     rows = Evaluator.screen(problem.rows(x[:, None]))[1:, 0]
     return float(np.maximum(-rows, 0.0).sum()) if np.isfinite(rows).all() else math.inf
 
@@ -334,9 +335,9 @@ def _missed(problem: BoxProblem, x: Vector) -> float:
 def _vocabulary(
     subject: PreparedDesign, library: Library, gains: Mapping[str, float], places: set[str]
 ) -> Iterator[tuple[str, str, dict[str, str]]]:
-    """PATHs of words and materials that take part in the conflict, what to try, and beside what.
+    """Yield choices that may resolve the conflict: PATH, alternative, required further entries.
 
-    A part does by its numbers (`gains`), a seal also where it misses a limit (`places`).
+    A part is included if its numbers matter (`gains`), a seal also if it misses a limit (`places`).
     """
     design = subject.design
 
@@ -367,7 +368,7 @@ def _vocabulary(
 
 
 def _rings(seal: Seal, here: str, count: int) -> dict[str, str] | None:
-    """What more back-up rings need beside the word; None where no standard has their width."""
+    """Further entries that more back-up rings need; None if no standard has their width."""
     if seal.back_up_material is not None and seal.back_up_thickness is not None:
         return {}
     try:
@@ -380,7 +381,7 @@ def _rings(seal: Seal, here: str, count: int) -> dict[str, str] | None:
 
 
 def _word(design: Design, path: str) -> str:
-    """The word or material at a PATH; "" where the design states none."""
+    """The word or material at a PATH; "" if the design states none."""
     found: object = design
     for step in re.split(r"\.|(?=\[)", path):
         layer = re.fullmatch(r"\[(\d+)\]", step)
@@ -394,7 +395,7 @@ def _word(design: Design, path: str) -> str:
 def _chosen(
     actuator: ActuatorProblem, values: Mapping[str, str], library: Library
 ) -> BoxProblem | None:
-    """The problem with another choice; None where it contradicts the design, or costs a check."""
+    """The problem with another choice; None if it contradicts the design or fails a check."""
     subject = actuator.subject
     try:
         design = with_values(

@@ -1,4 +1,4 @@
-"""Descents from points, and what they ended on: the state of one run of the optimiser."""
+"""Descents from points and their results: the state of one optimiser run."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ RESIDUAL = 1e-6
 
 FINISH = "active-set Newton"
 
-RESTORATION = "least worst miss by LD_SLSQP"
+RESTORATION = "least worst violation by LD_SLSQP"
 
 NEARER = 1e-3
-"""Share by which a worst miss must be less than those known to be another one."""
+"""Share by which a worst violation must improve on the known ones to count as new."""
 
 ELSEWHERE = 1.0
-"""Share by which a worst miss must exceed the least known for its search to count as stuck."""
+"""Share by which a worst violation must exceed the least known for its search to count as stuck."""
 
 LOCAL_EVALUATIONS = 150
-"""Most evaluations of one local run of SLSQP on the default path."""
+"""Maximum evaluations of one local SLSQP run on the default path."""
 
 
 @dataclass
 class SearchResult:
-    """A point that runs ended on: how far it is from optimal, what led there, how often."""
+    """The end point of runs: its residual, its algorithm, and how often it was reached."""
 
     point: Point
     residual: float
@@ -43,12 +43,12 @@ class SearchResult:
 
     @property
     def good(self) -> bool:
-        """Whether it meets everything and the optimality conditions hold."""
+        """Whether it is feasible and satisfies the optimality conditions."""
         return self.point.violation <= FEASIBLE and self.residual <= RESIDUAL
 
 
 class Descents:
-    """The state of one run: the evaluator, what was found, what to tell."""
+    """The state of one run: evaluator, results and warnings."""
 
     def __init__(self, evaluator: Evaluator, seed: int) -> None:
         self.evaluator = evaluator
@@ -57,28 +57,28 @@ class Descents:
         self.records: list[StartRecord] = []
         self.warnings: list[str] = []
         self.least: list[Point] = []
-        """Where the most missed limit is missed least, though it is missed."""
+        """The infeasible point with the least worst violation."""
         self.objective_scale = 0.0
         self.interrupted = False
 
     @property
     def succeeded(self) -> bool:
-        """Whether an optimum was found."""
+        """Whether an optimum was reached."""
         return any(optimum.good for optimum in self.optima)
 
     @property
     def feasible(self) -> bool:
-        """Whether a point that meets everything was found."""
+        """Whether a feasible point was reached."""
         return any(optimum.point.violation <= FEASIBLE for optimum in self.optima)
 
     def residual(self, point: Point) -> float:
-        """How far a point is from optimal; infinite where the model has no values."""
+        """Residual of the optimality conditions; infinite where the model is undefined."""
         if not point.valid:
             return np.inf
         return kkt.check(self.evaluator, point, objective_scale=self.objective_scale).residual
 
     def same(self, point: Point) -> SearchResult | None:
-        """Return the optimum already found that a point has run into."""
+        """Return the known optimum that a point has reached."""
         for optimum in self.optima:
             known = optimum.point
             size = max(abs(known.objective), 1e-3 * self.objective_scale, 1e-300)
@@ -90,7 +90,7 @@ class Descents:
     def descend(
         self, start: Point, algorithm: str, *, linear: bool, most: int | None = None
     ) -> bool:
-        """One local run with its finish; True where it ended on an optimum."""
+        """Run one local search and polish the result; True if it ended at an optimum."""
         before = self.evaluator.evaluations
         good = [o for o in self.optima if o.good]
         run = nlopt_wrapper.run(
@@ -118,7 +118,7 @@ class Descents:
         return found.good
 
     def restore(self, point: Point, *, start: Point) -> None:
-        """Go to where the most missed limit is missed least, and on from there if all are met."""
+        """Minimise the worst violation, and descend from there if it vanishes."""
         before = self.evaluator.evaluations
         least = min((one.violation for one in self.least), default=np.inf)
         found = elastic.least_missed(self.evaluator, point, least / 2)
@@ -137,7 +137,7 @@ class Descents:
             )
 
     def finish(self, point: Point, algorithm: str) -> SearchResult:
-        """Polish a point and enter it among the optima."""
+        """Polish a point and add it to the optima."""
         better = polish(self.evaluator, point)
         if better is not point:
             algorithm = f"{algorithm}, {FINISH}"
@@ -150,9 +150,9 @@ class Descents:
         return optimum
 
     def best(self, others: Sequence[SearchResult] = ()) -> SearchResult | None:
-        """Feasible points by objective, then the least infeasible, of the optima and others.
+        """The best of the optima and other points: feasible ones first, by objective.
 
-        A point whose optimality is proven wins over one that is better by rounding only.
+        A proven optimum wins over a point that is better only by rounding.
         """
 
         def rank(optimum: SearchResult) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""Elastic problems: the same problem with constraints that may be missed at a price."""
+"""Elastic problems: the same problem with constraints that may be violated at a price."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ from .problem import BoxProblem, Values, Vector
 Indices: TypeAlias = npt.NDArray[np.intp]
 
 FEASIBLE = 1e-6
-"""Slack that counts as none."""
+"""Slack that counts as zero."""
 
 MOST = 200
-"""Most evaluations of one descent; 10 to 50 mostly do."""
+"""Maximum evaluations of one descent; 10 to 50 usually suffice."""
 
 FINE = 1e-7
-"""Relative tolerance of a descent before its exact finish."""
+"""Relative tolerance of a descent before it is polished."""
 
 EXACT = 1e-9
-"""Optimality of an end, near which no further step of the finish is worth its effort."""
+"""Optimality at which further polishing does not pay."""
 
 ROUGH = 1e-5
-"""Relative tolerance of a descent that only has to tell whether it leads anywhere."""
+"""Relative tolerance of a descent that only tests whether a start is promising."""
 
 
 def common(problem: BoxProblem, room: float) -> BoxProblem:
-    """Minimise one slack that every constraint and equality may be missed by."""
+    """Minimise one slack shared by every constraint and equality."""
     m, e = len(problem.constraint_names), len(problem.equality_names)
     n = len(problem.names)
 
@@ -51,7 +51,7 @@ def common(problem: BoxProblem, room: float) -> BoxProblem:
 
 
 def separate(problem: BoxProblem, groups: Sequence[Indices], room: Sequence[float]) -> BoxProblem:
-    """Minimise the sum of one slack per group of constraints; the others hold."""
+    """Minimise the sum of one slack per group of constraints; all others must be met."""
     n, m = len(problem.names), len(problem.constraint_names)
 
     def evaluate(x: Array) -> Values:
@@ -68,7 +68,7 @@ def separate(problem: BoxProblem, groups: Sequence[Indices], room: Sequence[floa
 
 
 def _rows_once(problem: BoxProblem, points: Array) -> npt.NDArray[np.generic]:
-    """Rows of points (n, k) of which many differ in slacks only: the model sees each once."""
+    """Rows of points (n, k) of which many differ only in slacks; the model evaluates each once."""
     columns = np.ascontiguousarray(points.T)
     first: dict[bytes, int] = {}
     places = [first.setdefault(column.tobytes(), len(first)) for column in columns]
@@ -110,9 +110,9 @@ def feasible_point(evaluator: Evaluator, point: Point) -> Point | None:
 
 
 def least_missed(evaluator: Evaluator, point: Point, rough: float = np.inf) -> Point:
-    """The point nearby whose most missed limit is missed least; the point itself where none is.
+    """Minimise the worst violation near a point; a feasible point is returned unchanged.
 
-    An end that misses more than `rough` stays as rough as it is, which saves half the effort.
+    A result that violates more than `rough` is not polished, which halves the effort.
     """
     inner = Evaluator(common(evaluator.problem, 2.0 * point.violation + 1.0))
     start = found = inner.point(inner.space.to_z(np.append(point.x, point.violation)))
@@ -131,14 +131,14 @@ def least_missed(evaluator: Evaluator, point: Point, rough: float = np.inf) -> P
 
 
 def _miss(point: Point) -> float:
-    """The most missed limit at a point of a common slack: what is violated the slack could take."""
+    """The worst violation at a point of a common slack; the slack covers what is violated."""
     return point.objective + point.violation if point.valid else np.inf
 
 
 def descend(
     problem: BoxProblem, x: Vector, slack: Sequence[float], known: Sequence[Point] = ()
 ) -> Point:
-    """Solve an elastic problem from a point and slacks, unless it arrives at a known end."""
+    """Solve an elastic problem from a point and slacks, unless it reaches a known result."""
     inner = Evaluator(problem)
     start = inner.point(inner.space.to_z(np.concatenate([x, np.asarray(slack, dtype=float)])))
     if not start.valid:
@@ -148,10 +148,10 @@ def descend(
 
 
 def go(evaluator: Evaluator, start: Point) -> Point:
-    """One descent with its finish."""
+    """Run one descent and polish the result."""
     return finish(evaluator, run(evaluator, start, "LD_SLSQP", tolerance=FINE, most=MOST).point)
 
 
 def finish(evaluator: Evaluator, point: Point) -> Point:
-    """The end of a descent, exact to `EXACT`."""
+    """Polish a descent to `EXACT`."""
     return polish(evaluator, point, tolerance=EXACT)

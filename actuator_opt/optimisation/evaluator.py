@@ -1,7 +1,7 @@
-"""A problem as the solvers see it: one evaluation per point, exact gradients, NaN screened.
+"""The solver's view of a problem: one evaluation per point, exact gradients, NaN screened.
 
-Values come from real evaluations, so that a domain fault (the root of a negative number) shows
-as NaN; gradients come from one batched complex step [Squire1998] and rows that fail the one
+Values come from real evaluations, so that a domain error (the root of a negative number) shows as
+NaN. Gradients come from one batched complex step [Squire1998]. Rows that fail a single
 finite-difference check fall back to central differences.
 """
 
@@ -18,7 +18,7 @@ from ..base.numeric import STEP
 from .problem import BoxProblem, Space, Vector
 
 CHUNK = 4096
-"""Most columns in one call of the model."""
+"""Maximum columns in one model call."""
 
 DIFFERENCE_STEP = 6e-6
 """Step of central differences of values in solver coordinates, near the cube root of rounding."""
@@ -27,11 +27,11 @@ HESSIAN_STEP = 1e-5
 """Step of central differences of exact gradients."""
 
 CEILING = 1e9
-"""A margin of plus infinity (nothing loads the part) counts as this much, with no slope."""
+"""Substitute for an infinite margin (an unloaded part), with zero slope."""
 
 
 class LimitReached(Exception):
-    """The evaluation or time limit of a run is used up."""
+    """The evaluation or time limit of a run is reached."""
 
 
 @dataclass(slots=True)
@@ -58,7 +58,7 @@ class Evaluator:
     ----------
     problem : the problem
     max_evaluations, max_seconds : limits after which `point` raises `LimitReached`
-    stop : asked before every evaluation; `point` raises `LimitReached` once it says True
+    stop : called before every evaluation; `point` raises `LimitReached` once it returns True
     """
 
     def __init__(
@@ -84,18 +84,18 @@ class Evaluator:
         self.bad_slopes = 0
         self.complex_works = problem.has_complex_step
         self.eager = False
-        """Take the gradient with every value: cheaper for solvers that ask for both."""
+        """Compute the gradient with every value: cheaper for solvers that need both."""
         self.difference_rows = np.zeros(problem.row_count, dtype=bool)
         self.influence = np.zeros((2, self.space.size))
         self.trace: list[tuple[int, float, float]] = []
         self.best: Point | None = None
         self.foreseen: dict[bytes, npt.NDArray[np.generic]] = {}
-        """Rows of the `columns` of points known before they are asked for, by coordinates."""
+        """Precomputed rows of the `columns` of points, by coordinates."""
         self._cache: dict[bytes, Point] = {}
 
     @property
     def late(self) -> bool:
-        """Whether the time is used up, or a stop is asked for."""
+        """Whether the time limit is reached or a stop is requested."""
         used = time.perf_counter() - self.began
         over = self.max_seconds is not None and used >= self.max_seconds
         return over or (self.stop is not None and self.stop())
@@ -131,7 +131,7 @@ class Evaluator:
         return self.complex_works and not self.difference_rows.any() and self.space.size > 0
 
     def _enter(self, z: Vector, rows: Vector, slopes: Vector | None) -> Point:
-        """A point with its rows, remembered."""
+        """Store a point with its rows."""
         valid = bool(np.isfinite(rows).all())
         self.evaluations += 1
         self.invalid += not valid
@@ -152,13 +152,13 @@ class Evaluator:
         return self._enter(z, *self.values_and_slopes(rows))
 
     def enter_foreseen(self) -> None:
-        """Count the points known in advance as visited."""
+        """Count the precomputed points as visited."""
         for z, rows in self.foreseen.items():
             self.entered(np.frombuffer(z), rows)
         self.foreseen.clear()
 
     def _note(self, point: Point) -> None:
-        """Keep a point and add it to the trace if it improves on the last one there."""
+        """Store a point, and add it to the trace if it improves on the last entry."""
         missed = point.violation if point.violation > 1e-6 else 0.0
         if self.trace:
             _, objective, violation = self.trace[-1]
@@ -173,7 +173,7 @@ class Evaluator:
 
     @staticmethod
     def screen(rows: npt.NDArray[np.generic]) -> Vector:
-        """Rows with infinite margins at their ceiling and everything else infinite as NaN."""
+        """Screen rows: infinite margins become their ceiling, other infinities NaN."""
         values = np.array(rows.real, dtype=float)
         margins = values[1:]
         margins[margins == np.inf] = CEILING
@@ -181,10 +181,10 @@ class Evaluator:
         return values
 
     def violations(self, rows: Vector, kind: str) -> Vector:
-        """Infeasibility (k,) of rows (rows, k): "worst" margin missed, or the bounded "sum".
+        """Infeasibility (k,) of rows (rows, k): the "worst" missed margin, or the bounded "sum".
 
-        The sum counts v/(1 + v) of each violation v, so that no single wild row rules the
-        ranking. NaN rows are infinitely infeasible.
+        The sum uses v/(1 + v) of each violation v, so that no single row dominates. NaN rows are
+        infinitely infeasible.
         """
         margins = rows[1 : 1 + self.constraint_count]
         missed = np.concatenate([np.maximum(-margins, 0.0), np.abs(rows[1 + len(margins) :])])
@@ -201,7 +201,7 @@ class Evaluator:
         return point.jacobian
 
     def take_slopes(self, points: Sequence[Point]) -> None:
-        """The gradients at some points, in one call of the model."""
+        """Compute the gradients at some points, in one model call."""
         slopes = self.jacobians(np.stack([point.z for point in points], axis=1))
         for k, point in enumerate(points):
             self._keep(point, slopes[:, k])
@@ -218,7 +218,7 @@ class Evaluator:
         return slopes
 
     def columns(self, z: Vector) -> npt.NDArray[np.complex128]:
-        """Complex points (n, nf) whose rows hold value and gradient at coordinates (nf, 1)."""
+        """Complex points (n, nf) whose rows contain value and gradient at coordinates (nf, 1)."""
         x = self.space.to_x(z)
         batch = np.repeat(x.astype(complex), z.shape[0], axis=1)
         columns = np.arange(z.shape[0])
@@ -228,8 +228,8 @@ class Evaluator:
     def values_and_slopes(self, rows: npt.NDArray[np.generic]) -> tuple[Vector, Vector]:
         """Rows (rows, 1) and gradients (rows, nf) of one point from the rows of its `columns`.
 
-        An imaginary part that is not tiny betrays a root or logarithm outside its domain, which
-        complex arithmetic would otherwise hide: such rows become NaN.
+        A large imaginary part reveals a root or logarithm outside its domain, which complex
+        arithmetic would hide. Such rows become NaN.
         """
         hidden = (np.abs(rows.imag) > 1e-9 * (1.0 + np.abs(rows.real))).any(axis=1)
         values = self.screen(np.where(hidden, np.nan, rows.real[:, 0])[:, None])
@@ -308,32 +308,34 @@ class Evaluator:
     def check_gradients(self, point: Point) -> tuple[str, ...]:
         """Compare the complex step with finite differences once; rows that differ fall back.
 
-        Returns the warnings to give.
+        Returns the warnings to show.
         """
         if not self.problem.has_complex_step:
-            return ("gradients are finite differences: the model takes no complex numbers",)
+            return (
+                "gradients are finite differences, as the model does not accept complex numbers",
+            )
         try:
             exact = self._complex_step(point.z[:, None], inside=True)[:, 0]
         except (TypeError, ValueError, np.exceptions.ComplexWarning) as error:
             self.complex_works = False
             return (
-                f"gradients fall back to finite differences: the model refuses complex "
-                f"numbers ({error}); avoid float(), abs and math functions in own functions",
+                "gradients fall back to finite differences, as the model rejects complex "
+                f"numbers ({error}); avoid float(), abs and math functions in custom functions",
             )
         wrong = self._disagreement(point, exact)
         self.difference_rows = wrong
         labels = ("objective", *self.problem.constraint_names, *self.problem.equality_names)
         return tuple(
-            f"the gradient of {labels[i]} falls back to finite differences: the complex step "
-            f"disagrees with them, or has none; avoid abs, max, sign, float() and floor in own "
-            f"functions"
+            f"the gradient of {labels[i]} falls back to finite differences, as the complex step "
+            "disagrees with them or is undefined; avoid abs, max, sign, float() and floor in "
+            "custom functions"
             for i in np.flatnonzero(wrong)
         )
 
     def _disagreement(self, point: Point, exact: Vector) -> npt.NDArray[np.bool_]:
         n = self.space.size
         wrong = np.ones(len(exact), dtype=bool)
-        for step in (1e-5, 1e-4, 1e-6):  # a kink or rounding spoils one step, not all three
+        for step in (1e-5, 1e-4, 1e-6):  # a kink or rounding affects one step size, not all three
             moves = step * np.eye(n)
             z = point.z[:, None]
             sides = np.concatenate([z + moves, z - moves], axis=1)
@@ -351,9 +353,9 @@ class Evaluator:
 
 
 def points_together(wanted: Sequence[tuple[Evaluator, Vector]]) -> list[Point]:
-    """The point at z (nf,) of each evaluator with its gradients, from one call of the model.
+    """Evaluate z (nf,) of each evaluator with its gradients, in one model call.
 
-    The problems differ in nothing but their bounds.
+    The problems may differ only in their bounds.
     """
     if len(wanted) == 1 or not all(evaluator.exact for evaluator, _ in wanted):
         return [evaluator.point(z) for evaluator, z in wanted]

@@ -1,10 +1,10 @@
-"""Problems that differ in nothing that a search of another one rests on: its result is theirs too.
+"""Problems that share the result of a search, as they differ only in irrelevant values.
 
-Combinations of choices often differ in numbers that only enter limits nothing hangs on: oils of one
-bulk modulus in their viscosity. What a search of listed sizes came to rests on where its boxes
-ended, the optimum of each or the point that misses least. Where two problems have the same values
-and slopes there, but for rows whose limits are farther off than any optimum is from where its box
-ended, the boxes of both have the same optima.
+Combinations of choices often differ in numbers that only enter inactive limits, such as the
+viscosity of oils with one bulk modulus. The search of listed sizes depends on the result of each
+box: its optimum or least infeasible point. Two problems have the same results if values and slopes
+agree there. Rows may differ if their limits are farther away than any optimum is from the result of
+its box.
 """
 
 from __future__ import annotations
@@ -19,19 +19,19 @@ from .problem import BoxProblem, Vector
 from .resolve.boxes import NEAR
 
 EQUAL = 1e-6
-"""Relative difference of continuous optima that counts as none: quick looks know them so well."""
+"""Relative difference of continuous optima that counts as none: the accuracy of quick looks."""
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """Where the boxes of a search of a problem ended; `optimum` is its continuous objective."""
+    """Results of the boxes of a search; `optimum` is the problem's continuous objective."""
 
     problem: BoxProblem
     optimum: float
     ends: Sequence[tuple[Evaluator, Point]]
 
     def holds_for(self, other: BoxProblem, optimum: float) -> bool:
-        """Whether a search of another problem would end as this one did."""
+        """Whether a search of another problem would give the same result."""
         one = self.problem
         if not self.ends or abs(optimum - self.optimum) > EQUAL * abs(self.optimum):
             return False
@@ -61,5 +61,5 @@ class Evidence:
 
 
 def _distance(rows: Vector, slopes: Vector) -> Vector:
-    """How far off the limits of rows are in solver coordinates, by their slopes."""
+    """Distance of the limits of rows in solver coordinates, from their slopes."""
     return np.asarray(rows / np.maximum(np.sqrt((slopes**2).sum(axis=1)), 1e-300))

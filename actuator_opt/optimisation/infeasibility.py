@@ -1,10 +1,9 @@
-"""Why nothing fits: what to relax together, what alone would do, which bounds stand in the way.
+"""Why a problem is infeasible: joint relaxation, sufficient single changes, binding bounds.
 
 All amounts are margins, that is fractions of the limits. The smallest joint relaxation minimises
-the sum of the margins given up (an elastic programme [Chinneck2008]), which names few
-requirements rather than a little of each; constraints that are laws (geometry) are never relaxed.
-Every search is local, from the points given: what is found is so, what is not found was only not
-found.
+the sum of the margins given up (an elastic programme [Chinneck2008]). It names few requirements
+rather than a little of each; physical laws (geometry) are never relaxed. Every search is local,
+from the given points: a remedy it finds is valid, but it may miss others.
 """
 
 from __future__ import annotations
@@ -22,10 +21,10 @@ from .problem import BoxProblem, Vector
 from .repairs import NOTHING, Opening, Relaxation
 
 STARTS = 2
-"""Most points from which the joint relaxation is sought."""
+"""Maximum points from which the joint relaxation is sought."""
 
 ROOM = 1.001
-"""What is granted to a limit, over the least that is enough, to get near that design."""
+"""Relaxation granted to a limit, relative to the least sufficient one, to approach that design."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,11 +33,11 @@ class Infeasibility:
 
     Parameters
     ----------
-    joint : the smallest joint relaxation, the largest first; empty where the laws alone conflict
-    sole : for each requirement that takes part, what it would have to give up alone
-    bounds : variable bounds that bind there, the most gainful first
+    joint : the smallest joint relaxation, the largest first; empty if only laws conflict
+    sole : sufficient relaxation of each conflicting requirement alone
+    bounds : variable bounds that bind there, the most helpful first
     laws : constraints that cannot be relaxed and conflict among themselves
-    x : the point that needs only the joint relaxation
+    x : the point of the joint relaxation
     total : sum of the joint relaxation
     residual : optimality of the joint relaxation (small: it is the smallest near x)
     multipliers : fall of the total per unit of margin granted to each constraint (m,)
@@ -59,10 +58,10 @@ def explain(problem: BoxProblem, points: Sequence[Vector]) -> Infeasibility:
 
     Parameters
     ----------
-    problem : the problem, with `relaxable` telling wishes from laws (None: all are wishes)
+    problem : the problem; `relaxable` separates requirements from laws (None: all relaxable)
     points : where to start, such as the least infeasible points found (n,)
     """
-    tell("nothing fits: what would have to give way")
+    tell("infeasible: searching for the smallest relaxation")
     m = len(problem.constraint_names)
     mask = np.ones(m, dtype=bool) if problem.relaxable is None else np.array(problem.relaxable)
     everything = _groups(problem)
@@ -106,7 +105,7 @@ def _joint(
     mask: npt.NDArray[np.bool_],
     found: Point,
 ) -> tuple[Relaxation, ...]:
-    """The relaxations of a point of the stretched problem, the largest first."""
+    """The relaxations at a point of the elastic problem, the largest first."""
     amounts = found.x[len(problem.names) :]
     joint = [
         Relaxation(problem.constraint_names[group[0]], int(group[0]), float(amount))
@@ -124,7 +123,7 @@ def _less(
     sole: Sequence[Relaxation],
     found: Point,
 ) -> Point | None:
-    """A smaller joint relaxation, where one limit alone gives up less: the descent got stuck."""
+    """A smaller joint relaxation, if one limit alone gives up less because the descent stalled."""
     alone = [(r.amount, group) for r, group in zip(sole, candidates, strict=True) if r.amount]
     amount, group = min(alone, key=lambda one: one[0], default=(np.inf, groups[0]))
     if amount >= found.objective - NOTHING:
@@ -140,10 +139,10 @@ def _less(
 
 
 def _taking_part(evaluator: Evaluator, found: Point, quality: kkt.Kkt) -> npt.NDArray[np.bool_]:
-    """Constraints with a share in the conflict; the others, left out, would leave it as it is.
+    """Constraints that take part in the conflict; dropping the others does not resolve it.
 
-    The multipliers of the relaxation prove that (in a convex problem, else near the point);
-    without optimality every constraint that binds may take part.
+    The multipliers of the relaxation prove this (for a convex problem, else locally). Without
+    optimality every binding constraint may take part.
     """
     if quality.residual <= NOTHING:
         return np.asarray(quality.multipliers > 1e-7)
@@ -180,7 +179,7 @@ def _smallest(
 def _binding_bounds(
     problem: BoxProblem, evaluator: Evaluator, quality: kkt.Kkt
 ) -> tuple[Opening, ...]:
-    """Bounds that hold back the joint relaxation, the most gainful first."""
+    """Bounds that limit the joint relaxation, the most helpful first."""
     found = []
     space = evaluator.space
     for k, j in enumerate(space.free):

@@ -1,4 +1,4 @@
-"""The infeasibility card of an actuator: limits by the PATH one can set, in the units of people."""
+"""The infeasibility card of an actuator: limits by PATH, in display units."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from .repairs import WIDEST, Opening, Relaxation
 from .result import Infeasibility
 
 MORE_DIGITS = 6
-"""Digits where the change is less than a per cent."""
+"""Digits for changes below one per cent."""
 
 KINDS = ("dimension", "choice", "bound", "requirement", "safety factor")
-"""What may be changed, the most advisable first."""
+"""Kinds of change, the most advisable first."""
 
 _ORIGINS = {"requirement": "requirement", "case": "load case", "check": "check list"}
 
@@ -32,9 +32,9 @@ _ORIGINS = {"requirement": "requirement", "case": "load case", "check": "check l
 def explained(
     actuator: ActuatorProblem, solution: Solution
 ) -> tuple[Infeasibility | None, Solution]:
-    """Why nothing fits, and the design that needs only the smallest joint relaxation.
+    """Explain an infeasible result; returns the card and the design of the joint relaxation.
 
-    A search stopped by its limit knows neither.
+    Both are missing if a limit stopped the search.
     """
     limited = solution.outcome is Outcome.LIMIT_INFEASIBLE
     if solution.feasible or solution.kkt is None or limited:
@@ -82,12 +82,12 @@ def _card(
 
 
 def _kind(entry: Mapping[str, Any]) -> str:
-    """Whether a limit is the design's own requirement, or guards the safety of the actuator."""
+    """Whether a limit is a requirement or a safety factor."""
     return "safety factor" if entry["safety_factor"] else "requirement"
 
 
 def _listed(entry: Mapping[str, Any], kind: str) -> dict[str, Any]:
-    """A limit or bound that alone is enough, as the list of cures has it."""
+    """A sufficient limit or bound, as an entry of the list of cures."""
     return {
         "kind": kind,
         "parameter": entry["parameter"] or entry["requirement"],
@@ -97,7 +97,7 @@ def _listed(entry: Mapping[str, Any], kind: str) -> dict[str, Any]:
 
 
 def _together(actuator: ActuatorProblem, dimensions: Sequence[Cure]) -> dict[str, Any]:
-    """Dimensions that are enough all at once."""
+    """Dimensions that are enough together, as an entry."""
     parts = [_cure(actuator, "dimension", cure) for cure in dimensions]
     texts = ("parameter", "limit_text", "needed_text")
     entry: dict[str, Any] = {
@@ -113,7 +113,7 @@ def _together(actuator: ActuatorProblem, dimensions: Sequence[Cure]) -> dict[str
 
 
 def _cure(actuator: ActuatorProblem, kind: str, cure: Cure) -> dict[str, Any]:
-    """A dimension or a choice that alone is enough."""
+    """A sufficient dimension or choice, as an entry."""
     entry: dict[str, Any] = {"kind": kind, "parameter": cure.path, "advised": True, "now": cure.now}
     if isinstance(cure.now, str) or isinstance(cure.needed, str):
         more = ", ".join(f"{path.rpartition('.')[2]} {text}" for path, text in cure.beside.items())
@@ -130,7 +130,7 @@ def _cure(actuator: ActuatorProblem, kind: str, cure: Cure) -> dict[str, Any]:
 
 
 def entry_of(actuator: ActuatorProblem, relaxed: Relaxation) -> dict[str, Any]:
-    """A requirement: its limit as the design states it, and the one that would do."""
+    """A requirement as an entry: its limit as stated, and the sufficient one."""
     row, amount = actuator.rows[relaxed.index], relaxed.amount
     limit = float(np.ravel(row.limit)[0])
     path, sense = row.limit_of.path, row.limit_of.sense
@@ -159,12 +159,12 @@ def entry_of(actuator: ActuatorProblem, relaxed: Relaxation) -> dict[str, Any]:
 
 
 def _guards(row: LimitRow) -> bool:
-    """Whether a limit guards safety: every one of the check list, and every factor."""
+    """Whether a limit protects safety: the check list, and every factor."""
     return row.limit_of.origin == "check" or row.limit_of.metric.endswith("_factor")
 
 
 def _relaxed(row: LimitRow, limit: float, amount: float) -> float:
-    """The limit that would do after giving up a margin `amount`."""
+    """The limit after giving up a margin `amount`."""
     step = amount * (abs(limit) or 1.0)
     return limit - step if row.limit_of.sense == "min" else limit + step
 
@@ -187,7 +187,7 @@ def _bound(actuator: ActuatorProblem, bound: Opening) -> dict[str, Any]:
 def _texts(
     quantity: Quantity, limit: float, needed: float | None, *, upwards: bool
 ) -> dict[str, str]:
-    """Both values in the display unit; the needed one rounded so that it is enough as printed."""
+    """Both values in the display unit; the needed one rounded to be sufficient as printed."""
     texts = {"limit_text": quantity.text(limit, MORE_DIGITS), "needed_text": ""}
     if needed is not None:
         fine = abs(needed - limit) < 0.01 * abs(limit)
@@ -200,7 +200,7 @@ def _texts(
 
 
 def change_text(entry: Any) -> str:
-    """``PATH 250 N -> 283.1 N (+13.2 %)``; of changes together all of them."""
+    """``PATH 250 N -> 283.1 N (+13.2 %)``; joint changes one after the other."""
     if "together" in entry:
         return " and ".join(change_text(part) for part in entry["together"])
     name = entry.get("parameter") or entry["requirement"]
@@ -210,7 +210,7 @@ def change_text(entry: Any) -> str:
 
 
 def percent(share: float) -> str:
-    """A signed share in per cent with three digits, none lost.
+    """A signed share in per cent with three significant digits.
 
     >>> percent(0.132398), percent(-0.00035), percent(1e-8)
     ('+13.2 %', '-0.035 %', '+0.000001 %')
@@ -221,7 +221,7 @@ def percent(share: float) -> str:
 
 
 _ACTS = {"dimension": "free {}", "choice": "change {}", "bound": "open {}"}
-"""What to do with each kind of cure that is no limit."""
+"""Action for each kind of cure other than a limit."""
 
 
 def _sentence(
@@ -230,38 +230,38 @@ def _sentence(
     """The advice in one line: the first cure, or the smallest change of limits."""
     if laws:
         return (
-            "nothing fits whatever the requirements: the bounds leave no room for the geometry"
-            f" ({', '.join(laws)})"
+            "infeasible whatever the requirements: within the bounds the geometry conflicts "
+            f"({', '.join(laws)})"
         )
     if not joint:
-        return "nothing fits, and no relaxation that would do was found"
+        return "infeasible, and no sufficient relaxation was found"
     first = enough[0] if enough else None
     if first is not None and first["kind"] in _ACTS:
         enough_text = "together are enough" if "together" in first else "alone is enough"
-        return f"nothing fits: {_ACTS[first['kind']].format(change_text(first))} {enough_text}"
+        return f"infeasible: {_ACTS[first['kind']].format(change_text(first))} {enough_text}"
     changes = "; ".join(change_text(entry) for entry in joint)
     unsafe = any(entry["safety_factor"] for entry in joint)
     if len(joint) == 1:
-        said = f"nothing fits: the smallest change is {changes}"
+        said = f"infeasible: the smallest change is {changes}"
     else:
-        said = f"nothing fits: the smallest change, of {len(joint)} limits together, is {changes}"
+        said = f"infeasible: the smallest joint change, of {len(joint)} limits, is {changes}"
     if unsafe:
         said += " (weakens a safety factor: not advised)"
     if first is not None and (unsafe or len(joint) > 1) and first["advised"]:
-        said += f". One alone is enough too: {change_text(first)}"
+        said += f". One change alone is also enough: {change_text(first)}"
     return said
 
 
 def _evidence(found: Explanation, solution: Solution) -> str:
-    """What was proven by an example, and what was only not found."""
+    """The status of the advice: confirmed by a design, or only not found."""
     count = len(solution.starts)
     starts = f"{count} start{'' if count == 1 else 's'}"
-    tried = f"no design was found from {starts}, chosen among {solution.samples} points"
+    tried = f"no feasible design was found from {starts}, selected from {solution.samples} points"
     if found.laws:
         return f"{tried}: this is evidence, not proof"
     return (
-        f"{tried}: this is evidence, not proof. For everything said to be enough a design that"
-        " meets it was calculated; that less would not do, or that one alone cannot, is again"
-        " only what was found. Bounds and fixed dimensions were opened to"
-        f" {WIDEST:g} times or 1/{WIDEST:g} of their value"
+        f"{tried}: this is evidence, not proof. Each change listed as enough was confirmed by a "
+        "feasible design. Smaller changes, or single changes not listed, were only not found to "
+        f"be enough. Bounds and fixed dimensions were varied up to {WIDEST:g} times or down to "
+        f"1/{WIDEST:g} of their value"
     )

@@ -54,18 +54,18 @@ class Active:
 
 @dataclass(frozen=True)
 class Kkt:
-    """How well a point satisfies the optimality conditions.
+    """Accuracy of the optimality conditions at a point.
 
     Parameters
     ----------
     residual : relative norm of the gradient of the Lagrangian
     active : labels of active constraints, equalities and bounds ("NAME lower", "NAME upper")
-    count, rank : number of active gradients and how many are independent; the multipliers are
-        unique when they are equal
-    multipliers : (m,) of the constraints: change of the objective per unit of margin demanded
+    count, rank : number of active gradients, and of independent ones; the multipliers are unique
+        when they are equal
+    multipliers : (m,) of the constraints: change of the objective per unit of required margin
     equality_multipliers : (e,)
     lower_multipliers, upper_multipliers : (n,) of the bounds, per unit of solver coordinate
-    curvature : second-order condition; None where it was not asked for
+    curvature : second-order condition; None if not requested
     """
 
     residual: float
@@ -88,8 +88,8 @@ def nnls(matrix: Vector, vector: Vector, known: Vector | None = None) -> Vector:
     """Non-negative least squares: min |matrix @ result - vector|, result >= 0.
 
     First all columns unconstrained (enough at a regular optimum), else the active-set method of
-    Lawson and Hanson, which ends on independent columns. `known` is the result of a problem
-    much like it: it begins on the columns where that is positive.
+    Lawson and Hanson, which ends on independent columns. `known` is the result of a similar
+    problem: the search starts from its positive columns.
     """
     size = np.sqrt((matrix**2).sum(axis=0))
     used = np.flatnonzero(size > 1e-14 * size.max(initial=0.0))
@@ -120,7 +120,7 @@ def _lawson_hanson(matrix: Vector, vector: Vector, passive: npt.NDArray[np.bool_
             break
         passive[entering] = True
         trial, rank = _restricted(matrix, vector, passive)
-        if rank < passive.sum() or trial[entering] <= 0:  # dependent, or only rounding pulls
+        if rank < passive.sum() or trial[entering] <= 0:  # dependent, or within rounding
             passive[entering], refused[entering] = False, True
             continue
         while trial[passive].min() <= 0:
@@ -128,7 +128,7 @@ def _lawson_hanson(matrix: Vector, vector: Vector, passive: npt.NDArray[np.bool_
             room = result[falling] - trial[falling]
             shares = np.where(room > 0, result[falling] / np.where(room > 0, room, 1.0), 0.0)
             result = result + shares.min() * (trial - result)
-            passive[falling[shares <= shares.min() * (1 + 1e-12)]] = False  # at least one leaves
+            passive[falling[shares <= shares.min() * (1 + 1e-12)]] = False  # removes at least one
             result[~passive] = 0.0
             if not passive.any():
                 trial = result
@@ -142,7 +142,7 @@ def _lawson_hanson(matrix: Vector, vector: Vector, passive: npt.NDArray[np.bool_
 def _begun(
     matrix: Vector, vector: Vector, passive: npt.NDArray[np.bool_]
 ) -> tuple[Vector, npt.NDArray[np.bool_]]:
-    """A first result, with the columns out of some on which it is positive; none where none are."""
+    """A first result with some positive columns; none if there are none."""
     nothing = np.zeros(matrix.shape[1])
     while passive.any():
         trial, rank = _restricted(matrix, vector, passive)
@@ -209,10 +209,10 @@ def multipliers(
 
 
 def slope_scale(evaluator: Evaluator, point: Point, objective_scale: float = 0.0) -> float:
-    """Return the divisor of the residual: |grad f|.
+    """Return the divisor of the residual, |grad f|.
 
-    At a stationary objective (no constraint holds it) |grad f| itself vanishes; a thousandth of
-    the objective's magnitude then takes its place.
+    At a stationary objective without active constraints |grad f| vanishes. A thousandth of the
+    objective's magnitude then replaces it.
     """
     slope = float(np.linalg.norm(evaluator.jacobian(point)[0]))
     floor = max(1e-3 * abs(point.objective), 1e-6 * objective_scale)
@@ -233,7 +233,7 @@ def _priced(
 
 
 def residual(evaluator: Evaluator, point: Point) -> float:
-    """The relative norm of the gradient of the Lagrangian at a point, as `check` finds it."""
+    """The relative norm of the Lagrangian's gradient at a point, as in `check`."""
     return _priced(evaluator, point, 0.0)[-1]
 
 

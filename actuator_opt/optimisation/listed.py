@@ -1,4 +1,4 @@
-"""Variables that may only take listed values, some of them together, and boxes of such values."""
+"""Variables with listed values, singly or in groups, and boxes of such values."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ import numpy as np
 from .problem import Vector
 
 ON = 1e-7
-"""Distance from a listed value, over that to the next one, that counts as none."""
+"""Distance from a listed value, relative to the spacing, that counts as none."""
 
 SAME = 1e-9
 """Relative difference of objectives that counts as none."""
 
 Rows: TypeAlias = tuple[int, ...]
-"""Some rows of a group of listed variables, ascending."""
+"""Selected rows of a group of listed variables, ascending."""
 
 Box: TypeAlias = tuple[Rows, ...]
-"""The rows of every group that are left."""
+"""The remaining rows of every group."""
 
 Assignment: TypeAlias = tuple[int, ...]
-"""A row of every group."""
+"""One row of every group."""
 
 
 @dataclass(frozen=True, eq=False)
 class Listed:
-    """A group of variables that may only take listed values, those of a row together.
+    """A group of variables with listed values; a row is an allowed combination.
 
     Parameters
     ----------
@@ -40,11 +40,11 @@ class Listed:
     rows: Vector
 
     def values(self, column: int, rows: Rows) -> Vector:
-        """The different values of a column in some rows, ascending."""
+        """The distinct values of a column in some rows, ascending."""
         return np.unique(self.rows[list(rows), column])
 
     def parts(self, rows: Rows, row: int) -> list[Rows]:
-        """The other rows, in parts that one bound of one variable tells from this row."""
+        """The other rows, split into parts that a bound of one variable separates from this row."""
         parts: list[Rows] = []
         for column, value in enumerate(self.rows[row]):
             of = self.rows[:, column]
@@ -56,14 +56,14 @@ class Listed:
         return [part for part in parts if part]
 
     def at(self, x: Vector, rows: Rows) -> int | None:
-        """The row that a point (k,) is at; None where it is at none."""
+        """The row at a point (k,), or None."""
         span = np.ptp(self.rows, axis=0)
         near = np.abs(self.rows[list(rows)] - x) <= ON * span + SAME * np.abs(x)
         found = np.flatnonzero(near.all(axis=1))
         return rows[int(found[0])] if len(found) else None
 
     def around(self, x: Vector) -> list[int]:
-        """The nearest rows of a point (k,) for every choice of up and down; itself if it is one."""
+        """The nearest rows of a point (k,), for all roundings; only itself if it is a row."""
         every = tuple(range(len(self.rows)))
         here = self.at(x, every)
         if here is not None:
@@ -81,12 +81,12 @@ class Listed:
 
 
 def with_rows(box: Box, k: int, rows: Rows) -> Box:
-    """A box with other rows of one group."""
+    """A box with the rows of one group replaced."""
     return (*box[:k], rows, *box[k + 1 :])
 
 
 def between(values: Vector, value: float) -> tuple[float, float, float]:
-    """The values below and above another, and how far it is from both (0 to 0.5)."""
+    """The neighbouring values and the relative distance to the nearest (0 to 0.5)."""
     if len(values) == 1:
         return float(values[0]), float(values[0]), 0.0
     k = int(np.clip(np.searchsorted(values, value), 1, len(values) - 1))

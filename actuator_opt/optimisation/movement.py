@@ -1,4 +1,4 @@
-"""How an optimum moves with a parameter, how far its active set holds, and one-sided prices.
+"""Movement of an optimum with a parameter, validity of its active set, and one-sided prices.
 
 The derivative of the optimum solves the linearised optimality conditions [Fiacco1983]. At a
 degenerate vertex the multipliers form a polytope; the prices upwards and downwards are the
@@ -22,15 +22,15 @@ from .parameters import Responses
 from .problem import Vector
 
 INSTANT = 1e-7
-"""Change of an active margin per relative change of a parameter that counts as none."""
+"""Change of an active margin per relative parameter change that counts as zero."""
 
 BASES = 1000
-"""Most vertices of the multiplier polytope to enumerate before linear programming takes over."""
+"""Maximum vertices of the multiplier polytope to enumerate; beyond, linear programming."""
 
 
 @dataclass(frozen=True)
 class Optimum:
-    """An optimum as the linear algebra of its margins: constraints, lower, then upper bounds.
+    """Linear algebra of an optimum: margins of constraints, then lower and upper bounds.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def movement(found: Optimum, given: Responses) -> tuple[Vector, Vector]:
     explicit = np.concatenate(
         [margin_slopes(found, given)[held], given.rows[len(given.rows) - len(found.equalities) :]]
     )
-    # d gradient of the Lagrangian = 0 and d margin = 0 along the held rows, each row scaled
+    # solves d gradient of the Lagrangian = 0 and d margin = 0 along the active rows, scaled
     size = np.sqrt((rows**2).sum(axis=1))
     size = np.where(size > 0, size, 1.0)
     scale = max(float(np.linalg.norm(found.slope)), 1e-300)
@@ -130,9 +130,9 @@ def movement(found: Optimum, given: Responses) -> tuple[Vector, Vector]:
 def reach(
     found: Optimum, given: Responses, moves: Vector, shifts: Vector
 ) -> list[tuple[float | None, str | None]]:
-    """For each parameter the nearest value at which the active set changes, and what changes.
+    """For each parameter the nearest value at which the active set changes, and the change.
 
-    None where that is beyond -100 % and +100 % of the parameter.
+    None if beyond -100 % and +100 % of the parameter.
     """
     result: list[tuple[float | None, str | None]] = []
     for value, changes in zip(given.values, _changes(found, given, moves, shifts), strict=True):
@@ -145,10 +145,10 @@ def reach(
 
 
 class ActiveSetChange(NamedTuple):
-    """Where the active set changes: distance of the parameter, direction there, and what changes.
+    """A change of the active set: distance and direction of the parameter, and the change.
 
-    The direction counts where the distance is 0: a margin that is used up already but holds nothing
-    becomes active on one side only.
+    The direction matters at distance 0: a margin already used up without a multiplier becomes
+    active on one side only.
     """
 
     distance: float
@@ -176,7 +176,7 @@ def _size(change: ActiveSetChange) -> float:
 def _changes(
     found: Optimum, given: Responses, moves: Vector, shifts: Vector
 ) -> Iterator[list[ActiveSetChange]]:
-    """For each parameter where each margin or multiplier vanishes along its straight line."""
+    """For each parameter the points where margins or multipliers vanish on their straight lines."""
     rates = margin_slopes(found, given) + found.gradients @ moves
     held = found.held
     for k, value in enumerate(given.values):
@@ -195,7 +195,7 @@ def _changes(
 
 
 def one_sided(found: Optimum, given: Responses, active: npt.NDArray[np.intp]) -> Vector:
-    """Smallest and largest price (2, q) over all multipliers that hold the optimum."""
+    """Smallest and largest price (2, q) over all multipliers of the optimum."""
     keep = _without_copies(found, given, active)
     rows = np.concatenate([found.gradients[keep], found.equalities])
     count, e = len(rows), len(found.equalities)
@@ -220,10 +220,9 @@ def one_sided(found: Optimum, given: Responses, active: npt.NDArray[np.intp]) ->
 def _without_copies(
     found: Optimum, given: Responses, active: npt.NDArray[np.intp]
 ) -> npt.NDArray[np.intp]:
-    """Active margins without exact copies (the same limit in two load cases); their sum is kept.
+    """Active margins without exact copies (the same limit in two load cases); sums are kept.
 
-    A copy is dropped only where it carries no multiplier, which least squares ensures for all
-    but one.
+    Only copies without a multiplier are dropped; least squares leaves at most one with it.
     """
     slopes = np.concatenate([found.gradients, margin_slopes(found, given)], axis=1)
     kept: list[int] = []
@@ -255,14 +254,14 @@ def _vertices(rows: Vector, target: Vector, rank: int, free: int) -> Vector:
 def _by_linear_programming(
     rows: Vector, target: Vector, slopes: Vector, objective: Vector, free: int
 ) -> Vector:
-    from scipy.optimize import linprog  # slow to import, rarely needed
+    from scipy.optimize import linprog  # slow import, rarely used
 
     limits = [(0, None)] * (len(rows) - free) + [(None, None)] * free
     result = np.empty((2, slopes.shape[1]))
     for k in range(slopes.shape[1]):
         for side, sign in ((0, 1.0), (1, -1.0)):
             answer = linprog(-sign * slopes[:, k], A_eq=rows.T, b_eq=target, bounds=limits)
-            # an unbounded price means that this direction leaves no feasible point
+            # an unbounded price means that this direction has no feasible point
             value = -np.inf if answer.fun is None else float(answer.fun)
             result[side, k] = objective[k] + sign * value
     return result

@@ -1,10 +1,10 @@
-"""Active-set Newton: the exact-Hessian finish that first-order solvers do not reach.
+"""Active-set Newton steps: the exact-Hessian polish that first-order solvers lack.
 
 Sequential quadratic programming with the Hessian of the Lagrangian from exact gradients
 [NocedalWright2006] ch. 18. Each quadratic programme is a least-distance problem, solved by
-non-negative least squares [LawsonHanson1974] ch. 23, which names the active set, copes with
-dependent rows and with vertices of more rows than variables. Converges quadratically from a
-point near the optimum; also re-solves a slightly changed problem.
+non-negative least squares [LawsonHanson1974] ch. 23. This identifies the active set and copes with
+dependent rows and overdetermined vertices. Converges quadratically near the optimum; also re-solves
+a slightly changed problem.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ RADIUS = 0.5
 
 @dataclass(frozen=True)
 class NewtonState:
-    """A point on the way, with what the next step needs."""
+    """A point with the data for the next step."""
 
     point: Point
     near: kkt.Active
@@ -40,7 +40,7 @@ class NewtonState:
 
 
 def state_at(evaluator: Evaluator, point: Point) -> NewtonState:
-    """A point with its multipliers and how far it is from optimal."""
+    """A point with its multipliers and optimality residual."""
     m = evaluator.constraint_count
     jacobian = evaluator.jacobian(point)
     near = kkt.active_set(evaluator, point, width=0.1)
@@ -58,7 +58,7 @@ def polish(
 ) -> Point:
     """Improve a point towards the optimality conditions; never worse than the start.
 
-    Returns the start itself where no better point is found.
+    Returns the start itself if no better point is found.
     """
     if not start.valid or evaluator.space.size == 0:
         return start
@@ -83,7 +83,7 @@ def polish(
 
 
 def _acceptable(evaluator: Evaluator, first: NewtonState, found: NewtonState) -> bool:
-    """No less feasible, and no costlier than the start plus the price of what it violated."""
+    """Whether a point is no less feasible, and not costlier than start plus priced violation."""
     if found.point.violation > max(FEASIBLE, first.point.violation):
         return False
     owed = float(first.multipliers @ np.maximum(-first.near.margins, 0.0))
@@ -96,7 +96,7 @@ def _acceptable(evaluator: Evaluator, first: NewtonState, found: NewtonState) ->
 
 
 def _advance(evaluator: Evaluator, state: NewtonState) -> NewtonState | None:
-    """One accepted step, or None where no step helps."""
+    """One accepted step, or None if no step improves."""
     point, space = state.point, evaluator.space
     step, price = quadratic_step(
         evaluator,
@@ -164,8 +164,8 @@ def quadratic_step(
 def convex_hessian(evaluator: Evaluator, state: NewtonState) -> Vector:
     """Scaled Hessian of the Lagrangian, made positive definite without changing the step.
 
-    Adding multiples of the active rows' outer products leaves the solution on those rows as it
-    is; where that is not enough, negative curvatures count by their magnitude.
+    Adding multiples of the active rows' outer products leaves the solution on those rows unchanged.
+    If that is not enough, negative curvatures count by their magnitude.
     """
     m, near = evaluator.constraint_count, state.near
     full = np.zeros(m)
@@ -195,8 +195,8 @@ def quadratic_programme(
 ) -> tuple[Vector, Vector]:
     """Minimise d'Hd/2 + slope'd subject to margins + rows d >= 0, with multipliers (a,) >= 0.
 
-    Inconsistent rows (no d meets them all) give the step of least violation instead. `known` are
-    multipliers of a programme much like it, which only save work.
+    Inconsistent rows give the step of least violation instead. `known` are multipliers of a similar
+    programme, which only save time.
     """
     factor = np.linalg.cholesky(hessian)
     moved = np.linalg.solve(factor, slope)

@@ -1,9 +1,9 @@
-"""NLopt behind a guard: named algorithms, screened callbacks, results that are re-checked.
+"""NLopt behind a guard: named algorithms, screened callbacks, verified results.
 
-NLopt reports success on infeasible points (MMA, CCSAQ, COBYLA), crashes on NaN (AGS), turns
-exceptions of callbacks into others and hides good results behind RoundoffLimited [NLopt]. Here
-its return code is only recorded: callbacks never raise and never return NaN, the best feasible
-iterate is kept, and whoever calls judges the point itself.
+NLopt reports success on infeasible points (MMA, CCSAQ, COBYLA), crashes on NaN (AGS), replaces
+exceptions of callbacks and hides good results behind RoundoffLimited [NLopt]. Here its return code
+is only recorded. Callbacks never raise and never return NaN, the best feasible iterate is kept, and
+the caller judges the point itself.
 """
 
 from __future__ import annotations
@@ -22,21 +22,21 @@ from .evaluator import Evaluator, LimitReached, Point
 from .problem import BoxProblem, Vector
 
 FEASIBLE = 1e-8
-"""Violation below which an iterate counts as feasible when the best one is kept."""
+"""Violation below which an iterate counts as feasible when selecting the best."""
 
 
 @dataclass(frozen=True, slots=True)
 class Algorithm:
-    """An NLopt algorithm and what it can be given.
+    """An NLopt algorithm and its capabilities.
 
     Parameters
     ----------
     name : NLopt's name
-    scope : "local", "global", or "wrapper" for one that needs another inside
-    inequalities, equalities : whether it takes them
-    most_variables : largest number of free variables it is allowed
+    scope : "local", "global", or "wrapper" for one that needs an inner algorithm
+    inequalities, equalities : whether it supports them
+    most_variables : maximum number of free variables
     most_evaluations : of one run (the original DIRECT slows down with their cube)
-    about : what it is, in words
+    about : description
     """
 
     name: str
@@ -49,7 +49,7 @@ class Algorithm:
 
     @property
     def uses_gradients(self) -> bool:
-        """Whether it asks for gradients itself."""
+        """Whether it uses gradients itself."""
         return self.name.startswith(("LD_", "GD_"))
 
 
@@ -106,32 +106,34 @@ OLDER = {
     "GN_MLSL_LDS": "G_MLSL_LDS+LN_BOBYQA",
     "G_MLSL": "G_MLSL_LDS+LD_LBFGS",
 }
-"""Names of NLopt that say in one word what here is written as a sum."""
+"""NLopt names of combinations that are written here as a sum."""
 
 INSIDE = {"AUGLAG": "LD_LBFGS", "AUGLAG_EQ": "LD_MMA", "G_MLSL_LDS": "LD_LBFGS"}
-"""The algorithm inside a wrapper where none is named."""
+"""Default inner algorithm of a wrapper."""
 
 
 def find(text: str) -> tuple[Algorithm, Algorithm | None]:
-    """Return the algorithm called `text`, and the one inside it ("AUGLAG+LD_LBFGS").
+    """Return the algorithm named `text`, and its inner one ("AUGLAG+LD_LBFGS").
 
-    Case does not matter, and the prefix may be left out where the rest is unique ("slsqp").
+    Case does not matter, and a prefix may be omitted if the rest is unique ("slsqp").
 
     Raises
     ------
     UsageError
-        Where there is no such algorithm, with the nearest names.
+        no such algorithm; suggests the nearest names
     """
     name = OLDER.get(text.strip().upper(), text.strip().upper())
     outer, _, inner = name.partition("+")
     first = _one(outer)
     if first.scope != "wrapper":
         if inner:
-            raise _refusal(f"{first.name} takes no algorithm inside", f"write {first.name}")
+            raise _refusal(f"{first.name} takes no inner algorithm", f"write {first.name}")
         return first, None
     second = _one(inner or INSIDE[first.name])
     if second.scope == "wrapper":
-        raise _refusal(f"{second.name} cannot stand inside {first.name}", "name a local algorithm")
+        raise _refusal(
+            f"{second.name} cannot be the inner algorithm of {first.name}", "name a local algorithm"
+        )
     return first, second
 
 
@@ -152,12 +154,12 @@ def _refusal(message: str, remedy: str) -> UsageError:
 
 
 def suit(text: str, problem: BoxProblem) -> str:
-    """Return the full name of an algorithm that suits the problem.
+    """Return the full name of an algorithm that can solve the problem.
 
     Raises
     ------
     UsageError
-        Where it cannot solve such a problem, with the one to write instead.
+        it cannot solve this kind of problem; suggests another
     """
     outer, inner = find(text)
     inequalities, equalities = bool(problem.constraint_names), bool(problem.equality_names)
@@ -169,40 +171,40 @@ def suit(text: str, problem: BoxProblem) -> str:
             remedy = f"write AUGLAG+{(inner or outer).name}"
         elif inequalities and not equalities:
             remedy = "write GN_ORIG_DIRECT_L or GN_ISRES"
-        raise _refusal(f"{outer.name} takes no {kind}, and this problem has some", remedy)
+        raise _refusal(f"{outer.name} does not support {kind}, which this problem has", remedy)
     if outer.name == "AUGLAG_EQ" and inequalities and inner and not inner.inequalities:
-        message = f"AUGLAG_EQ leaves the inequalities to {inner.name}, which takes none"
+        message = f"AUGLAG_EQ leaves the inequalities to {inner.name}, which does not support them"
         raise _refusal(message, f"write AUGLAG+{inner.name} or AUGLAG_EQ+LD_MMA")
     if outer.name == "G_MLSL_LDS" and inner is not None and inner.scope != "local":
         raise _refusal(
-            f"G_MLSL_LDS needs a local algorithm inside, not {inner.name}",
+            f"G_MLSL_LDS needs a local inner algorithm, not {inner.name}",
             "write G_MLSL_LDS+LD_LBFGS",
         )
     for part in (outer, inner):
         if part is not None and free > part.most_variables:
-            message = f"{part.name} is for at most {part.most_variables} variables, not {free}"
+            message = f"{part.name} supports at most {part.most_variables} variables, not {free}"
             raise _refusal(message, "fix some variables, or write LD_SLSQP or GN_ISRES")
     return outer.name if inner is None else f"{outer.name}+{inner.name}"
 
 
 ARRIVAL = (0.1, 1e-3, 1e-3)
-"""Largest distance in solver coordinates, relative difference of the objective and violation at
-which a run counts as having arrived at a known optimum: what is left is only its slow finish."""
+"""A run has reached a known optimum within this distance in solver coordinates, relative difference
+of the objective and violation; only its slow convergence is left."""
 
 
 @dataclass(frozen=True)
 class Run:
-    """What one call of NLopt led to: the point to go on from, and NLopt's own word for it."""
+    """Result of one NLopt call: the point to continue from, and NLopt's return code."""
 
     point: Point
     code: int
     algorithm: str
     arrived: int | None = None
-    """Index of the known optimum the run came near, and was stopped at."""
+    """Index of the known optimum that stopped the run."""
 
 
 class _Arrived(Exception):
-    """The run came near an optimum already known."""
+    """The run reached a known optimum."""
 
 
 class _Guard:
@@ -263,7 +265,7 @@ class _Guard:
         return None
 
     def _look_around(self, point: Point) -> None:
-        """Stop near a known optimum: going on would only reach it once more."""
+        """Stop near a known optimum, which the run would only reach again."""
         reach, share, missed = ARRIVAL
         if point.violation > missed:
             return
@@ -275,10 +277,10 @@ class _Guard:
 
     @contextmanager
     def _held(self) -> Iterator[None]:
-        """Hold back what a model raises, and Ctrl-C, until `run` raises it after NLopt's return."""
+        """Hold exceptions of the model and Ctrl-C until NLopt has returned."""
         try:
             yield
-        except BaseException as error:  # all: NLopt makes a SystemError of whatever passes it
+        except BaseException as error:  # every exception, as NLopt turns them into SystemError
             self.error = error
             self.handle.force_stop()
 
@@ -309,7 +311,7 @@ class _Guard:
         self._rows(result, u, slopes, slice(1, 1 + self.evaluator.constraint_count), 1.0)
 
     def worst_margin(self, u: Vector, slope: Vector) -> float:
-        """Return the constraint missed most, as one number (for AGS)."""
+        """Return the worst-violated constraint as one number (for AGS)."""
         result = np.zeros(self.evaluator.constraint_count)
         self.inequalities(result, u, slope)
         return float(result.max())
@@ -332,10 +334,10 @@ def run(
 ) -> Run:
     """Run one algorithm from one point, at most `most` evaluations (default: its own).
 
-    A run that arrives at one of the `known` optima (see `ARRIVAL`) stops there. Returns the least
-    by `rank` (default: feasible by objective, else by violation) of NLopt's point, the best
-    feasible iterate, the last one and the start. Exceptions of the model, interrupts included,
-    surface as they were raised; a used-up limit ends the run quietly.
+    A run that reaches one of the `known` optima (see `ARRIVAL`) stops there. Returns the best by
+    `rank` (default: feasible by objective, else by violation) of NLopt's point, the best feasible
+    iterate, the last iterate and the start. Exceptions of the model, interrupts included, are
+    raised unchanged; reaching a limit ends the run quietly.
     """
     if evaluator.space.size == 0:
         return Run(start, 1, algorithm)
@@ -351,7 +353,7 @@ def run(
     handle.set_upper_bounds(bounds[1])
     handle.set_min_objective(guard.objective)
     m, e = evaluator.constraint_count, len(evaluator.problem.equality_names)
-    if m and outer.name == "GN_AGS":  # takes scalar constraints only, and few
+    if m and outer.name == "GN_AGS":  # takes only a few scalar constraints
         handle.add_inequality_constraint(guard.worst_margin, tolerance)
     elif m:
         handle.add_inequality_mconstraint(guard.inequalities, np.full(m, tolerance))
@@ -363,9 +365,9 @@ def run(
     nlopt.srand(seed + 1)
     try:
         found = handle.optimize(guard.from_point(start))
-    except (RuntimeError, ValueError, SystemError, MemoryError) as error:  # NLopt's complaints
+    except (RuntimeError, ValueError, SystemError, MemoryError) as error:  # NLopt's own errors
         found = None
-        guard.error = guard.error or error.__cause__  # Ctrl-C where no guard held it back
+        guard.error = guard.error or error.__cause__  # Ctrl-C outside any guard
     code = int(handle.last_optimize_result())
     if guard.error is not None and not isinstance(guard.error, (LimitReached, _Arrived)):
         raise guard.error

@@ -1,4 +1,4 @@
-"""How an optimisation ended, as sentences with a remedy, and everything it found."""
+"""The outcome of an optimisation: status, sentence, remedy, and all results."""
 
 from __future__ import annotations
 
@@ -13,84 +13,83 @@ MET = 1e-6
 
 
 class Outcome(Enum):
-    """How a run ended: status word, sentence, remedy."""
+    """Outcome of a run: status word, sentence, remedy."""
 
     OPTIMUM = (
         "optimal",
-        "optimum found: every requirement is met and the optimality conditions hold",
+        "optimum found: all requirements are met and the optimality conditions are satisfied",
         "",
     )
     NOT_STATIONARY = (
         "feasible",
-        "every requirement is met, but the optimality conditions do not hold to 1e-6",
-        "run again with more starts or another seed, or look for a kink (min, max, look-up "
-        "table) in an own metric near this point, or for an edge where it ends",
+        "all requirements are met, but the optimality conditions are not satisfied to 1e-6",
+        "run again with more starts or another seed, or check custom metrics for a kink (min, "
+        "max, look-up table) or the edge of a table near this point",
     )
     SADDLE = (
         "feasible",
-        "every requirement is met and the slopes balance, but the point is not a minimum",
+        "all requirements are met and the gradients balance, but the point is not a minimum",
         "run again with another seed or more starts",
     )
     INFEASIBLE = (
         "infeasible",
-        "no point that meets every requirement was found",
-        "free a dimension, change a choice, widen a bound or relax a requirement that conflicts",
+        "no design meets all requirements",
+        "free a dimension, change a choice, widen a bound or relax a conflicting requirement",
     )
     LIMIT = (
         "limit",
-        "stopped by the evaluation or time limit; the best point that meets every requirement "
-        "is kept",
+        "stopped at the evaluation or time limit; the best feasible design so far is kept",
         "raise the limit to let the search finish",
     )
     LIMIT_INFEASIBLE = (
         "limit_infeasible",
-        "stopped by the evaluation or time limit before any point met every requirement",
-        "raise the limit, or give a start that meets the requirements",
+        "stopped at the evaluation or time limit before any design met all requirements",
+        "raise the limit, or start from a design that meets the requirements",
     )
     INTERRUPTED = (
         "interrupted",
-        "interrupted; the best point so far meets every requirement",
+        "interrupted; the best feasible design so far is kept",
         "run again to let the search finish",
     )
     INTERRUPTED_INFEASIBLE = (
         "interrupted_infeasible",
-        "interrupted before any point met every requirement",
+        "interrupted before any design met all requirements",
         "run again to let the search finish",
     )
     FLAT = (
         "flat",
-        "no variable affects the objective; the point only meets the requirements",
+        "no variable affects the objective; the design only meets the requirements",
         "free a variable that the objective depends on, or choose another objective",
     )
     UNDEFINED = (
         "undefined",
-        "the model gives no finite values at any point tried",
-        "narrow the bounds to where the model is valid, or check an own metric for NaN",
+        "the model has no finite values at any point tried",
+        "narrow the bounds to the valid range of the model, or check custom metrics for NaN",
     )
     NOTHING_FREE = (
         "nothing_free",
-        "every variable is fixed by equal bounds; the point is only evaluated",
+        "equal bounds fix every variable; the design is only evaluated",
         "give at least one variable a lower bound below its upper bound",
     )
 
     @property
     def status(self) -> str:
-        """One word for machines."""
+        """Status word for machines."""
         return str(self.value[0])
 
     @property
     def sentence(self) -> str:
-        """What happened, in plain words."""
+        """The outcome in plain words."""
         return str(self.value[1])
 
     @property
     def remedy(self) -> str:
-        """What to do about it; empty where nothing needs doing."""
+        """The recommended action; empty if none is needed."""
         return str(self.value[2])
 
     @property
     def feasible(self) -> bool:
-        """Whether the point meets every constraint (where the outcome itself tells)."""
+        """Whether the point meets every constraint (if the outcome determines that)."""
         return self in (
             Outcome.OPTIMUM,
             Outcome.NOT_STATIONARY,
@@ -103,7 +102,7 @@ class Outcome(Enum):
 
 @dataclass(frozen=True, slots=True)
 class LocalOptimum:
-    """A distinct point that local runs ended on, and from how many starts."""
+    """A distinct end point of local runs, and the number of starts that reached it."""
 
     x: Vector
     objective: float
@@ -114,7 +113,7 @@ class LocalOptimum:
 
 @dataclass(frozen=True, slots=True)
 class StartRecord:
-    """One start and where it led: the algorithm that ended it and the final values."""
+    """One start and its result: the last algorithm and the final values."""
 
     x: Vector
     objective: float
@@ -124,13 +123,13 @@ class StartRecord:
 
     @property
     def feasible(self) -> bool:
-        """Whether it led to a point that meets every limit."""
+        """Whether it reached a point that meets every limit."""
         return self.violation <= MET
 
 
 @dataclass(frozen=True)
 class Solution:
-    """The best point found, how good it is and how it was found.
+    """The best point, its quality and the search statistics.
 
     Parameters
     ----------
@@ -138,17 +137,17 @@ class Solution:
     outcome : how the run ended
     x : variables (n,)
     objective, constraints, equalities : values at x
-    violation : worst missed margin, 0 where all are met
-    kkt : optimality conditions at x; None where the model is undefined
-    evaluations, gradients : points evaluated and gradients taken in the local phase
-    samples, feasible_samples : points of the global sweep, and how many met everything
+    violation : worst missed margin, 0 if all are met
+    kkt : optimality conditions at x; None if the model is undefined there
+    evaluations, gradients : points evaluated and gradients computed in the local phase
+    samples, feasible_samples : points of the global sweep, and how many were feasible
     undefined : share of the sweep where the model has no finite values
-    starts : where each start led, in order
+    starts : result of each start, in order
     optima : distinct local optima, the best first
     trace : (evaluation, objective, violation) of each improvement
     algorithm : the algorithm that reached x
-    without_effect : labels of variables that changed no value anywhere they were tried
-    warnings : what the user should know
+    without_effect : labels of variables that changed no value at any point tried
+    warnings : messages for the user
     seed, seconds : of the run
     """
 

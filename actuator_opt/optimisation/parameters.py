@@ -1,8 +1,9 @@
-"""How an evaluated point responds to parameters: exact where the model allows, checked always.
+"""Response of an evaluated point to parameters, exact where the model allows, always checked.
 
-Derivatives of values by the complex step in the parameter, of gradients by central differences
-of complex-step gradients; a parameter whose complex step disagrees with a finite difference (a
-look-up table, say) falls back to differences. Bounds of variables are parameters like any other.
+Derivatives of values use the complex step in the parameter; derivatives of gradients use central
+differences of complex-step gradients. A parameter whose complex step disagrees with a finite
+difference (a look-up table, say) falls back to differences. Bounds of variables count as
+parameters.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The Pareto front of an actuator: objectives asked for by metric, designs in its variables."""
+"""The Pareto front of an actuator, for objectives named by metric."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from .rounding import design_at
 
 
 def wishes(texts: Sequence[str], known: dict[str, Quantity]) -> tuple[Wish, ...]:
-    """Objectives from ``METRIC:min`` or ``METRIC:max``.
+    """Parse objectives from ``METRIC:min`` or ``METRIC:max``.
 
     Raises
     ------
@@ -40,7 +40,7 @@ def wishes(texts: Sequence[str], known: dict[str, Quantity]) -> tuple[Wish, ...]
     for text in texts:
         metric, colon, sense = (part.strip() for part in text.partition(":"))
         if not colon or sense not in ("min", "max"):
-            message = f'objective "{text}" is no METRIC:min or METRIC:max'
+            message = f'objective "{text}" is not of the form METRIC:min or METRIC:max'
             raise UsageError(Diagnostic(message, 'write e.g. "mass:min"'))
         if metric not in known:
             message = f'objective "{text}": there is no metric {metric}'
@@ -59,13 +59,13 @@ def wishes(texts: Sequence[str], known: dict[str, Quantity]) -> tuple[Wish, ...]
 
 @dataclass(frozen=True)
 class _Many:
-    """The actuator's problem with its objectives."""
+    """The problem of an actuator with several objectives."""
 
     actuator: ActuatorProblem
     goals: tuple[Goal, ...]
     wished: tuple[Wish, ...]
     subject: PreparedDesign
-    """As asked about, with its own objective."""
+    """The problem with the design's own objective."""
 
     def evaluate(self, points: Array) -> Values:
         """Objectives, to be minimised, and margins."""
@@ -84,16 +84,16 @@ def pareto(
     checks: int = 3,
     fault: Fault | None = None,
 ) -> ParetoFront:
-    """The front of a design's objectives.
+    """Compute the Pareto front of a design.
 
     Parameters
     ----------
     subject : the prepared design
     objectives : two to four of ``METRIC:min`` or ``METRIC:max``
-    count : designs asked for
+    count : designs requested
     seed : of the searches; the same seed gives the same front
-    checks : full searches at places in between, for what is merely local
-    fault : places faults of variables in the file
+    checks : independent searches between designs, which reveal merely local ones
+    fault : locates faults of variables in the file
     """
     began = time.perf_counter()
     wished = wishes(objectives, dict(subject.quantities))
@@ -112,18 +112,20 @@ def pareto(
 
 
 def _problem(subject: PreparedDesign, wished: tuple[Wish, ...], fault: Fault | None) -> _Many:
-    """The problem, each objective of which exists and moves.
+    """The problem, with every objective defined and variable.
 
     Raises
     ------
-    InputError, UsageError : one does not
+    InputError, UsageError : an objective is undefined or constant
     """
     present = compute(subject, subject.values()).computed
     for wish in wished:
         if not present.metrics.get(wish.metric):
             why = present.why.get(wish.metric, "it does not apply to this design")
             message = f"{wish.metric} cannot be an objective here: {why}"
-            raise UsageError(Diagnostic(message, "choose one that `evaluate` shows a value for"))
+            raise UsageError(
+                Diagnostic(message, "choose a metric that `evaluate` lists with a value")
+            )
     wish_all = Objective(minimise={one.metric: 1.0 for one in wished})
     asked = replace(
         subject,
@@ -133,7 +135,7 @@ def _problem(subject: PreparedDesign, wished: tuple[Wish, ...], fault: Fault | N
     actuator = build(asked, fault)
     still = idle_metrics(actuator)
     if still:
-        message = f"no variable affects {' and '.join(still)}: nothing to trade"
+        message = f"no variable affects {' and '.join(still)}: nothing to trade off"
         remedy_ = "choose another objective, or free a dimension that it depends on"
         raise InputError(Diagnostic(message, remedy_))
     goals = tuple(
@@ -144,7 +146,7 @@ def _problem(subject: PreparedDesign, wished: tuple[Wish, ...], fault: Fault | N
 
 
 def _points(many: _Many, found: Front) -> tuple[FrontPoint, ...]:
-    """Variables and metrics of every design: objectives, and what requirements are about."""
+    """Variables and metrics of every design: objectives, and those of the requirements."""
     actuator, count = many.actuator, found.x.shape[1]
     subject = actuator.subject
     numbers = subject.values(dict(zip(actuator.paths, found.x, strict=True)))
@@ -169,7 +171,7 @@ def _points(many: _Many, found: Front) -> tuple[FrontPoint, ...]:
 
 
 def _result(many: _Many, found: Front, seed: int, began: float) -> ParetoFront:
-    """Everything put together."""
+    """Assemble the result."""
     knee = None if found.knee is None else Knee(*found.knee)
     shown = 0 if knee is None else knee.index
     design, evaluation = design_at(many.actuator, found.x[:, shown])
@@ -200,18 +202,20 @@ def _passed(values: Vector, signs: Vector) -> list[list[float]]:
 
 
 def _held(many: _Many) -> list[str]:
-    """What of a design a front leaves out: its choices, and the sizes of its variables."""
+    """Parts of a design that a front ignores: its choices, and the sizes of its variables."""
     design = many.actuator.subject.design
     said = []
     if design.choices:
-        said.append(f"choices are held as the design states them: {', '.join(design.choices)}")
+        said.append(f"choices stay as stated in the design: {', '.join(design.choices)}")
     sized = [
         path
         for path, variable in design.variables.items()
         if variable.sizes is not None or variable.step is not None
     ]
     if sized:
-        said.append(f"sizes are not kept, the front is of free dimensions: {', '.join(sized)}")
+        said.append(
+            f"listed sizes are ignored, as the front uses continuous dimensions: {', '.join(sized)}"
+        )
     return said
 
 
@@ -220,7 +224,7 @@ def _said(wish: Wish) -> str:
 
 
 def _without(many: _Many, found: NoEnd, began: float) -> ParetoFront:
-    """No front: nothing is feasible, or an end of it was not found."""
+    """The result without a front: nothing is feasible, or an end is missing."""
     subject = many.subject
     solution = found.solution
     feasible = solution.violation <= FEASIBLE

@@ -1,4 +1,4 @@
-"""A Pareto front as data: its designs, the knee, how evenly they lie, how it was checked."""
+"""Results of a Pareto study: designs, knee, spacing and checks."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .result import Infeasibility
 
 @dataclass(frozen=True, slots=True)
 class Wish:
-    """A metric that is wanted small or large."""
+    """A metric to minimise or maximise."""
 
     metric: str
     sense: Literal["min", "max"]
@@ -42,7 +42,7 @@ class FrontPoint:
 
 @dataclass(frozen=True, slots=True)
 class Knee:
-    """Which design lies farthest from the plane of the anchors, and how far (normalised)."""
+    """The design farthest from the plane of the anchors, and its normalised distance."""
 
     index: int
     depth: float
@@ -50,23 +50,23 @@ class Knee:
 
 @dataclass(frozen=True, slots=True)
 class ParetoFront:
-    """The front of a design's objectives.
+    """The Pareto front of a design.
 
     Parameters
     ----------
-    subject : the design asked about
+    subject : the design studied
     spec_hash : of it
-    objectives : what is wanted
+    objectives : metrics with their direction
     points : designs, the best in the first objective first
-    knee : where the front bends most towards the ideal; None where it nowhere does
-    design, evaluation : of the knee, else of the first point; as stated where there is none
-    passed : objectives of designs met on the way that others dominate
-    gaps : normalised distances between neighbours (to the nearest of three or more objectives)
-    wide : gaps of two objectives that are more than three times the median, and why
-    checked, improved : full searches at places in between, and how many found something better
-    failed : places at which no design was found, but where one is near
-    infeasibility : why there is no front
-    unsolved : the objective whose best was not found, and what became of the search
+    knee : where the front bends most towards the ideal; None if it does not
+    design, evaluation : of the knee, else of the first point; as stated without a front
+    passed : objectives of dominated designs met during the search
+    gaps : normalised distances between neighbours (to the nearest for three or more objectives)
+    wide : gaps of two objectives above three times the median, and the reason
+    checked, improved : independent searches between designs, and how many improved the front
+    failed : number of places without a design at or near them
+    infeasibility : reason for a missing front
+    unsolved : objective whose best design was not found, and the outcome of its search
     """
 
     subject: Design
@@ -90,41 +90,43 @@ class ParetoFront:
 
     @property
     def status(self) -> str:
-        """What came out, in one word."""
+        """Status of the front, in one word."""
         if self.points:
             return "front" if len(self.points) > 1 else "no conflict"
         return "unsolved" if self.unsolved else "infeasible"
 
     @property
     def jumps(self) -> tuple[Gap, ...]:
-        """Gaps at which the front is in pieces: nothing can lie there."""
+        """Gaps at which the front is discontinuous, so that no design lies between."""
         return tuple(gap for gap in self.wide if gap.jump)
 
     @property
     def steps(self) -> tuple[float, ...]:
-        """The gaps that are no jumps."""
+        """The gaps other than jumps."""
         over = {gap.after for gap in self.jumps}
         return tuple(gap for k, gap in enumerate(self.gaps) if k not in over)
 
     @property
     def evenness(self) -> float | None:
-        """The largest gap over the median one, jumps left out; None where there are none."""
+        """The largest gap over the median one, without jumps; None if there are no gaps."""
         return max(self.steps) / median(self.steps) if self.steps else None
 
     @property
     def sentence(self) -> str:
-        """What came out, in words."""
+        """The result in words."""
         if self.unsolved:
-            return f"no front: the best of one objective alone was not found, {self.unsolved}"
+            return (
+                f"no front: the search for the best of one objective alone failed, {self.unsolved}"
+            )
         if self.infeasibility is not None or not self.points:
             why = "" if self.infeasibility is None else f" {self.infeasibility.sentence}"
-            return f"no front: no design meets every requirement.{why}"
+            return f"no front: no design meets all requirements.{why}"
         if len(self.points) == 1:
             return "the objectives do not conflict: one design is best in all of them"
-        told = f"{len(self.points)} designs, none dominated; "
-        told += f"{self.checked} places searched anew: {self.improved} merely local"
+        told = f"{len(self.points)} non-dominated designs; "
+        told += f"{self.checked} independent searches replaced {self.improved} merely local designs"
         if self.failed:
-            told += f"; no design found at {self.failed} place" + "s" * (self.failed > 1)
+            told += f"; no design at {self.failed} place" + "s" * (self.failed > 1)
         return told
 
     def to_dict(self) -> dict[str, Any]:

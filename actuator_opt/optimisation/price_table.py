@@ -1,4 +1,4 @@
-"""The sensitivity table of an actuator: which limits and parameters are priced, in its words."""
+"""The sensitivity table of an actuator: which limits and parameters are priced."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from .prices import prices
 from .sensitivity import CHANGE, Sensitivity, ranked
 
 MOST_PARAMETERS = 10
-"""Parameters (not limits) priced in the sensitivity table: those that matter most."""
+"""Parameters (not limits) priced in the sensitivity table, by importance."""
 
 LEAST_EFFECT = 1e-3
-"""Smallest elasticity (% per %) that earns a parameter its row."""
+"""Smallest elasticity (% per %) for a row in the table."""
 
 FREE = 1e-9
-"""Price of a limit of 0, over the objective, below which there is nothing to tell of it."""
+"""Price of a limit of 0, relative to the objective, below which it gets no row."""
 
 _NO_PERCENT = ("temperature", "temperature_difference", "angle", "count")
 

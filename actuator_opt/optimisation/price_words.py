@@ -1,4 +1,4 @@
-"""Priced requirements and parameters as people say them: names, values, what would buy the most."""
+"""Wording of priced requirements and parameters: names, values, best offers."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def display_of(row: Sensitivity, value: float | None) -> float | None:
 
 
 def short_name(row: Sensitivity) -> str:
-    """A PATH without what the sentence tells: "stiffness_min", "density of ti_6al4v".
+    """A PATH shortened for a sentence: "stiffness_min", "density of ti_6al4v".
 
     >>> from types import SimpleNamespace as Row
     >>> short_name(Row(parameter="requirements.stiffness_min.min"))
@@ -37,17 +37,17 @@ def short_name(row: Sensitivity) -> str:
 def buys_most(
     found: Offers, quantity: Quantity, objective: float, *, maximised: bool
 ) -> tuple[str, ...]:
-    """What would buy the most of the objective, and which requirements cannot be tightened.
+    """Sentences on the most valuable changes, and on requirements that cannot be tightened.
 
     Parameters
     ----------
     found : the best offer of each kind
-    quantity, objective : what is aimed at and its value at the optimum, SI
+    quantity, objective : of the objective, and its value at the optimum, SI
     maximised : whether more of it is better
     """
 
     def gain(offer: Offer) -> str:
-        """What an offer buys: "saves 19.7 g (7.5 %)"."""
+        """The gain of an offer: "saves 19.7 g (7.5 %)"."""
         per_display = quantity.to_display(1.0) - quantity.to_display(0.0)
         amount = f"{short(offer.gain * per_display, 3, full=True)} {quantity.unit}".rstrip()
         if objective:
@@ -56,11 +56,11 @@ def buys_most(
 
     if (best := found.requirement) is not None:
         parts = [
-            f"Giving up {PER_CENT} % of {short_name(best.row)} (to {_at(best.row, best.value)})"
-            f" {gain(best)}, the most of any requirement."
+            f"Relaxing {short_name(best.row)} by {PER_CENT} % (to {_at(best.row, best.value)}) "
+            f"{gain(best)}, the most of any requirement."
         ]
     else:
-        parts = [f"Giving up {PER_CENT} % of any one requirement buys nothing."]
+        parts = [f"Relaxing any one requirement by {PER_CENT} % gains nothing."]
     for best, group in (
         (found.parameter, "Of the design's fixed numbers"),
         (found.material, "Of the materials"),

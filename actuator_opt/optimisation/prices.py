@@ -1,9 +1,9 @@
-"""What each parameter of an optimum costs: prices, ranges, and the check by re-solving.
+"""Prices of the parameters of an optimum: value, range, and the check by re-solving.
 
 The price of a parameter is the derivative of the Lagrangian [Fiacco1983]: exact for limits,
-material data, pressures and bounds alike, whatever algebraic form the constraints take. How far
-it holds follows from the derivative of the optimum; re-solving at plus and minus 10 % tells how
-much the straight line hides.
+material data, pressures and bounds, whatever algebraic form the constraints take. Its range of
+validity follows from the derivative of the optimum. Re-solving at plus and minus 10 % shows the
+error of the straight line.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class ParameterPrice:
     percent_per_percent : relative change of the objective per relative change of the parameter;
         None where the objective or the parameter is 0
     predicted_up, predicted_down : objective at +10 % and -10 % by the price; None where infinite
-    resolved_up, resolved_down : the same re-optimised; None where infeasible or not asked for
+    resolved_up, resolved_down : the same re-optimised; None if infeasible or not requested
     holds_until : the nearest value of the parameter at which the active set changes; None where
         that is beyond -100 % and +100 %
     change : what changes there, "LABEL becomes active" or "LABEL stops being active"

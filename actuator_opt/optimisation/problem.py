@@ -1,8 +1,8 @@
-"""What the optimiser is given: a vector function in a box, and nothing about what it means.
+"""The problem given to the optimiser: a vector function in a box, without physical meaning.
 
-Constraints are relative margins, at least zero where met; an evaluation is a pure function of a
-batch of points (one column per point), real or complex. The solver's coordinates are logarithms
-where a variable's lower bound is positive and multiples of the half-width of the box elsewhere.
+Constraints are relative margins, at least zero if met. An evaluation is a pure function of a batch
+of points (one column per point), real or complex. Solver coordinates are logarithms for variables
+with a positive lower bound, and multiples of half the box width otherwise.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ Vector: TypeAlias = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Values:
-    """What one evaluation of k points yields.
+    """Result of evaluating k points.
 
     Parameters
     ----------
@@ -47,9 +47,10 @@ class BoxProblem:
     evaluate : maps points (n, k), real or complex, to `Values`
     constraint_names, equality_names : label of each row of the values
     start : a first guess inside the box, or None
-    relaxable : for each constraint, whether it is a wish (True) or a law such as geometry (False)
-    groups : for each constraint, a number shared by the rows of one limit, which are only ever
-        relaxed together; None gives each its own
+    relaxable : for each constraint, whether it is a requirement (True) or a law such as geometry
+        (False)
+    groups : for each constraint, a number shared by the rows of one limit, which are relaxed
+        together; None gives each its own
     has_complex_step : False if `evaluate` cannot take complex points; finite differences then
     linear : labels of variables to keep linear although their lower bound is positive
     """
@@ -124,7 +125,7 @@ class BoxProblem:
             try:
                 array = np.broadcast_to(array.reshape(size, -1) if size else array, (size, count))
             except ValueError:
-                message = f"the {what} have shape {array.shape}, need ({size}, {count})"
+                message = f"the {what} have shape {array.shape}, expected ({size}, {count})"
                 raise InputError(message) from None
             parts.append(array)
         return np.concatenate(parts)
@@ -132,7 +133,7 @@ class BoxProblem:
 
 @dataclass(frozen=True)
 class ParametricProblem:
-    """A problem that also depends on parameters whose price is asked for.
+    """A problem with parameters that can be priced.
 
     Parameters
     ----------
@@ -163,7 +164,7 @@ class ParametricProblem:
 
 
 ON_BOUND = 1e-12
-"""Share of a variable's range within which a coordinate is its bound: a zero reads 0, not 1e-23."""
+"""Share of a range within which a coordinate snaps to its bound: zero is 0, not 1e-23."""
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,6 @@
-"""A quick look at one combination of the choices: a descent from what is known of its neighbours.
+"""A quick look at one combination of the choices: a descent from its solved neighbours.
 
-It mostly finds the optimum of the combination, or that it has no design that meets everything,
-but proves neither.
+It usually finds the optimum of the combination, or that it is infeasible, but proves neither.
 """
 
 from __future__ import annotations
@@ -29,36 +28,37 @@ from .sampling import sweep
 from .solver import solve
 
 EVALUATIONS = 40
-"""Most evaluations of one descent; from a near design 10 to 30 do."""
+"""Maximum evaluations of one descent; from a nearby design 10 to 30 suffice."""
 
 SAMPLES = 256
-"""Points of the sweep that suggests another start where the neighbours lead nowhere."""
+"""Points of the sweep that suggests another start if the neighbours fail."""
 
 DOUBTFUL = 0.02
-"""Least missed margin up to which a look may have overlooked a design that meets everything."""
+"""Least violation up to which a look may have overlooked a feasible design."""
 
 STUCK = 0.3
-"""Least missed margin above which the search for it may have stuck. Between the two every start
-led to one value on the shipped designs, so that one start is enough."""
+"""Least violation above which its search may be stuck. Between the two, every start led to the same
+value on the shipped designs, so one start is enough."""
 
 
 SETTLED = 1e-2
-"""Residual of the optimality conditions up to which a descent counts as arrived."""
+"""Residual of the optimality conditions up to which a descent counts as converged."""
 
 STARTS = 3
-"""Starts where one did not arrive: the point reached, the design's own, the best of a sweep."""
+"""Starts if a descent did not converge: the point reached, the design's own, the best of a
+sweep."""
 
 
 @dataclass
 class Look:
-    """One combination: its design and what is known of it so far."""
+    """One combination: its design and the results so far."""
 
     order: int
     values: Mapping[str, Value]
     subject: PreparedDesign | None = None
     actuator: ActuatorProblem | None = None
     fault: str = ""
-    """Why there is no such design."""
+    """Reason why the combination is impossible."""
     how: How = "not tried"
     x: Vector | None = None
     objective: float = math.inf
@@ -66,28 +66,28 @@ class Look:
     missed: str = ""
     """The limit missed most."""
     checks: frozenset[str] = frozenset()
-    """Missed checks that no variable can mend."""
+    """Missed checks that no variable can fix."""
     solution: Solution | None = None
     hessian: ScaledHessian | None = None
-    """At its optimum, or at the one it was followed from."""
+    """Hessian at its optimum, or at the neighbour's it was followed from."""
     sizing: str = ""
-    """What the search for listed sizes came to, where there was one."""
+    """Result of the search for listed sizes, if made."""
     rounded: float | None = None
     """Objective of the best design of listed sizes."""
 
     @property
     def feasible(self) -> bool:
-        """Whether every requirement is met."""
+        """Whether all requirements are met."""
         return self.violation <= FEASIBLE
 
 
 class Start(NamedTuple):
-    """A point to start from: `descend` at once, or first to where the most missed limit is near."""
+    """A starting point: `descend` directly, or first reduce the worst violation."""
 
     x: Vector
     descend: bool
     hessian: ScaledHessian | None = None
-    """At the optimum that the point is, which mostly serves its neighbours too."""
+    """Hessian at the optimum that the point is; it usually suits its neighbours too."""
 
 
 def look_quickly(
@@ -96,12 +96,12 @@ def look_quickly(
     seed: int,
     seconds: float | None,
 ) -> None:
-    """Go down from the starts, then from that of a sweep, until the matter is clear.
+    """Descend from the starts, then from a sweep, until the result is clear.
 
     Parameters
     ----------
-    look : the combination; gets the best point found
-    starts : in order of trust
+    look : the combination; receives the best point found
+    starts : most reliable first
     seed : of the sweep
     seconds : time limit
     """
@@ -133,7 +133,7 @@ def look_quickly(
 
 
 def _followed(look: Look, evaluator: Evaluator, starts: Sequence[Start]) -> bool:
-    """Whether steps from a neighbour's optimum settle on the optimum of this combination."""
+    """Whether steps from a neighbour's optimum converge to the optimum of this combination."""
     near = next((start for start in starts if start.hessian is not None), None)
     if near is None or near.hessian is None or not evaluator.space.size:
         return False
@@ -147,7 +147,7 @@ def _followed(look: Look, evaluator: Evaluator, starts: Sequence[Start]) -> bool
 
 
 def hessian_of(look: Look) -> ScaledHessian | None:
-    """The Hessian at the optimum of a combination; None where it ended on none."""
+    """The Hessian at the optimum of a combination; None without an optimum."""
     if look.actuator is None or look.x is None:
         return None
     evaluator = Evaluator(look.actuator.problem)
@@ -159,7 +159,7 @@ def hessian_of(look: Look) -> ScaledHessian | None:
 
 
 def _settle(look: Look, evaluator: Evaluator, x: Vector, seed: int) -> None:
-    """Where a descent broke off before an optimum, solve from a few starts."""
+    """Solve from a few starts if a descent stopped before an optimum."""
     found = kkt.check(evaluator, evaluator.point(evaluator.space.to_z(x)))
     if found.residual <= SETTLED or not evaluator.space.size:
         return
@@ -192,7 +192,7 @@ def _coordinates(
 
 
 def _keep(look: Look, evaluator: Evaluator, point: Point) -> Point:
-    """Remember a point where it is better than what was known; the point itself."""
+    """Store a point if it is better than the known ones; returns the point."""
     better = (max(point.violation, FEASIBLE), point.objective)
     if not point.valid or better >= (max(look.violation, FEASIBLE), look.objective):
         return point

@@ -1,8 +1,8 @@
-"""An optimisation or a front as plain data that gives it back: what a run record keeps of it.
+"""An optimisation or a front as plain data, for storing and restoring a run record.
 
-Designs are kept as trees of SI numbers, which build the very same design again; evaluations are
-kept as their designs, with the yield estimated of them, and evaluated again. The rest is
-dataclasses, by their own annotations.
+Designs are stored as trees of SI numbers, which rebuild exactly the same design. Evaluations are
+stored as their designs, with the estimated yield, and repeated on reading. Everything else is
+dataclasses, read by their annotations.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from .result import Optimisation
 Found = TypeVar("Found", Optimisation, ParetoFront)
 _DESIGN, _EVALUATION, _FRACTION, _NUMBER = "$design", "$evaluation", "$fraction", "$number"
 _PLAIN: dict[Any, Any] = {float: (int, float), int: int, str: str, bool: bool}
-"""What stands for itself, with the types of JSON it may come as."""
+"""Plain values, with the JSON types they may have."""
 
 
 def to_plain(found: Optimisation | ParetoFront) -> dict[str, Any]:
@@ -69,18 +69,18 @@ def to_plain(found: Optimisation | ParetoFront) -> dict[str, Any]:
 def from_plain(
     kind: type[Found], data: Mapping[str, Any], plugins: tuple[Plugin, ...] = ()
 ) -> Found:
-    """The result that `to_plain` made the data of.
+    """Restore the result from the data of `to_plain`.
 
     Parameters
     ----------
-    kind : what it is
-    data : as it came from JSON
-    plugins : the user's own metrics, if the design asks for some
+    kind : type of the result
+    data : as read from JSON
+    plugins : the user's own metrics, if the design needs them
 
     Raises
     ------
     InputError
-        data that is none, or of a version with other names
+        invalid data, or data of a version with other names
     """
     metrics = with_own(plugins)
     evaluated: dict[int, Evaluation] = {}
@@ -89,7 +89,7 @@ def from_plain(
     def design(index: int) -> Design:
         built = build(special(data["designs"][index]), metrics=metrics, contradictions=False)
         if built.design is None:
-            raise InputError(f"the design in it: {built.faults[0].message}")
+            raise InputError(f"invalid design in the record: {built.faults[0].message}")
         return built.design
 
     def evaluation(kept: Any) -> Evaluation:
@@ -129,11 +129,11 @@ def _hints(kind: type) -> dict[str, Any]:
 
 
 def _typed(kind: Any, value: Any) -> Any:
-    """A value of JSON as its annotation has it: dataclasses and tuples again.
+    """Convert a JSON value to its annotated type: dataclasses and tuples.
 
     Raises
     ------
-    TypeError, ValueError : it does not fit
+    TypeError, ValueError : the value does not fit
     """
     if value is None:
         if type(None) not in get_args(kind) and kind not in (Any, None, object):

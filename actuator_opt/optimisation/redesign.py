@@ -1,4 +1,4 @@
-"""What measured values change: requirements of the design as it stands, and its optimum."""
+"""Effect of measured values on a design: its requirements, and its optimum."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from .run import optimise
 
 @dataclass(frozen=True, slots=True)
 class Shift:
-    """A requirement before and after, and how far the bounds of what was measured move it.
+    """A requirement before and after, with the range due to the measured bounds.
 
-    `lower` and `upper` bound the value after (SI), None where nothing bounds it.
+    `lower` and `upper` bound the value after (SI); None without a bound.
     """
 
     before: Requirement
@@ -31,14 +31,14 @@ class Shift:
 
     @property
     def move(self) -> float:
-        """Change of the margin, a share of the limit; negative is worse."""
+        """Change of the margin as a share of the limit; negative is worse."""
         if self.before.margin is None or self.after.margin is None:
             return 0.0
         return self.after.margin - self.before.margin
 
     @property
     def verdict(self) -> str:
-        """What happened, in one word."""
+        """Verdict in one word."""
         if self.before.met == self.after.met:
             return "still met" if self.after.met else "still missed"
         return "now met" if self.after.met else "now missed"
@@ -61,7 +61,7 @@ class Shift:
 
 
 class Goal(NamedTuple):
-    """A metric that the objective asks for, at both optima [SI]; None where there is none."""
+    """An objective metric at both optima [SI]; None without one."""
 
     metric: str
     quantity: Quantity
@@ -71,7 +71,7 @@ class Goal(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Redesign:
-    """A design before and after new values, as it stands and at its optimum.
+    """A design before and after new values: as stated, and at its optimum.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ class Redesign:
 
     @property
     def moved(self) -> Shift | None:
-        """The requirement that moved most; None where none moved."""
+        """The requirement whose margin changed most; None if none changed."""
         if not self.shifts:
             return None
         most = max(self.shifts, key=lambda one: abs(one.move))
@@ -95,7 +95,7 @@ class Redesign:
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """What changed, in words."""
+        """The changes in words."""
         found = [self._moved_words()]
         before, after = self.best_before, self.best_after
         if before is not None and after is not None:
@@ -104,10 +104,10 @@ class Redesign:
 
     @property
     def goals(self) -> tuple[Goal, ...]:
-        """What the objective asks for at both optima: of weighted terms each by itself.
+        """The metrics of the objective at both optima, weighted terms separately.
 
-        A weighted sum divides each term by its value in the file's design, which new values change:
-        the sums before and after are not alike.
+        A weighted sum divides each term by its value in the file's design, which new values change.
+        The sums before and after are therefore not comparable.
         """
         before, after = self.best_before, self.best_after
         if before is None or after is None:
@@ -120,7 +120,7 @@ class Redesign:
     def _moved_words(self) -> str:
         most = self.moved
         if most is None:
-            return "no requirement moves"
+            return "no requirement changes"
         quantity = self.evaluation.metrics[most.after.metric].quantity
         low, high = most.lower, most.upper
         bounds = (
@@ -132,8 +132,8 @@ class Redesign:
         old = "-" if most.before.value is None else quantity.text(most.before.value)
         new = "-" if most.after.value is None else quantity.text(most.after.value)
         return (
-            f"what moves most is {most.after.name}: {old} to {new}{bounds}, {sign} "
-            f"{quantity.text(most.after.limit)} asked: {most.verdict}"
+            f"largest change: {most.after.name} from {old} to {new}{bounds}, required {sign} "
+            f"{quantity.text(most.after.limit)}: {most.verdict}"
         )
 
     def to_dict(self) -> dict[str, Any]:
@@ -162,7 +162,7 @@ class Redesign:
 
 
 def solved(one: Optimisation) -> bool:
-    """Whether an optimisation found a design that meets its requirements."""
+    """Whether an optimisation found a feasible design."""
     return one.evaluation.met and one.infeasibility is None
 
 
@@ -172,7 +172,7 @@ def _values(name: str, *optima: Optimisation) -> list[float | None]:
 
 
 def active(one: Optimisation) -> list[str]:
-    """What an optimum stands on."""
+    """The active limits of an optimum."""
     return [] if one.kkt is None else list(one.kkt.active)
 
 
@@ -184,10 +184,10 @@ def redesign(
     seed: int = 0,
     search: bool = True,
 ) -> Redesign:
-    """Both designs evaluated and, where they have variables, optimised.
+    """Evaluate both designs and, if they have variables, optimise them.
 
-    The bounds of a requirement's value: each group of measured values at its bounds, all others as
-    they are, the changes up and down added as squares.
+    Each group of measured values is set to its bounds with all others unchanged. The changes up and
+    down add as squares to the range of a requirement.
 
     Parameters
     ----------
@@ -214,7 +214,7 @@ def _bounds(
     middle: Evaluation,
     learned: Sequence[Mapping[str, tuple[float, float]]],
 ) -> dict[str, tuple[float | None, float | None]]:
-    """Values of the requirements between the bounds of what was measured."""
+    """Range of the requirements' values within the measured bounds."""
     values = {row.name: row.value for row in middle.requirements}
     reach = dict.fromkeys(values, (0.0, 0.0))
     for group in learned:
@@ -242,12 +242,10 @@ def _bounds(
 
 
 def _optimum_words(before: Optimisation, after: Optimisation, goals: Sequence[Goal]) -> list[str]:
-    """How the optimum changes, and what it stands on."""
+    """Changes of the optimum and of its active limits."""
     if not (solved(before) and solved(after)):
         states = [
-            "there is a design that meets every requirement"
-            if solved(one)
-            else "no design meets every requirement"
+            "a design meets all requirements" if solved(one) else "no design meets all requirements"
             for one in (before, after)
         ]
         return [f"before, {states[0]}; now, {states[1]}", *_repairs(after)]
@@ -268,21 +266,21 @@ def _goal_words(one: Goal) -> str:
 
 
 def _repairs(one: Optimisation) -> list[str]:
-    """What alone lets a design meet the limits, and the smallest change of limits that does."""
+    """The sufficient single change, and the smallest change of limits."""
     if one.infeasibility is None:
         return []
     first = next((cure for cure in one.infeasibility.cures if cure["advised"]), None)
-    alone = [] if first is None else [f"alone enough: {change_text(first)}"]
+    alone = [] if first is None else [f"enough alone: {change_text(first)}"]
     joint = one.infeasibility.joint
     found = "; ".join(change_text(row) for row in joint)
     unsafe = any(row["safety_factor"] for row in joint)
     warned = " (weakens a safety factor: not advised)" if unsafe else ""
-    said = [f"the smallest change of limits that would do: {found}{warned}"] if found else []
+    said = [f"the smallest sufficient change of limits: {found}{warned}"] if found else []
     return [*alone, *said]
 
 
 def _active_words(old: Sequence[str], new: Sequence[str]) -> list[str]:
-    """Which limits the optimum newly stands on, and which it left."""
+    """Limits that became active at the optimum, and those no longer active."""
     pairs = (
         ([one for one in new if one not in old], "newly at its limit"),
         ([one for one in old if one not in new], "no longer at its limit"),

@@ -1,8 +1,8 @@
-"""What alone would make an infeasible problem feasible: one requirement, or one opened bound.
+"""Single changes that make an infeasible problem feasible: one requirement, or one bound.
 
-First a point that meets everything but the one requirement (or lies beyond the one bound), by the
-shortest steps to the linearised rows, for all candidates at once; where that finds none, by the
-least worst miss, from several points. From there the least amount that must be given up.
+First, shortest steps to the linearised rows look for a point that meets everything but the one
+requirement (or lies beyond the one bound), for all candidates at once. If they fail, the worst
+violation is minimised from several points. From there the least sufficient change follows.
 """
 
 from __future__ import annotations
@@ -20,32 +20,32 @@ from .problem import BoxProblem, ParametricProblem, Values, Vector
 from .resolve.changed import ChangedProblems, applicable
 
 NOTHING = 1e-6
-"""A relaxation below this is none."""
+"""A relaxation below this counts as zero."""
 
 SETTLED = 1e-6
-"""Residual of the optimality conditions up to which an end counts as an optimum."""
+"""Residual of the optimality conditions up to which a result counts as an optimum."""
 
 CHALLENGE = 0.99
-"""Share of an amount that must not be enough."""
+"""Share of an amount that must not be enough, or the amount is too large."""
 
 FAINT = 1e-3
-"""Amounts below are not challenged: a hundredth of them is near what counts as met."""
+"""Amounts below are not checked, as a hundredth of them is near the feasibility tolerance."""
 
 CHALLENGES = 8
-"""Most rounds of this; halving comes within a per cent in seven."""
+"""Maximum rounds of this check; halving comes within a per cent in seven."""
 
 WIDEST = 2.0
-"""A bound is opened to at most twice, or half, its value: beyond, it is another actuator."""
+"""A bound may change to twice, or half, its value at most: beyond, it is another actuator."""
 
 _FREED = 1e9
-"""Margin granted to a requirement that is left out: no value misses it by as much."""
+"""Margin granted to an excluded requirement, larger than any violation."""
 
 
 @dataclass(frozen=True, slots=True)
 class Relaxation:
-    """A constraint and the margin (fraction of its limit) that must be given up.
+    """A constraint and the margin (fraction of its limit) to give up.
 
-    `amount` is None where giving up this constraint entirely would not be enough.
+    `amount` is None if giving up this constraint entirely would not be enough.
     """
 
     constraint: str
@@ -55,13 +55,13 @@ class Relaxation:
 
 @dataclass(frozen=True, slots=True)
 class Opening:
-    """A bound that holds back the joint relaxation.
+    """A bound that limits the joint relaxation.
 
     Parameters
     ----------
     variable, index, side, value : the bound
-    gain : fall of the total relaxation per unit of relative opening of the bound (0.01 = 1 %)
-    needed : value of the bound that alone would do; None where none was found up to `WIDEST`
+    gain : fall of the total relaxation per unit of relative change of the bound (0.01 = 1 %)
+    needed : value of the bound that is enough alone; None if none was found up to `WIDEST`
     """
 
     variable: str
@@ -85,19 +85,19 @@ def by_limits(
     named: set[int],
     points: Sequence[Vector],
 ) -> tuple[Relaxation, ...]:
-    """What each group of constraints must give up alone.
+    """The relaxation that each group of constraints needs alone.
 
     Parameters
     ----------
     problem : the infeasible problem
     groups : rows of the candidates
-    named : first rows of the groups to look into from every point
+    named : first rows of the groups to search from every point
     points : where to start, the point of the smallest joint relaxation first
     """
     amounts: list[float | None] = []
     reached = without_each(problem, groups, points[0])
     for number, (group, x) in enumerate(zip(groups, reached, strict=True)):
-        tell("nothing fits: which requirement alone would do", number / len(groups))
+        tell("infeasible: searching for a sufficient requirement", number / len(groups))
         if x is None:
             x = _without(problem, group, points if int(group[0]) in named else points[:1])
         amounts.append(None if x is None else _least_of_all(problem, group, x, points[1:]))
@@ -114,9 +114,9 @@ def _challenged(
     amounts: Sequence[float | None],
     points: Sequence[Vector],
 ) -> list[float | None]:
-    """The amounts, less where `CHALLENGE` of one is enough as well.
+    """The amounts, reduced where a share `CHALLENGE` is enough as well.
 
-    A descent may end on a kink, or in a valley that is not the deepest; then halving finds less.
+    A descent may end on a kink or in a shallow valley; halving then finds a smaller amount.
     """
     enough = {k: amount for k, amount in enumerate(amounts) if amount is not None}
     tried = {k: CHALLENGE * amount for k, amount in enough.items() if amount > FAINT}
@@ -146,7 +146,7 @@ def without_each(
     x: Vector,
     granted: Sequence[float] | None = None,
 ) -> list[Vector | None]:
-    """For each group a point where all is met but for the margin granted to it (None: any)."""
+    """For each group a point that meets all else, with a margin granted to it (None: any)."""
     evaluator = Evaluator(problem)
     point = evaluator.point(evaluator.space.to_z(x))
     freed = np.zeros((len(problem.constraint_names), len(groups)))
@@ -168,14 +168,14 @@ def without_each(
 
 
 def near(problem: BoxProblem, x: Vector) -> Vector | None:
-    """A point near another that meets everything; None where none was found."""
+    """A feasible point near another, or None."""
     return without_each(problem, [np.empty(0, dtype=np.intp)], x)[0]
 
 
 def _without(
     problem: BoxProblem, group: elastic.Indices, points: Sequence[Vector]
 ) -> Vector | None:
-    """A point that meets everything but one group, None where none was found."""
+    """A point that meets everything but one group, or None."""
     m = len(problem.constraint_names)
     kept = np.setdiff1d(np.arange(m), group)
 
@@ -197,7 +197,7 @@ def _without(
 def _least_of_all(
     problem: BoxProblem, group: elastic.Indices, x: Vector, others: Sequence[Vector]
 ) -> float | None:
-    """The least that one group must give up; from other points too where a descent got stuck."""
+    """The least relaxation of one group; also from other points if a descent stalled."""
     amount, settled = _least(problem, group, x)
     for other in others:
         if settled:
@@ -210,12 +210,12 @@ def _least_of_all(
 
 
 def least(problem: BoxProblem, group: elastic.Indices, x: Vector) -> float | None:
-    """The least one group must give up, near a point that meets the others; None without any."""
+    """The least relaxation of one group, near a point that meets the others; None without one."""
     return _least(problem, group, x)[0]
 
 
 def _least(problem: BoxProblem, group: elastic.Indices, x: Vector) -> tuple[float | None, bool]:
-    """The least one group must give up, near a point that meets the others; whether optimal."""
+    """As `least`, with whether the result is optimal."""
     lacks = missed(Evaluator(problem), x, [group])
     stretched = elastic.separate(problem, [group], [2.0 * max(*lacks, 0.5)])
     found = elastic.descend(stretched, x, lacks)
@@ -226,16 +226,16 @@ def _least(problem: BoxProblem, group: elastic.Indices, x: Vector) -> tuple[floa
 
 
 def by_bounds(problem: BoxProblem, bounds: Sequence[Opening], x: Vector) -> tuple[Opening, ...]:
-    """The bounds again, each with the value that alone would do."""
+    """The bounds, each with the value that is enough alone."""
     found = []
     for number, bound in enumerate(bounds):
-        tell("nothing fits: which bound alone would do", number / len(bounds))
+        tell("infeasible: searching for a sufficient bound", number / len(bounds))
         found.append(replace(bound, needed=_opened(problem, bound, x)))
     return tuple(found)
 
 
 def _opened(problem: BoxProblem, bound: Opening, x: Vector) -> float | None:
-    """The value nearest to a bound at which a variable beyond it meets every requirement."""
+    """The value nearest to a bound at which a variable beyond it meets all requirements."""
     j, upper = bound.index, bound.side == "upper"
     if bound.value <= 0:
         return None

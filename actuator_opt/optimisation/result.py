@@ -1,4 +1,4 @@
-"""What an optimisation of an actuator returns."""
+"""Results of an optimisation of an actuator."""
 
 from __future__ import annotations
 
@@ -51,27 +51,27 @@ class Kkt:
 
 @dataclass(frozen=True, slots=True)
 class Infeasibility:
-    """Why nothing fits: joint relaxation, sole repairs, binding bounds.
+    """Why a design is infeasible: joint relaxation, sufficient single changes, binding bounds.
 
-    `joint` and `sole` entries hold requirement, origin, parameter (PATH), metric, sense, limit,
-    needed (the limit that would do; None where this one alone cannot help), relaxation (margin
-    given up, a fraction), change (of the limit, a fraction), safety_factor (whether it is of the
-    check list or a factor: giving way is not advised) and both limits as text in the display unit,
-    the needed one rounded so that it is enough as printed. Where a torque is required through a
-    lever, limit and needed are the torque.
+    `joint` and `sole` entries contain requirement, origin, parameter (PATH), metric, sense, limit,
+    needed (the sufficient limit; None if this one alone cannot help), relaxation (margin given up,
+    a fraction), change (of the limit, a fraction), safety_factor (whether it is of the check list
+    or a factor, so that relaxing it is not advised) and both limits as text in the display unit.
+    The text of `needed` is rounded to be sufficient as printed. If a torque is required through a
+    lever, limit and needed are torques.
 
-    `bounds` entries hold variable, parameter (PATH), quantity, bound (side), value, gain (fall of
-    `total` per unit of relative opening: 0.01 of it for 1 %), needed (the bound that alone would
-    do, None where none was found), change and texts.
+    `bounds` entries contain variable, parameter (PATH), quantity, bound (side), value, gain (fall
+    of `total` per unit of relative change: 0.01 of it for 1 %), needed (the bound that is enough
+    alone, None if none was found), change and texts.
 
-    `cures` lists what alone is enough, the most advisable first: kind (dimension, choice, bound,
-    requirement, safety factor), parameter (PATH), now and needed (SI, or a word), change, texts,
-    and advised (False for safety factors). A dimension is one no variable moves; `together` lists
-    several that are enough all at once, `beside` what a choice needs to be stated with it, by PATH.
-    Each was met by a design; `untried` names what may help and was not tried.
+    `cures` lists sufficient single changes, the most advisable first: kind (dimension, choice,
+    bound, requirement, safety factor), parameter (PATH), now and needed (SI, or a word), change,
+    texts, and advised (False for safety factors). A dimension is one that is not a variable;
+    `together` lists several that are enough together, `beside` further entries that a choice needs,
+    by PATH. Each was confirmed by a design; `untried` names candidates that were not tried.
 
-    `laws` names geometry that conflicts, `total` is the sum of the joint relaxations, `sentence`
-    the advice in one line and `evidence` what of it is proven.
+    `laws` names conflicting geometry, `total` is the sum of the joint relaxations, `sentence` the
+    advice in one line and `evidence` what is proven.
     """
 
     joint: tuple[Mapping[str, Any], ...]
@@ -87,12 +87,12 @@ class Infeasibility:
 
 @dataclass(frozen=True, slots=True)
 class Certificate:
-    """How far a design is from the best possible: what is proven, and what only speaks for it.
+    """Distance of a design from the best possible: the proof, and the evidence.
 
-    No design that meets the covered limits has an objective below `lower_bound` (SI); `gap` is
-    what is left to the design found, over its objective. Both are None where nothing could be
-    proven; `sentence` then says why. `dropped` tells by limit why the proof does without it, which
-    can only lower the bound. `evidence` is the statistic of the starts: no proof.
+    No design that meets the covered limits has an objective below `lower_bound` (SI); `gap` is the
+    remaining distance of this design, relative to its objective. Both are None without a proof;
+    `sentence` then gives the reason. `dropped` gives the reason for each limit not covered, which
+    can only lower the bound. `evidence` is the statistic of the starts, not a proof.
     """
 
     sentence: str
@@ -126,7 +126,7 @@ class RoundedVariable:
 
 @dataclass(frozen=True, slots=True)
 class RunnerUp:
-    """Another rounded design that meets every requirement: its listed variables by PATH."""
+    """Another rounded design that meets all requirements: its listed variables by PATH."""
 
     objective: float
     cost: float
@@ -136,10 +136,10 @@ class RunnerUp:
 
 @dataclass(frozen=True, slots=True)
 class SizeRemedy:
-    """A small change of one number that lets a design have better sizes.
+    """A small change of one number that allows better sizes.
 
-    `change` holds parameter (PATH), limit and needed (SI), change (a fraction) and both as text;
-    `objective` and `values` (sizes by PATH) are of a design that meets everything with it.
+    `change` contains parameter (PATH), limit and needed (SI), change (a fraction) and both as text;
+    `objective` and `values` (sizes by PATH) are of a feasible design with this change.
     """
 
     change: Mapping[str, Any]
@@ -150,16 +150,17 @@ class SizeRemedy:
 
 @dataclass(frozen=True, slots=True)
 class Rounding:
-    """The best design of whole plies, standard or other listed sizes, and what rounding costs.
+    """The best design of whole plies, standard or other listed sizes, and the cost of rounding.
 
-    `name` says which ("whole plies", "standard sizes"). `cost` is how much worse the objective gets
-    (≥ 0, in its SI unit), `percent` over the continuous one; None, with `design` and `evaluation`,
-    where nothing tried meets every requirement. `plies` counts those of every layer that states its
-    ply thickness, `tried` and `feasible` count rounded designs, `solves` re-optimisations;
-    `complete` tells that the search did not stop at a limit. Bounds of the search are local optima:
-    the best found, no proof. `unmade` names by PATH what is no whole plies or allowed angle, where
-    the sizes asked for leave it free: such a design is not one to build yet. `remedies` has small
-    changes of a limit, load or pressure that allow better sizes, where rounding costs much.
+    `name` says which ("whole plies", "standard sizes"). `cost` is the loss of the objective (≥ 0,
+    in its SI unit), `percent` relative to the continuous one. Both are None, with `design` and
+    `evaluation`, if no rounded design was feasible. `plies` counts those of every layer that states
+    its ply thickness, `tried` and `feasible` count rounded designs, `solves` re-optimisations;
+    `complete` is True if the search did not stop at a limit. Bounds of the search are local optima,
+    so the result is the best found, without proof. `unmade` names by PATH values that are not whole
+    plies or allowed angles because the requested sizes leave them free; such a design cannot be
+    built yet. `remedies` lists small changes of a limit, load or pressure that allow better sizes,
+    if rounding costs much.
     """
 
     met: bool
@@ -216,20 +217,20 @@ class Rounding:
 
 
 How: TypeAlias = Literal["multistart", "quick", "evaluated", "not possible", "not tried"]
-"""How much a combination was looked into."""
+"""How thoroughly a combination was searched."""
 
 
 @dataclass(frozen=True, slots=True)
 class Combination:
-    """One combination of the choices and the best design found with it.
+    """One combination of the choices and its best design.
 
-    `how`: "multistart" solved from many starts like any optimisation, "quick" only from the
-    nearest design already known (its best may be missed), "evaluated" where nothing else may
-    move, "not possible" where its values contradict each other, "not tried" where the time was
-    up. `feasible` tells that every requirement is met; `cost` is how much worse than the best the
-    objective is (in its SI unit), `percent` over the best; None where there is nothing to compare.
-    `rounded` is the objective with listed sizes, where these are asked and some were found that are
-    better than those of the combinations before; costs then are over the best of these.
+    `how`: "multistart" from many starts like any optimisation, "quick" only from the nearest known
+    design (its best may be missed), "evaluated" if nothing else is free, "not possible" if its
+    values contradict each other, "not tried" if the time ran out. `feasible` is True if all
+    requirements are met; `cost` is the loss against the best objective (in its SI unit), `percent`
+    relative to the best; None without anything to compare. `rounded` is the objective with listed
+    sizes, if requested and better than those of the combinations before; costs then refer to the
+    best of these.
     """
 
     values: Mapping[str, choice_list.Value]
@@ -249,7 +250,7 @@ class Combination:
 
 @dataclass(frozen=True, slots=True)
 class Choices:
-    """Every combination of the choices, the best first: the design found is that of the first."""
+    """All combinations of the choices; the best one comes first and gives the result."""
 
     sentence: str
     combinations: tuple[Combination, ...]
@@ -261,17 +262,17 @@ class Choices:
         return self.combinations[0].values
 
     def count(self, *how: How) -> int:
-        """Number of combinations looked into in these ways."""
+        """Number of combinations searched in these ways."""
         return sum(one.how in how for one in self.combinations)
 
     @property
     def tried(self) -> int:
-        """Number of combinations that were solved, or evaluated where nothing else may move."""
+        """Number of combinations solved, or evaluated if nothing else is free."""
         return self.count("multistart", "quick", "evaluated")
 
     @property
     def feasible(self) -> int:
-        """Number of combinations that meet every requirement."""
+        """Number of combinations that meet all requirements."""
         return sum(one.feasible for one in self.combinations)
 
     def to_dict(self) -> dict[str, Any]:
@@ -292,7 +293,7 @@ class Choices:
 
 @dataclass(frozen=True, slots=True)
 class Optimisation:
-    """The best design found, how good it is, and what each requirement costs."""
+    """The best design, its quality, and the price of each requirement."""
 
     status: str
     sentence: str
@@ -309,7 +310,7 @@ class Optimisation:
     evaluations: int
     samples: int
     starts: tuple[float | None, ...]
-    """Objective that each start led to; None where that design misses a limit."""
+    """Objective that each start reached; None if its design misses a limit."""
     trace: tuple[tuple[int, float, float], ...]
     """(evaluation, objective, worst violation) of each improvement."""
     algorithm: str
@@ -317,21 +318,21 @@ class Optimisation:
     seed: int
     seconds: float
     certificate: Certificate | None = None
-    """How far the design is from the best possible, where that was asked for."""
+    """Distance of the design from the best possible, if requested."""
     rounding: Rounding | None = None
-    """The best design of listed sizes, where they are asked for and a continuous one exists."""
+    """The best design of listed sizes, if requested and a continuous one exists."""
     choices: Choices | None = None
-    """Every combination of the design's choices, where it has some."""
+    """All combinations of the design's choices, if it has any."""
     robust: Robust | None = None
 
     @property
     def made(self) -> Rounding | None:
-        """The design of listed sizes, where there is one: it is what is written and shown."""
+        """The rounding, if it has a design of listed sizes, which is shown and saved."""
         return None if self.rounding is None or self.rounding.design is None else self.rounding
 
     @property
     def best(self) -> Design:
-        """The design to build: that of listed sizes, where there is one."""
+        """The design to build: that of listed sizes, if there is one."""
         return self.design if self.made is None or self.made.design is None else self.made.design
 
     @property
@@ -342,7 +343,7 @@ class Optimisation:
 
     @property
     def tight(self) -> tuple[str, ...]:
-        """Limits of the design to build without reserve; none where it has the yield asked for."""
+        """Limits without margin in the design to build; none if it has the requested yield."""
         return () if self.robust and self.robust.reached else self.best_evaluation.tight
 
     @property
@@ -359,38 +360,39 @@ class Optimisation:
 
     @property
     def optimum(self) -> bool:
-        """Whether the design to build is an optimum, of its sizes where some are asked for."""
+        """Whether the design to build is an optimum, among its sizes if requested."""
         return self.status == "optimal" and self.best_evaluation.met
 
     @property
     def shown(self) -> str:
-        """Which design stands in tables, drawing and JSON, where sizes are asked for; else ""."""
+        """Which design tables, drawing and JSON show, if sizes are requested; else ""."""
         if self.rounding is None:
             return ""
         quantity, name = of_metric(self.objective_metric), self.rounding.name
         before, after = (quantity.text(x, 5) for x in (self.objective_value, self.best_objective))
         if self.made is None:
             return (
-                f"shown is the continuous optimum, not a design to build: {self.rounding.sentence}"
+                "shows the continuous optimum, which is not the design to build: "
+                f"{self.rounding.sentence}"
             )
-        to_build = "the one to build" if self.rounding.met else "which misses a requirement"
+        to_build = "the design to build" if self.rounding.met else "which misses a requirement"
         if self.rounding.met and self.rounding.unmade:
             names = ", ".join(self.rounding.unmade)
-            to_build = f"not one to build yet: {names} not in whole plies or allowed angles"
+            to_build = f"not to be built yet: {names} not in whole plies or allowed angles"
         return (
-            f"shown is the design of {name} ({quantity.label} {after}), {to_build}; the continuous "
-            f"optimum has {before}, and prices are those of it"
+            f"shows the design of {name} ({quantity.label} {after}), {to_build}; prices refer to "
+            f"the continuous optimum, with {before}"
         )
 
     @property
     def offers(self) -> Offers:
-        """What would buy the most of the objective, by its re-solved prices."""
+        """The most valuable changes by re-solved prices."""
         maximised = self.design.objective.maximise is not None
         return offers(self.sensitivities, self.objective_value, maximised=maximised)
 
     @property
     def buys_most(self) -> tuple[str, ...]:
-        """The same in sentences; none without prices."""
+        """The same in sentences; empty without prices."""
         if not self.sensitivities:
             return ()
         maximised = self.design.objective.maximise is not None
@@ -425,8 +427,8 @@ class Optimisation:
         """The `optimise --json` object (SI): the evaluation's keys and the optimiser's.
 
         Metrics, requirements, checks, objective and variables are those of the design to build, as
-        `evaluate` of the saved file repeats them; multipliers, prices and certificate those of the
-        continuous optimum.
+        `evaluate` reproduces them from the saved file. Multipliers, prices and certificate are
+        those of the continuous optimum.
         """
         best, value, why = self.best_evaluation, self.best_objective, self.infeasibility
         return (
@@ -458,7 +460,7 @@ class Optimisation:
         )
 
     def _shown(self) -> dict[str, Any]:
-        """Which design the object is of: the continuous optimum, or that of the sizes asked for."""
+        """The design described: the continuous optimum, or that of the requested sizes."""
         return {
             "design": "continuous" if self.made is None else "rounded",
             "sizes": None if self.rounding is None else self.rounding.name,
@@ -466,12 +468,12 @@ class Optimisation:
         }
 
     def _variables(self) -> dict[str, Any]:
-        """Value, bounds and the bound it is at of every variable, by PATH."""
+        """Value, bounds and active bound of every variable, by PATH."""
         kept = ("value", "lower", "upper", "at_bound")
         return {v.path: {name: getattr(v, name) for name in kept} for v in self.best_variables}
 
     def _rounding(self) -> dict[str, Any] | None:
-        """The rounding with the evaluation of the optimum it began from."""
+        """The rounding with the evaluation of the continuous optimum."""
         if self.rounding is None:
             return None
         return self.rounding.to_dict() | {"continuous_evaluation": self.evaluation.to_dict()}

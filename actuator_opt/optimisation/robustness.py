@@ -1,4 +1,4 @@
-"""What a robust optimum is, as data: limits met at a stated probability."""
+"""Results of a robust optimisation: limits met with a stated probability."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 @dataclass(frozen=True, slots=True)
 class Round:
-    """One ordinary optimum on the way: objective (SI) and the share of draws that meet all."""
+    """One optimum of the sequence: objective (SI) and share of draws that meet all limits."""
 
     objective: float
     rate: float
@@ -17,19 +17,19 @@ class Round:
 
 @dataclass(frozen=True, slots=True)
 class Robust:
-    """How an optimum keeps its limits while its numbers scatter.
+    """Robustness of an optimum with uncertain inputs.
 
     Parameters
     ----------
-    target : probability asked for
-    rate, lower, upper : of an independent sample: all limits covered hold; 95 % bounds
+    target : requested probability
+    rate, lower, upper : of meeting all covered limits, in an independent sample; 95 % bounds
     samples : draws of that sample
-    converged : whether the reserves came to rest
+    converged : whether the reserves settled
     nominal_objective, nominal_rate : of the optimum without reserves
-    reserves : margin kept beyond each limit, by its name
-    rounds : optima on the way, the one without reserves first
-    left_out : limits that are not covered: checks that the optimum misses anyway
-    sentence : all of it in words
+    reserves : extra margin a robust search requires, by limit
+    rounds : the sequence of optima, the one without reserves first
+    left_out : limits not covered: checks that the optimum misses anyway
+    sentence : the result in words
     """
 
     target: float
@@ -47,7 +47,7 @@ class Robust:
 
     @property
     def reached(self) -> bool:
-        """Whether as many of the independent sample hold as were asked for."""
+        """Whether the independent sample reaches the requested probability."""
         return self.rate >= self.target
 
     def to_dict(self) -> dict[str, Any]:

@@ -1,9 +1,8 @@
-"""From the continuous optimum to sizes that can be made or bought, and what that costs.
+"""Rounding of the continuous optimum to manufacturable sizes, and its cost.
 
-Variables keep to the sizes their file states (a list, a step, a series of a standard), to whole
-plies and allowed angles, or to every standard there is, as is asked: `design.sizes` lists them.
-Everything else stays continuous and is optimised again. The search is no proof: see
-`branch_and_bound`.
+Variables take the sizes stated in their file (a list, a step, a standard series), whole plies and
+allowed angles, or all standard sizes, as requested: `design.sizes` lists them. All other variables
+stay continuous and are optimised again. The search proves nothing: see `branch_and_bound`.
 """
 
 from __future__ import annotations
@@ -35,14 +34,14 @@ RUNNERS_UP = 3
 """Next best designs reported."""
 
 MOST_SAID = 4
-"""Most sizes named in a sentence."""
+"""Maximum sizes named in a sentence."""
 
 _OF_PLIES = ("whole plies", "allowed angles")
 
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """Which sizes a design must keep to, beside those its file states."""
+    """Sizes that a design must take, beside those stated in its file."""
 
     whole_plies: bool = False
     standard: bool = False
@@ -50,15 +49,15 @@ class Wanted:
 
 @dataclass(frozen=True)
 class Sizes:
-    """The listed variables of a design: groups as the search takes them, the series of each."""
+    """The listed variables of a design: groups for the search, and the series of each."""
 
     listed: tuple[Listed, ...]
     labels: dict[str, str]
-    """How each listed variable gets its sizes, by PATH."""
+    """Source of each listed variable's sizes, by PATH."""
 
     @property
     def name(self) -> str:
-        """What is rounded to, in two words."""
+        """Name of the rounding, in two words."""
         plies = set(self.labels.values()) <= set(_OF_PLIES)
         return "whole plies" if plies else "standard sizes"
 
@@ -71,7 +70,7 @@ def layers(design: Design) -> Iterator[tuple[str, Ply]]:
 
 
 def plies(ply: Ply) -> int | None:
-    """Number of plies of a layer; None where it is not whole, or states no ply thickness."""
+    """Number of plies of a layer; None if not whole, or without a ply thickness."""
     if ply.ply_thickness is None:
         return None
     step = 2 if ply.balanced and not along(ply.angle) else 1
@@ -80,9 +79,9 @@ def plies(ply: Ply) -> int | None:
 
 
 def uncounted(design: Design, materials: Mapping[str, Material]) -> tuple[str, ...]:
-    """PATHs of the thickness of layers of fibres whose plies nobody can count.
+    """PATHs of fibre layer thicknesses whose plies cannot be counted.
 
-    They state no ply thickness, and no variable keeps to sizes of its own.
+    These layers state no ply thickness, and no variable restricts them to sizes.
     """
     found = []
     for path, ply in layers(design):
@@ -94,7 +93,7 @@ def uncounted(design: Design, materials: Mapping[str, Material]) -> tuple[str, .
 
 
 def misfits(design: Design) -> tuple[str, ...]:
-    """PATHs of the numbers of a lay-up that are no whole plies, or no allowed angle."""
+    """PATHs of lay-up values that are not whole plies or not allowed angles."""
     found = []
     allowed = design.barrel.allowed_angles
     for path, ply in layers(design):
@@ -109,7 +108,7 @@ def misfits(design: Design) -> tuple[str, ...]:
 
 
 def unrounded(optimisation: Optimisation) -> str:
-    """A remark that an optimum is not whole plies, where nobody asked for them; else nothing."""
+    """A remark on an optimum without whole plies, if not requested; else empty."""
     design = optimisation.design
     left = [path for path in misfits(design) if path in design.variables]
     if optimisation.rounding is not None or not left or not optimisation.evaluation.met:
@@ -123,20 +122,20 @@ def sizes_of(
     materials: Mapping[str, Material],
     fault: Fault | None = None,
 ) -> Sizes | None:
-    """The variables that only take listed values; None where there are none, and none is asked.
+    """The variables that only take listed values; None if there are none and none are requested.
 
     Parameters
     ----------
     design : the design with its variables
-    wanted : what is asked beside the sizes of the file
+    wanted : sizes requested beside those of the file
     materials : of the design, by name
-    fault : places a variable's fault in its file; default: by PATH only
+    fault : locates a variable's fault in the file; default: by PATH only
 
     Raises
     ------
     InputError
-        sizes are asked and no variable has any, or the bounds of one hold none; whole plies are
-        asked and a layer has none
+        sizes are requested and no variable has any, or the bounds of one contain none; whole plies
+        are requested and a layer has none
     """
     if wanted.whole_plies or wanted.standard:
         _require_plies(design, wanted, materials)
@@ -164,12 +163,12 @@ def sizes_of(
 
 
 def _require_plies(design: Design, wanted: Wanted, materials: Mapping[str, Material]) -> None:
-    """Every layer of fibres must be of plies that can be counted, and whole where it is fixed."""
+    """Check that every fibre layer has countable plies, and whole ones if it is fixed."""
     known = dict(layers(design))
     alone = "" if wanted.whole_plies else '; for bore and rod alone write "sizes: iso_3320"'
     faults = [
         Diagnostic(
-            "the layer states no ply_thickness: its plies cannot be counted",
+            "the layer states no ply_thickness, so its plies cannot be counted",
             f'add e.g. "ply_thickness: 0.2 mm" to it{alone}',
             path=path,
         )
@@ -182,7 +181,7 @@ def _require_plies(design: Design, wanted: Wanted, materials: Mapping[str, Mater
             pairs = "" if not ply.balanced or along(ply.angle) else "pairs of "
             faults.append(
                 Diagnostic(
-                    f"no whole number of {pairs}plies of {one}, and no variable",
+                    f"not a whole number of {pairs}plies of {one}, and not a variable",
                     "change it, or make it a variable",
                     path=path,
                 )
@@ -205,7 +204,7 @@ def _nothing(wanted: Wanted) -> Diagnostic:
 
 
 def design_at(actuator: ActuatorProblem, x: Vector) -> tuple[Design, Evaluation]:
-    """The design at a point of its variables, evaluated."""
+    """The evaluated design at a point of its variables."""
     subject = actuator.subject
     values = dict(zip(actuator.paths, x.tolist(), strict=True))
     design = with_values(subject.design, values, metrics=subject.quantities, contradictions=False)
@@ -222,15 +221,15 @@ def rounded(
     until: float | None = None,
     seed: int = 0,
 ) -> tuple[Rounding, Solution]:
-    """The best design that keeps to the sizes, and the continuous optimum.
+    """The best design with the sizes, and the continuous optimum.
 
-    That is the one given, unless the search runs into a better one.
+    The given optimum, unless the search finds a better one.
 
     Parameters
     ----------
-    actuator, solution : the problem and a point that meets every requirement
+    actuator, solution : the problem and a feasible point
     sizes : `sizes_of` the design
-    found : what the search came to, where it was made
+    found : result of the search, if already made
     until : time of `time.perf_counter` to stop at
     seed : of the sweeps
     """
@@ -251,7 +250,7 @@ def rounded(
 
 
 def _cost(objective: float, solution: Solution) -> float:
-    """How much worse than the continuous optimum an objective is; rounding counts as nothing."""
+    """Loss of an objective against the continuous optimum; rounding noise counts as zero."""
     cost = objective - solution.objective
     return 0.0 if abs(cost) <= 10 * SAME * abs(solution.objective) else cost
 
@@ -267,9 +266,8 @@ def _rounding(
     feasible = sum(math.isfinite(objective) for objective in found.tried.values())
     before = Rounding(
         met=False,
-        sentence=f"no design of {sizes.name} that meets every requirement was "
-        f"found among {len(found.tried)} tried"
-        + ("" if found.complete else ", when the search stopped at its limit")
+        sentence=f"none of {len(found.tried)} designs of {sizes.name} meets all requirements"
+        + ("" if found.complete else ", and the search stopped at its limit")
         + _nearest(actuator, sizes, found),
         remedy=f"{_FINER[sizes.name]}, widen the bounds of these variables, or relax a requirement",
         name=sizes.name,
@@ -305,7 +303,7 @@ def _rounding(
 
 
 def _nearest(actuator: ActuatorProblem, sizes: Sizes, found: Found) -> str:
-    """What the nearest sizes miss, where nothing was found."""
+    """What the nearest sizes miss, if none is feasible."""
     if found.nearest is None or found.missed is None or found.missed.violation <= 0:
         return ""
     margins = found.missed.rows[1 : 1 + len(actuator.problem.constraint_names)]
@@ -338,26 +336,26 @@ _FINER = {
 
 
 def _sentence(name: str, met: bool, complete: bool) -> tuple[str, str]:
-    """What the search came to and what to do about it."""
+    """The result of the search and the remedy."""
     if not met:
         return f"the design of {name} misses a requirement", f"relax it, or {_FINER[name]}"
     if not complete:
         return (
-            f"every requirement is met with {name}; the search stopped at its limit, and the "
+            f"all requirements are met with {name}; the search stopped at its limit, and the "
             "best design so far is kept",
-            "raise the time limit, or let fewer variables keep to sizes",
+            "raise the time limit, or restrict fewer variables to sizes",
         )
     return (
-        f"every requirement is met with {name}; the best found by branch and bound, which is "
-        "no proof, as its bounds are local optima",
+        f"all requirements are met with {name}; the best found by branch and bound, without "
+        "proof, as its bounds are local optima",
         "",
     )
 
 
 def _unmade(actuator: ActuatorProblem, design: Design) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """PATHs off whole plies or allowed angles or without `ply_thickness`, a sentence on each.
+    """PATHs without whole plies, allowed angles or `ply_thickness`, and a sentence on each.
 
-    Of a design before its rounding these are those that no variable moves.
+    Before rounding, only those that are not variables.
     """
     start = design is actuator.subject.design
     moved = design.variables if start else {}
@@ -365,14 +363,14 @@ def _unmade(actuator: ActuatorProblem, design: Design) -> tuple[tuple[str, ...],
     open_ = [path for path in uncounted(design, actuator.subject.materials) if path not in moved]
     notes = [
         (
-            f"{path} is no variable and is not "
+            f"{path} is not a variable and not "
             if path not in design.variables
             else f"{path} is not "
         )
         + ("an allowed angle" if path.endswith("angle") else "a whole number of plies")
         for path in odd
     ]
-    notes += [f"{path}: the layer states no ply_thickness, its plies are not counted"
+    notes += [f"{path}: the layer states no ply_thickness, so its plies cannot be counted"
               for path in open_]  # fmt: skip
     return (*odd, *open_), tuple(notes)
 
@@ -405,7 +403,7 @@ def _variables(
 def _runners_up(
     actuator: ActuatorProblem, solution: Solution, listed: Sequence[Listed], found: Found
 ) -> tuple[RunnerUp, ...]:
-    """The next best of the designs tried."""
+    """The next best of the rounded designs."""
     others = sorted(
         (objective, assignment)
         for assignment, objective in found.tried.items()

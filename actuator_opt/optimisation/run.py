@@ -1,4 +1,4 @@
-"""Optimise an actuator: problem, solution, prices and, where nothing fits, why."""
+"""Optimise an actuator: problem, solution, prices and, if infeasible, the reason."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .solver import solve
 
 SAMPLES = 2048
 """Points of the global sweep: on every shipped design three seeds of 8192, 2048 and 1024 points led
-to one optimum, and where poles and margins are asked the sweep is most of the time."""
+to the same optimum. With poles and margins the sweep takes most of the time."""
 
 
 def optimise(
@@ -40,22 +40,22 @@ def optimise(
     keep_interrupted: bool = False,
     explain: bool = True,
 ) -> Optimisation:
-    """The best design of a subject.
+    """Find the best design.
 
     Parameters
     ----------
     subject : the prepared design
-    fault : places faults of variables in the file
+    fault : locates faults of variables in the file
     algorithm : "auto" or an NLopt name such as ``LD_SLSQP``
     starts : starts taken from the global sweep
     seed : of sweep and stochastic algorithms; the same seed gives the same result
-    prices : whether to price requirements and parameters (and re-solve at ±10 %)
+    prices : price requirements and parameters (and re-solve at ±10 %)
     max_seconds : time limit of the search; the best design so far is kept
-    whole_plies : whether to look for the best design of whole plies and allowed angles too
-    standard_sizes : the same, with standard sizes of whatever has some
-    certify : whether to prove how far the design is from the best possible
-    explain : whether to say why nothing fits, where nothing does
-    keep_interrupted : whether Ctrl-C ends the work with the best design so far (without choices)
+    whole_plies : also find the best design of whole plies and allowed angles
+    standard_sizes : also find the best design with all standard sizes
+    certify : prove the distance of the design from the best possible
+    explain : explain an infeasible result
+    keep_interrupted : Ctrl-C keeps the best design so far (without choices)
     """
     began = time.perf_counter()
     until = None if max_seconds is None else began + max_seconds
@@ -112,7 +112,7 @@ def result_of(
     began: float,
     start: Evaluation | None = None,
 ) -> Optimisation:
-    """The optimisation of a subject whose solution is known, with or without its prices.
+    """The optimisation for a known solution, with or without prices.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def result_of(
     prices : as of `optimise`
     seed : of the search
     began : time of `time.perf_counter` when it began
-    start : where the search started; default: the design as it is
+    start : start of the search; default: the design as stated
     """
     after = _After(solution)
     _follow(actuator, after, prices=prices, certify=False, explain=False)
@@ -129,7 +129,7 @@ def result_of(
 
 @dataclass
 class _After:
-    """The solution and what follows from it."""
+    """The solution and its follow-up results."""
 
     solution: Solution
     rounding: Rounding | None = None
@@ -161,7 +161,7 @@ def _result(
     began: float,
     start: Evaluation | None = None,
 ) -> Optimisation:
-    """Everything put together."""
+    """Assemble the result."""
     solution = after.solution
     design, evaluation = design_at(actuator, solution.x)
     return Optimisation(
@@ -200,7 +200,7 @@ def _result(
 
 
 def _idle(actuator: ActuatorProblem) -> tuple[str, ...]:
-    """Weights of the objective that weigh nothing."""
+    """Objective terms that no variable affects, as warnings."""
     if actuator.goal.single is not None:
         return ()
     return tuple(f"objective: no variable affects {name}" for name in idle_metrics(actuator))
@@ -209,7 +209,7 @@ def _idle(actuator: ActuatorProblem) -> tuple[str, ...]:
 def _enumerated(
     subject: PreparedDesign, found: ChoiceSearch, choices: Choices, seed: int, began: float
 ) -> Optimisation:
-    """The best combination of the choices, where nothing else may move."""
+    """The best combination of the choices, if nothing else is free."""
     best = found.ranked()[0]
     assert best.subject is not None
     status, remedy = "optimal", ""

@@ -1,4 +1,4 @@
-"""The global phase: a low-discrepancy sweep of the box, and the starts it suggests.
+"""The global phase: a low-discrepancy sweep of the box, and its best starts.
 
 A scrambled Halton sequence [Halton1960] [Owen2017]: the radical inverse of the index in one
 prime base per variable, with seeded random digit permutations. It costs microseconds per
@@ -15,7 +15,7 @@ from .evaluator import CHUNK, Evaluator, LimitReached
 from .problem import Vector
 
 KEEP = 256
-"""Best points of a sweep that are kept as candidates for starts."""
+"""Number of best points kept as candidate starts."""
 
 
 def primes(count: int) -> list[int]:
@@ -41,7 +41,7 @@ class Halton:
                 digits += 1
             order = generator.permuted(np.tile(np.arange(base), (digits, 1)), axis=1)
             self.tables.append(order * float(base) ** -np.arange(1, digits + 1)[:, None])
-        self.shift = generator.random(dimension)  # the digits beyond the last, as one remainder
+        self.shift = generator.random(dimension)  # the remaining digits, as one remainder
         self.most = most
 
     def points(self, first: int, count: int) -> Vector:
@@ -63,13 +63,13 @@ class Halton:
 
 @dataclass(frozen=True)
 class Sweep:
-    """What a sweep of the box found.
+    """Result of a sweep of the box.
 
     Parameters
     ----------
     z : candidates (nf, k), the best first: least violation, then least objective
     violation, objective : of the candidates (k,)
-    count, valid, feasible : points swept, points with finite values, points that meet everything
+    count, valid, feasible : points swept, points with finite values, feasible points
     spread : largest minus smallest objective seen, relative to its largest magnitude
     scale : largest magnitude among the candidates' objectives
     """
@@ -119,7 +119,7 @@ def sweep(evaluator: Evaluator, samples: int, seed: int) -> Sweep:
 
 
 def distinct(evaluator: Evaluator, z: Vector, wanted: int) -> list[Vector]:
-    """Up to `wanted` of the ranked candidates (nf, k) that lie apart from each other."""
+    """Up to `wanted` distinct points of the ranked candidates (nf, k)."""
     space = evaluator.space
     unit = (z - space.lower[:, None]) / (space.upper - space.lower)[:, None]
     chosen: list[int] = []

@@ -1,4 +1,4 @@
-"""What the price of a requirement or a parameter says, and which of them would buy the most."""
+"""Prices of requirements and parameters, and the most valuable changes."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ CHANGE = 0.1
 """Relative change at which every row is predicted and re-solved (contract)."""
 
 STRAIGHT = 0.25
-"""Share of the re-solved change by which the straight line may miss it and still be called one."""
+"""Largest error of the straight line, as a share of the re-solved change, to call it straight."""
 
 Kind: TypeAlias = Literal["requirement", "parameter", "material"]
-"""A limit to negotiate, a number of the design that does not vary, or a property to buy."""
+"""A limit to negotiate, a fixed number of the design, or a material property."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,15 +28,15 @@ class Sensitivity:
     scale : display value = SI value / scale
     limit : present value
     price : change of the objective per unit of it
-    percent_per_percent : relative change of the objective per relative change of it; None where
-        one of the two is 0
+    percent_per_percent : relative change of the objective per relative change of it; None if one of
+        the two is 0
     predicted_10, resolved_10, predicted_minus10, resolved_minus10 : the objective at ±10 % by the
-        price, and re-optimised; None where no design is left
+        price, and re-optimised; None without a design
     holds_until : where the active set changes; None beyond ±100 %
     next_active : what changes there
-    active : whether the limit holds the optimum
+    active : whether the limit is active at the optimum
     price_up, price_down : prices of raising and of lowering it, which differ only at a degenerate
-        vertex; None where the next step that way leaves no design
+        vertex; None if the next step that way leaves no design
     movement : change of each variable of the optimum per unit of it, by PATH
     """
 
@@ -90,7 +90,7 @@ class Sensitivity:
         return max(found, default=0.0)
 
     def straight(self, objective: float) -> bool:
-        """Whether the price tells both ends to a quarter of what they change."""
+        """Whether the price predicts both ends to a quarter of their change."""
         for _, predicted, solved in self.ends:
             if predicted is None or solved is None:
                 if predicted is not solved:
@@ -110,7 +110,7 @@ class Sensitivity:
 
 
 def ranked(rows: Sequence[Sensitivity], objective: float) -> tuple[Sensitivity, ...]:
-    """Rows by what they change when re-solved, the largest first."""
+    """Rows by re-solved effect, the largest first."""
     return tuple(
         sorted(rows, key=lambda r: (-r.effect(objective), -abs(r.percent_per_percent or 0.0)))
     )
@@ -118,7 +118,7 @@ def ranked(rows: Sequence[Sensitivity], objective: float) -> tuple[Sensitivity, 
 
 @dataclass(frozen=True, slots=True)
 class Offer:
-    """The better end of a row: what a change of ±10 % buys (SI, `gain` > 0 is better)."""
+    """The better end of a row: gain of a ±10 % change (SI, `gain` > 0 is better)."""
 
     row: Sensitivity
     change: float
@@ -134,10 +134,10 @@ class Offer:
 
 @dataclass(frozen=True, slots=True)
 class Offers:
-    """What would buy the most of the objective: of each kind the best offer, None without one.
+    """The most valuable changes: the best offer of each kind, None without one.
 
     `no_design` are the requirements that cannot be tightened by 10 %: rows with the sign of the
-    change that leaves no design.
+    infeasible change.
     """
 
     requirement: Offer | None
@@ -147,7 +147,7 @@ class Offers:
 
     @property
     def found(self) -> tuple[Offer, ...]:
-        """The offers that exist, requirements first."""
+        """The existing offers, requirements first."""
         both = (self.requirement, self.parameter, self.material)
         return tuple(one for one in both if one is not None)
 
@@ -164,7 +164,7 @@ class Offers:
 
 
 def offers(rows: Sequence[Sensitivity], objective: float, *, maximised: bool) -> Offers:
-    """The best re-solved end of each kind of row, as far as it is better than the optimum."""
+    """The best re-solved end of each kind of row, if better than the optimum."""
     wish = 1.0 if maximised else -1.0
     best: dict[Kind, Offer] = {}
     lost = []

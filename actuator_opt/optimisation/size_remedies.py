@@ -1,9 +1,9 @@
-"""Which small change of a limit, a load or the supply pressure allows sizes that rounding costs.
+"""Small changes of a limit, load or the supply pressure that allow better sizes.
 
-Where rounding costs much, the size that moved most is held at its other neighbour, which some limit
-forbids. Where no design of the sizes was found, the sizes that miss least are held. With all sizes
-held, the least relaxation of one limit at a time is found, and the best design at it. What is
-offered was met by a design of these sizes.
+If rounding costs much, the size that moved most is fixed at its other neighbour, which some limit
+forbids. If no sized design is feasible, the least infeasible sizes are fixed. With all sizes fixed,
+the least relaxation of one limit at a time is computed, and the best design with it. Each remedy
+was confirmed by a design of these sizes.
 """
 
 from __future__ import annotations
@@ -32,16 +32,16 @@ from .repairs import Relaxation
 from .result import SizeRemedy
 
 COSTLY = 10.0
-"""Cost of rounding (%) from which the way to a smaller size is sought: a choice."""
+"""Cost of rounding (%) above which remedies are sought: a choice."""
 
 SMALL = 0.25
-"""Largest change of a limit that is offered, of its value: a choice."""
+"""Largest relative change of a limit that is offered: a choice."""
 
 MOST_LIMITS = 6
-"""Most limits tried, the tightest first: a choice, for the time it takes."""
+"""Maximum limits tried, the tightest first: a choice, to limit the time."""
 
 MOST_SIZES = 3
-"""Most combinations of sizes tried: a choice, for the time it takes."""
+"""Maximum combinations of sizes tried: a choice, to limit the time."""
 
 PRESSURE = "supply.pressure"
 
@@ -53,7 +53,7 @@ def size_remedies(
     found: Found,
     until: float | None = None,
 ) -> tuple[tuple[SizeRemedy, ...], str]:
-    """The changes of one number that allow better sizes, the best design first; or that none does.
+    """The changes of one number that allow better sizes, best design first; else a note.
 
     Parameters
     ----------
@@ -68,21 +68,19 @@ def size_remedies(
     for assignment in smaller:
         if until is not None and time.perf_counter() > until:
             break
-        tell("rounding costs much: which limit allows a smaller size")
+        tell("rounding costs much: searching for a limit that allows a smaller size")
         held = _Held(actuator, listed, assignment, solution.x, below)
         remedies += [*held.relaxed(_limits(actuator, solution, found)), *held.repressured()]
     better = actuator.goal.sign
-    note = (
-        f"no change of one limit, load or the supply pressure by up to {100 * SMALL:g} % was found "
-    )
-    note = f"{note}that allows better sizes" if smaller and not remedies else ""
+    note = f"no change of one limit, load or the supply pressure by up to {100 * SMALL:g} % "
+    note = f"{note}allows better sizes" if smaller and not remedies else ""
     return tuple(sorted(remedies, key=lambda remedy: better * remedy.objective)), note
 
 
 def _smaller(listed: Sequence[Listed], x: Vector, found: Found) -> list[Assignment]:
-    """The sizes tried where the one that moved most is at its other neighbour.
+    """Combinations of sizes with the one that moved most at its other neighbour.
 
-    Where no design of the sizes was found, those that miss least.
+    The least infeasible sizes if no sized design is feasible.
     """
     if found.assignment is None:
         return [] if found.nearest is None else [found.nearest]
@@ -98,7 +96,7 @@ def _smaller(listed: Sequence[Listed], x: Vector, found: Found) -> list[Assignme
 
 
 def _limits(actuator: ActuatorProblem, solution: Solution, found: Found) -> list[int]:
-    """A row of each of the own limits and loads that are tightest, at the optimum or the sizes."""
+    """Rows of the tightest requirements and loads, at the optimum or the sizes."""
     margins = solution.constraints
     if found.missed is not None:
         margins = np.minimum(margins, found.missed.rows[1 : 1 + len(margins)])
@@ -113,7 +111,7 @@ def _limits(actuator: ActuatorProblem, solution: Solution, found: Found) -> list
 
 @dataclass(frozen=True)
 class _Held:
-    """The problem with every size of an assignment held."""
+    """The problem with every size of an assignment fixed."""
 
     actuator: ActuatorProblem
     listed: Sequence[Listed]
@@ -123,21 +121,21 @@ class _Held:
 
     @property
     def sizes(self) -> dict[int, float]:
-        """The sizes by the place of their variable."""
+        """The sizes by index of their variable."""
         pairs = zip(self.listed, self.assignment, strict=True)
         return {
             i: float(v) for one, row in pairs for i, v in zip(one.index, one.rows[row], strict=True)
         }
 
     def held(self, problem: BoxProblem) -> BoxProblem:
-        """A problem with the sizes held."""
+        """A problem with the sizes fixed."""
         lower, upper = problem.lower.copy(), problem.upper.copy()
         for place, value in self.sizes.items():
             lower[place] = upper[place] = value
         return replace(problem, lower=lower, upper=upper, start=None)
 
     def relaxed(self, indices: Sequence[int]) -> Iterator[SizeRemedy]:
-        """The least relaxation of each limit with which a design has the sizes."""
+        """The least relaxation of each limit that makes the sizes feasible."""
         problem = self.held(self.actuator.problem)
         assert problem.groups is not None
         numbers = np.asarray(problem.groups)
@@ -152,7 +150,7 @@ class _Held:
             if entry["change"] is None or abs(entry["change"]) > SMALL:
                 continue
             granted = np.zeros((len(problem.constraint_names), 1))
-            granted[group] = amount  # what is printed is rounded outwards: more, not less
+            granted[group] = amount  # the printed value is rounded outwards: more, not less
 
             def evaluate(points: Array, granted: Array = granted) -> Values:
                 values = problem.evaluate(points)
@@ -161,7 +159,7 @@ class _Held:
             yield from self.remedy(replace(problem, evaluate=evaluate), start, entry)
 
     def repressured(self) -> Iterator[SizeRemedy]:
-        """The least change of the supply pressure with which a design has the sizes."""
+        """The least change of the supply pressure that makes the sizes feasible."""
         if PRESSURE in self.actuator.paths:
             return
         design = self.actuator.subject.design
@@ -189,7 +187,7 @@ class _Held:
     def remedy(
         self, eased: BoxProblem, near: Vector, entry: Mapping[str, Any]
     ) -> Iterator[SizeRemedy]:
-        """The best design of the sizes at the changed number, where it is better than without."""
+        """The best design of the sizes at the changed number, if better than without."""
         point = repairs.near(eased, near)
         if point is None:
             return

@@ -1,9 +1,9 @@
-"""The optimiser: sweep the box, descend from the best starts, finish exactly, judge honestly.
+"""The optimiser: sweep the box, descend from the best starts, polish, verify.
 
-Default path: a low-discrepancy sweep suggests starts; SLSQP runs from each in logarithmic
-variables, again in linear ones where it failed, and an augmented Lagrangian around LBFGS takes
-over where nothing worked; active-set Newton brings the result to rounding. Feasibility and
-optimality are then checked here, whatever a solver claims.
+Default path: a low-discrepancy sweep suggests starts. SLSQP runs from each in logarithmic
+variables, and again in linear ones if it failed. An augmented Lagrangian around LBFGS takes over if
+nothing worked. Active-set Newton steps polish the result to rounding. Feasibility and optimality
+are then verified here, whatever a solver claims.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from .resolve.parallel_descents import precompute
 from .sampling import Sweep, distinct, sweep
 
 LAGRANGIAN_EVALUATIONS = 1000
-"""Most of one run of the augmented Lagrangian: the shipped designs take 300 to 850."""
+"""Maximum evaluations of one augmented Lagrangian run: the shipped designs take 300 to 850."""
 
 
 def solve(
@@ -45,18 +45,18 @@ def solve(
     ----------
     problem : the problem; its own start, if any, is always tried
     algorithm : "auto" (the default path) or a name that `nlopt_wrapper.find` knows
-    starts : how many starts to descend from: those given, the rest from the global sweep
+    starts : number of starts: those given, the rest from the global sweep
     samples : points of the global sweep
     seed : of the sweep and of stochastic algorithms; the same seed gives the same result
     max_evaluations, max_seconds : limits of the whole run; the best point so far is kept
     more_starts : further starts (n,)
     keep_interrupted : whether Ctrl-C ends the search with the best point so far, as a limit does
-    stop : asked before every evaluation of a descent; ends the search as a limit does
+    stop : called before every evaluation of a descent; True ends the search as a limit does
 
     Raises
     ------
     UsageError
-        Where the algorithm does not exist or does not suit the problem.
+        the algorithm does not exist or does not suit the problem
     """
     chosen = "auto" if algorithm == "auto" else nlopt_wrapper.suit(algorithm, problem)
     evaluator = Evaluator(
@@ -104,10 +104,10 @@ def _starts(search: Descents, swept: Sweep, wanted: int, more: Sequence[Vector])
 
 
 def _default_path(search: Descents, points: list[Point]) -> None:
-    """SLSQP in logarithmic variables; what failed again, by other means.
+    """SLSQP in logarithmic variables; failed starts again by other means.
 
-    Where the first start leads to no feasible point, neither itself nor from where its most
-    missed limit is missed least, the others look for a feasible point first.
+    If the first start leads to no feasible point, even after reducing its worst violation, the
+    others look for a feasible point first.
     """
     failed = []
     precompute(search.evaluator, points, seed=search.seed, most=LOCAL_EVALUATIONS)
@@ -137,7 +137,7 @@ def _default_path(search: Descents, points: list[Point]) -> None:
 
 
 def _chosen_path(search: Descents, points: list[Point], chosen: str) -> None:
-    """Local algorithms run from every start; global ones once, then SLSQP refines."""
+    """Run local algorithms from every start; global ones once, then refine with SLSQP."""
     outer, _ = nlopt_wrapper.find(chosen)
     if outer.scope == "local" or outer.name.startswith("AUGLAG"):
         for point in points:
@@ -156,7 +156,7 @@ def _fixed(search: Descents) -> Solution:
 
 
 def _conclude(search: Descents, swept: Sweep) -> Solution:
-    """Judge the best point and put everything together."""
+    """Judge the best point and assemble the solution."""
     evaluator = search.evaluator
     evaluator.limited = False
     best = search.best()
@@ -180,7 +180,7 @@ def _conclude(search: Descents, swept: Sweep) -> Solution:
         search.warnings.append(f"no finite value of {', '.join(lost[:3])}{more}")
     if evaluator.bad_slopes:
         search.warnings.append(
-            f"{evaluator.bad_slopes} gradients had entries that do not exist (infinite slope)"
+            f"{evaluator.bad_slopes} gradients had undefined entries (infinite slope)"
         )
     m = evaluator.constraint_count
     return Solution(
@@ -209,7 +209,7 @@ def _conclude(search: Descents, swept: Sweep) -> Solution:
 
 
 def _best_seen(search: Descents, swept: Sweep) -> SearchResult:
-    """The best of all points: also of those a run passed, of the sweep, the start or the middle."""
+    """The best of all points: of the runs, the sweep, the start or the middle."""
     evaluator = search.evaluator
     space, start = evaluator.space, evaluator.problem.start
     rest = (space.lower + space.upper) / 2 if start is None else space.to_z(start)

@@ -1,9 +1,9 @@
-"""An optimum kept ready for others near it: re-solve, predict, price, trace.
+"""An optimum prepared for nearby problems: re-solve, predict, price, trace.
 
-Full steps, then restoration and descent, go out from the optimum and the other local optima of its
-search (`resolve.ladder`), with their Hessians as calculated once. For what they do not reach a
-search goes out from `STARTS` starts, and one that finds nothing is repeated as the first was made.
-So no problem that the first search would solve is given up.
+Full steps, then restoration and descent, start from the optimum and the other local optima of its
+search (`resolve.ladder`), with their Hessians computed once. If they fail, a search from `STARTS`
+starts follows; if that finds nothing, the first search is repeated. So every problem that the first
+search would solve is solved.
 """
 
 from __future__ import annotations
@@ -26,16 +26,16 @@ from .resolve.steps import Valley, valley_at
 from .solver import solve
 
 Stop = Callable[[], bool]
-"""Asked between steps whether to stop."""
+"""Called between steps; True stops."""
 
 STARTS = 3
-"""Starts of the search for what the steps do not reach."""
+"""Starts of the search if the steps fail."""
 
 SAMPLES = 1024
 """Points of its sweep."""
 
 AGREES = 1e-9
-"""Difference of a margin up to which parameters alone make a changed problem: rounding."""
+"""Margin difference up to which parameters fully describe a changed problem: rounding."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,13 +49,13 @@ class Effort:
 
 @dataclass(frozen=True)
 class Line:
-    """A problem as a straight line in one parameter, from the optimum (model's units).
+    """The optimum as a straight line in one parameter (model units).
 
     Parameters
     ----------
-    below, above : slope of the objective downwards and upwards; infinite where no design is left
+    below, above : slope of the objective downwards and upwards; infinite without a design
     moves : change of each variable (n,) per unit
-    low, high : the nearest change of the active set, as distance and words; None where none is near
+    low, high : the nearest change of the active set, as distance and words; None if none is near
     """
 
     below: float
@@ -66,7 +66,7 @@ class Line:
 
 
 class WarmStart:
-    """An optimum with what re-solving needs.
+    """An optimum with the data for re-solving.
 
     Parameters
     ----------
@@ -91,8 +91,8 @@ class WarmStart:
         Parameters
         ----------
         problem : the changed problem; its bounds may differ too
-        stop : asked between steps; once it says True, the unchanged optimum is the result, with the
-            outcome "interrupted"
+        stop : called between steps; once True, the unchanged optimum is returned with the outcome
+            "interrupted"
         """
         near = Evaluator(problem, stop=stop)
         if near.space.size == 0:
@@ -129,14 +129,14 @@ class WarmStart:
     ) -> list[Point | None]:  # fmt: skip
         """The optimum at each value of a number, solved together.
 
-        What the common steps do not reach is searched for outwards. Beyond a value without a design
-        nothing is searched for any more.
+        Values that shared steps do not reach are searched in order, outwards. The search stops at
+        the first value without a design.
 
         Parameters
         ----------
         path, values : the number
         rebuilt : the problem with the number at a value
-        stop : asked between steps; what is not reached by then is None
+        stop : called between steps; values not reached by then are None
         """
         present = self.actuator.subject.numbers.get(path)
         optima: list[Point | None] = [None] * len(values)
@@ -165,7 +165,7 @@ class WarmStart:
         return optima
 
     def line(self, changes: Mapping[str, float], size: float = 1.0) -> Line:
-        """The optimum as a straight line along changes of numbers, per unit of them all.
+        """The optimum as a straight line along joint changes of numbers, per unit.
 
         Parameters
         ----------
@@ -189,14 +189,14 @@ class WarmStart:
 
     @property
     def optimum(self) -> movement.Optimum:
-        """The optimum as linear algebra, calculated once."""
+        """The linear algebra of the optimum, computed once."""
         if self._optimum is None:
             quality = kkt.check(self.evaluator, self.point)
             self._optimum = movement.optimum(self.evaluator, self.point, quality)
         return self._optimum
 
     def _along(self, changes: Mapping[str, float], size: float) -> Responses:
-        """The responses to one parameter that changes some numbers at once."""
+        """The responses to one parameter that changes several numbers."""
         self.differentiate(changes)
         parts = [(self._responses[path], change) for path, change in changes.items()]
         first = parts[0][0]
@@ -210,7 +210,7 @@ class WarmStart:
         )
 
     def differentiate(self, paths: Iterable[str]) -> None:
-        """Calculate the derivatives by some numbers, unless known: together they cost little more.
+        """Compute the derivatives by some numbers, unless known; many cost little more than one.
 
         Parameters
         ----------
@@ -228,7 +228,7 @@ class WarmStart:
                 )  # fmt: skip
 
     def _take_gradients(self, near: Evaluator) -> None:
-        """Take the gradients of a changed problem as those checked, or check its own."""
+        """Reuse the gradient check for a changed problem, or run its own."""
         own, problem = self.evaluator, near.problem
         if tuple(problem.constraint_names) == tuple(own.problem.constraint_names):
             near.complex_works, near.difference_rows = own.complex_works, own.difference_rows
@@ -236,7 +236,7 @@ class WarmStart:
             near.check_gradients(near.point(near.space.to_z(problem.inside(self.point.x))))
 
     def _valleys(self, near: Evaluator) -> list[Valley]:
-        """The valleys as the start of descents of a changed problem."""
+        """The valleys as starts of descents of a changed problem."""
         own, space = self.evaluator.space, near.space
         same = np.array_equal(own.free, space.free) and all(
             np.array_equal(getattr(own, name), getattr(space, name))
@@ -269,7 +269,7 @@ class WarmStart:
         return optima[0], inside[0]
 
     def _interrupted(self, near: Evaluator) -> Solution:
-        """The unchanged optimum as the result of a search that was stopped."""
+        """The unchanged optimum as the result of a stopped search."""
         near.limited = False
         point = near.point(near.space.to_z(near.problem.inside(self.point.x)))
         return _stopped(_solution(near, point, "interrupted"))
@@ -281,9 +281,9 @@ class WarmStart:
         values: Sequence[float],
         rebuilt: Callable[[float], ActuatorProblem],
     ) -> bool:
-        """Whether the number alone makes the changed problems, as far as both ends show it.
+        """Whether the number alone makes the changed problems, judged at both ends.
 
-        Some numbers decide more than what the models read of them: temperatures, say, the factors
+        Some numbers affect more than the models read directly, as temperatures affect the factors
         on materials.
         """
         parametric = self.actuator.parametric((path,))
@@ -305,7 +305,7 @@ class WarmStart:
         return True
 
     def _curve(self, path: str, values: Sequence[float], stop: Stop | None) -> list[Point | None]:
-        """The optima at values of a number that the common steps reach."""
+        """The optima at values of a number that shared steps reach."""
         near = Evaluator(self.actuator.problem, stop=stop)
         self._take_gradients(near)
         changed = ChangedProblems(self.actuator.parametric((path,)), near, np.array([values]))
@@ -314,7 +314,7 @@ class WarmStart:
 
 
 def _solution(evaluator: Evaluator, point: Point, algorithm: str) -> Solution:
-    """A point as the result of a search; an optimum where it is feasible and stationary."""
+    """A point as a search result; an optimum if it is feasible and stationary."""
     found = kkt.check(evaluator, point) if point.valid else None
     if point.violation > ladder.FEASIBLE or found is None:
         outcome = Outcome.INFEASIBLE

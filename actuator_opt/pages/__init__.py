@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from ..rendering.attachments import Attachment, read_attachment
-from ..rendering.blocks import ExtraTable
+from ..rendering.blocks import Table
 from ..rendering.paper import ReportFile
-from .page import write_report
 
-__all__ = ["Attachment", "ExtraTable", "ReportFile", "read_attachment", "write_report"]
+__all__ = ["Attachment", "ReportFile", "Table", "read_attachment"]

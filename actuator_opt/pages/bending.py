@@ -13,7 +13,7 @@ from ..rendering.blocks import Block, Column, Notes, Page, State, Table, Tile, V
 from ..rendering.chart import Axis, Chart, Curve, Panel
 from ..rendering.chart_ink import drawn
 from ..rendering.ink import Ink
-from .optimum import sentence
+from ..rendering.text import sentence
 
 _MODULUS, _SLOPE = MATERIAL_PROPERTIES["youngs_modulus"], METRICS["stiffness_rod"]
 _STATES: dict[str, State] = {

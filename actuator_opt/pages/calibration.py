@@ -31,11 +31,11 @@ from ..rendering.blocks import (
 from ..rendering.chart import Axis, Chart, Curve, Panel, Points
 from ..rendering.chart_ink import drawn
 from ..rendering.ink import Ink
+from ..rendering.text import sentence
 from ..studies.bench import Bench
 from .identification import force
 from .identification_figures import FORCE, SPEED, joined, measured, speed
-from .optimum import sentence
-from .page import doubts
+from .report import doubts
 
 MOST_LEVELS, MOST_ROWS = 3, 9
 """Levels of pressure and requirements that are drawn (a choice: what the eye parts)."""

@@ -43,6 +43,7 @@ from ..rendering.text import (
     fixed,
     number,
     pretty,
+    sentence,
     trimmed,
     unit_text,
     value_text,
@@ -57,7 +58,6 @@ from .identification_figures import (
     STIFFNESS,
     identification_figure,
 )  # fmt: skip
-from .optimum import sentence
 
 DAMPING = METRICS["damping_seal"]
 MASS = METRICS["mass"]

@@ -24,8 +24,7 @@ from ..rendering.axes import even_range, log_range
 from ..rendering.chart import Axis, Chart, Curve, Level, Panel, Points, Surface, Values
 from ..rendering.chart_ink import drawn
 from ..rendering.ink import Ink
-from ..rendering.text import number, trimmed, unit_text
-from .optimum import sentence
+from ..rendering.text import number, sentence, trimmed, unit_text
 
 FORCE, PRESSURE = METRICS["friction_running"], quantities.INPUTS["pressure"]
 SPEED, LENGTH = quantities.INPUTS["stribeck_speed"], quantities.INPUTS["position"]

@@ -1,48 +1,105 @@
-"""The tables of an optimisation: variables, prices with their quality, how it went, why not."""
+"""An optimum: its variables, choices and sizes, why nothing fits, the way to a yield."""
 
 from __future__ import annotations
 
-from ..optimisation.result import Optimisation
-from ..rendering import text
-from ..rendering.blocks import Block, Cell, Column, Slot, Table, clean, soft
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from ..base.quantities import Quantity
+from ..design import choice_list, quantity_of
+from ..optimisation.infeasibility_card import percent as change_percent
+from ..optimisation.result import (
+    Choices,
+    Combination,
+    Infeasibility,
+    Optimisation,
+    Rounding,
+    VariableResult,
+)
+from ..rendering import heights, text
+from ..rendering.blocks import Block, Cell, Column, Notes, Pair, Slot, Table, soft
+from ..rendering.text import DASH, sentence
+from .uncertainty import percent
+
+MOST_ROWS = 20
+"""Combinations shown; JSON has them all."""
+MOST_COLUMNS = 4
+"""PATHs that get a column each; of more, the values share a column."""
+WORTH = 10.0
+"""Reserves beyond this many times the limit say only that the limit is far away."""
+_STANDS_FOR = {"dimension": "fixed dimension", "safety factor": "safety: not advised"}
+"""Words of a kind of cure, where they say more."""
 
 
-def variables(optimisation: Optimisation) -> Block:
+# ---- variables ----
+
+
+def variables(optimisation: Optimisation) -> Table:
     """Bounds, start and best value of every free dimension."""
     rows: list[list[Cell]] = []
     for row in optimisation.best_variables:
         quantity = text.input_quantity(row.quantity)
         lower, upper, value = (quantity.to_display(v) for v in (row.lower, row.upper, row.value))
         start = None if row.start is None else quantity.to_display(row.start)
-        place = (value - lower) / (upper - lower) if upper > lower else 0.0
-        bound = "" if row.at_bound is None else f"at {row.at_bound} bound"
         rows.append(
             [
-                soft(row.path),
-                clean(quantity.label),
+                row.path,
+                soft(quantity.label),
                 text.trimmed(lower),
                 text.number(start),
                 text.number(value),
                 text.trimmed(upper),
                 text.unit_text(quantity.unit),
-                Slot(place, row.at_bound or ""),
-                bound,
+                Slot(_place(row), row.at_bound or ""),
+                "" if row.at_bound is None else f"at {row.at_bound} bound",
             ]
         )
     columns = [
-        Column("variable", "left", 1.3, mono=True),
-        Column("dimension", "left", 1.1),
-        Column("lower", "right"),
-        Column("start", "right"),
-        Column(heading(optimisation).replace(" ", "\n"), "right", strong=True),
-        Column("upper", "right"),
+        Column("variable", "left", 1.2, breaks=30, mono=True, least=16),
+        Column("dimension", "left", 1.0, on="paper"),
+        Column("lower", "right", style="dim"),
+        Column("start", "right", drop=2, style="dim"),
+        Column(heading(optimisation), "right", strong=True),
+        Column("upper", "right", style="dim"),
+        Column("unit", style="dim"),
+        Column("between bounds", "left", "26mm", drop=1),
+        Column("", style="yellow", on="terminal"),
+    ]
+    at_bounds = sum(row.at_bound is not None for row in optimisation.best_variables)
+    note = f"{at_bounds} of {len(rows)} variables are at a bound." if at_bounds else ""
+    return Table("Design variables", columns, rows, note=note)
+
+
+def _place(row: VariableResult) -> float:
+    """Where a value lies between its bounds, from zero to one."""
+    return (row.value - row.lower) / (row.upper - row.lower) if row.upper > row.lower else 0.0
+
+
+def best_values(optimisation: Optimisation, room: float) -> list[Block]:
+    """Values of the variables side by side, as many as this height holds, with a pointer [mm]."""
+    best = optimisation.best_variables
+    lines = (len(best) + 1) // 2
+    most = (room - heights.HEAD - 2 * heights.LINE) / (heights.MARKED * heights.LINE)
+    fit = min(lines, math.floor(most))
+    if fit < 1:
+        return []
+    columns = [
+        Column("variable", "left", 1.0, breaks=26, mono=True),
+        Column(heading(optimisation), "right", strong=True),
         Column("unit"),
         Column("between bounds", "left", "26mm"),
-        Column(""),
     ]
-    held = [row.path for row in optimisation.best_variables if row.at_bound]
-    note = f"{len(held)} of {len(rows)} variables are at a bound." if held else ""
-    return Table("Design variables", columns, rows, note=note)
+    rows: list[list[Cell]] = []
+    for row in best:
+        quantity = text.input_quantity(row.quantity)
+        value, unit = text.number(quantity.to_display(row.value)), text.unit_text(quantity.unit)
+        rows.append([row.path, value, unit, Slot(_place(row), row.at_bound or "")])
+    rest = len(best) - 2 * fit
+    note = f"{rest} more, starts and bounds" if rest > 0 else "Starts and bounds"
+    left = Table("Best values", columns, rows[:fit], note=f"{note}: Design variables.", on="paper")
+    right = Table("Best values, continued", columns, rows[fit : 2 * fit], on="paper")
+    return [Pair([[left], [right]] if right.rows else [[left]])]
 
 
 def heading(optimisation: Optimisation) -> str:
@@ -52,55 +109,316 @@ def heading(optimisation: Optimisation) -> str:
     return "continuous" if optimisation.made is None else optimisation.made.name
 
 
-def sentence(words: str) -> str:
-    """Words with a capital letter and a full stop; a name as pressure_a stays as it is.
+def sizes_and_choices(optimisation: Optimisation) -> Iterator[Block]:
+    """What was rounded and what was chosen, where either was asked for."""
+    if optimisation.rounding is not None:
+        yield _rounding_table(optimisation, optimisation.rounding)
+    if optimisation.choices is not None:
+        yield _choices_table(optimisation, optimisation.choices)
 
-    >>> sentence("optimum found"), sentence("pressure_a: left out")
-    ('Optimum found.', 'pressure_a: left out.')
+
+# ---- choices ----
+
+
+def heads(paths: Sequence[str]) -> list[str]:
+    """The shortest endings of PATHs, of two words at least, that set them apart.
+
+    >>> heads(["seals.rod.compound", "seals.piston.compound", "fluid.material"])
+    ['rod.compound', 'piston.compound', 'fluid.material']
     """
-    words = words.strip()
-    if not words:
-        return ""
-    first = words[0] if "_" in words.split()[0] else words[0].upper()
-    return first + words[1:] + ("" if words[-1] in ".!?" else ".")
+    endings = []
+    for path in paths:
+        words = path.split(".")
+        tails = (".".join(words[-size:]) for size in range(2, len(words) + 1))
+        others = [f".{other}" for other in paths if other != path]
+        unique = (tail for tail in tails if not any(o.endswith(f".{tail}") for o in others))
+        endings.append(next(unique, path))
+    return endings
 
 
-def convergence(optimisation: Optimisation) -> list[str]:
-    """Algorithm, effort, starts and trace, in sentences. Wall time is left out: same bytes."""
-    objective = text.metric(optimisation.objective_metric)
-    lines = [
-        f"{optimisation.algorithm}, seed {optimisation.seed},"
-        f" {optimisation.evaluations} evaluations."
-    ]
-    if optimisation.infeasibility is not None:
-        count = len(optimisation.starts)
-        lines.append(f"None of {count} starts led to a design that meets every requirement.")
-    elif optimisation.starts:
-        best = optimisation.objective_value
-        same = sum(v is not None and abs(v - best) <= 1e-3 * abs(best) for v in optimisation.starts)
-        found = ", ".join(
-            "none" if v is None else text.value_text(objective, v) for v in optimisation.starts[:8]
-        )
-        more = ", …" if len(optimisation.starts) > 8 else ""
-        lines.append(
-            f"{same} of {len(optimisation.starts)} starts reached the same optimum within 0.1 %:"
-            f" {found}{more}."
-        )
-    if optimisation.trace:
-        steps = optimisation.trace
-        picked = [
-            steps[k] for k in sorted({0, len(steps) // 3, 2 * len(steps) // 3, -1 % len(steps)})
+def choice_notes(optimisation: Optimisation) -> list[str]:
+    """How the combinations were compared, and what the table leaves out, in sentences."""
+    choices = optimisation.choices
+    if choices is None:
+        return []
+    lines = [sentence(choices.sentence)]
+    if len(choices.combinations) > MOST_ROWS:
+        lines.append(f"The best {MOST_ROWS} are shown; JSON has all.")
+    if any(tried.cost is not None and tried.cost < 0 for tried in choices.combinations):
+        lines.append("A better objective with a check missed that other choices meet ranks lower.")
+    return [*lines, *map(sentence, choices.notes)]
+
+
+def _choices_table(optimisation: Optimisation, choices: Choices) -> Block:
+    """Every combination tried, the best first, and what the others cost."""
+    paths, objective = _varied(choices), text.metric(optimisation.objective_metric)
+    names = heads(paths)
+    sized = any(tried.rounded is not None for tried in choices.combinations)
+
+    def cells(tried: Combination) -> list[Cell]:
+        values = [
+            text.pretty(choice_list.shown(path, tried.values[path], optimisation.design))
+            for path in paths
         ]
-        path = " → ".join(
-            f"{text.value_text(objective, value)} ({_missed(violation)} at {count})"
-            for count, value, violation in picked
+        if len(paths) > MOST_COLUMNS:
+            values = [", ".join(f"{n} {v}" for n, v in zip(names, values, strict=True))]
+        share = DASH if tried.percent is None else f"{text.number(tried.percent, 3, signed=True)} %"
+        numbers = [tried.objective, tried.rounded] if sized else [tried.objective]
+        known = [DASH if x is None else text.value_text(objective, x) for x in numbers]
+        return [*map(soft, values), *known, share, soft(sentence(tried.status))]
+
+    columns = [
+        *(
+            Column(head, mono=True)
+            for head in (names if len(paths) <= MOST_COLUMNS else ["choices"])
+        ),
+        Column(objective.label, "right", strong=not sized),
+        *([Column("with sizes", "right", strong=True)] if sized else []),
+        Column("cost", "right"),
+        Column("result", "left", 2.0, least=30),
+    ]
+    chosen = ", ".join(
+        f"{name} {text.pretty(choice_list.shown(path, value, optimisation.design))}"
+        for name, (path, value) in zip(heads(list(choices.best)), choices.best.items(), strict=True)
+    )
+    rows = [cells(tried) for tried in choices.combinations[:MOST_ROWS]]
+    note = " ".join(choice_notes(optimisation))
+    return Table(f"Choices: {chosen}", columns, rows, note=note)
+
+
+def _varied(choices: Choices) -> list[str]:
+    """PATHs whose value is not the same in every combination."""
+    first = choices.combinations[0].values
+    return [
+        path
+        for path, value in first.items()
+        if any(not choice_list.same(tried.values[path], value) for tried in choices.combinations)
+    ]
+
+
+# ---- whole plies and sizes ----
+
+
+def _rounding_table(optimisation: Optimisation, rounding: Rounding) -> Block:
+    """Every variable before and after rounding, its plies, the cost."""
+    counted = any(row.plies is not None for row in rounding.variables)
+    rows: list[list[Cell]] = []
+    for row in rounding.variables:
+        quantity = text.input_quantity(row.quantity)
+        change = quantity.to_display(row.value) - quantity.to_display(row.continuous)
+        still = abs(row.value - row.continuous) <= 1e-9 * abs(row.value)
+        rows.append(
+            [
+                row.path,
+                text.number(quantity.to_display(row.continuous)),
+                text.number(quantity.to_display(row.value)),
+                DASH if still else text.number(change, 3, signed=True),
+                text.unit_text(quantity.unit),
+                *(["" if row.plies is None else str(row.plies)] if counted else []),
+                (row.sizes or "rounded") if row.discrete else "optimised again",
+            ]
         )
-        lines.append(f"Improvements (limits at evaluation): {path}.")
-    if optimisation.kkt is not None and optimisation.kkt.active:
-        lines.append(f"Active at the optimum: {', '.join(optimisation.kkt.active)}.")
-    return lines
+    columns = [
+        Column("variable", "left", 1.3, breaks=30, mono=True),
+        Column("continuous", "right"),
+        Column(rounding.name, "right", strong=True),
+        Column("change", "right"),
+        Column("unit"),
+        *([Column("plies", "right")] if counted else []),
+        Column("sizes"),
+    ]
+    note = " ".join(rounding_notes(optimisation))
+    return Table(_rounding_title(optimisation, rounding), columns, rows, note=note)
 
 
-def _missed(violation: float) -> str:
-    """How far a design misses its limits, in words."""
-    return "all met" if violation <= 1e-6 else f"missed by {text.number(100 * violation, 2)} %"
+def _rounding_title(optimisation: Optimisation, rounding: Rounding) -> str:
+    objective = text.metric(optimisation.objective_metric)
+    name = rounding.name.capitalize()
+    if rounding.objective_after is None:
+        return f"{name}: no design found"
+    before = text.value_text(objective, rounding.objective_before, 5)
+    after = text.value_text(objective, rounding.objective_after, 5)
+    return f"{name}: {objective.label} {before} → {after}, {_cost(objective, rounding)}"
+
+
+def _cost(objective: Quantity, rounding: Rounding) -> str:
+    """What rounding costs, in the unit of the objective and in per cent."""
+    if not rounding.cost:
+        return "rounding costs nothing"
+    per_display = objective.to_display(1.0) - objective.to_display(0.0)
+    unit = text.unit_text(objective.unit)
+    amount = text.with_unit(text.number(rounding.cost * per_display, 3), unit)
+    share = "" if rounding.percent is None else f" ({text.number(rounding.percent, 3)} %)"
+    return f"rounding costs {amount}{share}"
+
+
+def rounding_notes(optimisation: Optimisation) -> list[str]:
+    """Outcome, effort and the next best designs of a rounding, in sentences."""
+    rounding = optimisation.rounding
+    if rounding is None:
+        return []
+    objective = text.metric(optimisation.objective_metric)
+    lines = [sentence(rounding.sentence), sentence(rounding.remedy)]
+    lines.append(
+        f"{rounding.tried} rounded designs tried, {rounding.feasible} meet every requirement;"
+        f" {rounding.solves} re-optimisations."
+    )
+    for row in rounding.runners_up:
+        share = text.number(row.percent, 3, signed=True)
+        cost = "" if row.percent is None else f" ({share} %)"
+        sizes = _sizes(optimisation, row.values)
+        lines.append(f"Next: {text.value_text(objective, row.objective)}{cost} with {sizes}.")
+    for remedy in rounding.remedies:
+        change = text.pretty(remedy.sentence).replace("->", "→")
+        reached = text.value_text(objective, remedy.objective)
+        lines.append(f"With {change}: {reached} with {_sizes(optimisation, remedy.values)}.")
+    return [line for line in [*lines, *map(sentence, rounding.notes)] if line]
+
+
+def _sizes(optimisation: Optimisation, sizes: Mapping[str, float]) -> str:
+    """Sizes by PATH in words; a PATH without the ending that its value implies."""
+    words = []
+    for path, value in sizes.items():
+        quantity = quantity_of(path, optimisation.design)
+        shown = text.trimmed(quantity.to_display(value))
+        name = path.removesuffix(".thickness").removesuffix(".angle")
+        words.append(f"{name} {text.with_unit(shown, text.unit_text(quantity.unit))}")
+    return ", ".join(words)
+
+
+# ---- why nothing fits ----
+
+
+def infeasibility_blocks(card: Infeasibility) -> list[Block]:
+    """The card of an infeasible design: what conflicts, by how much, what would repair it."""
+    conflict = text.pretty(sentence(card.sentence)).replace("->", "→")
+    blocks: list[Block] = [Notes("Why nothing fits", [conflict])]
+    if card.joint:
+        these = "this" if len(card.joint) == 1 else "all of these together"
+        note = f"With {these} a design exists: the one shown here. No smaller sum was found."
+        if any(entry["safety_factor"] for entry in card.joint):
+            note += " It weakens a safety factor, which is not advised."
+        rows = [_limit(entry) for entry in card.joint]
+        blocks.append(Table("Smallest joint relaxation", _columns("limit"), rows, note=note))
+    others = [str(e["parameter"] or e["requirement"]) for e in card.sole if e["needed"] is None]
+    words = ""
+    if card.cures:
+        words = "Any single line is enough, the most advisable first; less of it was not. "
+    if others:
+        words += f"Not enough alone, however far it is relaxed: {', '.join(others)}. "
+    if card.untried:
+        words += f"Not tried, for the time it takes: {', '.join(card.untried)}."
+    if card.cures:
+        rows = [_cure(entry) for entry in card.cures]
+        title = "What is enough alone"
+        blocks.append(Table(title, _columns("what"), rows, note=words.strip()))
+    elif words:
+        blocks.append(Notes("What is enough alone", [words.strip()]))
+    if card.bounds:
+        blocks.append(_bounds(card))
+    if card.evidence:
+        blocks.append(Notes("What is proven", [sentence(card.evidence)]))
+    return blocks
+
+
+def _columns(first: str) -> list[Column]:
+    return [
+        Column(first, "left", 1.3, breaks=24, mono=True),
+        Column("kind", "left", 1.3, drop=2),
+        Column("now", "right"),
+        Column("needed", "right", strong=True),
+        Column("change", "right", drop=1),
+    ]
+
+
+def _limit(entry: Mapping[str, Any]) -> list[Cell]:
+    """A limit that gives way; a line of the check list by its name."""
+    origin = str(entry["origin"])
+    return [
+        str(entry["parameter"] or entry["requirement"]),
+        soft(f"{origin}: {entry['requirement']}" if origin == "check list" else origin),
+        text.pretty(entry["limit_text"]),
+        text.pretty(entry["needed_text"]) or DASH,
+        _change(entry["change"]),
+    ]
+
+
+def _cure(entry: Mapping[str, Any]) -> list[Cell]:
+    """What is enough alone."""
+    return [
+        str(entry["parameter"]),
+        soft(_STANDS_FOR.get(entry["kind"], entry["kind"])),
+        text.pretty(entry["limit_text"]),
+        text.pretty(entry["needed_text"]),
+        _change(entry["change"]),
+    ]
+
+
+def _change(share: float | None) -> str:
+    return DASH if share is None else text.pretty(change_percent(share))
+
+
+def _bounds(card: Infeasibility) -> Block:
+    """Bounds that the relaxed design lies at: what opening them helps."""
+    columns = [
+        Column("bound", "left", 1.3, breaks=24, mono=True),
+        Column("now", "right"),
+        Column("gap closed by 1 %", "right"),
+        Column("enough at", "right", strong=True),
+        Column("change", "right", drop=1),
+    ]
+    rows: list[list[Cell]] = [
+        [
+            str(bound["parameter"]),
+            text.pretty(bound["limit_text"]),
+            _closes(bound["gain"], card.total),
+            text.pretty(bound["needed_text"]) or DASH,
+            _change(bound["change"]),
+        ]
+        for bound in card.bounds
+    ]
+    total = DASH if card.total is None else f"{text.number(100 * card.total, 3)} % of the limits"
+    note = (
+        f"The gap is what the joint relaxation gives up in sum, {total}; 1 % more room closes this"
+        f" much of it, to begin with. {DASH}: no design found by opening this bound alone."
+    )
+    return Table("Bounds in the way", columns, rows, note=note)
+
+
+def _closes(gain: float, total: float | None) -> str:
+    """Share of the gap that 1 % more room closes."""
+    return f"{text.number(min(gain / total, 100.0), 2)} %" if total else DASH
+
+
+# ---- the way to a yield ----
+
+
+def robust_tables(optimisation: Optimisation) -> Iterator[Table]:
+    """Optima on the way to the yield, and reserves kept; nothing of a plain optimum."""
+    robust = optimisation.robust
+    if robust is None:
+        return
+    quantity = text.metric(optimisation.objective_metric)
+    rounds: list[list[Cell]] = [
+        [str(number), text.value_text(quantity, step.objective, 5), percent(step.rate)]
+        for number, step in enumerate(robust.rounds)
+    ]
+    note = (
+        f"Round 0 has no reserves. An independent sample of {robust.samples} draws at the design"
+        f" shown: {percent(robust.rate)} ({percent(robust.lower)} to {percent(robust.upper)})."
+    )
+    columns = [Column(head, width=1.0) for head in ("round", quantity.label, "all limits hold")]
+    title = f"Towards a yield of {percent(robust.target)}"
+    yield Table(title, columns, rounds, note=note, on="paper")
+    kept: list[list[Cell]] = [
+        [soft(name), f"{100 * share:.1f} %"]
+        for name, share in sorted(robust.reserves.items(), key=lambda pair: -pair[1])
+        if 1e-3 <= share <= WORTH
+    ]
+    if kept:
+        columns = [Column(head, width=1.0) for head in ("limit", "reserve, of the limit")]
+        note = (
+            "The distance from the margin of the design to the margin that a draw falls below with"
+            " the probability allowed to a single limit."
+        )
+        yield Table("Reserves kept beyond limits", columns, kept, note=note, on="paper")

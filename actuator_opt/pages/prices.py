@@ -1,94 +1,48 @@
-"""What each requirement and parameter costs: table, which dimensions move, what buys the most."""
+"""What each requirement and parameter costs: the tornado, the prices, which dimensions move."""
 
 from __future__ import annotations
 
 from ..base.quantities import Quantity
 from ..evaluation.result import Requirement
-from ..optimisation.price_words import PER_CENT, display_of
+from ..optimisation.price_words import PER_CENT, display_of, short_name
 from ..optimisation.result import Optimisation
 from ..optimisation.sensitivity import STRAIGHT, Sensitivity
 from ..rendering import text
-from ..rendering.blocks import Block, Cell, Column, Notes, Table, soft
-from ..rendering.console import Console
-from ..rendering.heights import cells_of, joined
-from ..rendering.terminal import block_text
+from ..rendering.blocks import Block, Cell, Column, Drawing, Medium, Notes, Reach, Table, soft
+from ..rendering.ink import Ink
 from ..rendering.text import DASH
-from . import tornado
+from ..rendering.tornado import MOST, TornadoBar, bars
 
 MOVING = 3
 """Most dimensions named per row of the table of movements."""
-
 MOST_MOVES = 8
 """Most rows of that table: those that change the most."""
-
 LEAST_MOVE = 1e-4
-"""Relative movement per +1 % below which a dimension stands still."""
+"""Relative movement per +1 % below which a dimension stays where it is."""
+LEAST_EFFECT = 1e-5
+"""Share of the objective below which a row changes nothing worth drawing."""
+NO_DESIGN = "no design"
+"""Words at an end that has none."""
 
 
-def blocks(optimisation: Optimisation) -> list[Block]:
-    """Prices, the tornado of their re-solved ends, and which dimensions move."""
-    if not optimisation.sensitivities:
-        return []
-    found: list[Block | None] = [
-        sensitivities(optimisation),
-        Notes("What would buy the most", buys_most(optimisation)),
-        tornado.block(optimisation),
-        moves(optimisation),
-    ]
-    return [one for one in found if one is not None]
+def price_blocks(optimisation: Optimisation, *, moving: bool = False) -> list[Block]:
+    """The tornado of re-solved ends, the prices, what buys the most, which dimensions move.
 
-
-def terminal(
-    optimisation: Optimisation,
-    *,
-    moving: bool = False,
-    colour: bool = False,
-    unicode: bool = True,
-    width: int = 100,
-) -> str:
-    """Prices, predicted against re-solved, with the quality line and what buys the most.
-
-    With `moving` also which dimensions move.
+    `moving`: the terminal shows the movements too.
     """
     if not optimisation.sensitivities:
-        return ""
-    console = Console(colour, unicode, width)
-    block = sensitivities(optimisation)
-    unit = text.unit_text(text.metric(optimisation.objective_metric).unit)
-    columns = [
-        Column("parameter", width=1.0, least=34),
-        Column("limit", "right"),
-        Column("value", "right", drop=4),
-        Column("margin", "right", drop=3),
-        Column("active" if unicode else "act"),
-        Column(f"{unit}/unit", "right"),
-        Column("%/%", "right"),
-        Column(f"at +{PER_CENT} %", "right", drop=1),
-        Column("+ solved", "right"),
-        Column(f"at -{PER_CENT} %", "right", drop=1),
-        Column("- solved", "right"),
-        Column("holds until, then active", width=1.0, drop=2),
+        return []
+    buys_most = [text.pretty(line) for line in optimisation.buys_most]
+    blocks: list[Block | None] = [
+        _tornado_block(optimisation),
+        sensitivities(optimisation),
+        Notes("What would buy the most", buys_most),
+        moves(optimisation, shown=moving),
     ]
-    rows, styles = [], []
-    for cells in block.rows:
-        row = [joined(cell) for cell in cells_of(cells)]
-        active = row[4] != ""
-        row[4] = "" if not active else "●" if unicode else "*"
-        rows.append(row)
-        strong = "bold" if active else ""
-        styles.append(
-            [strong, "", "dim", "dim", "yellow", strong, strong, *("dim", strong) * 2, "dim"]
-        )
-    lines = [console.heading(block.title), *console.table(columns, rows, styles)]
-    lines += [
-        console.wrap(quality(optimisation), "dim"),
-        "",
-        *map(console.wrap, buys_most(optimisation)),
-    ]
-    moved = moves(optimisation) if moving else None
-    if moved is not None:
-        lines += ["", block_text(moved, console)]
-    return "\n".join(lines)
+    return [block for block in blocks if block is not None]
+
+
+# ---- prices ----
 
 
 def sensitivities(optimisation: Optimisation) -> Table:
@@ -97,44 +51,46 @@ def sensitivities(optimisation: Optimisation) -> Table:
     required = {row.path: row for row in optimisation.evaluation.requirements}
     rows: list[list[Cell]] = []
     for row in optimisation.sensitivities:
-        found, unit = required.get(row.parameter), text.unit_text(row.unit)
-        value = None if found is None else found.value
+        limit, unit = required.get(row.parameter), text.unit_text(row.unit)
         solved = [text.number(text.display(objective, v)) for end in row.ends for v in end[1:]]
         rows.append(
             [
-                soft(row.parameter.removeprefix("requirements.")),
+                row.parameter.removeprefix("requirements."),
                 text.with_unit(text.trimmed(display_of(row, row.limit)), unit),
-                DASH if found is None else text.number(display_of(row, value)),
-                DASH if found is None else _margin(found),
+                DASH if limit is None else text.number(display_of(row, limit.value)),
+                DASH if limit is None else _margin(limit),
                 "●" if row.active else "",
                 _price(optimisation, row, objective),
                 text.number(row.percent_per_percent, 3, signed=True),
                 *(solved or [""] * 4),
-                _reach(optimisation, row),
+                Reach(_reach(row), met=row.straight(optimisation.objective_value)),
+                _reach_words(optimisation, row),
             ]
         )
     unit = text.unit_text(objective.unit) or objective.name
+    low, high = f"{text.MINUS}{PER_CENT} %", f"+{PER_CENT} %"
     columns = [
-        Column("requirement or parameter", "left", 1.0, mono=True),
+        Column("requirement or parameter", "left", 1.0, breaks=22, mono=True, least=34),
         Column("limit", "right"),
-        Column("value", "right"),
-        Column("margin", "right"),
-        Column("act.", "center"),
-        Column(f"price,\n{unit}/unit", "right"),
-        Column("% per\n+1 %", "right"),
-        Column(f"+{PER_CENT} %\npredicted", "right"),
-        Column(f"+{PER_CENT} %\nsolved", "right", strong=True),
-        Column(f"−{PER_CENT} %\npredicted", "right"),
-        Column(f"−{PER_CENT} %\nsolved", "right", strong=True),
-        Column("holds until, then active", "left", 1.25),
+        Column("value", "right", drop=4, style="dim"),
+        Column("margin", "right", drop=3, style="dim"),
+        Column("act.", "center", style="yellow"),
+        Column(f"{unit}/unit", "right"),
+        Column("%/%", "right"),
+        Column(f"at\n{high}", "right", drop=1, style="dim"),
+        Column("+\nsolved", "right", strong=True),
+        Column(f"at\n{low}", "right", drop=1, style="dim"),
+        Column(f"{text.MINUS}\nsolved", "right", strong=True),
+        Column(f"holds until\n(ticks: ±{PER_CENT} %)", "left", "24mm", on="paper"),
+        Column("holds until, then active", "left", 1.0, drop=2, style="dim", on="terminal"),
     ]
     title = f"What each requirement costs ({objective.label}, {unit})"
     return Table(title, columns, rows, note=quality(optimisation))
 
 
-def _margin(found: Requirement) -> str:
-    quantity = text.metric(found.metric)
-    return text.margin_of(quantity, found.limit, found.margin, met=found.met)
+def _margin(limit: Requirement) -> str:
+    quantity = text.metric(limit.metric)
+    return text.margin_of(quantity, limit.limit, limit.margin, met=limit.met)
 
 
 def _price(optimisation: Optimisation, row: Sensitivity, objective: Quantity) -> Cell:
@@ -150,7 +106,14 @@ def _price(optimisation: Optimisation, row: Sensitivity, objective: Quantity) ->
     return mark + shown(row.price)
 
 
-def _reach(optimisation: Optimisation, row: Sensitivity) -> Cell:
+def _reach(row: Sensitivity) -> float | None:
+    """Relative change of the row at which the active set changes; None beyond ±100 %."""
+    if row.holds_until is None or not row.limit:
+        return None
+    return row.holds_until / row.limit - 1
+
+
+def _reach_words(optimisation: Optimisation, row: Sensitivity) -> str:
     unit = text.unit_text(row.unit)
     until = text.with_unit(text.trimmed(display_of(row, row.holds_until)), unit)
     if row.next_active is None:
@@ -158,7 +121,7 @@ def _reach(optimisation: Optimisation, row: Sensitivity) -> Cell:
     only = "" if row.straight(optimisation.objective_value) else "only to "
     gone = row.next_active.removesuffix(" stops being active")
     words = f"without {gone}" if gone != row.next_active else gone.removesuffix(" becomes active")
-    return soft(f"{only}{until}, then {words}")
+    return f"{only}{until}, then {words}"
 
 
 def quality(optimisation: Optimisation) -> str:
@@ -182,8 +145,9 @@ def quality(optimisation: Optimisation) -> str:
         value = text.value_text(text.metric(optimisation.objective_metric), made.objective_before)
         parts.append(f"Prices are those of the continuous optimum ({value}), before rounding.")
     parts.append(
-        "Prices are per unit shown in the limit column; rows are ranked by what ±"
-        f"{PER_CENT} % changes when solved; {DASH} under solved: no feasible design found."
+        f"Prices are per unit shown in the limit column; at ±{PER_CENT} %: predicted by the price,"
+        f" then solved again; rows are ranked by what that changes; {DASH}: no design found."
+        " Holds until: as far as the same limits stay active."
     )
     if not all(row.straight(optimisation.objective_value) for row in optimisation.sensitivities):
         parts.append(
@@ -193,39 +157,40 @@ def quality(optimisation: Optimisation) -> str:
     return " ".join(parts)
 
 
-def buys_most(optimisation: Optimisation) -> list[str]:
-    """What would buy the most of the objective, and which requirements cannot be tightened."""
-    return [text.pretty(line) for line in optimisation.buys_most]
+# ---- movements ----
 
 
-def moves(optimisation: Optimisation) -> Block | None:
-    """Which dimensions the optimum moves, per +1 % of each requirement or parameter."""
+def moves(optimisation: Optimisation, *, shown: bool = False) -> Block | None:
+    """Which dimensions the optimum moves, per +1 % of each requirement or parameter.
+
+    `shown`: on the terminal too.
+    """
     variables = {row.path: row for row in optimisation.variables}
     rows: list[list[Cell]] = []
     for row in optimisation.sensitivities:
-        found = []
+        changes = []
         for path, slope in row.movement.items():
             variable = variables.get(path)
             if variable is None:
                 continue
             step = 0.01 * row.limit * slope
             share = step / variable.value if variable.value else 0.0
-            found.append((abs(share), path, step, share))
-        found = sorted((one for one in found if one[0] > LEAST_MOVE), reverse=True)[:MOVING]
-        if not found or len(rows) == MOST_MOVES:
+            changes.append((abs(share), path, step, share))
+        changes = sorted((x for x in changes if x[0] > LEAST_MOVE), reverse=True)[:MOVING]
+        if not changes or len(rows) == MOST_MOVES:
             continue
         words = []
-        for _, path, step, share in found:
+        for _, path, step, share in changes:
             quantity = text.input_quantity(variables[path].quantity)
-            shown = text.number(
+            amount = text.number(
                 quantity.to_display(step) - quantity.to_display(0.0), 2, signed=True
             )
             unit = text.unit_text(quantity.unit)
             percent = text.number(100 * share, 2, signed=True)
-            words.append(f"{path} {text.with_unit(shown, unit)} ({percent} %)")
+            words.append(f"{path} {text.with_unit(amount, unit)} ({percent} %)")
         rows.append(
             [
-                soft(row.parameter.removeprefix("requirements.")),
+                row.parameter.removeprefix("requirements."),
                 text.with_unit(
                     text.trimmed(abs(0.01 * row.limit) / row.scale, 3), text.unit_text(row.unit)
                 ),
@@ -237,7 +202,7 @@ def moves(optimisation: Optimisation) -> Block | None:
     if not rows:
         return None
     columns = [
-        Column("requirement or parameter", "left", 0.9, mono=True),
+        Column("requirement or parameter", "left", 0.9, breaks=24, mono=True),
         Column("1 % of it", "right"),
         Column("which dimensions move, per +1 %", "left", 3.0),
     ]
@@ -245,4 +210,81 @@ def moves(optimisation: Optimisation) -> Block | None:
         f"Derivative of the optimum: the {MOVING} largest movements of the first {MOST_MOVES} rows"
         " that move any; ~ only as far as the price holds."
     )
-    return Table("Which dimension moves", columns, rows, note=note)
+    on: Medium = "both" if shown else "paper"
+    return Table("Which dimension moves", columns, rows, note=note, on=on)
+
+
+# ---- tornado ----
+
+
+def drawn(optimisation: Optimisation) -> list[Sensitivity]:
+    """The rows worth drawing: ranked as in the table, those without any effect left out."""
+    objective = optimisation.objective_value
+    least = LEAST_EFFECT * abs(objective)
+    rows = [
+        row
+        for row in optimisation.sensitivities
+        if row.effect(objective) > least or any(solved is None for _, _, solved in row.ends)
+    ]
+    return rows[:MOST]
+
+
+def _tornado_block(optimisation: Optimisation) -> Block | None:
+    """The tornado with its title, or None where nothing changes anything."""
+    rows = drawn(optimisation)
+    if not rows:
+        return None
+    left = len(optimisation.sensitivities) - len(rows)
+    rest = f" {left} more change less or nothing." if left else ""
+    note = (
+        "Bars are solved again, each an optimum of its own; strokes are what the price predicts."
+        f" Ranked by the larger bar.{rest}"
+    )
+    return Drawing(f"What ±{PER_CENT} % of each changes", tornado(optimisation), note)
+
+
+def tornado(optimisation: Optimisation, *, width: float = 180.0) -> Ink:
+    """Bars of the re-solved objective at +10 % (dark) and -10 % (light) of every row.
+
+    A row without a design at an end says so at the right; predictions beyond the frame end at
+    it with an arrow.
+    """
+    objective = optimisation.objective_value
+    quantity = text.metric(optimisation.objective_metric)
+    factor = quantity.to_display(1.0) - quantity.to_display(0.0)
+    rows = [_bar(row, objective, factor) for row in drawn(optimisation)]
+    unit = text.unit_text(quantity.unit)
+    return bars(
+        rows,
+        axis=f"change of {quantity.label}" + (f", {unit}" if unit else ""),
+        centre=f"optimum {text.value_text(quantity, objective)}",
+        ends=(f"+{PER_CENT} %", f"{text.MINUS}{PER_CENT} %"),
+        predicted=True,
+        width=width,
+    )
+
+
+def _bar(row: Sensitivity, objective: float, factor: float) -> TornadoBar:
+    """A price row as a bar."""
+    limit = text.with_unit(text.trimmed(display_of(row, row.limit)), text.unit_text(row.unit))
+    changes: dict[bool, float | None] = {}
+    foreseen: dict[bool, float | None] = {}
+    words: dict[bool, str] = {}
+    for sign, predicted, solved in row.ends:
+        changes[sign > 0] = None if solved is None else factor * (solved - objective)
+        seen = predicted is not None and abs(predicted - objective) > LEAST_EFFECT * abs(objective)
+        foreseen[sign > 0] = (
+            factor * (predicted - objective) if seen and predicted is not None else None
+        )
+        if solved is None:
+            words[sign > 0] = NO_DESIGN
+            continue
+        share = 100 * (solved - objective) / abs(objective) if objective else None
+        said = "" if share is None else f"{text.number(share, 2, signed=True)} %"
+        words[sign > 0] = "0" if share is not None and abs(share) < 100 * LEAST_EFFECT else said
+    return TornadoBar(
+        f"{short_name(row)}  {limit}",
+        (changes.get(True), changes.get(False)),
+        (words.get(True, ""), words.get(False, "")),
+        (foreseen.get(True), foreseen.get(False)),
+    )

@@ -1,23 +1,34 @@
-"""Several Simulations side by side: what of each stands in a row, and how each is drawn."""
+"""The page of several simulations side by side: their numbers in a table, their common figure."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from ..base.errors import Diagnostic, InputError
 from ..base.quantities import RESULTS
 from ..base.suggest import remedy
-from ..rendering.blocks import Block, Cell, Column, State, Status, Table, Tile, Verdict, soft, tile
-from ..rendering.text import DASH, number, pretty, unit_text, with_unit
+from ..rendering.blocks import (
+    Block,
+    Cell,
+    Column,
+    Notes,
+    Page,
+    State,
+    Status,
+    Table,
+    Tile,
+    Verdict,
+    short,
+    tile,
+)
+from ..rendering.text import DASH, number, pretty, sentence, unit_text, with_unit
 from ..simulation.gains import Tuned
 from ..simulation.result import Simulation
-from . import simulation_rows as rows
-from .optimum import sentence
-from .simulation_axes import COLOURS, DASHES
-from .simulation_words import what as whole
+from .simulation import known, label, remarks, share_words, sound, tied, what
+from .simulation_comparison_figures import LEAST, MOST, comparison_figure, kind_of
+from .simulation_figures import Measured, Static
 
 MOST_COLUMNS = 9
 """Columns that have room beside the names."""
@@ -26,22 +37,12 @@ MOST_TILES = 5
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """Runs by their names, with what is told of them."""
+    """Runs by their names, with the columns of their table."""
 
     runs: tuple[tuple[str, Simulation], ...]
     title: str
     notes: tuple[str, ...]
     columns: tuple[str, ...]
-
-    @property
-    def kind(self) -> str:
-        """What all runs have: a "step", a "stiffness" of a shaken rod, or "signals" alone."""
-        simulations = [one for _, one in self.runs]
-        if all(one.shaken is not None and one.shaken.windows for one in simulations):
-            return "stiffness"
-        if len({None if one.servo is None else one.servo.loop for one in simulations}) == 1:
-            return "signals" if simulations[0].servo is None else "step"
-        return "signals"
 
 
 def comparison(
@@ -56,14 +57,14 @@ def comparison(
     ----------
     runs : name and simulation of each; "50 %, extending" and "50 %, retracting" share a colour
     title : of the page
-    notes : what a reader should know
-    columns : results and gains that stand in the table, by the names of `COLUMNS`; default: what
-        this kind of run has
+    notes : for the reader
+    columns : results and gains of the table, by the names of `COLUMNS`; default: those of this
+        kind of run
 
     Raises
     ------
     InputError
-        no run, a name that stands twice, a column that nobody knows
+        no run, a name that stands twice, an unknown column
     """
     if not runs:
         raise InputError(Diagnostic("nothing to compare", "give one simulation or more"))
@@ -75,9 +76,41 @@ def comparison(
         if name not in COLUMNS:
             message = f'no column "{name}"'
             raise InputError(Diagnostic(message, remedy(name, COLUMNS)))
-    made = Comparison(tuple(runs), title, tuple(notes), tuple(columns))
-    chosen = made.columns or tuple(_usual(made))
-    return Comparison(made.runs, title, made.notes, chosen[:MOST_COLUMNS])
+    chosen = tuple(columns or _usual([simulation for _, simulation in runs]))
+    return Comparison(tuple(runs), title, tuple(notes), chosen[:MOST_COLUMNS])
+
+
+def page(
+    comparison: Comparison,
+    *,
+    measured: Measured | None = None,
+    static: Static | None = None,
+    extra: Sequence[Block] = (),
+) -> Page:
+    """The page of several simulations.
+
+    Parameters
+    ----------
+    comparison : the runs, by `simulation_comparison.comparison`
+    measured : time [s] and values (SI) by the name of a signal, drawn under the runs
+    static : positions [m] and static stiffness [N/m], drawn beside the dynamic ones
+    extra : blocks below all others
+    """
+    notes = Notes("What this rests on", [tied(words) for words in _trust(comparison)])
+    designs = dict.fromkeys(run.plant.design.name for _, run in comparison.runs)
+    return Page(
+        name=comparison.title,
+        kind="Simulations compared",
+        design=", ".join(designs),
+        verdict=_verdict(comparison),
+        sentence=tied(_sentence(comparison, list(designs))),
+        tiles=tiles(comparison),
+        hero=lambda room: comparison_figure(
+            comparison.runs, min(room, MOST), measured=measured, static=static
+        ),
+        least=LEAST,
+        blocks=[run_table(comparison), notes, *extra],
+    )
 
 
 # ---- columns ----
@@ -85,46 +118,42 @@ def comparison(
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """A number of a run with its unit; None where it has none."""
+    """A number of a run with its unit; None where the run has no such number."""
 
     head: str
     unit: str
     value: Callable[[Simulation], float | None]
-    least: float = 0.0
-    """Below this it reads 0."""
 
-    def text(self, found: Simulation) -> str:
+    def text(self, simulation: Simulation) -> str:
         """The number as printed, without its unit."""
-        value = self.value(found)
-        if value is None:
-            return DASH
-        return number(0.0 if abs(value) < self.least else value)
+        value = self.value(simulation)
+        return DASH if value is None else number(value)
 
 
 def _result(name: str) -> Number:
     quantity = RESULTS[name]
 
-    def value(found: Simulation) -> float | None:
-        own = rows.known(name, found.values.get(name))
+    def value(simulation: Simulation) -> float | None:
+        own = known(name, simulation.values.get(name))
         return None if own is None else quantity.to_display(own)
 
-    return Number(rows.label(name), unit_text(quantity.unit), value)
+    return Number(label(name), unit_text(quantity.unit), value)
 
 
 def _of_gains(head: str, unit: str, read: Callable[[Tuned, Simulation], float | None]) -> Number:
-    def value(found: Simulation) -> float | None:
-        own = None if found.tuned is None else read(found.tuned, found)
+    def value(simulation: Simulation) -> float | None:
+        own = None if simulation.tuned is None else read(simulation.tuned, simulation)
         return None if own is None or not math.isfinite(own) or own == 0 else own
 
     return Number(head, unit, value)
 
 
-def _gain(tuned: Tuned, found: Simulation) -> float:
-    control = found.scenario.control
+def _gain(tuned: Tuned, simulation: Simulation) -> float:
+    control = simulation.scenario.control
     return (1.0 if control is None else control.gain_factor) * float(tuned.gains.proportional_gain)
 
 
-def _phase(tuned: Tuned, found: Simulation) -> float | None:
+def _phase(tuned: Tuned, _: Simulation) -> float | None:
     phase = tuned.margins.phase
     return None if phase is None else math.degrees(phase)
 
@@ -144,7 +173,7 @@ COLUMNS: dict[str, Number] = {name: _result(name) for name in RESULTS} | {
     "gain_margin": _of_gains("gain margin", "", lambda tuned, _: tuned.margins.gain),
     "phase_margin": _of_gains("phase margin", "°", _phase),
 }
-"""Everything that may stand in the table."""
+"""Columns that the table may have."""
 _USUAL = {
     "step": (
         "gain", "integral_time", "derivative_time", "gain_margin", "phase_margin", "rise_time",
@@ -157,147 +186,106 @@ _USUAL = {
 }  # fmt: skip
 
 
-def _usual(one: Comparison) -> list[str]:
+def _usual(simulations: Sequence[Simulation]) -> list[str]:
     """Columns of this kind of run that have a value in any."""
     return [
         name
-        for name in _USUAL[one.kind]
-        if any(COLUMNS[name].value(found) is not None for _, found in one.runs)
+        for name in _USUAL[kind_of(simulations)]
+        if any(COLUMNS[name].value(simulation) is not None for simulation in simulations)
     ]
 
 
-def unit_of(one: Comparison, name: str) -> str:
-    """Unit of a column: that of the gains where all runs have the same."""
+def _unit(comparison: Comparison, name: str) -> str:
+    """Unit of a column; of gains the common unit of all runs, if there is one."""
     if name not in ("gain", "ultimate_gain"):
         return COLUMNS[name].unit
-    units = {found.tuned.unit for _, found in one.runs if found.tuned is not None}
+    units = {run.tuned.unit for _, run in comparison.runs if run.tuned is not None}
     return unit_text(units.pop()) if len(units) == 1 else ""
 
 
-def missed(found: Simulation, name: str) -> bool:
-    """Whether a limit of the run on this result is missed."""
-    return any(row.metric == name and not row.met for row in found.requirements)
-
-
-def run_table(one: Comparison) -> Block:
-    """One row per run."""
-    columns = [Column("run", "left", 1.0)]
-    for name in one.columns:
-        unit = unit_of(one, name)
-        first, _, rest = COLUMNS[name].head.rpartition(" ")
+def run_table(comparison: Comparison) -> Table:
+    """A row for every run."""
+    columns = [Column("run", width=1.0, breaks=14)]
+    for k, key in enumerate(comparison.columns):
+        unit = _unit(comparison, key)
+        first, _, rest = COLUMNS[key].head.rpartition(" ")
         words = f"{first}\n{rest}" if first else rest
-        columns.append(Column(f"{words}, {unit}" if unit else words, "right"))
+        columns.append(Column(f"{words}, {unit}" if unit else words, "right", drop=k))
     body: list[list[Cell]] = []
-    for name, found in one.runs:
-        cells: list[Cell] = [soft(name)]
-        for key in one.columns:
-            words = COLUMNS[key].text(found)
-            state = Status("missed", words)
-            cells.append(state if missed(found, key) else words)
-        body.append(cells)
-    note = ""
-    if any(found.requirements for _, found in one.runs):
-        note = "A cross marks what misses the limit of its own run."
+    for name, run in comparison.runs:
+        missed = {requirement.metric for requirement in run.requirements if not requirement.met}
+        texts = {key: COLUMNS[key].text(run) for key in comparison.columns}
+        body.append(
+            [name, *(Status("missed", x) if key in missed else x for key, x in texts.items())]
+        )
+    limited = any(run.requirements for _, run in comparison.runs)
+    note = "A cross marks a result that misses the limit of its own run." if limited else ""
     return Table("Runs", columns, body, note=note)
 
 
-# ---- what a page says of them ----
+# ---- words and key figures ----
 
 
-def what(one: Comparison) -> str:
-    """How many runs of what."""
-    designs = list(dict.fromkeys(found.plant.design.name for _, found in one.runs))
+def _sentence(comparison: Comparison, designs: Sequence[str]) -> str:
+    """The number of runs and their designs; the scenario where all have the same."""
     named = " and ".join(designs) if len(designs) < 3 else f"{len(designs)} designs"
-    count = "1 run" if len(one.runs) == 1 else f"{len(one.runs)} runs"
-    said = f"{count} of {named}."
-    words = {whole(found).partition(": ")[2] for _, found in one.runs}
-    return f"{said} {sentence(words.pop())}" if len(words) == 1 else said
+    count = "1 run" if len(comparison.runs) == 1 else f"{len(comparison.runs)} runs"
+    first = f"{count} of {named}."
+    scenarios = {what(run).partition(": ")[2] for _, run in comparison.runs}
+    return f"{first} {sentence(scenarios.pop())}" if len(scenarios) == 1 else first
 
 
-def verdict(one: Comparison) -> Verdict:
-    """How many runs keep their limits and their balances."""
-    simulations = [found for _, found in one.runs]
-    stated = [found for found in simulations if found.requirements]
-    met = sum(found.met for found in stated)
-    lines = [f"{met} of {len(stated)} runs meet their limits" if stated else "no limit stated"]
-    doubtful = sum(not rows.sound(found) for found in simulations)
+def _verdict(comparison: Comparison) -> Verdict:
+    """Numbers of runs that meet their limits, and of runs in doubt."""
+    simulations = [run for _, run in comparison.runs]
+    limited = [run for run in simulations if run.requirements]
+    met = sum(run.met for run in limited)
+    lines = [f"{met} of {len(limited)} runs meet their limits" if limited else "no limit stated"]
+    doubtful = sum(not sound(run) for run in simulations)
     lines.append(f"{doubtful} runs in doubt" if doubtful else "all balances closed")
-    state: State = "checks" if doubtful or met < len(stated) else "met"
+    state: State = "checks" if doubtful or met < len(limited) else "met"
     return Verdict(state, "COMPARED", lines)
 
 
-def tiles(one: Comparison) -> list[Tile]:
-    """From least to most of the first columns, the results before the gains."""
-    order = sorted(one.columns, key=lambda name: name not in RESULTS)
+def tiles(comparison: Comparison) -> list[Tile]:
+    """Least and greatest value of the first columns, results before gains."""
+    order = sorted(comparison.columns, key=lambda name: name not in RESULTS)
     made: list[Tile] = []
     for name in order:
-        values = [(COLUMNS[name].value(found), run) for run, found in one.runs]
-        known = [(value, run) for value, run in values if value is not None]
-        if len(known) < 2 or len(made) == MOST_TILES:
+        values = [(COLUMNS[name].value(run), words) for words, run in comparison.runs]
+        finite = [(value, words) for value, words in values if value is not None]
+        if len(finite) < 2 or len(made) == MOST_TILES:
             continue
-        (low, first), (high, _) = min(known), max(known)
+        (low, first), (high, _) = min(finite), max(finite)
         ends = dict.fromkeys((number(low, 3), number(high, 3)))
-        words = "\N{EN DASH}".join(ends)
+        span = with_unit("\N{EN DASH}".join(ends), _unit(comparison, name))
         note = f"least: {first}" if len(ends) > 1 else "every run"
-        made.append(
-            tile(
-                COLUMNS[name].head,
-                with_unit(words, unit_of(one, name)),
-                note if len(note) < 30 else f"{note[:28].rstrip()}…",
-            )
-        )
+        made.append(tile(COLUMNS[name].head, span, short(note, 29)))
     return made
 
 
-def trust(one: Comparison) -> list[str]:
+def _trust(comparison: Comparison) -> list[str]:
     """Balances and second integrators of all runs, then every note with its runs."""
-    simulations = [found for _, found in one.runs]
+    simulations = [run for _, run in comparison.runs]
     mass, energy = (
-        rows.share_words(max(getattr(found.balance, name) for found in simulations))
+        share_words(max(getattr(run.balance, name) for run in simulations))
         for name in ("mass", "energy")
     )
-    said = [f"Balances of all runs: mass within {mass}, energy within {energy}."]
-    checked = [found.second for found in simulations if found.second is not None]
+    first = f"Balances of all runs: mass within {mass}, energy within {energy}."
+    checked = [run.second for run in simulations if run.second is not None]
     if checked:
-        most = rows.share_words(max(one.max_difference for one in checked))
-        said.append(f"{len(checked)} of {len(simulations)} runs were integrated again by another"
-                    f" method: signals differ by {most} of their span at most.")  # fmt: skip
+        most = share_words(max(second.max_difference for second in checked))
+        first += (
+            f" {len(checked)} of {len(simulations)} runs were integrated again by another"
+            f" method: signals differ by {most} of their span at most."
+        )
     else:
-        said.append("No run was compared with a second integrator.")
-    by_note: dict[str, list[str]] = {}
-    for name, found in one.runs:
-        for note in rows.remarks(found):
-            by_note.setdefault(note, []).append(name)
-    shown = [" ".join(said), *(sentence(pretty(note)) for note in one.notes)]
-    for note, names in by_note.items():
-        every = len(names) == len(one.runs)
-        shown.append(note if every else f"{'; '.join(names)}: {note}")
+        first += " No run was compared with a second integrator."
+    runs_of: dict[str, list[str]] = {}
+    for name, run in comparison.runs:
+        for note in remarks(run):
+            runs_of.setdefault(note, []).append(name)
+    shown = [first, *(sentence(pretty(note)) for note in comparison.notes)]
+    for note, names in runs_of.items():
+        shown.append(note if len(names) == len(simulations) else f"{'; '.join(names)}: {note}")
     return shown
-
-
-# ---- how each is drawn ----
-
-
-def styles(names: Sequence[str]) -> list[dict[str, Any]]:
-    """Ink of every run: colour by what stands before the last comma, dash by what stands after.
-
-    Where that tells no groups, each has its own colour and dash.
-
-    >>> [one["dash"] for one in styles(["0 %, out", "0 %, in", "50 %, out", "50 %, in"])]
-    [[], [1.6, 0.8], [], [1.6, 0.8]]
-    """
-    split = [name.rpartition(", ") for name in names]
-    families = list(dict.fromkeys(head for head, _, _ in split))
-    kinds = list(dict.fromkeys(tail for _, _, tail in split))
-    grouped = all(head for head, _, _ in split) and 1 < len(families) < len(names)
-    if not grouped or len(kinds) > len(DASHES):
-        return [_style(k, k) for k in range(len(names))]
-    return [_style(families.index(head), kinds.index(tail)) for head, _, tail in split]
-
-
-def _style(colour: int, dash: int) -> dict[str, Any]:
-    return {
-        "stroke": COLOURS[colour % len(COLOURS)],
-        "pen": 0.32,
-        "dash": list(DASHES[dash % len(DASHES)]),
-    }

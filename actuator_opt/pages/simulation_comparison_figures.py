@@ -1,38 +1,49 @@
-"""Several Simulations in one drawing: their steps, their stiffness, or their signals."""
+"""Several simulations in one figure: their steps, their stiffness, or their signals."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from ..base.quantities import SCENARIOS
-from ..rendering.axes import AREAS, Axes, Box, even_ticks, fitted
+from ..rendering.axes import (
+    AREAS,
+    COLOURS,
+    DASHES,
+    SIZE,
+    ZERO,
+    Axes,
+    Box,
+    even_ticks,
+    fitted,
+    lines,
+    names,
+    steady_range,
+    time_axis,
+)
 from ..rendering.ink import GREY, Ink, text_width
+from ..rendering.strips import ASKED, MEASURED, Curve, Strip, stack
 from ..rendering.text import value_text
 from ..simulation.loops import LOOPS
 from ..simulation.result import Simulation
 from ..simulation.step_response import BAND
-from . import simulation_comparison as compare
-from .simulation_axes import (
-    ASKED,
-    MEASURED,
-    SIZE,
-    ZERO,
-    Curve,
-    Strip,
-    lines,
-    names,
-    stack,
-    steady_range,
-    time_axis,
-)
-from .simulation_comparison import Comparison
 from .simulation_energy import ENERGY
-from .simulation_series import Measured, overlay, scaled, titled
-from .simulation_step import window
-from .simulation_stiffness import Static, along, stiffness_panels, travelled
+from .simulation_figures import (
+    Measured,
+    Static,
+    along,
+    overlay,
+    scaled,
+    stiffness_panels,
+    titled,
+    travelled,
+    window,
+)
+
+Runs: TypeAlias = Sequence[tuple[str, Simulation]]
+"""Runs with their names."""
 
 WIDTH = 180.0
 LEAST, MOST = 70.0, 150.0
@@ -40,54 +51,95 @@ LEAST, MOST = 70.0, 150.0
 ROW = 3.6
 """Height of a row of names, and of a bar of energy [mm]."""
 TALLEST = 92.0
-"""Height beyond which a curve over the stroke tells no more [mm] (a choice)."""
+"""Height beyond which a curve over the stroke shows no more [mm] (a choice)."""
 ERROR = 0.1
 """Errors that are shown enlarged, share of the step (a choice: five bands)."""
 DOORS = ("valve edges", "relief valve", "return line", "load", "friction of the seals",
          "losses of the motor", "leakage across the piston")  # fmt: skip
-"""What takes energy by name; all else counts as other."""
+"""Sinks of energy with a colour of their own; all others are "other"."""
 SIGNALS = (
     "position", "speed", "shaft_speed", "shaft_angle", "signal", "pressure_a", "pressure_b",
     "flow_a", "flow_b", "friction",
 )  # fmt: skip
-"""Signals that are laid over one another where runs have no figure of their own."""
+"""Signals of the figure of runs without a common step or stiffness."""
 
 
 def comparison_figure(
-    one: Comparison,
+    runs: Runs,
     height: float = MOST,
     *,
     measured: Measured | None = None,
     static: Static | None = None,
 ) -> Ink:
-    """All runs over one another in one drawing, their names in its first rows."""
+    """All runs in the same figure, their names in its first rows.
+
+    Parameters
+    ----------
+    runs : with their names, as `simulation_comparison.comparison`
+    height : of the figure [mm]
+    measured, static : as `simulation_comparison.page`
+    """
     height = min(max(height, LEAST), MOST)
-    styles = compare.styles([name for name, _ in one.runs])
+    pens = styles([name for name, _ in runs])
     ink = Ink(WIDTH, height)
-    top = _names(ink, one, styles) + 2.0
-    if one.kind == "stiffness":
+    top = _names(ink, runs, pens) + 2.0
+    kind = kind_of([run for _, run in runs])
+    if kind == "stiffness":
         height = min(height, top + TALLEST)
         ink.height = height
     box = (0.0, top, WIDTH, height - top)
-    if one.kind == "step":
-        _steps(ink, box, one, styles, measured or {})
-    elif one.kind == "stiffness":
-        _stiffness(ink, box, one, styles, static)
+    if kind == "step":
+        _steps(ink, box, runs, pens, measured or {})
+    elif kind == "stiffness":
+        _stiffness(ink, box, runs, pens, static)
     else:
-        _signals(ink, box, one, styles, measured or {})
+        _signals(ink, box, runs, pens, measured or {})
     return ink
 
 
-def _names(ink: Ink, one: Comparison, styles: Sequence[dict[str, Any]]) -> float:
+def kind_of(simulations: Sequence[Simulation]) -> str:
+    """The common figure of runs: "step", "stiffness" of a shaken rod, or "signals" alone."""
+    if all(run.shaken is not None and run.shaken.windows for run in simulations):
+        return "stiffness"
+    loops = {None if run.servo is None else run.servo.loop for run in simulations}
+    return "step" if len(loops) == 1 and None not in loops else "signals"
+
+
+def styles(names: Sequence[str]) -> list[dict[str, Any]]:
+    """Ink of every run: the words before the last comma choose the colour, those after it the dash.
+
+    Where the names form no such groups, every run has its own colour and dash.
+
+    >>> [pen["dash"] for pen in styles(["0 %, out", "0 %, in", "50 %, out", "50 %, in"])]
+    [[], [1.6, 0.8], [], [1.6, 0.8]]
+    """
+    split = [name.rpartition(", ") for name in names]
+    families = list(dict.fromkeys(head for head, _, _ in split))
+    kinds = list(dict.fromkeys(tail for _, _, tail in split))
+    grouped = all(head for head, _, _ in split) and 1 < len(families) < len(names)
+    if not grouped or len(kinds) > len(DASHES):
+        return [_style(k, k) for k in range(len(names))]
+    return [_style(families.index(head), kinds.index(tail)) for head, _, tail in split]
+
+
+def _style(colour: int, dash: int) -> dict[str, Any]:
+    return {
+        "stroke": COLOURS[colour % len(COLOURS)],
+        "pen": 0.32,
+        "dash": list(DASHES[dash % len(DASHES)]),
+    }
+
+
+def _names(ink: Ink, runs: Runs, styles: Sequence[dict[str, Any]]) -> float:
     """Names of the runs in columns; the height they take."""
-    longest = max(text_width(name, 6.5) for name, _ in one.runs) + 11.0
-    columns = max(1, min(len(one.runs), int(WIDTH / min(longest, WIDTH / 2))))
+    longest = max(text_width(name, 6.5) for name, _ in runs) + 11.0
+    columns = max(1, min(len(runs), int(WIDTH / min(longest, WIDTH / 2))))
     wide = WIDTH / columns
-    for k, ((name, _), style) in enumerate(zip(one.runs, styles, strict=True)):
+    for k, ((name, _), style) in enumerate(zip(runs, styles, strict=True)):
         x, y = wide * (k % columns), ROW * (k // columns) + 1.8
         ink.line((x, y), (x + 7.0, y), **style | {"pen": 0.45})
         ink.text(x + 8.2, y, fitted(name, wide - 10.0, 6.5), size=6.5)
-    return ROW * -(-len(one.runs) // columns)
+    return ROW * -(-len(runs) // columns)
 
 
 # ---- steps ----
@@ -96,34 +148,34 @@ def _names(ink: Ink, one: Comparison, styles: Sequence[dict[str, Any]]) -> float
 def _steps(
     ink: Ink,
     box: Box,
-    one: Comparison,
+    runs: Runs,
     styles: Sequence[dict[str, Any]],
     measured: Measured,
 ) -> None:
     """Response and its error at the left, signal and energies at the right."""
     left, top, width, height = box
-    across = _window(one)
+    across = _window(runs)
     half = 0.52 * width
-    energies = all(found.balance.flows for _, found in one.runs)
-    used = 12.5 + ROW * len(one.runs) if energies else 0.0
+    energies = all(run.balance.flows for _, run in runs)
+    used = 12.5 + ROW * len(runs) if energies else 0.0
     upper = 0.6 * height
-    _response(ink, (left, top, half, upper), one, styles, across, measured)
-    _error(ink, (left, top + upper, half, height - upper), one, styles, across)
+    _response(ink, (left, top, half, upper), runs, styles, across, measured)
+    _error(ink, (left, top + upper, half, height - upper), runs, styles, across)
     right = (left + half + 6.0, top, width - half - 6.0, height - used - 3.0 * energies)
-    _signal(ink, right, one, styles, across)
+    _signal(ink, right, runs, styles, across)
     if energies:
-        _energies(ink, (right[0], top + height - used, right[2], used), one)
+        _energies(ink, (right[0], top + height - used, right[2], used), runs)
 
 
-def _window(one: Comparison) -> tuple[float, float]:
+def _window(runs: Runs) -> tuple[float, float]:
     """Times after the step that show how all runs settle [s]."""
     begin, end, shortest = 0.0, 0.0, np.inf
-    for _, found in one.runs:
-        assert found.servo is not None
-        own = window(found, found.servo)
-        begin = min(begin, own[0] - found.servo.time)
-        end = max(end, own[1] - found.servo.time)
-        shortest = min(shortest, float(found.time[-1]) - found.servo.time)
+    for _, run in runs:
+        assert run.servo is not None
+        own = window(run, run.servo)
+        begin = min(begin, own[0] - run.servo.time)
+        end = max(end, own[1] - run.servo.time)
+        shortest = min(shortest, float(run.time[-1]) - run.servo.time)
     return max(begin, -0.06 * end), min(end, shortest)
 
 
@@ -142,30 +194,30 @@ def _frame(
 
 
 def _ends(across: tuple[float, float], curves: Sequence[tuple[Any, Any]]) -> list[float]:
-    found: list[float] = []
+    ends: list[float] = []
     for time, values in curves:
         inside = values[(time >= across[0]) & (time <= across[1])]
         if inside.size:
-            found += [float(np.min(inside)), float(np.max(inside))]
-    return found
+            ends += [float(np.min(inside)), float(np.max(inside))]
+    return ends
 
 
 def _response(
     ink: Ink,
     box: Box,
-    one: Comparison,
+    runs: Runs,
     styles: Sequence[dict[str, Any]],
     across: tuple[float, float],
     measured: Measured,
 ) -> None:
-    first = one.runs[0][1]
+    first = runs[0][1]
     assert first.servo is not None
     words, quantity, *_ = LOOPS[first.servo.loop]
     curves = []
-    for _, found in one.runs:
-        assert found.servo is not None
-        own = scaled(quantity, found.signals[first.servo.loop])
-        curves.append((found.time - found.servo.time, own))
+    for _, run in runs:
+        assert run.servo is not None
+        own = scaled(quantity, run.signals[first.servo.loop])
+        curves.append((run.time - run.servo.time, own))
     target = quantity.to_display(first.servo.target)
     title = titled(words.capitalize(), quantity)
     axes = _frame(ink, box, title, across, [*_ends(across, curves), target])
@@ -186,17 +238,17 @@ def _response(
 def _error(
     ink: Ink,
     box: Box,
-    one: Comparison,
+    runs: Runs,
     styles: Sequence[dict[str, Any]],
     across: tuple[float, float],
 ) -> None:
-    """What is left of the step, enlarged about nothing, with the band."""
+    """The error over the step, enlarged about zero, with the band."""
     curves = []
-    for _, found in one.runs:
-        servo = found.servo
+    for _, run in runs:
+        servo = run.servo
         assert servo is not None
-        done = (servo.target - found.signals[servo.loop]) / (servo.target - servo.start)
-        curves.append((found.time - servo.time, 100 * done))
+        done = (servo.target - run.signals[servo.loop]) / (servo.target - servo.start)
+        curves.append((run.time - servo.time, 100 * done))
     ends = _ends(across, curves)
     largest = 100 * ERROR
     low = max(min([*ends, -100 * BAND]), -4 * largest)
@@ -215,39 +267,39 @@ def _error(
 def _signal(
     ink: Ink,
     box: Box,
-    one: Comparison,
+    runs: Runs,
     styles: Sequence[dict[str, Any]],
     across: tuple[float, float],
 ) -> None:
     volts = SCENARIOS["signal_value"]
     curves = []
-    for _, found in one.runs:
-        assert found.servo is not None
-        own = scaled(volts, found.signals["signal"])
-        curves.append((found.time - found.servo.time, own))
+    for _, run in runs:
+        assert run.servo is not None
+        own = scaled(volts, run.signals["signal"])
+        curves.append((run.time - run.servo.time, own))
     axes = _frame(ink, box, titled("Valve signal", volts), across, _ends(across, curves))
     for (time, values), style in zip(curves, styles, strict=True):
         ink.path(lines(axes, time, values), **style)
     time_axis(axes, "time after the step")
 
 
-def _taken(found: Simulation) -> dict[str, float]:
-    """Energy that the doors took [J], by `DOORS`; the others in one."""
+def _taken(run: Simulation) -> dict[str, float]:
+    """Energy that each of `DOORS` took [J]; all others summed."""
     taken: dict[str, float] = {}
-    for flow in found.balance.flows:
+    for flow in run.balance.flows:
         if flow.energy < 0:
             name = flow.name if flow.name in DOORS else "other"
             taken[name] = taken.get(name, 0.0) - flow.energy
-    kept = sum(one.energy for one in found.balance.stored)
+    kept = sum(store.energy for store in run.balance.stored)
     if kept > 0:
         taken["other"] = taken.get("other", 0.0) + kept
     return taken
 
 
-def _energies(ink: Ink, box: Box, one: Comparison) -> None:
-    """What took the energy of every run, one bar each."""
+def _energies(ink: Ink, box: Box, runs: Runs) -> None:
+    """Bars of the sinks of energy, a row for every run."""
     left, top, width, _ = box
-    taken = [_taken(found) for _, found in one.runs]
+    taken = [_taken(run) for _, run in runs]
     totals = [sum(each.values()) for each in taken]
     most = max(totals) or 1.0
     shown = [name for name in (*DOORS, "other")
@@ -255,9 +307,9 @@ def _energies(ink: Ink, box: Box, one: Comparison) -> None:
     ink.text(left, top + 2.0, "Where the energy went", size=7.0, bold=True)
     said = [value_text(ENERGY, total, 3) for total in totals]
     wide = max(text_width(words, SIZE) for words in said) + 1.5
-    room = min(max(text_width(name, SIZE) for name, _ in one.runs), 0.36 * width)
+    room = min(max(text_width(name, SIZE) for name, _ in runs), 0.36 * width)
     begin, end = left + room + 1.5, left + width - wide
-    for k, ((name, _), each, words) in enumerate(zip(one.runs, taken, said, strict=True)):
+    for k, ((name, _), each, words) in enumerate(zip(runs, taken, said, strict=True)):
         y = top + 9.0 + ROW * (k + 0.5)
         ink.text(left + room, y, fitted(name, room, SIZE), size=SIZE, anchor="right")
         x = begin
@@ -281,19 +333,19 @@ def _energies(ink: Ink, box: Box, one: Comparison) -> None:
 def _stiffness(
     ink: Ink,
     box: Box,
-    one: Comparison,
+    runs: Runs,
     styles: Sequence[dict[str, Any]],
     static: Static | None,
 ) -> None:
     """Size and phase of all runs side by side."""
     left, top, width, height = box
-    moved = [travelled(found.shaken.windows, found.plant.stroke)
-             for _, found in one.runs if found.shaken is not None]  # fmt: skip
+    moved = [travelled(run.shaken.windows, run.plant.stroke)
+             for _, run in runs if run.shaken is not None]  # fmt: skip
     over = "stroke" if any(moved) else "time"
     drawn = [
-        along("", found.shaken, over, style)
-        for (_, found), style in zip(one.runs, styles, strict=True)
-        if found.shaken is not None
+        along("", run.shaken, over, style)
+        for (_, run), style in zip(runs, styles, strict=True)
+        if run.shaken is not None
     ]
     half = (width - 6.0) / 2
     boxes = ((left, top, half, height), (left + half + 6.0, top, half, height))
@@ -306,23 +358,23 @@ def _stiffness(
 def _signals(
     ink: Ink,
     box: Box,
-    one: Comparison,
+    runs: Runs,
     styles: Sequence[dict[str, Any]],
     measured: Measured,
 ) -> None:
-    """The signals that all runs have, one strip each."""
+    """A strip for every signal that all runs have."""
     left, top, width, height = box
-    first = one.runs[0][1]
-    shared = [name for name in SIGNALS if all(name in found.signals for _, found in one.runs)]
+    first = runs[0][1]
+    shared = [name for name in SIGNALS if all(name in run.signals for _, run in runs)]
     shown = []
     for rank, name in enumerate(shared):
-        told = first.told[name]
+        signal = first.told[name]
         curves = overlay(first, name, measured)
         curves += [
-            Curve("", found.time, scaled(told.quantity, found.signals[name]), style)
-            for (_, found), style in zip(one.runs, styles, strict=True)
+            Curve("", run.time, scaled(signal.quantity, run.signals[name]), style)
+            for (_, run), style in zip(runs, styles, strict=True)
         ]
-        title = titled(told.label[:1].upper() + told.label[1:], told.quantity)
+        title = titled(signal.label[:1].upper() + signal.label[1:], signal.quantity)
         shown.append(Strip(title, tuple(curves), rank=rank))
-    end = max(float(found.time[-1]) for _, found in one.runs)
+    end = max(float(run.time[-1]) for _, run in runs)
     stack(ink, (left + 11.0, top, width - 13.0, height), shown, (0.0, end))

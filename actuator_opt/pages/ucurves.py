@@ -9,12 +9,11 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from ..evaluation.result import StrokeCurve
-from ..rendering.axes import Axes, even_range, even_ticks
+from ..rendering.axes import COLOURS, DASHES, Axes, even_range, even_ticks
 from ..rendering.ink import GREY, RED, Ink, spread_within
-from .simulation_axes import COLOURS, DASHES
 
 MOST = 6
-"""Curves (a choice: as many as can be told apart)."""
+"""Most curves (a choice: more are hard to distinguish)."""
 SIZE = 6.3
 STYLES: tuple[dict[str, Any], ...] = tuple(
     {"stroke": colour, "pen": 0.45, "dash": dash}
@@ -26,7 +25,7 @@ _LEFT, _WIDE, _TALL, _LOW, _STEP = 14.0, 132.0, 78.0, 32.0, 44.0
 
 
 class Required(NamedTuple):
-    """A stiffness that is asked for [N/m], and what says so."""
+    """A required stiffness [N/m], and its words in the figure."""
 
     stiffness: float
     words: str
@@ -42,8 +41,8 @@ def curves_drawn(
 ) -> float:
     """Draw at most `MOST` curves, each with its label at its end; the height they end at.
 
-    Below them stands what each differs from the first one by, which is called `first`: designs
-    are often so near that their curves lie on one another. Some curve must have a finite point.
+    Below them stand the differences from the first curve, named `first`: curves of similar designs
+    nearly coincide. At least one curve must have a finite point.
     """
     points = [_points(curve) for curve in curves]
     axes = _frame(ink, top, points, required)
@@ -74,14 +73,14 @@ def differences_drawn(
     ink: Ink, top: float, span: tuple[float, float], curves: Sequence[Points], first: str
 ) -> float:
     """What each curve differs from the first by, where both are; the height it ends at."""
-    places, stiffness = (np.array(one) for one in curves[0])
-    found = []
+    places, stiffness = map(np.array, curves[0])
+    differences = []
     for curve in curves:
-        xs, ys = (np.array(one) for one in curve)
+        xs, ys = map(np.array, curve)
         both = (xs >= min(places, default=0.0)) & (xs <= max(places, default=0.0))
         beside = np.interp(xs[both], places, stiffness) if both.any() else xs[both]
-        found.append((xs[both].tolist(), (100.0 * (ys[both] / beside - 1.0)).tolist()))
-    every = [y for _, ys in found for y in ys]
+        differences.append((xs[both].tolist(), (100.0 * (ys[both] / beside - 1.0)).tolist()))
+    every = [y for _, ys in differences for y in ys]
     if not every:
         return top
     axes = Axes(ink, (_LEFT, top, _WIDE, _LOW), span, even_range(every))
@@ -89,7 +88,7 @@ def differences_drawn(
         f"Difference from {first}, %", "piston position from the cap end, mm",
         even_ticks(*span, 8), even_ticks(*axes.y_range, 4), upright=True,
     )  # fmt: skip
-    for (xs, ys), style in zip(found, STYLES, strict=False):
+    for (xs, ys), style in zip(differences, STYLES, strict=False):
         if len(xs) > 1:
             ink.path(axes.clipped(xs, ys), **style)
     return top + _LOW
@@ -107,7 +106,7 @@ def _points(curve: StrokeCurve) -> Points:
 
 def _frame(ink: Ink, top: float, curves: Sequence[Points], required: Sequence[Required]) -> Axes:
     """Axes that hold the bottom of every curve, with the stiffness required."""
-    limits = [one.stiffness / 1e6 for one in required]
+    limits = [limit.stiffness / 1e6 for limit in required]
     ends = [x for xs, _ in curves for x in xs]
     lows = [min(ys) for _, ys in curves if ys] + limits
     high = min(max(k for _, ys in curves for k in ys), 3.0 * max(lows)) * 1.06
@@ -117,8 +116,8 @@ def _frame(ink: Ink, top: float, curves: Sequence[Points], required: Sequence[Re
         "Axial stiffness, kN/mm", "piston position from the cap end, mm",
         even_ticks(*axes.x_range, 8), even_ticks(low, high, 6), upright=True,
     )  # fmt: skip
-    for k, one in enumerate(required):
-        y = axes.y(one.stiffness / 1e6)
+    for k, limit in enumerate(required):
+        y = axes.y(limit.stiffness / 1e6)
         ink.line((_LEFT, y), (_LEFT + _WIDE, y), stroke=RED, pen=0.3, dash=(1.8, 1.0))
-        ink.text(_LEFT + 2.0 + _STEP * k, y + 2.4, one.words, size=SIZE, color=RED, halo=True)
+        ink.text(_LEFT + 2.0 + _STEP * k, y + 2.4, limit.words, size=SIZE, color=RED, halo=True)
     return axes

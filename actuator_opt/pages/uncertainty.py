@@ -26,12 +26,12 @@ from ..rendering.blocks import (
 )
 from ..rendering.ink import BLACK, BLUE, GREY, RED, Ink
 from ..rendering.series import Series
+from ..rendering.text import sentence
+from ..rendering.tornado import LIGHT, MOST, TornadoBar, bars
 from ..uncertainties.estimate import Rate
 from ..uncertainties.inputs import Input
 from ..uncertainties.model import TOLERANCE
 from ..uncertainties.result import LimitYield, Swing, Uncertainty
-from .optimum import sentence
-from .tornado import LIGHT, MOST, Bar, bars
 
 SHOWN = 8
 """Most inputs shown for one output."""
@@ -394,7 +394,7 @@ def tornado(found: Uncertainty, output: str, *, width: float = 180.0) -> Ink | N
     for one in matter:
         shares = (_percent(one.first), _percent(one.total))
         changes = _changes(ends[one.path], centre, factor)
-        lines.append(Bar(one.path, changes, shares))
+        lines.append(TornadoBar(one.path, changes, shares))
     if not lines or all(change is None for line in lines for change in line.changes):
         return None
     unit = "% of the limit" if quantity is None else text.unit_text(quantity.unit)

@@ -13,8 +13,7 @@ from ..rendering import text
 from ..rendering.blocks import Block, Cell, Column, Drawing, Table, clean, short, soft
 from ..rendering.ink import WHITE
 from ..rendering.text import DASH
-from .stiffness_figure import wall_figure
-from .wall_figures import STEEL, Rung, ladder_figure, strength_figure, stress_figure
+from .wall_figures import STEEL, Rung, ladder_figure, strength_figure, stress_figure, wall_figure
 
 MOST_STEPS = 10
 """Steps of a ladder drawn; of a longer one the first and the last."""
@@ -37,7 +36,7 @@ _DIFFERENCES = {
 }
 
 
-def blocks(evaluation: Evaluation) -> list[Block]:
+def wall_blocks(evaluation: Evaluation) -> list[Block]:
     """Every block of the wall; the drawing alone where there is no study."""
     study = evaluation.wall
     found = [_drawing(evaluation)]
@@ -124,7 +123,7 @@ def _layers(study: WallStudy) -> Block:
         " Y across it, t tension, c compression, S shear; the share is what temperature, moisture,"
         " basis and process leave of the library value."
     )
-    return Table("Barrel wall: layers", columns, rows, note=note)
+    return Table("Barrel wall: layers", columns, rows, note=note, on="paper")
 
 
 def _stresses(study: WallStudy) -> Block:
@@ -195,7 +194,9 @@ def _criteria(study: WallStudy) -> Block:
         note += " Hashin and Puck are made for unidirectional plies, not for a fabric."
     if metals:
         note += f" Metals by von Mises: {'; '.join(metals)}."
-    return Table("Barrel wall: strength ratios by every criterion", columns, rows, note=note)
+    return Table(
+        "Barrel wall: strength ratios by every criterion", columns, rows, note=note, on="paper"
+    )
 
 
 def _woven(study: WallStudy, index: int) -> bool:
@@ -280,7 +281,9 @@ def _differences(evaluation: Evaluation, study: WallStudy) -> Block:
     if evaluation.design.barrel.autofrettage_pressure is not None:
         note += " It knows no autofrettage."
     rows = [row(one) for one in study.differences]
-    return Table("Barrel wall: exact tube against thin laminate", columns, rows, note=note)
+    return Table(
+        "Barrel wall: exact tube against thin laminate", columns, rows, note=note, on="paper"
+    )
 
 
 def _thicknesses(study: WallStudy) -> Block:
@@ -327,7 +330,7 @@ def _thicknesses(study: WallStudy) -> Block:
         f" {text.trimmed(100 * s.at_seal, 3)} % of it acts at the seal, {shares} into the pressure."
     )
     title = "Barrel wall: thickness for another bore growth"
-    return Table(title, columns, rows, note=note)
+    return Table(title, columns, rows, note=note, on="paper")
 
 
 def _metals(study: WallStudy) -> Block:
@@ -374,4 +377,6 @@ def _metals(study: WallStudy) -> Block:
         " growth (no axial load) and the burst pressure it is asked for (its own where that is"
         " lower), by Lamé and Faupel, under the same axial forces; no least wall for turning."
     )
-    return Table("Barrel wall: metal barrels for the same duty", columns, rows, note=note)
+    return Table(
+        "Barrel wall: metal barrels for the same duty", columns, rows, note=note, on="paper"
+    )

@@ -13,8 +13,19 @@ from typing import Any
 
 from ..evaluation.wall_result import Profile, WallStudy
 from ..rendering.axes import Axes, fitted, legend
-from ..rendering.ink import BLACK, BLUE, GREY, RED, WHITE, Ink, Point, text_width
-from ..rendering.text import number
+from ..rendering.ink import (
+    BLACK,
+    BLUE,
+    GREY,
+    RED,
+    WHITE,
+    Ink,
+    Point,
+    hatch,
+    spread_within,
+    text_width,
+)
+from ..rendering.text import number, trimmed
 
 OCHRE, GREEN, STEEL = "#9a6a12", "#00654a", "#4f86a8"
 BANDS = {"metal": "#f1f3f5", "composite": "#e2e7eb", "polymer": "#f6efdc"}
@@ -182,4 +193,43 @@ def ladder_figure(rungs: Sequence[Rung], working: float, *, width: float = 180.0
             values + 31.0, y, fitted(rung.remark, width - values - 31.0, 6.2), size=6.2, color=GREY
         )
     ink.line((left, top), (left, top + step * len(rungs)), pen=0.2)
+    return ink
+
+
+def wall_figure(layers: Sequence[tuple[str, float, str]], *, width: float = 180.0) -> Ink:
+    """The barrel wall enlarged to an ISO scale, layer by layer from the bore (below) outwards.
+
+    `layers` holds (text, thickness in m, kind).
+    """
+    total = 1000.0 * sum(thickness for _, thickness, _ in layers)
+    paper, real = next(
+        ((p, 1) for p in (100, 50, 20, 10, 5, 2, 1) if total * p <= 26.0),
+        next(((1, r) for r in (2, 5, 10, 20, 50) if total / r <= 26.0), (1, 100)),
+    )
+    factor = 1000.0 * paper / real
+    count = len(layers)
+    wall = total * paper / real
+    height = max(wall, 3.4 * count) + 9.0
+    ink = Ink(width, height)
+    bottom = height - 4.0 - max(0.0, (3.4 * count - wall) / 2)
+    middles = []
+    base = bottom
+    for _, thickness, kind in layers:
+        deep = thickness * factor
+        box = ((3.0, base - deep), (63.0, base - deep), (63.0, base), (3.0, base))
+        composite = kind == "composite"
+        ink.path([box], fill="#d5dbe0" if composite else "#eef1f3", stroke=None, closed=True)
+        lines = hatch([box], angle=-60.0 if composite else -45.0, spacing=0.9 if composite else 1.5)
+        if composite:
+            lines += hatch([box], angle=60.0, spacing=0.9)
+        ink.path(lines, pen=0.09, stroke=GREY)
+        ink.path([box], closed=True, pen=0.18)
+        middles.append(base - deep / 2)
+        base -= deep
+    places = spread_within(middles[::-1], [3.4] * (count - 1), 2.0, height - 2.0)[::-1]
+    for (words, thickness, _), middle, y in zip(layers, middles, places, strict=True):
+        ink.line((63.0, middle), (69.0, y), (71.0, y), pen=0.13)
+        ink.text(72.0, y, f"{words}, {trimmed(1000 * thickness)} mm", size=7.0)
+    ink.text(33.0, bottom + 2.4, "bore side", size=6.0, color=GREY, anchor="center")
+    ink.text(width, 2.0, f"SCALE {paper}:{real}", size=7.0, bold=True, anchor="right")
     return ink

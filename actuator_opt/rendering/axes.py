@@ -1,4 +1,4 @@
-"""Figures of the report as ink: stiffness over the stroke with its compliance contributions.
+"""Axes of figures: ranges, ticks, frames, and curves with their names.
 
 Readable in black and white: areas differ in lightness, lines in dash, and every curve carries
 its own label.
@@ -14,8 +14,8 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from ..base.numeric import Array
-from .ink import BLUE, GREY, PALE, RED, WHITE, Ink, Point, text_width
-from .text import MINUS, fixed, number, trimmed
+from .ink import BLACK, BLUE, GREEN, GREY, OCHRE, PALE, RED, WHITE, Ink, Point, text_width
+from .text import MINUS, SUPERSCRIPTS, fixed, number, trimmed
 
 AREAS = (
     "#0b3c5d", "#9ec3da", "#d5e6f0", "#4f86a8", "#f0e2b6", "#b98b3e",
@@ -28,7 +28,21 @@ Box: TypeAlias = tuple[float, float, float, float]
 """Left, top, width and height on the paper [mm]."""
 THINNED = 640
 """Values of a thinned curve (a choice: two per 0.3 mm of paper)."""
-_SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+COLOURS = (BLUE, OCHRE, GREEN, "#7a5a8c", RED, "#4f86a8", BLACK, "#b98b3e")
+DASHES: tuple[tuple[float, ...], ...] = (
+    (), (1.6, 0.8), (2.4, 0.7, 0.4, 0.7), (0.8, 0.5), (3.2, 0.8), (0.4, 0.5),
+)  # fmt: skip
+"""Colours and dashes of curves."""
+ZERO: dict[str, Any] = {"stroke": GREY, "pen": 0.13}
+"""Ink of a line at zero."""
+SIZE = 6.2
+"""Type of the names of curves [pt]."""
+_DENSE = 8
+"""Values of a thinned curve per mm (a choice: four pairs, finer than the pen)."""
+_MOST_JUMPS = 500
+"""Most instants with two samples that a thinned curve keeps."""
+_MILLISECONDS = 0.1
+"""Time below which an axis counts milliseconds [s]."""
 
 
 def ticks(low: float, high: float, count: int = 5) -> list[float]:
@@ -207,7 +221,7 @@ def level_words(value: float) -> str:
         return trimmed(value)
     power = math.floor(math.log10(value) + 1e-9)
     step = round(value / 10.0**power)
-    raised = f"10{str(power).translate(_SUPERSCRIPTS)}"
+    raised = f"10{str(power).translate(SUPERSCRIPTS)}"
     return raised if step == 1 else f"{step}×{raised}"
 
 
@@ -326,3 +340,83 @@ def thinned(values: Array, most: int = THINNED) -> Array:
         found |= {first + int(np.argmin(values[first:last]))}
         found |= {first + int(np.argmax(values[first:last]))}
     return np.array(sorted(found))
+
+
+def time_words(span: float, words: str = "time") -> tuple[str, float]:
+    """Label of a time axis, and what is shown over seconds.
+
+    >>> time_words(5.0), time_words(0.02)
+    (('time, s', 1.0), ('time, ms', 1000.0))
+    """
+    return (f"{words}, ms", 1e3) if span < _MILLISECONDS else (f"{words}, s", 1.0)
+
+
+def steady_range(ends: Sequence[float], *, zero: bool = False) -> tuple[float, float]:
+    """`even_range`, wide enough to show a constant value as a straight line."""
+    low, high = even_range(ends, zero=zero)
+    size = max((abs(v) for v in ends), default=0.0)
+    least = 1e-6 * size if size > 1e-12 else 1.0
+    if high - low >= least:
+        return low, high
+    middle = (low + high) / 2
+    return middle - 0.05 * max(size, 1e-9), middle + 0.05 * max(size, 1e-9)
+
+
+def lines(axes: Axes, time: Array, values: Array) -> list[list[Point]]:
+    """A curve on paper, thinned, cut where it leaves the frame or has no value."""
+    inside = (time >= axes.x_range[0]) & (time <= axes.x_range[1]) & np.isfinite(values)
+    known = np.flatnonzero(inside)
+    jumps = np.flatnonzero(np.diff(time) == 0)  # two samples at an instant: an upright line
+    jumps = np.union1d(jumps, jumps + 1) if jumps.size < _MOST_JUMPS else jumps[:0]
+    drawn: list[list[Point]] = []
+    for run in np.split(known, np.flatnonzero(np.diff(known) > 1) + 1):
+        if run.size > 1:
+            at = run[thinned(values[run], max(int(_DENSE * axes.width), 16))]
+            at = np.union1d(at, np.intersect1d(run, jumps))
+            drawn += axes.clipped([float(t) for t in time[at]], [float(v) for v in values[at]])
+    return drawn
+
+
+def time_axis(axes: Axes, words: str = "time") -> None:
+    """Ticks, numbers and the name of the time below a frame, whose range is in seconds."""
+    label, scale = time_words(axes.x_range[1] - axes.x_range[0], words)
+    x_axis(axes, label, scale)
+
+
+def x_axis(axes: Axes, label: str, scale: float = 1.0) -> None:
+    """Ticks of an x axis that shows its values times `scale`; their numbers only with a label."""
+    bottom = axes.top + axes.height
+    low, high = (scale * v for v in axes.x_range)
+    ticks = even_ticks(low, high, max(2, int(axes.width / 11)))
+    for value, number_words in spaced([(v / scale, w, 1) for v, w in ticks], axes):
+        x = axes.x(value)
+        axes.ink.line((x, bottom), (x, bottom + 1.0), pen=0.13)
+        if label:
+            axes.ink.text(x, bottom + 2.8, number_words, anchor="center")
+    if label:
+        middle = axes.left + axes.width / 2
+        axes.ink.text(middle, bottom + 6.0, label, anchor="center", color=GREY)
+
+
+def names(
+    ink: Ink, right: float, y: float, entries: Sequence[tuple[str, dict[str, Any]]], room: float
+) -> None:
+    """Names of curves in one line that ends at `right`, each after its line, cut to the room."""
+    if not entries:
+        return
+    words = [name for name, _ in entries]
+    for line, gap in ((4.0, 2.2), (2.8, 1.4)):
+        left = room + gap - len(entries) * (line + 0.8 + gap)
+        if sum(text_width(name, SIZE) for name in words) <= left:
+            break
+    while len(words) > 1 and sum(text_width(name, SIZE) for name in words) > left:
+        widest = max(range(len(words)), key=lambda k: text_width(words[k], SIZE))
+        cut = fitted(words[widest], text_width(words[widest], SIZE) - 0.5, SIZE)
+        if len(cut) < 3:
+            break
+        words[widest] = cut
+    x = right + gap - sum(text_width(name, SIZE) + line + 0.8 + gap for name in words)
+    for name, (_, style) in zip(words, entries, strict=True):
+        ink.line((x, y), (x + line, y), **style)
+        ink.text(x + line + 0.8, y, name, size=SIZE)
+        x += line + 0.8 + text_width(name, SIZE) + gap

@@ -7,8 +7,8 @@ Subjects build a `Page`; `paper`, `terminal` and `html` render it. A block says 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Literal, TypeAlias
 
 from ..base.suggest import CONTROLS
@@ -21,7 +21,10 @@ State: TypeAlias = Literal["", "met", "no_reserve", "missed", "not_checked", "ch
 Medium: TypeAlias = Literal["both", "paper", "terminal"]
 Align: TypeAlias = Literal["left", "center", "right"]
 
-_PIECES = re.compile(r"[^._/=)\]]{0,17}(?:[._/=)\]]+(?![0-9])|$)|.{1,18}", re.DOTALL)
+_PIECES = re.compile(r"(?:[^./=\[]|[./=\[]+(?=[0-9]))*(?:[./=\[]+|$)", re.DOTALL)
+_NAMES = re.compile(r"[^_]*(?:_+|$)")
+_NAME = 18
+"""Letters of a single name that any column has room for."""
 _WORDS = re.compile(r"\s*\S+\s*|\s+")
 _CONTROL = re.compile(rf"[{CONTROLS}]")
 
@@ -46,17 +49,33 @@ def printable(text: str) -> str:
 
 
 def soft(text: str, longest: int = 14) -> str | list[str]:
-    """A text that may break inside words beyond `longest` letters (paths, absurd names)."""
+    """A text that may break inside words beyond `longest` letters: behind ``. / = [``.
+
+    A single name beyond what the column holds may break behind ``_`` too, then anywhere.
+
+    >>> soft("materials.steel_42crmo4.density", 22)
+    ['materials.', 'steel_42crmo4.', 'density']
+    """
     text = clean(text)
     pieces: list[str] = [""]
     for word in _WORDS.findall(text):
         if len(word.rstrip()) <= longest:
             pieces[-1] += word
             continue
-        first, *rest = (piece for piece in _PIECES.findall(word) if piece)
+        first, *rest = _pieces(word, max(longest, _NAME))
         pieces[-1] += first
         pieces += rest
     return text if len(pieces) == 1 else pieces
+
+
+def _pieces(word: str, most: int) -> Iterator[str]:
+    """Parts of a word between which a line may break, none beyond `most` letters."""
+    for part in filter(None, _PIECES.findall(word)):
+        if len(part.rstrip()) <= most:
+            yield part
+            continue
+        for name in filter(None, _NAMES.findall(part)):
+            yield from (name[k : k + most] for k in range(0, len(name), most))
 
 
 def short(text: str, length: int) -> str:
@@ -101,6 +120,21 @@ class Slot:
     at: str = ""
 
 
+FARTHEST = 0.3
+"""Relative change at which the bar of a `Reach` ends; it has ticks at a third of that."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """How far a value may change, as a bar from its present place; None: as far as it was tried.
+
+    `met`: whether the whole reach counts.
+    """
+
+    change: float | None
+    met: bool = True
+
+
 @dataclass(frozen=True, slots=True)
 class Flag:
     """Words that stand out where `raised`."""
@@ -109,7 +143,7 @@ class Flag:
     raised: bool
 
 
-Cell: TypeAlias = str | list[str] | Status | Bar | Share | Slot | Flag
+Cell: TypeAlias = str | list[str] | Status | Bar | Share | Slot | Reach | Flag
 """Text (in pieces: a line may break between them), or a mark."""
 
 
@@ -124,6 +158,7 @@ class Column:
     width : "auto", a part of the room that is left (number), or ``"12mm"``; a column of the second
         kind shrinks on a narrow terminal
     breaks : letters of a word beyond which it may break; 0 never
+    wraps : a cell too wide for the terminal goes on in further lines; otherwise it is cut
     mono, strong : type on paper; on the terminal strong is bold
     least : letters that a shrinking column keeps on the terminal
     drop : on a narrow terminal the columns of the highest number go first; 0 never
@@ -135,6 +170,7 @@ class Column:
     align: Align = "left"
     width: float | str = "auto"
     breaks: int = 0
+    wraps: bool = False
     mono: bool = False
     strong: bool = False
     least: int = 14
@@ -160,7 +196,9 @@ class Row:
 class Table:
     """Rows under their heads, plain cells or with a state; a rule parts the last `total` of them.
 
-    `headless` leaves the title out on the terminal.
+    `headless` leaves the title out on the terminal, and so does an empty title. Where every head
+    is empty, the terminal shows no line of heads. A table with `repeat` that is too wide is shown
+    in parts, each of which begins with its first `repeat` columns.
     """
 
     title: str
@@ -169,7 +207,31 @@ class Table:
     note: str = ""
     total: int = 0
     headless: bool = False
+    repeat: int = 0
     on: Medium = "both"
+
+    def parts(self, widths: Sequence[float], room: float) -> list[Table]:
+        """The table in parts that fit a room; `widths` of its columns include their gaps."""
+        if not self.repeat or sum(widths) <= room:
+            return [self]
+        first, rest = list(range(self.repeat)), list(range(self.repeat, len(self.columns)))
+        parts = []
+        while rest:
+            shown = [*first, rest.pop(0)]
+            while rest and sum(widths[k] for k in (*shown, rest[0])) <= room:
+                shown.append(rest.pop(0))
+            parts.append(self._of(shown))
+        return parts
+
+    def _of(self, shown: Sequence[int]) -> Table:
+        """The table with these columns alone."""
+        rows = [
+            replace(row, cells=[row.cells[k] for k in shown])
+            if isinstance(row, Row)
+            else [row[k] for k in shown]
+            for row in self.rows
+        ]
+        return replace(self, columns=[self.columns[k] for k in shown], rows=rows, repeat=0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -281,20 +343,19 @@ class Page:
     lists_input: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class ExtraTable:
-    """A table that a caller adds to a report.
-
-    A cell may be text or a number; `note` stands under the table, a `drawing` after it.
-    """
-
-    title: str
-    columns: Sequence[str]
-    rows: Sequence[Sequence[object]]
-    note: str = ""
-    drawing: Drawing | None = None
-    widths: Sequence[float] = ()
-    """Of the columns, over one another; default: all alike."""
+def text_table(
+    title: str,
+    heads: Sequence[str],
+    rows: Sequence[Sequence[Cell]],
+    note: str = "",
+    widths: Sequence[float | str] = (),
+) -> Table:
+    """A table of texts: its columns share the room alike or by `widths`, and long words break."""
+    columns = [
+        Column(head, "left", width, breaks=14)
+        for head, width in zip(heads, widths or [1.0] * len(heads), strict=True)
+    ]
+    return Table(title, columns, rows, note)
 
 
 def tile(label: str, words: str, note: str, state: State = "") -> Tile:

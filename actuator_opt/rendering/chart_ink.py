@@ -15,7 +15,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from . import shading
+from . import contours
 from .axes import Axes, Box, Ticks, band, fitted, thinned
 from .chart import Chart, Curve, Level, Panel, Points, Values
 from .chart_scale import Scale, known, scale
@@ -528,7 +528,7 @@ def _spots(
         if points.small:
             _small(axes.ink, *at, style)
         elif len(points.shades) and bounds:
-            paints = shading.shades(len(bounds) - 1)
+            paints = contours.shades(len(bounds) - 1)
             shade = min(max(bisect_right(bounds, points.shades[k]) - 1, 0), len(paints) - 1)
             axes.ink.circle(*at, 1.15, fill=WHITE, stroke=None)
             axes.ink.circle(*at, 0.9, fill=paints[shade], stroke=BLACK, pen=0.18)
@@ -678,14 +678,14 @@ def _shaded(axes: Axes, frame: _Frame, x: Scale) -> list[float]:
     shown += known(np.asarray(surface.values).ravel(), log=True)
     if not shown:
         return []
-    bounds = shading.levels(min(shown), max(shown))
+    bounds = contours.levels(min(shown), max(shown))
     table = np.asarray(surface.values, dtype=float)
     if table.size:
         xs, ys = (along.at(values) for along, values in ((x, surface.xs), (frame.y, surface.ys)))
         with np.errstate(invalid="ignore", divide="ignore"):
             logs = np.ma.masked_invalid(np.log10(np.where(table > 0, table, np.nan)))
-        shading.bands(axes, xs.tolist(), ys.tolist(), logs, bounds)
-    shading.scale(axes.ink, (axes.left, axes.top, axes.width, axes.height), bounds)
+        contours.bands(axes, xs.tolist(), ys.tolist(), logs, bounds)
+    contours.scale(axes.ink, (axes.left, axes.top, axes.width, axes.height), bounds)
     return bounds
 
 

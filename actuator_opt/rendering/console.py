@@ -16,6 +16,8 @@ _CODES = {"bold": "1", "dim": "2", "red": "31", "green": "32", "yellow": "33", "
 _CODE = "|".join(_CODES.values())
 PAINT = rf"\x1b\[(?:0|(?:{_CODE})(?:;(?:{_CODE}))*)m"
 """What `Console.paint` writes, as a regular expression."""
+GAP = 2
+"""Spaces between two columns of a table."""
 _BREAK = re.compile(r"[\t\n\r\v\f\u2028\u2029]+")
 
 
@@ -81,46 +83,58 @@ class Console:
         rows: Sequence[Sequence[str]],
         styles: Sequence[Sequence[str]] = (),
     ) -> list[str]:
-        """Lines of a table, `styles` by cell; on a narrow terminal columns shrink or go."""
+        """Lines of a table, `styles` by cell; on a narrow terminal columns shrink, wrap or go."""
         cells = [[self.say(cell) for cell in row] for row in rows]
         heads = [self.say(column.head.replace("\n", " ")) for column in columns]
         keep = list(range(len(columns)))
         while True:
             sizes = {k: max([visible(heads[k]), *(visible(row[k]) for row in cells)]) for k in keep}
-            spare = self.width - sum(sizes.values()) - 2 * (len(keep) - 1)
+            spare = self.width - sum(sizes.values()) - GAP * (len(keep) - 1)
             flexible = [k for k in keep if columns[k].flexible]
             floor = sum(min(sizes[k], columns[k].least) for k in flexible)
             dropped = sorted((columns[k].drop, k) for k in keep if columns[k].drop)
             if spare >= 0 or not dropped or sum(sizes[k] for k in flexible) + spare >= floor:
                 break
             keep.remove(dropped[-1][1])
-        while spare < 0 and flexible:
-            widest = max(flexible, key=lambda k: sizes[k])
-            if sizes[widest] <= 6:
-                break
-            sizes[widest] -= 1
+        least = {k: columns[k].least if columns[k].wraps else 6 for k in flexible}
+        while spare < 0 and (wide := [k for k in flexible if sizes[k] > least[k]]):
+            sizes[max(wide, key=lambda k: sizes[k])] -= 1
             spare += 1
-        lines = [self._line(columns, keep, sizes, heads, ["dim"] * len(columns))]
+        lines = []
+        if any(heads[k] for k in keep):
+            lines += self._lines(columns, keep, sizes, heads, ["dim"] * len(columns))
         for index, row in enumerate(cells):
             style = styles[index] if index < len(styles) else [""] * len(columns)
-            lines.append(self._line(columns, keep, sizes, row, style))
+            lines += self._lines(columns, keep, sizes, row, style)
         return lines
 
-    def _line(
+    def _lines(
         self,
         columns: Sequence[Column],
         keep: Sequence[int],
         sizes: dict[int, int],
         cells: Sequence[str],
         styles: Sequence[str],
-    ) -> str:
-        parts = []
-        for k in keep:
-            text = self.cut(cells[k], sizes[k])
-            gap = " " * (sizes[k] - visible(text))
-            painted = self.paint(text, *styles[k].split())
-            parts.append(gap + painted if columns[k].align == "right" else painted + gap)
-        return "  ".join(parts).rstrip()
+    ) -> list[str]:
+        """Lines of a row: as many as its highest cell has."""
+        pieces = {k: self._pieces(columns[k], cells[k], sizes[k]) for k in keep}
+        lines = []
+        for index in range(max(len(piece) for piece in pieces.values())):
+            parts = []
+            for k in keep:
+                text = pieces[k][index] if index < len(pieces[k]) else ""
+                gap = " " * (sizes[k] - visible(text))
+                painted = self.paint(text, *styles[k].split())
+                parts.append(gap + painted if columns[k].align == "right" else painted + gap)
+            lines.append((" " * GAP).join(parts).rstrip())
+        return lines
+
+    def _pieces(self, column: Column, cell: str, size: int) -> list[str]:
+        """A cell in lines of its column: wrapped, or cut to one line."""
+        if not column.wraps or visible(cell) <= size:
+            return [self.cut(cell, size)]
+        long = column.breaks > 0
+        return textwrap.wrap(cell, size, break_long_words=long, break_on_hyphens=False) or [""]
 
     def margin_bar(self, margin: float | None, half: int = 5) -> str:
         """Room to the right of the mark, what is missing to its left; full at 100 %."""

@@ -10,7 +10,24 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from .blocks import Block, Cell, Drawing, Flag, Listing, Notes, Page, Pair, Row, Status, Table, soft
+from .blocks import (
+    Bar,
+    Block,
+    Cell,
+    Drawing,
+    Flag,
+    Listing,
+    Notes,
+    Page,
+    Pair,
+    Reach,
+    Row,
+    Share,
+    Slot,
+    Status,
+    Table,
+    soft,
+)
 from .chart import Chart
 from .ink import text_width
 
@@ -21,6 +38,11 @@ HALF, FULL = 86.0, 172.0
 """Width of words in half a sheet and in a whole one [mm]."""
 LINE, NOTE_LINE = 3.6, 2.75
 """Height of a line of a table and of the note below it [mm]."""
+MARKED = 1.06
+"""Lines that a row with a bar takes."""
+FRAME, SPARE = 3.0, 9.0
+"""Height around the large figure, and by how much the heights above exceed those measured on a
+sheet with a large figure and two tables [mm]."""
 
 
 def joined(cell: Cell) -> str:
@@ -71,8 +93,10 @@ def height(block: Block, width: float = FULL) -> float:
     if isinstance(block, Pair):
         return max(sum(height(one, HALF) for one in side) for side in block.sides)
     if isinstance(block, Table):
-        shown = block.on != "terminal"
-        return shown * (HEAD + _note(block.note, width) + LINE * sum(_lines(block, width)))
+        if block.on == "terminal":
+            return 0.0
+        parts = fitting(block, width)
+        return sum(HEAD + _note(x.note, width) + LINE * sum(_lines(x, width)) for x in parts)
     if isinstance(block, Drawing):
         return HEAD + _note(block.note, width) + block.ink.height + 3.0
     if isinstance(block, Chart):
@@ -85,6 +109,11 @@ def height(block: Block, width: float = FULL) -> float:
     if isinstance(block, Listing):
         return HEAD + 2.5 * len(block.text.splitlines())
     return 0.0
+
+
+def fitting(table: Table, width: float) -> list[Table]:
+    """A table in the parts that paper shows."""
+    return table.parts(_widths(table), width) if table.repeat else [table]
 
 
 def room(page: Page) -> float:
@@ -101,19 +130,37 @@ def room(page: Page) -> float:
     return left - sum(heights)
 
 
+def rest(page: Page, hero: float) -> float:
+    """Height left on the first sheet below a large figure of this height and the blocks [mm]."""
+    named = sum(
+        text_width(f"{n} {part}, {material}", 5.8) + 4.0 for n, part, material in page.items
+    )
+    below = 1.8 + 1.9 * math.ceil(named / FULL) if page.items else 0.0
+    return room(page) + SPARE - hero - below - FRAME
+
+
 def _note(words: str, width: float) -> float:
     return NOTE_LINE * len(wrap(words, width, 6.2)) + 1.2 if words else 0.0
+
+
+def _widths(table: Table) -> list[float]:
+    """Widths of the columns where no cell breaks [mm]."""
+    body = [cells_of(row) for row in table.rows]
+    widths = []
+    for k, column in enumerate(table.columns):
+        if isinstance(column.width, str) and column.width.endswith("mm"):
+            widths.append(float(column.width[:-2]))
+            continue
+        words = [*column.head.split("\n"), *(joined(row[k]) for row in body)]
+        widths.append(max(text_width(word, 6.8, bold=column.strong) for word in words) + 2.2)
+    return widths
 
 
 def _lines(table: Table, width: float) -> list[float]:
     """Lines of the heads and of every row: the flexible columns share what the others leave."""
     columns = [k for k, one in enumerate(table.columns) if one.on != "terminal"]
     body = [cells_of(row) for row in table.rows]
-    wides = {}
-    for k in columns:
-        one = table.columns[k]
-        words = [*one.head.split("\n"), *(joined(row[k]) for row in body)]
-        wides[k] = max(text_width(word, 6.8, bold=one.strong) for word in words) + 2.2
+    wides = dict(zip(columns, (_widths(table)[k] for k in columns), strict=True))
     spare = width - sum(wides.values())
     flexible = [k for k in columns if table.columns[k].flexible] or columns[:1]
     for k in flexible:
@@ -121,5 +168,6 @@ def _lines(table: Table, width: float) -> list[float]:
     found = [float(max(table.columns[k].head.count("\n") + 1 for k in columns))]
     for row in body:
         most = max(len(wrap(joined(row[k]), wides[k] - 2.0, 6.8)) for k in columns)
-        found.append(1.0 + 0.72 * (most - 1))
+        marked = any(isinstance(row[k], (Bar, Slot, Share, Reach)) for k in columns)
+        found.append((MARKED if marked else 1.0) + 0.72 * (most - 1))
     return found

@@ -16,6 +16,7 @@ from pathlib import Path
 from ..base.files import write_all
 from ..version import VERSION
 from .blocks import (
+    FARTHEST,
     Bar,
     Block,
     Cell,
@@ -26,6 +27,7 @@ from .blocks import (
     Notes,
     Page,
     Pair,
+    Reach,
     Row,
     Share,
     Slot,
@@ -255,6 +257,8 @@ def _cell(cell: Cell) -> str:
         return "" if cell.margin is None else _bar(cell.margin, cell.met)
     if isinstance(cell, Share):
         return _strip(f'<rect y="3" width="{100 * _unit(cell.value):.1f}" height="6"/>')
+    if isinstance(cell, Reach):
+        return "" if cell.change is None else _reach(cell.change, cell.met)
     if isinstance(cell, Slot):
         at = 4 + 92 * _unit(cell.place)
         fill = "currentColor" if cell.at else "var(--paper)"
@@ -281,6 +285,16 @@ def _bar(margin: float, met: bool) -> str:
     return _strip(
         f'<rect x="{start:.1f}" y="2" width="{size:.1f}" height="8" fill="{paint}"/>'
         '<path d="M50 0V12" stroke="currentColor"/>'
+    )
+
+
+def _reach(change: float, met: bool) -> str:
+    size = 50 * _unit(abs(change) / FARTHEST)
+    start = 50.0 if change >= 0 else 50 - size
+    paint = "var(--blue)" if met else "var(--amber)"
+    return _strip(
+        f'<rect x="{start:.1f}" y="3" width="{size:.1f}" height="6" fill="{paint}"/>'
+        '<path d="M50 0V12M33.3 3V9M66.7 3V9" stroke="currentColor"/>'
     )
 
 

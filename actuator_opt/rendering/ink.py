@@ -48,8 +48,7 @@ POINT = 25.4 / 72
 """Millimetres per typographic point."""
 
 BLACK, GREY, PALE, WHITE = "#16202a", "#5b6670", "#c9d0d6", "#ffffff"
-BLUE, RED = "#0b4f83", "#a8321a"
-OCHRE, GREEN = "#9a6a12", "#00654a"
+BLUE, RED, OCHRE, GREEN = "#0b4f83", "#a8321a", "#9a6a12", "#00654a"
 
 _NARROW = {
     ".": 0.318,
@@ -229,6 +228,13 @@ class Ink:
         """A rectangle by its top left corner."""
         corners = ((x, y), (x + width, y), (x + width, y + height), (x, y + height))
         self.path([corners], closed=True, **style)
+
+    def hatched(
+        self, polygon: Polygon, *, fill: str, angle: float, spacing: float, stroke: str
+    ) -> None:
+        """A cut face: a filled polygon without outline, hatched at `angle` degrees."""
+        self.path([polygon], stroke=None, fill=fill, closed=True)
+        self.path(hatch([polygon], angle=angle, spacing=spacing), pen=0.08, stroke=stroke)
 
     def circle(self, x: float, y: float, radius: float, **style: Any) -> None:
         """A circle, as a polygon of 32 corners."""

@@ -20,6 +20,7 @@ from ..base.files import write_all
 from ..base.plain_json import encoded
 from ..version import VERSION
 from .blocks import (
+    FARTHEST,
     Bar,
     Block,
     Cell,
@@ -29,6 +30,7 @@ from .blocks import (
     Notes,
     Page,
     Pair,
+    Reach,
     Share,
     Slot,
     Status,
@@ -40,11 +42,13 @@ from .blocks import (
 )
 from .chart import Chart
 from .chart_ink import drawn
-from .heights import cells_of, room
+from .heights import FULL, HALF, cells_of, fitting, room
 from .ink import Ink
 from .origin import Origin
 
 PIXELS_PER_INCH = 150.0
+_SUSPECTS = b"/Suspects false"
+"""What Typst writes by default; Poppler warns of it. Blanks of the same length keep every place."""
 TEMPLATE = Path(__file__).with_name("template.typ")
 
 
@@ -61,14 +65,23 @@ class ReportFile:
         return {"path": str(self.path), "sha256": self.sha256, "pages": self.pages}
 
 
-def write(page: Page, origin: Origin, *, folder: Path, stem: str, **run: Any) -> list[ReportFile]:
-    """Write ``STEM.pdf``, ``STEM.png`` (first sheet) and ``STEM-page-N.png`` into a folder.
+def write(
+    page: Page,
+    origin: Origin,
+    *,
+    folder: Path,
+    stem: str,
+    all_pages: bool = False,
+    **run: Any,
+) -> list[ReportFile]:
+    """Write ``STEM.pdf`` and ``STEM.png`` (first sheet) into a folder.
 
     Parameters
     ----------
     page : to write
     origin : its source, as it is, and how it was made: both are attached to the PDF
     folder, stem : where to; the folder is made if missing
+    all_pages : also ``STEM-page-N.png`` of the later sheets
     run : more of how it was made, attached
 
     Returns
@@ -87,10 +100,10 @@ def write(page: Page, origin: Origin, *, folder: Path, stem: str, **run: Any) ->
     }
     pdf, images = _render(data, _timestamp(origin.date))
     contents = {f"{stem}.pdf": pdf, f"{stem}.png": images[0]}
-    for index, image in enumerate(images[1:], 2):
+    for index, image in enumerate(images[1:] if all_pages else (), 2):
         contents[f"{stem}-page-{index}.png"] = image
     write_all(folder, contents)
-    _remove_later_pages(folder, stem, len(images))
+    _remove_later_pages(folder, stem, len(images) if all_pages else 1)
     return [
         ReportFile(
             folder / name,
@@ -152,14 +165,19 @@ def with_input(page: Page, origin: Origin | None) -> list[Block]:
     return blocks
 
 
-def plain_blocks(blocks: Sequence[Block]) -> list[dict[str, object]]:
-    """Blocks that paper shows, as plain data for the template."""
-    return [data for block in blocks if (data := _block(block)) is not None]
+def plain_blocks(blocks: Sequence[Block], width: float = FULL) -> list[dict[str, object]]:
+    """Blocks that paper shows in a width [mm], as plain data for the template."""
+    parts = [
+        part
+        for block in blocks
+        for part in (fitting(block, width) if isinstance(block, Table) else [block])
+    ]
+    return [data for part in parts if (data := _block(part)) is not None]
 
 
 def _block(block: Block) -> dict[str, object] | None:
     if isinstance(block, Pair):
-        return {"kind": "pair", "sides": [plain_blocks(side) for side in block.sides]}
+        return {"kind": "pair", "sides": [plain_blocks(side, HALF) for side in block.sides]}
     if isinstance(block, Table):
         return None if block.on == "terminal" else _table(block)
     if isinstance(block, Drawing):
@@ -199,7 +217,9 @@ def _table(table: Table) -> dict[str, object]:
         "title": clean(table.title),
         "columns": [
             {
-                "head": one.head,
+                "head": soft(one.head, one.breaks)
+                if one.breaks and "\n" not in one.head
+                else one.head,
                 "align": one.align,
                 "width": one.width,
             }
@@ -227,6 +247,8 @@ def _cell(cell: Cell, breaks: int) -> object:
         return "" if cell.margin is None else _bar(cell.margin, cell.met)
     if isinstance(cell, Share):
         return {"share": round(max(0.0, min(1.0, cell.value)), 4)}
+    if isinstance(cell, Reach):
+        return "" if cell.change is None else _reach(cell.change, cell.met)
     if isinstance(cell, Slot):
         return {"slot": round(max(0.0, min(1.0, cell.place)), 4), "at": cell.at}
     if isinstance(cell, Flag):
@@ -236,6 +258,11 @@ def _cell(cell: Cell, breaks: int) -> object:
 
 def _bar(margin: float, met: bool) -> dict[str, object]:
     return {"bar": round(max(-1.0, min(1.0, margin)), 4), "over": abs(margin) > 1.0, "met": met}
+
+
+def _reach(change: float, met: bool) -> dict[str, object]:
+    share = change / FARTHEST
+    return {"reach": round(max(-1.0, min(1.0, share)), 4), "over": abs(share) > 1.0, "met": met}
 
 
 def _printable(data: Any) -> Any:
@@ -299,7 +326,8 @@ def sheets(source: bytes, data: Mapping[str, Any], timestamp: int) -> tuple[byte
     images: Any = compiler.compile(
         input=source, format="png", ppi=PIXELS_PER_INCH, timestamp=timestamp
     )
-    return bytes(pdf), [images] if isinstance(images, bytes) else list(images)
+    plain = bytes(pdf).replace(_SUSPECTS, b" " * len(_SUSPECTS))
+    return plain, [images] if isinstance(images, bytes) else list(images)
 
 
 def font_folders() -> list[str]:
@@ -311,7 +339,7 @@ def font_folders() -> list[str]:
 
 
 def _remove_later_pages(folder: Path, stem: str, count: int) -> None:
-    """Remove sheets of an earlier, longer report under the same name."""
+    """Remove images of later sheets that an earlier report left under the same name."""
     index = max(count + 1, 2)
     while (path := folder / f"{stem}-page-{index}.png").is_file():
         path.unlink()

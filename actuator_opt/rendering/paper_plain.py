@@ -163,7 +163,7 @@ def _widths(block: Mapping[str, Any]) -> list[float]:
         if isinstance(column["width"], str) and column["width"].endswith("mm"):
             widths[k] = min(float(column["width"][:-2]), 40.0)
         elif column["width"] == "auto":
-            texts = [*column["head"].split("\n"), *(_joined(row[k]) for row in rows)]
+            texts = [*_joined(column["head"]).split("\n"), *(_joined(row[k]) for row in rows)]
             widths[k] = min(max(text_width(t, _SIZE, bold=True) for t in texts) + 2.6, 32.0)
         rest -= widths[k]
     shares = sum(c["width"] for c in columns if not isinstance(c["width"], str))
@@ -175,7 +175,7 @@ def _widths(block: Mapping[str, Any]) -> list[float]:
 
 def _table(flow: _Flow, block: Mapping[str, Any]) -> None:
     widths = _widths(block)
-    heads = [column["head"].replace("\n", " ") for column in block["columns"]]
+    heads = [_joined(column["head"]).replace("\n", " ") for column in block["columns"]]
     body = [[_joined(cell) for cell in row] for row in block["rows"]]
     _row(flow, block, heads, heads, widths, head=True)
     first_total = len(body) - block["total"]

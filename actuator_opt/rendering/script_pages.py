@@ -1,21 +1,33 @@
-"""Pages of a study: a script's own sheets (a .typ file beside it) with the house's definitions."""
+"""Sheets of a worked study, and how its script runs: print the tables, write the report.
+
+Most studies share one sheet (``script_sheet.typ``): a heading, what it says, blocks. A study with
+prose of its own has its sheets in a .typ file beside the script.
+"""
 
 from __future__ import annotations
 
+import argparse
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any, TypeAlias, TypeVar, get_args
 
 from ..base.files import write_all
-from .blocks import Block
+from .blocks import Block, Column, Table
 from .paper import TEMPLATE, plain_blocks, sheets
 
+Numbers: TypeAlias = Mapping[str, Any]
+"""What a study computed, SI: plain numbers, lists and records."""
+Sheets: TypeAlias = tuple[bytes, list[bytes]]
+"""A report as PDF, and an image of every sheet."""
+Study = TypeVar("Study")
+
+SHEET = Path(__file__).with_name("script_sheet.typ")
 _MARK = "// ---- sheet ----"
 """Where the template's definitions end and the sheets of a design begin."""
 
 
-def rounded(study: Mapping[str, Any], digits: int = 7) -> dict[str, Any]:
+def rounded(study: Numbers, digits: int = 7) -> dict[str, Any]:
     """Plain numbers to some digits: the last bits of a machine do not show.
 
     >>> rounded({"mass": 0.123456789, "rows": (1, None)})
@@ -27,27 +39,83 @@ def rounded(study: Mapping[str, Any], digits: int = 7) -> dict[str, Any]:
         a number that JSON lacks
     """
     text = json.dumps(study, allow_nan=False)
-    found: dict[str, Any] = json.loads(text, parse_float=lambda x: float(f"{float(x):.{digits}g}"))
-    return found
+    plain: dict[str, Any] = json.loads(text, parse_float=lambda x: float(f"{float(x):.{digits}g}"))
+    return plain
 
 
-def study_sheets(
-    script: Path, study: Mapping[str, Any], shown: Mapping[str, Any]
-) -> tuple[bytes, list[bytes]]:
-    """A study as PDF and as images of its sheets: the same numbers give the same bytes.
+def grid_table(
+    title: str,
+    grid: Sequence[Sequence[str]],
+    note: str = "",
+    *,
+    words: Sequence[int] = (),
+    widths: Mapping[int, float | str] | float | str = "auto",
+) -> Table:
+    """A table whose first row is its heads; numbers stand right.
 
     Parameters
     ----------
-    script : the study's file; its sheets stand beside it with the ending .typ
-    study : its numbers, attached as JSON
-    shown : what the sheets take besides ``numbers``; blocks become plain data
+    title, note : above and below it
+    grid : heads, then rows
+    words : columns of words, which stand left; negative from the end
+    widths : of every column, or of some by their number; the others are "auto"
     """
+    heads, *rows = grid
+    left = {k if k >= 0 else k + len(heads) for k in words}
+    given = widths if isinstance(widths, Mapping) else dict.fromkeys(range(len(heads)), widths)
+    wide = {k if k >= 0 else k + len(heads): width for k, width in given.items()}
+    columns = [
+        Column(head, "left" if k in left else "right", wide.get(k, "auto"))
+        for k, head in enumerate(heads)
+    ]
+    return Table(title, columns, rows, note=note)
+
+
+def study_report(
+    script: str | Path,
+    study: Numbers,
+    *,
+    title: str,
+    heading: str,
+    lead: Sequence[str],
+    blocks: Sequence[Block | Numbers],
+    whole: bool = False,
+) -> Sheets:
+    """A study on the shared sheet.
+
+    Parameters
+    ----------
+    script : the study's file
+    study : its numbers, attached as JSON
+    title, heading : of the PDF, and printed
+    lead : paragraphs below the heading
+    blocks : below each other; plain data of a block passes as it is
+    whole : whether no table breaks across sheets
+    """
+    shown = {
+        "script": Path(script).stem,
+        "version": study["version"],
+        "title": title,
+        "heading": heading,
+        "lead": list(lead),
+        "blocks": _plain(list(blocks)),
+        "whole": whole,
+    }
+    return _compiled(SHEET, study, shown)
+
+
+def study_sheets(script: str | Path, study: Numbers, shown: Numbers) -> Sheets:
+    """A study on its own sheets, the .typ file beside its script, which take `shown`."""
+    return _compiled(Path(script).with_suffix(".typ"), study, _plain(shown))
+
+
+def _compiled(sheet: Path, study: Numbers, shown: Numbers) -> Sheets:
+    """PDF and images: the same numbers give the same bytes."""
     definitions, mark, _ = TEMPLATE.read_text("utf-8").partition(_MARK)
     assert mark, "the report template no longer says where its definitions end"
-    source = definitions + script.with_suffix(".typ").read_text("utf-8")
     numbers = json.dumps(study, indent=1, allow_nan=False)
-    data = {name: _plain(value) for name, value in shown.items()}
-    return sheets(source.encode(), data | {"numbers": numbers}, timestamp=0)
+    source = definitions + sheet.read_text("utf-8")
+    return sheets(source.encode(), {**shown, "numbers": numbers}, timestamp=0)
 
 
 def _plain(value: Any) -> Any:
@@ -55,12 +123,43 @@ def _plain(value: Any) -> Any:
     if isinstance(value, get_args(Block)):
         return plain_blocks([value])[0]
     if isinstance(value, Mapping):
-        return {name: _plain(one) for name, one in value.items()}
-    return [_plain(one) for one in value] if isinstance(value, list | tuple) else value
+        return {name: _plain(entry) for name, entry in value.items()}
+    return [_plain(entry) for entry in value] if isinstance(value, list | tuple) else value
 
 
-def write_study(pages: tuple[bytes, list[bytes]], folder: Path, name: str) -> int:
-    """Write NAME.pdf and the PNG of its first sheet; how many sheets there are."""
+def write_study(pages: Sheets, folder: Path, name: str) -> int:
+    """Write NAME.pdf and the PNG of its first sheet; the number of sheets."""
     pdf, images = pages
     write_all(folder, {f"{name}.pdf": pdf, f"{name}.png": images[0]})
     return len(images)
+
+
+def run_script(
+    script: str | Path,
+    description: str,
+    compute: Callable[..., Study],
+    printed: Callable[[Study], str],
+    page: Callable[[Study], Sheets],
+    *,
+    quick: str = "",
+) -> None:
+    """Compute a study and print it; write its report where a folder is named.
+
+    Parameters
+    ----------
+    script : its file
+    description : of the command
+    compute : makes the study; takes `quick` where there is that option
+    printed : what the terminal shows
+    page : the report
+    quick : what ``--quick`` leaves out; empty where there is no such option
+    """
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("--out", type=Path, help="folder for the report")
+    if quick:
+        parser.add_argument("--quick", action="store_true", help=quick)
+    given = parser.parse_args()
+    study = compute(quick=given.quick) if quick else compute()
+    print(printed(study))
+    if given.out is not None:
+        print(write_study(page(study), given.out, Path(script).stem), "sheets")

@@ -28,8 +28,8 @@ from .blocks import (
     Verdict,
 )
 from .chart import Chart
-from .console import Console, Style, visible
-from .heights import joined
+from .console import GAP, Console, Style, visible
+from .heights import cells_of, joined
 from .terminal_curve import curve
 
 PAINTS: dict[str, str] = {
@@ -65,8 +65,14 @@ def text(page: Page, **style: Unpack[Style]) -> str:
     style : colour codes, Unicode signs, columns
     """
     console = Console(**style)
-    parts = ["\n".join(heading(page.name, page.verdict, page.sentence, console))]
-    parts += [block_text(block, console) for block in page.blocks]
+    head = "\n".join(heading(page.name, page.verdict, page.sentence, console))
+    return f"{head}\n\n{blocks_text(page.blocks, **style)}".rstrip("\n") + "\n"
+
+
+def blocks_text(blocks: Sequence[Block], **style: Unpack[Style]) -> str:
+    """Blocks one below the other, as text that ends in a line break."""
+    console = Console(**style)
+    parts = [block_text(block, console) for block in blocks]
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
@@ -95,7 +101,7 @@ def block_text(block: Block, console: Console) -> str:
     if isinstance(block, TerminalFigure):
         return _figure(block, console)
     if isinstance(block, Table):
-        return "" if block.on == "paper" else _table(block, console)
+        return "" if block.on == "paper" else _tables(block, console)
     if isinstance(block, Notes):
         return "" if block.on == "paper" else _notes(block, console)
     return ""
@@ -116,6 +122,17 @@ def _figure(figure: TerminalFigure, console: Console) -> str:
     return "\n".join([console.heading(figure.title), *drawn, *below])
 
 
+def _tables(table: Table, console: Console) -> str:
+    """A table, in parts where it is wider than the terminal and repeats its first columns."""
+    if not table.repeat:
+        return _table(table, console)
+    cells = [[_cell(cell, console) for cell in cells_of(row)] for row in table.rows]
+    columns = zip(*([column.head for column in table.columns], *cells), strict=True)
+    widths = [max(visible(console.say(text)) for text in column) + GAP for column in columns]
+    parts = table.parts(widths, console.width + GAP)
+    return "\n\n".join(_table(part, console) for part in parts)
+
+
 def _table(table: Table, console: Console) -> str:
     shown = [k for k, column in enumerate(table.columns) if column.on != "paper"]
     columns = [table.columns[k] for k in shown]
@@ -126,7 +143,7 @@ def _table(table: Table, console: Console) -> str:
         body.append([_cell(row.cells[k], console) for k in shown])
         total = "bold" if index >= last else ""
         styles.append([_paint(table.columns[k], row.cells[k], row.state) or total for k in shown])
-    said = [] if table.headless else [console.heading(table.title)]
+    said = [] if table.headless or not table.title else [console.heading(table.title)]
     said += console.table(columns, body, styles)
     return "\n".join([*said, *([console.wrap(table.note, "dim")] if table.note else [])])
 

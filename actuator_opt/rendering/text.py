@@ -26,7 +26,7 @@ STATUS_WORDS = {
 }
 
 _UNITS = {"-": "", "degC": "°C", "degF": "°F", "deg": "°", "um": "µm"}
-_SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 _PRETTY = tuple(
     (re.compile(pattern), written)
     for pattern, written in (
@@ -47,6 +47,7 @@ _ASCII = str.maketrans(
         MINUS: "-",
         DASH: "-",
         NARROW: " ",
+        "\N{NO-BREAK SPACE}": " ",
         AT_LEAST: ">=",
         AT_MOST: "<=",
         "·": "*",
@@ -93,7 +94,7 @@ def number(value: float | None, digits: int = 4, *, signed: bool = False) -> str
     exponent = math.floor(math.log10(float(f"{size:.{digits - 1}e}")))
     if exponent < -3 or exponent > 6:
         mantissa, _, power = f"{size:.{digits - 1}e}".partition("e")
-        return f"{sign}{mantissa}×10{str(int(power)).translate(_SUPERSCRIPTS)}"
+        return f"{sign}{mantissa}×10{str(int(power)).translate(SUPERSCRIPTS)}"
     text = f"{size:.{max(digits - 1 - exponent, 0)}f}"
     whole, point, fraction = text.partition(".")
     if len(whole) > 4:
@@ -155,7 +156,7 @@ def pretty(words: str) -> str:
     """
     for pattern, written in _PRETTY:
         words = pattern.sub(written, words)
-    return _POWER_E.sub(lambda m: f"×10{str(int(m[1])).translate(_SUPERSCRIPTS)}", words)
+    return _POWER_E.sub(lambda m: f"×10{str(int(m[1])).translate(SUPERSCRIPTS)}", words)
 
 
 def with_unit(text: str, unit: str) -> str:
@@ -230,6 +231,33 @@ def _tenth(percent: float) -> str:
     return f"{percent:+.1f}".replace("-", MINUS)
 
 
+def degrees(temperature: float) -> str:
+    """A temperature in whole °C.
+
+    >>> degrees(253.15), degrees(313.15)
+    ('−20 °C', '40 °C')
+    """
+    return f"{temperature - 273.15:.0f} °C".replace("-", MINUS)
+
+
+def bars(pressure: float) -> str:
+    """A pressure in bar as short as it was written.
+
+    >>> bars(2e5), bars(20.5e6)
+    ('2 bar', '205 bar')
+    """
+    return f"{trimmed(pressure / 1e5)} bar"
+
+
+def speed_words(speed: float) -> str:
+    """A speed in mm/s.
+
+    >>> speed_words(0.00917), speed_words(0.4)
+    ('9.17 mm/s', '400 mm/s')
+    """
+    return f"{trimmed(1e3 * speed)} mm/s"
+
+
 def share_text(share: float) -> str:
     """A share in per cent with one decimal."""
     return f"{100 * share:.1f} %".replace("-", MINUS)
@@ -239,3 +267,34 @@ def plain(text: str) -> str:
     """The same text for an ASCII stream."""
     text = _POWER.sub(lambda m: f"e{m[1].translate(_DIGITS)}", text)
     return text.translate(_ASCII).encode("ascii", "backslashreplace").decode("ascii")
+
+
+def sentence(words: str) -> str:
+    """Words with a capital letter and a full stop; a name as pressure_a stays as it is.
+
+    >>> sentence("optimum found"), sentence("pressure_a: left out")
+    ('Optimum found.', 'pressure_a: left out.')
+    """
+    words = words.strip()
+    if not words:
+        return ""
+    first = words[0] if "_" in words.split()[0] else words[0].upper()
+    return first + words[1:] + ("" if words[-1] in ".!?" else ".")
+
+
+_PLACES = (
+    (re.compile(r"\b(extend|retract)ing, "), r"\1, "),
+    (re.compile(r"(\d+ %) of the stroke\b"), r"\1"),
+    (re.compile(r"\bweakest position\b"), "weakest"),
+)
+
+
+def brief(case: str | None, place: str | None) -> str:
+    """Case and place; places on the stroke are shortened.
+
+    >>> brief("stance", "retracting, 25 % of the stroke"), brief(None, "weakest position")
+    ('stance, retract, 25 %', 'weakest')
+    """
+    for pattern, written in _PLACES:
+        place = pattern.sub(written, place or "")
+    return ", ".join(part for part in (case, place) if part)

@@ -1,199 +1,788 @@
-"""The cylinder of [AaltoThesis] as its stiffness models see it: eq. 6, 37 and 38 along the stroke.
+"""Tables that set [AaltoThesis] beside this project's models, and the notes below them.
 
-Every curve is the evaluation of the design itself with the oil, lines and load cell of the figure,
-so the re-creation uses no formula of its own. SI throughout.
+The text of the thesis gives ranges and forces; its stiffness curves stand in figures without
+numbers. So the columns are its own formula and ours, and measured ranges where it prints them.
+A verdict follows from the numbers of the design at hand; shares are of the static stiffness with
+hoses at mid-stroke.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Literal
+import math
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from ..base.numeric import Array
-from ..design.circuit import Line
+from ..design.materials import load_library
 from ..design.model import Design
-from ..evaluation import oil
-from ..evaluation.allow import MaterialValues
-from ..evaluation.build import prepare
-from ..evaluation.kernel import ModelRun, compute
-from ..evaluation.springs import Springs
-from ..models import fluid
-
-Topology = Literal["per_chamber", "aalto_as_published"]
-
-
-@dataclass(frozen=True, slots=True)
-class Paper:
-    """What the thesis prints and the design does not hold, SI; the comment is its place."""
-
-    bore: float = 0.040  # chapter 3
-    rod: float = 0.025
-    stroke: float = 0.220
-    throttle: float = 0.22e-4  # section 3.3.5
-    temperatures: tuple[float, float] = (298.15, 303.15)  # of the tests, 25 to 30 degC
-    bulk_modulus: float = 1600e6  # section 3.3.1
-    bulk_modulus_with_air: float = 1300e6  # section 3.3.3
-    load_cell: float = 106e6  # section 3.2
-    pressure_a: float = 20.5e5  # chapter 3
-    pressure_b: float = 42e5
-    load_up: tuple[float, float] = (3.4e3, 3.5e3)  # section 4.1, piston direction up and down
-    load_down: tuple[float, float] = (4.6e3, 5.1e3)
-    moved_up: tuple[float, float] = (0.11e-3, 0.21e-3)  # figure 42, both piston directions
-    moved_down: tuple[float, float] = (0.31e-3, 0.48e-3)
-    most_up: tuple[float, float] = (0.20e-3, 0.21e-3)  # the same, each direction's largest
-    most_down: tuple[float, float] = (0.48e-3, 0.47e-3)
-    place: float = 0.185  # figure 41
-    loaded_up: tuple[float, float] = (12e5, 62e5)
-    loaded_down: tuple[float, float] = (40.5e5, 18e5)  # + 20 bar; "17 to 19 bar"
-    bubble_a: float = 0.4e-6  # figure 67
-    bubble_b: float = 0.08e-6
-    wave_speed: float = 1300.0  # section 2.1.3
-    peak: float = 20.0  # section 4.2.2
-    speed: float = 20e-3  # section 3.3.3, largest amplitude until the check valve opens
-    reynolds: float = 100.8  # section 3.3.3
-    flow_coefficient: float = 0.611
-    cracking_pressure: float = 0.4e5  # section 3.3.5
+from ..evaluation import Evaluation
+from ..rendering import text
+from ..rendering.blocks import Block, Drawing, text_table
+from . import aalto_models, trends
+from .aalto_figures import area_text, dynamic_figure, static_figure, theory_figure
+from .aalto_models import (
+    CONTENTS,
+    DOWN,
+    ENTRAINED,
+    PAPER,
+    TESTED,
+    UP,
+    Answer,
+    Bypass,
+    DynamicTest,
+    Neighbour,
+    Response,
+    StaticTest,
+    Theory,
+    air_behind,
+    dynamic_test,
+    evaluated,
+    oil_alone,
+    places,
+    static_test,
+    total,
+)
+from .papers import (
+    SLASH,
+    TRACE_COLUMNS,
+    close,
+    equations,
+    listed,
+    of_another_cylinder,
+    percent,
+    scaled,
+    trace_rows,
+)
 
 
-PAPER = Paper()
-MARGIN = 0.005
-"""How near the ends of the stroke the thesis' test runs came (m)."""
+def air_text(content: float) -> str:
+    """Air content, or the end of those searched that it lies beyond."""
+    if content == 0:
+        return f"less than {percent(CONTENTS[0])}"
+    return percent(content) if math.isfinite(content) else f"more than {percent(CONTENTS[1])}"
 
 
-def places(design: Design) -> Array:
-    """Positions of the tables: both ends of the test runs and mid-stroke."""
-    stroke = design.cylinder.stroke
-    return np.array([MARGIN, stroke / 2, stroke - MARGIN])
+def other_cylinder(design: Design) -> str:
+    """Whose cylinder was measured, if it is not this one."""
+    return of_another_cylinder(design, "thesis", (PAPER.bore, PAPER.rod, PAPER.stroke))
 
 
-def pipes(design: Design) -> tuple[Line, ...]:
-    """The lines that stay on the cylinder while its ports are closed."""
-    return tuple(line for line in design.lines if line.type == "pipe")
+SAME = 0.1
+"""Relative difference up to which two air contents, or two displacements, count as the same."""
 
 
-def variant(
-    design: Design,
-    *,
-    lines: Sequence[Line],
-    bulk_modulus: float,
-    topology: Topology = "per_chamber",
-    load_cell: bool = True,
-) -> Springs:
-    """Springs of the design with one bulk modulus, no air, chosen lines and topology."""
-    chain = {"topology": topology, "seals": "sliding"}
-    if not load_cell:
-        chain["load_cell"] = None  # type: ignore[assignment]
-    oil = design.fluid.material
-    changed = design.model_copy(
-        update={
-            "fluid": design.fluid.model_copy(
-                update={"air_content": 0.0, "bulk_modulus_law": "constant"}
-            ),
-            "lines": tuple(lines),
-            "stiffness": design.stiffness.model_copy(update=chain),
-            "materials": design.materials
-            | {oil: design.materials.get(oil, {}) | {"bulk_modulus": bulk_modulus}},
-        }
+def _moduli(design: Design) -> str:
+    """Young's moduli of rod and barrel; nothing for a laminate."""
+    library, moduli = load_library(), []
+    names = [design.rod.material, *(layer.material for layer in design.barrel.layup)]
+    for name in names:
+        known = library.get(name).numbers if name in library else {}
+        modulus = {**known, **design.materials.get(name, {})}.get("youngs_modulus")
+        if modulus is not None:
+            moduli.append(text.trimmed(float(modulus) * 1e-9))
+    return f" and E {SLASH.join(dict.fromkeys(moduli))} GPa" if moduli else ""
+
+
+def stiffness_note(design: Design, figures: Sequence[Theory]) -> str:
+    """Below figures 5, 29 and 32; `figures` are the last two."""
+    geometry = evaluated(design).geometry
+    bore = design.cylinder.bore
+    outer = bore + 2 * sum(layer.thickness for layer in design.barrel.layup)
+    excess = [float(np.max(theory.published / theory.per_chamber)) - 1 for theory in figures]
+    ratio = float(np.squeeze(geometry.area_a / geometry.area_b))
+    parts = [
+        f"Rod {text.trimmed(1e3 * float(np.squeeze(geometry.rod_length)))} mm",
+        f"barrel {text.trimmed(1e3 * bore)}/{text.trimmed(1e3 * outer)} mm",
+    ]
+    return (
+        f"kN/mm at {scaled(places(design), 1e3)} mm. {other_cylinder(design)}"
+        f"{', '.join(parts)}{_moduli(design)} are assumed, so the "
+        "thesis' curves are met in form, not read off: its text prints no number of them. "
+        "Why ours is softer: eq. 3 puts the totals of oil, barrel and hoses in series, as if the "
+        "stiff chamber's hose could help the other chamber's oil; and eq. 23 lets the wall swell "
+        f"over the rod's annulus only (too stiff by A_A/A_B = {text.trimmed(ratio, 3)}). Together "
+        f"the printed form is up to {percent(excess[0])} (eq. 37) and {percent(excess[1])} "
+        "(eq. 38) stiffer. The "
+        "last column adds the barrel's axial stretch, which the thesis leaves out. "
+        f"K 1300 MPa is eq. 5 with {percent(air_behind(PAPER.pressure_a))} of air at 20.5 "
+        f"bar or {percent(air_behind(PAPER.pressure_b))} at 42 bar: one content does not "
+        "give one modulus in both chambers."
     )
-    return evaluated(changed).springs
 
 
-def evaluated(design: Design) -> ModelRun:
-    """One pass over the models."""
-    subject = prepare(design)
-    return compute(subject, subject.values())
+def static_note(design: Design, test: StaticTest) -> str:
+    """Below the static test."""
+    return other_cylinder(design) + " ".join((*_air(test), _pressures(test), _by_pass(test)))
 
 
-def temperature_of(design: Design, viscosity: float) -> float:
-    """Temperature [K] between -20 and 120 degC at which the oil has a kinematic viscosity.
-
-    NaN where it has it at none.
-    """
-    subject = prepare(design)
-    v = subject.values()
-    stock = MaterialValues(v, subject.materials, subject.factors, subject.constants)
-    warm = np.linspace(253.15, 393.15, 1401)
-    found = np.log(np.ravel(oil.kinematic_viscosity(v, design.fluid, stock, warm)))
-    return float(np.interp(-np.log(viscosity), -found, warm, left=np.nan, right=np.nan))
+def _air(test: StaticTest) -> tuple[str, ...]:
+    """Air behind the largest displacements, the thesis' bubbles, and whether all of it fits."""
+    up, down = test.air_up[1], test.air_down[1]
+    alike = math.isfinite(up * down) and up > 0 and abs(down / up - 1) < SAME
+    if alike and test.assumptions[3].down.range[0] > (1 - SAME) * PAPER.moved_down[0]:
+        return _air_up(test), _air_down(test), _bubbles(test), "One oil does for both directions."
+    suspect = "The thesis suspects air that leaves the oil at 17 to 19 bar. We do not know."
+    return _air_up(test), _air_down(test), _bubbles(test), suspect
 
 
-def first(values: Array) -> Array:
-    """The first load case of an array (cases, points)."""
-    return np.atleast_2d(np.asarray(values))[0]
-
-
-def unstretched(springs: Springs) -> Springs:
-    """The same without the barrel's axial stretch, which the thesis does not have."""
-    rest = {name: give for name, give in springs.chambers.items() if name != "stretch"}
-    return replace(springs, chambers=rest)
-
-
-@dataclass(frozen=True, slots=True)
-class Theory:
-    """One stiffness curve of the thesis [N/m] along `position` [m]: its own form and ours.
-
-    `per_chamber` has the causes of the thesis, `stretched` the barrel's axial stretch too; the
-    columns `at` hold the same at `places`.
-    """
-
-    position: Array
-    published: Array
-    per_chamber: Array
-    published_at: Array
-    per_chamber_at: Array
-    stretched_at: Array
-
-    @property
-    def weakest(self) -> tuple[float, float]:
-        """Position and stiffness of the softest place, by the thesis' form."""
-        k = int(np.argmin(self.published))
-        return float(self.position[k]), float(self.published[k])
-
-
-def _along(design: Design) -> Array:
-    stroke = design.cylinder.stroke
-    return np.linspace(0.002 * stroke, 0.998 * stroke, 4981)
-
-
-def oil_alone(design: Design, lines: Sequence[Line]) -> Theory:
-    """Figure 5: eq. 6 with rigid walls, with the volume of some lines; both forms agree."""
-    springs = variant(design, lines=lines, bulk_modulus=PAPER.bulk_modulus)
-    position = _along(design)
-    curve, at = (first(springs.hydraulic(x, springs.oil)) for x in (position, places(design)))
-    return Theory(position, curve, curve, at, at, at)
-
-
-def total(
-    design: Design, lines: Sequence[Line], bulk_modulus: float, *, load_cell: bool = True
-) -> Theory:
-    """Figures 29 and 32: eq. 37 (pipes) or 38 (hoses too), as printed and per chamber."""
-    printed = variant(
-        design,
-        lines=lines,
-        bulk_modulus=bulk_modulus,
-        topology="aalto_as_published",
-        load_cell=load_cell,
-    )
-    ours = variant(design, lines=lines, bulk_modulus=bulk_modulus, load_cell=load_cell)
-    plain, position, chosen = unstretched(ours), _along(design), places(design)
-    with np.errstate(divide="ignore"):  # each oil gives way in one chamber only
-        return Theory(
-            position=position,
-            published=first(printed.stiffness(position)),
-            per_chamber=first(plain.stiffness(position)),
-            published_at=first(printed.stiffness(chosen)),
-            per_chamber_at=first(plain.stiffness(chosen)),
-            stretched_at=first(ours.stiffness(chosen)),
+def _air_up(test: StaticTest) -> str:
+    content = test.air_up[1]
+    if math.isinf(content):
+        return (
+            f"Load up: not even {percent(CONTENTS[1])} of entrained air gives the largest "
+            "displacement measured."
         )
+    words = f"Load up: {air_text(content)} of entrained air"
+    if content > 0:
+        words += f", {text.trimmed(content / ENTRAINED, 2)} times the usual {percent(ENTRAINED)},"
+    if test.up.share > 0:
+        return f"{words} and the by-pass of the seals give the largest displacement measured."
+    return f"{words} under the force that the pressures show gives the largest displacement."
 
 
-def air_behind(pressure: float) -> float:
-    """Air content at which eq. 5 turns 1600 MPa into 1300 MPa at a pressure."""
-    content = np.linspace(0.0, 0.05, 5001)
-    modulus = fluid.effective_bulk_modulus(
-        bulk_modulus=PAPER.bulk_modulus, pressure=pressure, air_content=content
+def _air_down(test: StaticTest) -> str:
+    """How much more the other direction takes, and whether its least displacement is met."""
+    up, down = test.air_up[1], test.air_down[1]
+    if math.isinf(down):
+        words = f"Load down not even {percent(CONTENTS[1])} does"
+    else:
+        words = f"Load down takes {air_text(down)}"
+    if math.isfinite(up * down) and up * down > 0:
+        alike = abs(down / up - 1) < SAME
+        words += f", {'about' if alike else text.trimmed(down / up, 2) + ' times'} as much in the "
+        words += "same oil"
+    largest = test.assumptions[3].down
+    share = largest.range[0] / PAPER.moved_down[0]
+    if math.isnan(share):
+        return f"{words}, and ours cavitates everywhere."
+    if share > 1 - SAME:
+        return f"{words}, and nowhere moves less than was measured."
+    place = test.position[int(np.nanargmin(largest.displacement))] / test.position[-1]
+    where = "near the cap end" if place < 1 / 3 else "in the middle"
+    where = "near the rod end" if place > 2 / 3 else where
+    return f"{words}, and {where} ours still moves {_fraction(share)} of the least measured."
+
+
+def _fraction(share: float) -> str:
+    for value, words in ((1 / 3, "a third"), (1 / 2, "half"), (2 / 3, "two thirds")):
+        if abs(share - value) < 0.03:
+            return words
+    return percent(share)
+
+
+def _judged(answer: Answer, measured: tuple[float, float]) -> str:
+    """The largest displacement against the largest of each piston direction."""
+    if answer.cavitating:
+        return "into cavitation"
+    if answer.range[1] < min(measured):
+        return "too little"
+    return "too much" if answer.range[1] > max(measured) else "as much as measured"
+
+
+def _bubbles(test: StaticTest) -> str:
+    """The thesis' bubbles in both readings, against the largest displacements."""
+    fits, words = [], []
+    for assumption in test.assumptions[4:6]:
+        up, down = _judged(assumption.up, PAPER.most_up), _judged(assumption.down, PAPER.most_down)
+        fits.append((up == "as much as measured", down == "as much as measured"))
+        words.append(up if up == down else f"{up} up, {down} down")
+    if (True, True) in fits:
+        fit = "fit both directions"
+    elif any(up for up, _ in fits) and any(down for _, down in fits):
+        fit = "fit each direction, but not in one reading"
+    elif any(up or down for up, down in fits):
+        fit = f"fit load {'up' if any(up for up, _ in fits) else 'down'} only"
+    else:
+        fit = "fit neither direction"
+    return (
+        f"The bubbles of the thesis' own simulation {fit}: read at atmospheric pressure 0.4 and "
+        f"0.08 ml move {words[0]}, read at 20.5 and 42 bar {words[1]}."
     )
-    return float(np.interp(-PAPER.bulk_modulus_with_air, -modulus, content))
+
+
+def softer(loaded: tuple[float, float]) -> float:
+    """Pressure change of the rod chamber over the head chamber's."""
+    return abs((loaded[1] - PAPER.pressure_b) / (loaded[0] - PAPER.pressure_a))
+
+
+def _pressures(test: StaticTest) -> str:
+    """Which chamber the measured pressures call the softer."""
+    ours = test.assumptions[1]
+    even = [softer((answer.pressure_a, answer.pressure_b)) for answer in (ours.up, ours.down)]
+    measured = [softer(PAPER.loaded_up), softer(PAPER.loaded_down)]
+    words = (
+        f"The pressures say where to look: at {text.trimmed(1e3 * test.place)} mm the rod chamber "
+        f"changes {text.trimmed(measured[0], 2)} (up) and {text.trimmed(measured[1], 2)} (down) "
+        "times as much as the head chamber, where evenly spread air gives "
+    )
+    if not all(map(math.isfinite, even)):
+        return words + "cavitation."
+    words += f"{text.trimmed(even[0], 2)} and {text.trimmed(even[1], 2)}. "
+    if all(m < e for m, e in zip(measured, even, strict=True)):
+        return words + (
+            "The rod chamber, at the top of the upright cylinder, is softer than that, as with "
+            "most of the air there and not in the head chamber."
+        )
+    if all(m > e for m, e in zip(measured, even, strict=True)):
+        return words + (
+            "The head chamber is softer than that, as with "
+            "most of the air there and not in the rod chamber."
+        )
+    return words + "The two directions do not call the same chamber the softer."
+
+
+def _by_pass(test: StaticTest) -> str:
+    up, down = test.up.share, test.down.share
+    if min(up, down) >= 0:
+        return (
+            "The by-pass is the share of the load that the pressures do not show: "
+            f"{percent(up)} up, {percent(down)} down."
+        )
+    return (
+        "On the areas of this design the pressures of the thesis show "
+        f"{percent(1 - up)} (up) and {percent(1 - down)} (down) of its load: no by-pass explains "
+        "more than all of it."
+    )
+
+
+NOTHING = 0.06
+"""Change of a stiffness, over the static one, that counts as none."""
+
+OPENINGS_SAY = 1.02
+"""Ratio of two peaks that counts as none."""
+
+
+def shares(test: DynamicTest, responses: Sequence[Response]) -> Array:
+    """Dynamic over static stiffness: (openings, tested frequencies)."""
+    return np.array([np.abs(response.tested) / test.static for response in responses])
+
+
+def _range(values: Array) -> str:
+    low, high = (text.trimmed(float(f(values)), 3) for f in (np.min, np.max))
+    return f"{low} times" if low == high else f"{low} to {high} times"
+
+
+def _times(values: Array) -> str:
+    """First to last throttle."""
+    return f"{text.trimmed(float(values[0]), 3)} to {text.trimmed(float(values[-1]), 3)} times"
+
+
+def judged_statements(share: Array) -> tuple[tuple[str, bool, Array], ...]:
+    """Each statement of the thesis on the stiffness, whether the shares bear it, and those."""
+    slow, twenty, above, last = share[:, :2], share[:, 2], share[:, 3], share[:, 4]
+    return (
+        ("soft up to 15 Hz", bool(np.all(slow < 1)), slow),
+        ("more than twice the static stiffness at 20 Hz", bool(np.all(twenty > 2)), twenty),
+        (
+            "a little above the static stiffness at 25 Hz",
+            bool(np.all((above > 1) & (above < 1.3))),
+            above,
+        ),
+        ("at the static stiffness at 30 Hz", bool(np.all(np.abs(last - 1) < 0.1)), last),
+    )
+
+
+def does_it(test: DynamicTest) -> bool:
+    """Whether the valve bears every statement at every needle, and is stable.
+
+    Sections 4.2.2, 5.2 and 5.5: soft up to 15 Hz, "more than doubled" at 20 Hz, "slightly higher"
+    at 25 Hz, static at 30 Hz.
+    """
+    both = [*test.stated["reducing_valve"], *test.read_back["reducing_valve"]]
+    return test.peak.slowest_decay < 0 and all(
+        holds for _, holds, _ in judged_statements(shares(test, both))
+    )
+
+
+def _valve(test: DynamicTest) -> str:
+    """The stiffness with the valve, against the statements of the thesis."""
+    both = [*test.stated["reducing_valve"], *test.read_back["reducing_valve"]]
+    judged = judged_statements(shares(test, both))
+    if all(holds for _, holds, _ in judged):
+        words = (
+            "what the thesis tells of the stiffness happens: soft up to 15 Hz, more than twice the "
+            "static stiffness at 20 Hz, a little above it at 25, the static one at 30 Hz."
+        )
+    else:
+        met = [name for name, holds, _ in judged if holds]
+        missed = [f"not {name} ({_range(share)})" for name, holds, share in judged if not holds]
+        part = f"happens only in part: {listed(met)}" if met else "does not happen"
+        words = f"what the thesis tells of the stiffness {part}."
+        words += f" With these numbers the cylinder is {listed(missed)}."
+    if test.peak.slowest_decay >= 0:
+        words += (
+            " And it is not stable: the valve feeds the swing, which then grows by itself, so that "
+            "these stiffnesses would not be seen."
+        )
+    return words
+
+
+def _moves(share: Array, *, more: str, less: str, none: str) -> tuple[str, bool]:
+    """What throttling does, words and whether it does anything."""
+    if np.ptp(share) < NOTHING:
+        return none, False
+    return more if share[-1] > share[0] else less, True
+
+
+def throttle_explained(test: DynamicTest) -> bool:
+    """Whether the needle behind the measured drop throttles as the thesis states.
+
+    It stiffens at 10 Hz, lowers the peak and is "inconsequential" at 30 Hz.
+    """
+    at = shares(test, test.read_back["reducing_valve"])
+    return bool(
+        at[-1, 0] - at[0, 0] > NOTHING
+        and at[0, 2] - at[-1, 2] > NOTHING
+        and np.ptp(at[:, 4]) < NOTHING
+    )
+
+
+def _throttle(test: DynamicTest) -> str:
+    at = shares(test, test.read_back["reducing_valve"])
+    slow, _ = _moves(
+        at[:, 0], more="stiffens at 10 Hz", less="softens at 10 Hz", none="does nothing at 10 Hz"
+    )
+    peak = "the peak" if np.all(np.argmax(at, axis=1) == 2) else "the stiffness at 20 Hz"
+    twenty, _ = _moves(
+        at[:, 2], more=f"raises {peak}", less=f"lowers {peak}", none=f"leaves {peak} as it is"
+    )
+    last, acts = _moves(
+        at[:, 4], more="stiffens at 30 Hz", less="softens at 30 Hz", none="does nothing at 30 Hz"
+    )
+    return (
+        "The throttle, if its needle drops what was measured, "
+        f"{slow} ({_times(at[:, 0])} the static stiffness), {twenty} ({_times(at[:, 2])}) and "
+        f"{last}{f' ({_times(at[:, 4])})' if acts else ''}."
+    )
+
+
+def _alike(neighbour: Neighbour) -> bool:
+    """Whether a neighbour does much the same: stable, soft, about twice at 20 Hz, then static."""
+    return bool(
+        neighbour.slowest_decay < 0
+        and np.all(neighbour.ratio[:2] < 0.95)
+        and neighbour.ratio[2] > 1.85
+        and abs(neighbour.ratio[4] - 1) < 0.1
+    )
+
+
+def _neighbours(test: DynamicTest) -> str:
+    """Whether the answer hangs on the valve's exact numbers, and on its opening."""
+    frequencies = [neighbour.valve.natural_frequency for neighbour in test.neighbours]
+    dampings = [neighbour.valve.damping_ratio for neighbour in test.neighbours]
+    open_needle = shares(test, test.stated["reducing_valve"])[0]
+    ours = _alike(Neighbour(test.valve, open_needle, test.peak.slowest_decay))
+    alike = [_alike(neighbour) for neighbour in test.neighbours]
+    verdict = "do not all do the same"
+    if ours and all(alike):
+        verdict = "do much the same"
+    elif not ours and not any(alike):
+        verdict = "do not do it either"
+    words = (
+        f"Valves of {text.trimmed(min(frequencies))} to {text.trimmed(max(frequencies))} Hz with a "
+        f"damping ratio of {text.trimmed(min(dampings), 3)} to {text.trimmed(max(dampings), 3)} "
+        f"{verdict}"
+    )
+    if test.valve.passive_conductance == 0 or test.peak.slowest_decay >= 0:
+        return words + "."
+    feeds = "would feed the swing" if test.without_opening >= 0 else "would be stable as well"
+    return f"{words}; without the opening beside it the valve {feeds}."
+
+
+def _closed(test: DynamicTest) -> str:
+    closed = np.abs(test.closed.tested)
+    static = text.number(test.static * 1e-6, 3)
+    if abs(closed[0] / closed[-1] - 1) < 0.05:
+        words = "Closed ports are as stiff at 10 as at 30 Hz"
+    else:
+        ends = (text.number(float(k) * 1e-6, 3) for k in closed[[0, -1]])
+        words = "Closed ports are not as stiff at 10 as at 30 Hz ({} and {} kN/mm)".format(*ends)
+    if np.min(closed) > 1.001 * test.static:
+        return (
+            f"{words}, and stiffer than the {static} kN/mm with hoses, which a shut throttle "
+            "keeps out."
+        )
+    return f"{words}, and not at every frequency stiffer than the {static} kN/mm with hoses."
+
+
+def _constant(test: DynamicTest) -> str:
+    over = [
+        np.abs(response.over)
+        for responses in (test.stated, test.read_back)
+        for response in responses["constant_pressure"]
+    ]
+    highest = max(float(stiffness.max()) for stiffness in over) / test.static
+    rises = all(bool(np.all(np.diff(stiffness) > 0)) for stiffness in over)
+    if rises and highest < 1:
+        return (
+            "With constant pressure nothing peaks: the cylinder is soft at every frequency and the "
+            "oil in the hoses moves as one mass."
+        )
+    words = "nothing peaks" if rises else "the stiffness does not only rise with frequency"
+    if highest < 1:
+        return f"With constant pressure {words}, but the cylinder is soft at every frequency."
+    return (
+        f"With constant pressure {words}, but the cylinder is not soft at every frequency: it "
+        f"comes to {text.trimmed(highest, 3)} times the static stiffness."
+    )
+
+
+def dynamic_note(design: Design, test: DynamicTest) -> str:
+    """Below the dynamic tests."""
+    low, high = (float(f(test.peak.ratio)) for f in (np.min, np.max))
+    place = 1e3 * float(test.peak.position[int(np.argmax(test.peak.ratio))])
+    valve = test.valve
+    numbers = (
+        f"{text.trimmed(valve.natural_frequency)} Hz, damping ratio "
+        f"{text.trimmed(valve.damping_ratio)}, regulating "
+        f"{text.trimmed(valve.conductance * 1e11, 2)} ml/s/bar beside an opening of "
+        f"{text.trimmed(valve.passive_conductance * 1e11, 2)}"
+    )
+    end = "So such a valve would not do it with these numbers."
+    if does_it(test):
+        end = "It shows that such a valve would do it, not that this one did."
+    return (
+        "kN/mm at mid-stroke; line end: constant pressure, or a reducing valve. "
+        f"{other_cylinder(design)}The thesis prints no number of these curves. {_closed(test)} "
+        "That full throttling measured more than eq. 38 at 10 and 20 Hz the thesis puts down "
+        "to oil that the check valves let in (rod chamber at 70 bar), which no linear model has. "
+        f"{_constant(test)} With a reducing valve of our numbers, not the thesis' ({numbers}), "
+        f"{_valve(test)} {_throttle(test)} {_neighbours(test)} Along the stroke 20 Hz gives "
+        f"{text.trimmed(low, 2)} to {text.trimmed(high, 2)} times the static stiffness, most at "
+        f"{text.trimmed(place, 3)} mm. {end} The check valves, which open in every half cycle, "
+        "are not in a linear model: it overstates the throttle."
+    )
+
+
+def needles_caption(test: DynamicTest) -> str:
+    """Below the curves over frequency: which needle is where, and whether it throttles."""
+    peaks = shares(test, test.stated["reducing_valve"])[:, 2]
+    change = float(np.max(peaks) / np.min(peaks))
+    whose = "as the thesis states it"
+    if not close(test.area, PAPER.throttle):
+        whose = f"of this design, {area_text(test.area)}"
+    verdict = "which throttles nothing at these flows"
+    if change >= OPENINGS_SAY:
+        verdict = f"which changes the stiffness at 20 Hz by up to {percent(change - 1)}"
+    return (
+        "Mid-stroke, oil as designed, friction left out. Above: the needle "
+        f"{whose}, {verdict}. Below: the needle that drops the measured 0.4 bar."
+    )
+
+
+def _oil(design: Design) -> str:
+    """Name of the oil; that of the thesis has the viscosity of a VG 32."""
+    name, library = design.fluid.material, load_library()
+    if name == "aalto_thesis_oil":
+        return "a VG 32"
+    return library.get(name).label.partition(",")[0] if name in library else name
+
+
+def peak_note(design: Design, test: DynamicTest) -> str:
+    """Below the orifice and the peak."""
+    needle = test.needle
+    low, high = PAPER.temperatures
+    viscosity = f"ν = {text.trimmed(1e6 * needle.viscosity, 3)} mm²/s"
+    warm = f"{text.trimmed(needle.temperature - 273.15, 3)} °C"
+    if math.isnan(needle.temperature):
+        source = f"which {_oil(design)} has at no temperature"
+    elif low <= needle.temperature <= high:
+        source = f"{_oil(design)} at {warm}: within the 25 to 30 °C of the tests"
+    else:
+        source = f"{_oil(design)} at {warm}: outside the 25 to 30 °C of the tests"
+    loss = percent(1 - needle.flow_coefficient / PAPER.flow_coefficient, 1)
+    there = f"There C_q is already {loss} below"
+    if abs(needle.reynolds / PAPER.reynolds - 1) > 0.05:
+        there = f"At our Re = {text.trimmed(needle.reynolds, 3)} C_q is {loss} below"
+    return (
+        f"Re = 100.8 is U d/ν with U = v A_A/A_o of eq. 46 at 20 mm/s and {viscosity}, {source}. "
+        f"{there} 0.611 by laminar and turbulent losses in series, and it falls to zero twice in "
+        f"every cycle. {_drop(design, test)}"
+    )
+
+
+def _drop(design: Design, test: DynamicTest) -> str:
+    """Whether flow, area and pressure drop fit together."""
+    less = PAPER.cracking_pressure / test.needle.drop
+    theirs = close(test.area, PAPER.throttle) and close(design.cylinder.bore, PAPER.bore)
+    if 0.8 < less < 1.25:
+        return (
+            "At 20 mm/s the open needle drops about the 0.4 bar that opened the check valve: flow, "
+            "area and pressure fit together."
+        )
+    times = f"{text.trimmed(less, 2)} times less than"
+    if less < 1:
+        times = f"{text.trimmed(1 / less, 2)} times"
+    size = "smaller" if less > 1 else "larger"
+    role = ", which explains the throttle's effect, is a guess"
+    if not throttle_explained(test):
+        role = ", which does not explain the throttle's effect either, is a guess"
+    return (
+        f"But at 20 mm/s the open needle drops {times} the 0.4 bar that opened the check "
+        f"valve: flow, area and pressure {'of the thesis' if theirs else 'of this design'} do not "
+        f"fit together. We do not know which is wrong; the {size} area{role}."
+    )
+
+
+def _kn_per_mm(values: Array) -> str:
+    return SLASH.join(text.number(float(v) * 1e-6) for v in values)
+
+
+def _row(name: str, theory: Theory) -> tuple[str, ...]:
+    place, weakest = theory.weakest
+    minimum = f"{text.number(weakest * 1e-6)} at {text.trimmed(1e3 * place)} mm"
+    return (
+        name,
+        _kn_per_mm(theory.published_at),
+        minimum,
+        _kn_per_mm(theory.per_chamber_at),
+        _kn_per_mm(theory.stretched_at),
+    )
+
+
+def stiffness_table(evaluation: Evaluation) -> list[Block]:
+    """Figures 5, 29 and 32: eq. 6, 37 and 38 as printed and per chamber."""
+    design = evaluation.design
+    pipes = aalto_models.pipes(design)
+    oil = [
+        ("no lines", oil_alone(design, ())),
+        ("with pipes", oil_alone(design, pipes)),
+        ("pipes, hoses", oil_alone(design, design.lines)),
+    ]
+    with_air = PAPER.bulk_modulus_with_air
+    figure_29 = total(design, pipes, PAPER.bulk_modulus)
+    figure_32 = total(design, design.lines, with_air)
+    rows = [_row(f"figure 5, oil alone, {name}", theory) for name, theory in oil]
+    rows += [
+        _row("figure 29, eq. 37", figure_29),
+        _row(
+            "eq. 37 without load cell",
+            total(design, pipes, PAPER.bulk_modulus, load_cell=False),
+        ),
+        _row("figure 32, eq. 38", figure_32),
+        _row(
+            "eq. 38 without load cell",
+            total(design, design.lines, with_air, load_cell=False),
+        ),
+    ]
+    drawn = Drawing(
+        "Aalto thesis: stiffness along the stroke, as its figures 5, 29 and 32",
+        theory_figure(design.cylinder.stroke, oil, figure_29, figure_32),
+        "Both forms with the same numbers, load cell included in figures 29 and 32; per chamber "
+        "without the barrel's stretch.",
+    )
+    note = stiffness_note(design, (figure_29, figure_32))
+    columns = (
+        "curve, kN/mm",
+        f"its own formula, {scaled(places(design), 1e3)} mm",
+        "minimum",
+        "per chamber",
+        "with stretch",
+    )
+    return [text_table("Aalto thesis: stiffness along the stroke", columns, rows, note), drawn]
+
+
+def _moved(answer: Answer) -> str:
+    if not np.isfinite(answer.range[0]):
+        return "none: cavitates"
+    words = text.DASH.join(f"{1e3 * value:.2f}" for value in answer.range)
+    return words + (f" ({answer.cavitating} of 22 cavitate)" if answer.cavitating else "")
+
+
+def _chamber_pressures(answer: Answer) -> str:
+    if not np.isfinite(answer.pressure_a):
+        return "none: cavitates"
+    return SLASH.join(text.trimmed(p * 1e-5, 3) for p in (answer.pressure_a, answer.pressure_b))
+
+
+def _measured(moved: tuple[float, float]) -> str:
+    return text.DASH.join(f"{1e3 * value:.2f}" for value in moved)
+
+
+def _carried(bypass: Bypass, load: float) -> str:
+    beside = f", {percent(bypass.share)} by-pass" if bypass.share >= 0 else ": more than all"
+    return f"{text.trimmed(bypass.force / 1e3, 3)} of {text.trimmed(load / 1e3)} kN{beside}"
+
+
+def static_table(evaluation: Evaluation) -> list[Block]:
+    """Force step to displacement, in both directions, against the measured ranges."""
+    design = evaluation.design
+    test = static_test(design)
+    rows = [
+        (
+            "measured",
+            _measured(PAPER.moved_up),
+            _measured(PAPER.moved_down),
+            "12 / 62",
+            "40.5 / 17–19",
+        )
+    ]
+    rows += [
+        (
+            assumption.name,
+            _moved(assumption.up),
+            _moved(assumption.down),
+            _chamber_pressures(assumption.up),
+            _chamber_pressures(assumption.down),
+        )
+        for assumption in test.assumptions
+    ]
+    rows += [
+        (
+            "force on the chambers, by the measured pressures",
+            _carried(test.up, UP),
+            _carried(test.down, DOWN),
+            text.DASH,
+            text.DASH,
+        ),
+        ("entrained air behind the largest, no by-pass", air_text(test.air_up[0]),
+         air_text(test.air_down[0]), text.DASH, text.DASH),
+        ("the same, with by-pass", air_text(test.air_up[1]),
+         air_text(test.air_down[1]), text.DASH, text.DASH),
+    ]  # fmt: skip
+    drawn = Drawing(
+        "Aalto thesis: displacement under a force step, as its figure 42",
+        static_figure(design.cylinder.stroke, test),
+        "Grey: measured, all positions and both piston directions. Load 3.45 and 4.85 kN, the "
+        "means of both runs, read as steps (the text leaves open whether they are levels); "
+        "behind the load cell; K 1600 MPa, polytropic index 1.4.",
+    )
+    columns = (
+        "assumption",
+        "load up, mm",
+        "load down, mm",
+        f"up: p_A / p_B at {text.trimmed(1e3 * test.place)} mm, bar",
+        "down: p_A / p_B, bar",
+    )
+    note = static_note(design, test)
+    return [text_table("Aalto thesis: static test", columns, rows, note), drawn]
+
+
+_ENDS = {"constant_pressure": "constant", "reducing_valve": "valve"}
+
+
+def dynamic_table(evaluation: Evaluation) -> list[Block]:
+    """Dynamic stiffness at the tested frequencies for every throttle and line end."""
+    test = dynamic_test(evaluation.design)
+    rows: list[tuple[str, ...]] = [("closed", text.DASH, "100 %", *_five(test.closed.tested))]
+    for needle, by_end in (
+        (area_text(test.area), test.stated),
+        (area_text(test.needle.area), test.read_back),
+    ):
+        for end, responses in by_end.items():
+            rows += [
+                (
+                    _ENDS[end],
+                    needle,
+                    f"{100 * (1 - response.opening):.0f} %",
+                    *_five(response.tested),
+                )
+                for response in responses
+            ]
+    drawn = Drawing(
+        "Aalto thesis: dynamic stiffness over frequency",
+        dynamic_figure(test),
+        needles_caption(test),
+    )
+    columns = ("line end", "needle", "throttle", *(f"{f:.0f} Hz" for f in TESTED))
+    note = dynamic_note(evaluation.design, test)
+    return [text_table("Aalto thesis: dynamic tests", columns, rows, note), drawn]
+
+
+def _five(values: Array) -> list[str]:
+    return [text.number(float(abs(value)) * 1e-6, 3) for value in values]
+
+
+def peak_table(evaluation: Evaluation) -> list[Block]:
+    """What the thesis says about the orifice and the 20 Hz peak, read back."""
+    test = dynamic_test(evaluation.design)
+    needle, degrees = test.needle, evaluation.design.fluid.temperature - 273.15
+    frequencies = [
+        f"{text.trimmed(f, 3)} Hz ({chamber})"
+        for chamber, f in zip("AB", test.peak.antiresonance_frequency, strict=True)
+        if np.isfinite(f)
+    ]
+    rows = (
+        ("T-pipe for 20 Hz", "16.25 m", f"{text.trimmed(test.t_pipe)} m (eq. 18)"),
+        (
+            "pipe resonance of the longer hose",
+            "ruled out",
+            f"{text.trimmed(test.quarter_wave, 3)} Hz (quarter wave)",
+        ),
+        (
+            "Reynolds number of the needle",
+            "100.8",
+            f"{text.trimmed(needle.reynolds)} at {text.trimmed(degrees)} °C",
+        ),
+        (
+            "viscosity behind it",
+            text.DASH,
+            f"{text.trimmed(1e6 * needle.viscosity, 3)} mm²/s at 20 mm/s",
+        ),
+        (
+            "flow coefficient",
+            "around 0.611",
+            f"{text.trimmed(needle.flow_coefficient, 3)} at 20 mm/s; "
+            f"{text.trimmed(needle.flow_coefficient_slow, 3)} at the base velocity",
+        ),
+        (
+            "pressure drop, needle open, 20 mm/s",
+            "0.4 bar (check valve opens)",
+            f"{text.trimmed(needle.drop * 1e-5, 2)} bar",
+        ),
+        (
+            "needle area",
+            "0.22 cm²",
+            f"{area_text(needle.area)} behind the measured drop",
+        ),
+        (
+            "no reactive flow left, mid-stroke",
+            "peak at 20 Hz",
+            "; ".join(frequencies) or "nowhere: the valve is too weak",
+        ),
+    )  # fmt: skip
+    return [
+        text_table(
+            "Aalto thesis: orifice and 20 Hz peak",
+            ("quantity", "published", "ours"),
+            rows,
+            peak_note(evaluation.design, test),
+        )
+    ]
+
+
+def equations_table(_: Evaluation) -> list[Block]:
+    """Every equation of the thesis with its function."""
+    return table()
+
+
+TABLES: tuple[Callable[[Evaluation], list[Block]], ...] = (
+    stiffness_table,
+    static_table,
+    dynamic_table,
+    peak_table,
+    lambda evaluation: [trends.trends_table(evaluation)],
+    equations_table,
+)
+"""Every table, in the order of the thesis; the equations last."""
+
+
+TRACES = equations("aalto")
+
+
+def table() -> list[Block]:
+    """Every equation of the thesis with its function."""
+    note = (
+        "Functions stand in actuator_opt.models with formula, range and source. The thesis prints "
+        "46 equations; dq/dt of eq. 43–45 and the force balance of eq. 40–42 are rows of one "
+        "system here."
+    )
+    return [
+        text_table("Aalto thesis: where its equations are", TRACE_COLUMNS, trace_rows(TRACES), note)
+    ]
+
+
+def blocks(evaluation: Evaluation) -> list[Block]:
+    """Every table and drawing."""
+    return [block for table in TABLES for block in table(evaluation)]

@@ -15,23 +15,30 @@ import numpy as np
 
 from ..base.numeric import Array
 from ..pages.wall_figures import GREEN, OCHRE
+from ..rendering import text
 from ..rendering.axes import Axes
 from ..rendering.ink import BLACK, BLUE, GREY, PALE, Ink, Point, spread_within
 from ..rendering.text import DASH, trimmed
-from .aalto import PAPER, Theory
-from .aalto_dynamic import FREQUENCIES, DynamicTest, End, Response
-from .aalto_static import StaticTest
-from .aalto_text import area_text
+from .aalto_models import FREQUENCIES, PAPER, DynamicTest, End, Response, StaticTest, Theory
 
 Style: TypeAlias = dict[str, Any]
+
 FULL: Style = {"stroke": BLUE, "pen": 0.45}
+
 DASHED: Style = {"stroke": OCHRE, "pen": 0.4, "dash": (1.6, 0.8)}
+
 CHAIN: Style = {"stroke": GREEN, "pen": 0.4, "dash": (2.4, 0.7, 0.4, 0.7)}
+
 DOTTED: Style = {"stroke": GREY, "pen": 0.4, "dash": (0.5, 0.6)}
+
 THIN: Style = {"stroke": BLACK, "pen": 0.2, "dash": (3.2, 0.9)}
+
 _BAND = "#e9eef2"
+
 _POSITION = "piston position from the cap end, mm"
+
 _COLUMNS, _PANEL, _HEIGHT, _ROW, _TOP = (10.0, 101.0), 50.0, 36.0, 56.0, 9.0
+
 _LABEL = 3.2
 """Height (mm) of a line of a label."""
 
@@ -136,16 +143,16 @@ def theory_figure(
         return 1e3 * theory.position
 
     curves = [
-        _curve(millimetres(one), one.published / 1e6, style, words, _weakest(one, False))
-        for (words, one), style in zip(oil, (DASHED, FULL, CHAIN), strict=False)
+        _curve(millimetres(theory), theory.published / 1e6, style, words, _weakest(theory, False))
+        for (words, theory), style in zip(oil, (DASHED, FULL, CHAIN), strict=False)
     ]
     title = "Figure 5: oil alone, kN/mm"
     _panel(ink, (0, 0), title, _POSITION, curves, span=span, top=100.0)
-    for place, title, one, equation in (
+    for place, title, theory, equation in (
         ((0, 1), "Figure 29: pipes, K 1600 MPa, kN/mm", figure_29, "eq. 37"),
         ((1, 0), "Figure 32: hoses, K 1300 MPa, kN/mm", figure_32, "eq. 38"),
     ):
-        most = float(max(one.published.max(), one.per_chamber.max())) / 1e6
+        most = float(max(theory.published.max(), theory.per_chamber.max())) / 1e6
         _panel(
             ink,
             place,
@@ -153,22 +160,26 @@ def theory_figure(
             _POSITION,
             [
                 _curve(
-                    millimetres(one), one.published / 1e6, DASHED, equation, _weakest(one, False)
+                    millimetres(theory),
+                    theory.published / 1e6,
+                    DASHED,
+                    equation,
+                    _weakest(theory, False),
                 ),
                 _curve(
-                    millimetres(one),
-                    one.per_chamber / 1e6,
+                    millimetres(theory),
+                    theory.per_chamber / 1e6,
                     FULL,
                     "per chamber",
-                    _weakest(one, True),
+                    _weakest(theory, True),
                 ),
             ],
             span=span,
             top=1.08 * most,
         )
     excess = [
-        _curve(millimetres(one), 100 * (one.published / one.per_chamber - 1), style, words)
-        for one, style, words in ((figure_29, DASHED, "eq. 37"), (figure_32, CHAIN, "eq. 38"))
+        _curve(millimetres(theory), 100 * (theory.published / theory.per_chamber - 1), style, words)
+        for theory, style, words in ((figure_29, DASHED, "eq. 37"), (figure_32, CHAIN, "eq. 38"))
     ]
     highest = max(max(curve.ys) for curve in excess)
     title = "Totals in series over per chamber, %"
@@ -185,9 +196,9 @@ def static_figure(stroke: float, test: StaticTest, *, width: float = 180.0) -> I
         (1, "down", sum(PAPER.load_down) / 2, PAPER.moved_down),
     ):
         curves = []
-        for one, style in zip(test.assumptions[1:], styles, strict=True):
-            moved = (one.up if words == "up" else one.down).displacement
-            label = one.name.split(", ")
+        for assumption, style in zip(test.assumptions[1:], styles, strict=True):
+            moved = (assumption.up if words == "up" else assumption.down).displacement
+            label = assumption.name.split(", ")
             tail = [label[0] + ",", *label[1:]] if len(label) > 1 else label
             curves.append(_curve(1e3 * test.position, 1e3 * moved, style, *tail))
         _panel(
@@ -218,11 +229,11 @@ def dynamic_figure(test: DynamicTest, *, width: float = 180.0) -> Ink:
         (area_text(test.area), test.stated),
         (area_text(test.needle.area), test.read_back),
     )
-    for row, (needle, found) in enumerate(needles):
+    for row, (needle, by_end) in enumerate(needles):
         for column, (end, words) in enumerate(columns):
             curves = [
-                _curve(FREQUENCIES, np.abs(one.over) / 1e6, style, _throttle(one.opening))
-                for one, style in zip(found[end], (FULL, DASHED, CHAIN), strict=True)
+                _curve(FREQUENCIES, np.abs(response.over) / 1e6, style, _throttle(response.opening))
+                for response, style in zip(by_end[end], (FULL, DASHED, CHAIN), strict=True)
             ]
             shut = np.abs(test.closed.over) / 1e6
             curves.append(_curve(FREQUENCIES, shut, THIN, "throttle 100 %"))
@@ -240,3 +251,8 @@ def dynamic_figure(test: DynamicTest, *, width: float = 180.0) -> Ink:
                 mark=PAPER.peak,
             )
     return ink
+
+
+def area_text(area: float) -> str:
+    """Area of a needle."""
+    return f"{text.trimmed(1e4 * area, 2)} cm²"

@@ -12,11 +12,14 @@ from ..pages.wall_figures import GREEN, OCHRE
 from ..rendering.axes import Axes
 from ..rendering.ink import BLUE, GREY, PALE, Ink, spread_within
 from ..rendering.text import number
-from .elasswad_record import Along, Record
+from .elasswad_models import Along, Record
 
 DESIGNED: dict[str, Any] = {"stroke": BLUE, "pen": 0.45}
+
 CORRECTED: dict[str, Any] = {"stroke": GREEN, "pen": 0.4, "dash": (2.4, 0.7, 0.4, 0.7)}
+
 PUBLISHED: dict[str, Any] = {"stroke": OCHRE, "pen": 0.4, "dash": (1.6, 0.8)}
+
 _LABEL = 6.8
 """Height (mm) of a label of two lines."""
 

@@ -1,129 +1,792 @@
-"""The seals of [Huang2017] on their oil films, over speed and pressure: piston cylinder, plunger.
+"""Tables that set [Huang2017] beside this project's films, claims judged, and the notes below.
 
-Test A is the design itself. Test B, the plunger, is the tandem of the design's rod on the plunger's
-diameter: the standard housings of both diameters are the same. SI; pressures are gauge.
+The text of the paper prints few numbers: table 2, a claimed fall of B and the chamber's shear. Our
+films judge its claims with the design's seals, none of them fitted to it. A verdict follows from
+the numbers of the design at hand.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+import math
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from ..base.numeric import Array
+from ..design.material_fits import Fit
 from ..design.model import Design
-from ..evaluation.build import prepare
-from ..evaluation.kernel import base
-from ..friction import film
-from ..lubrication import Lubricant
-from ..studies.film_walk import FilmMap, Sealing, film_map, sealing
-from .huang_published import PAPER
+from ..evaluation import Evaluation
+from ..models.friction import HUANG_TABLE_2
+from ..rendering import text
+from ..rendering.blocks import Block, Drawing, text_table
+from ..studies.film_walk import FilmMap, Missing
+from . import huang_published
+from .huang_figures import (
+    SHOWN,
+    back_up_figure,
+    cylinder_figure,
+    plunger_figure,
+    relief_figure,
+    ring_figure,
+    simulated_figure,
+    speed_figure,
+)
+from .huang_models import (
+    BACK_UP,
+    BOTH,
+    CHAMBER,
+    FILM_SPEED,
+    TYPICAL,
+    HuangStudy,
+    Readings,
+    dry_ring,
+    kind_name,
+    study_of,
+)
+from .huang_published import PAPER, SEAL_VISCOSITY, CurveFits
+from .papers import (
+    SLASH,
+    TRACE_COLUMNS,
+    claim,
+    equations,
+    listed,
+    newtons,
+    of_another_cylinder,
+    percent,
+    pressure_text,
+    rounded,
+    speed_text,
+    times,
+    trace_rows,
+)
 
-CASE = 0
-"""Load case of the design that gives oil and return pressure."""
-SPEEDS = (0.5e-3, 0.8e-3, 1.3e-3, 2.1e-3, 3.3e-3, 5e-3, 7e-3, 10e-3)
-"""Speeds of the maps: the tested range, and 2.1 mm/s where the printed fall holds."""
-FAST = (10e-3, 20e-3, 40e-3, 80e-3, 0.16, 0.32)
-"""Speeds beyond the tests, where oil begins to carry the seals."""
-TYPICAL = 2.1e-3
-"""Speed at which pressures are compared."""
-PRESSURES = (0.6e6, 2e6, 4e6, 6e6, 8e6, 10e6)
-"""Pressures of the plunger's map: those of table 2, and of figure 16."""
-PISTON_PRESSURES = (1e6, 2e6, 4e6, 6e6, 7.15e6, 8e6, 10e6)
-"""Pressures of the driven chamber of the piston cylinder; 7.15 MPa is the paper's."""
+AGREES, DISAGREES, IN_PART = "agrees", "disagrees", "agrees in part"
+
+OPEN = "no film"
+"""A verdict that no film lets us give."""
 
 
-@dataclass(frozen=True, slots=True)
-class Sealings:
-    """The sealings of both tests.
-
-    Parameters
-    ----------
-    piston : between driven chamber and return, its bore drawn in
-    rod : of test A, at return pressure
-    plunger : the rod's rings on the plunger
-    return_pressure : [Pa]
-    lubricant : the oil
-    """
-
-    piston: Sealing
-    rod: Sealing
-    plunger: Sealing
-    return_pressure: float
-    lubricant: Lubricant
+def mega(value: float, digits: int = 3) -> str:
+    """A damping in MN s/m."""
+    return text.number(float(value) / 1e6, digits)
 
 
-def sealings(design: Design) -> Sealings:
-    """The rings of both tests, each on its oil film whatever the design asks for."""
-    subject = prepare(_on_films(design))
-    v = subject.values()
-    found = base(subject, v)
-    drain = float(v["supply.return_pressure"])
-    rod = sealing(found, "rod", CASE)
-    plunger = tuple(ring.at(diameter=PAPER.plunger) for ring in rod.rings)
-    first = rod.rings[0]
-    return Sealings(
-        piston=sealing(found, "piston", CASE),
-        rod=rod,
-        plunger=replace(rod, rings=plunger),
-        return_pressure=drain,
-        lubricant=Lubricant(
-            dynamic_viscosity=first["viscosity"],
-            pressure_law=first.viscosity_law,
-            pressure_coefficient=first["viscosity_coefficient"],
+def megas(values: Sequence[float] | Array, digits: int = 3) -> str:
+    """Dampings of one row in one cell."""
+    return SLASH.join(mega(float(value), digits) for value in values)
+
+
+def verdict(share: float) -> str:
+    """By the share of a claim that holds; NaN says that there was no film to judge it by."""
+    if not math.isfinite(share):
+        return OPEN
+    return AGREES if share >= 1 else DISAGREES if share <= 0 else IN_PART
+
+
+def holds(fact: bool, *values: float) -> str:
+    """A claim that holds or not, by numbers that all have to be known."""
+    return verdict(float(fact) if all(map(math.isfinite, values)) else math.nan)
+
+
+def other_cylinder(design: Design) -> str:
+    """Whose cylinder was measured, if it is not this one."""
+    return of_another_cylinder(design, "paper", (PAPER.bore, PAPER.rod, PAPER.stroke))
+
+
+CLAIMS = ("claim of the paper", "paper", "ours", "verdict")
+
+NEAR = 1.3
+"""Factor within which a simulated damping agrees with the measured."""
+
+STILL = 1.2
+"""Factor within which a damping no longer falls at twice the speed."""
+
+
+def cylinder_table(design: Design, study: HuangStudy) -> list[Block]:
+    """Figure 3: the piston cylinder of test A."""
+    mapped, damping = study.cylinder, study.cylinder.damping
+    speed, pressure = PAPER.shown_speed, PAPER.shown_pressure
+    i = int(np.argmin(np.abs(mapped.pressures - pressure)))
+    j = mapped.piston.at(0.0, TYPICAL)[1]
+    shown = np.interp(speed, mapped.piston.speeds, damping[i] * mapped.piston.speeds) / speed
+    six = damping[int(np.argmin(np.abs(mapped.pressures - PAPER.compared))), j]
+    table = float(huang_published.secant_of(HUANG_TABLE_2[-1], TYPICAL))
+    ours = study.plunger.damping[study.plunger.at(PAPER.compared, TYPICAL)]
+    over = float(six / table), float(six / ours)
+    rows = [
+        (
+            *claim("huang", "cylinder_speed"),
+            f"{mega(damping[i, 0])} to {mega(damping[i, -1])} MN·s/m at {pressure_text(pressure)}",
+            holds(bool(np.all(np.diff(damping, axis=1) < 0)), *np.ravel(damping)),
         ),
+        (
+            *claim("huang", "cylinder_pressure"),
+            f"{mega(damping[0, j])} to {mega(damping[-1, j])} MN·s/m from "
+            f"{pressure_text(mapped.pressures[0])} to {pressure_text(mapped.pressures[-1])} "
+            f"at {speed_text(TYPICAL)}",
+            holds(bool(np.all(np.diff(damping[:, j]) > 0)), *damping[:, j]),
+        ),
+        (
+            *claim("huang", "cylinder_larger"),
+            f"{times(over[0])} table 2, {times(over[1])} our plunger at 6 MPa and "
+            f"{speed_text(TYPICAL)}",
+            verdict(float(np.mean([x > 1 if math.isfinite(x) else math.nan for x in over]))),
+        ),
+        (
+            *claim("huang", "cylinder_point"),
+            f"{mega(float(shown))} MN·s/m, {newtons(float(shown) * speed)}",
+            "no number to compare",
+        ),
+    ]
+    drawn = Drawing(
+        "Huang 2017: piston cylinder, as its figure 3",
+        cylinder_figure(study),
+        "Piston and rod seals on their films, driven out; the rod chamber at return pressure. "
+        "Contours over a logarithmic speed.",
+    )
+    note = cylinder_note(design, study)
+    return [text_table("Huang 2017: piston cylinder, test A", CLAIMS, rows, note), drawn]
+
+
+def _ends(mapped: FilmMap, low: float, high: float, speed: float) -> tuple[float, float]:
+    return float(mapped.damping[mapped.at(low, speed)]), float(
+        mapped.damping[mapped.at(high, speed)]
     )
 
 
-def _on_films(design: Design) -> Design:
-    """The design with a film under every sealing element."""
-    filmed: dict[str, Any] = {"friction": film.LAW.name}
-    seals = {}
-    for place in ("piston", "rod"):
-        seal = getattr(design.seals, place)
-        second = seal.secondary and seal.secondary.model_copy(update=filmed)
-        seals[place] = seal.model_copy(update=filmed | {"secondary": second})
-    return design.model_copy(update={"seals": design.seals.model_copy(update=seals)})
+def simulated_table(_: Design, study: HuangStudy) -> list[Block]:
+    """Figures 15 and 16: what the paper says of its simulation, by ours."""
+    rows = [*_trends(study), _asymptote(study), *_between_rows(study)]
+    drawn = Drawing(
+        "Huang 2017: plunger at 6, 8 and 10 MPa, as its figures 15 and 16",
+        simulated_figure(study),
+    )
+    note = simulated_note(study)
+    return [text_table("Huang 2017: its simulation by ours", CLAIMS, rows, note), drawn]
 
 
-@dataclass(frozen=True, slots=True)
-class CylinderMap:
-    """Damping of the piston cylinder over the driven chamber's pressure and the speed.
+def _trends(study: HuangStudy) -> list[tuple[str, ...]]:
+    """Claims on the curves over speed and pressure."""
+    mapped = study.plunger
+    table = np.asarray(huang_published.secant_of(HUANG_TABLE_2[-1], mapped.speeds))
+    ratio = mapped.damping[mapped.at(PAPER.compared, 0.0)[0]] / table
+    low, high = _ends(mapped, *PAPER.simulated, TYPICAL)
+    first, last = _ends(mapped, *PAPER.pressures, TYPICAL)
+    fall = huang_published.claim_at(TYPICAL)
+    slowest, fastest = (text.trimmed(1e3 * v, 3) for v in huang_published.claim_speeds())
+    falls = np.diff(mapped.damping, axis=1) < 0
+    least, most = (text.trimmed(float(pick(ratio)), 2) for pick in (np.min, np.max))
+    return [
+        (
+            *claim("huang", "plunger_speed"),
+            f"{percent(float(np.mean(falls)), 3)} of the steps fall; all of table 2",
+            holds(bool(np.all(falls)), *np.ravel(mapped.damping)),
+        ),
+        (
+            *claim("huang", "plunger_pressure", slowest=slowest, fastest=fastest),
+            f"{mega(first)} to {mega(last)} MN·s/m at {speed_text(TYPICAL)} "
+            f"(table 2: {mega(fall.low)} to {mega(fall.high)})",
+            holds(last < first, first, last),
+        ),
+        (
+            *claim("huang", "simulated_measured"),
+            f"{least} to {most} times table 2",
+            holds(bool(np.all(np.abs(np.log(ratio)) < math.log(NEAR))), *ratio),
+        ),
+        (
+            *claim("huang", "simulated_pressure"),
+            f"{mega(low)} to {mega(high)} MN·s/m at {speed_text(TYPICAL)}",
+            holds(high < low, low, high),
+        ),
+    ]
 
-    Parameters
-    ----------
-    piston : over the pressure difference across it
-    rod : at return pressure
-    pressures : of the driven chamber (p,) [Pa]
-    """
 
-    piston: FilmMap
-    rod: FilmMap
-    pressures: Array
+def _asymptote(study: HuangStudy) -> tuple[str, ...]:
+    """Whether B comes to a constant beyond the tested speeds."""
+    fast, viscous = study.fast.damping[0], study.fast.viscous[0]
+    known = np.flatnonzero(np.isfinite(fast))
+    reached = min(map(huang_published.asymptote_speed, HUANG_TABLE_2))
+    stated = claim("huang", "asymptote", speed=speed_text(reached))
+    if known.size < 2:
+        return *stated, "no film", OPEN
+    last, before = int(known[-1]), int(known[-2])
+    ours = (
+        f"{mega(float(fast[last]))} MN·s/m at {speed_text(float(study.fast.speeds[last]))}, "
+        f"{percent(float(viscous[last]))} of it oil"
+    )
+    fell = float(fast[last] / fast[before])
+    still = (
+        f", {percent(1 - fell)} below that at half the speed" if fell < 1 else ", no longer falling"
+    )
+    return *stated, ours + still, holds(fell > 1 / STILL, fell)
 
-    @property
-    def damping(self) -> Array:
-        """Of both (p, v) [N s/m]."""
-        return self.piston.damping + self.rod.damping
+
+def _between_rows(study: HuangStudy) -> list[tuple[str, ...]]:
+    """The pressure between two seals; nothing for one."""
+    mapped = study.plunger
+    share = mapped.between / mapped.pressures[:, None]
+    beyond = study.fast.between[0] / PAPER.compared
+    if not np.any(np.isfinite(share)):
+        return []
+    above = np.flatnonzero(beyond > 1)
+    words = "never above it at 6 MPa up to " + speed_text(float(study.fast.speeds[-1]))
+    if above.size:
+        words = f"above it at 6 MPa from {speed_text(float(study.fast.speeds[above[0]]))}"
+    return [
+        (
+            *claim("huang", "pressure_between"),
+            f"{text.trimmed(float(np.nanmin(share)), 2)} to "
+            f"{text.trimmed(float(np.nanmax(share)), 2)} times it up to 10 mm/s; {words}",
+            holds(bool(above.size or np.nanmax(share) > 1)),
+        )
+    ]
 
 
-def cylinder_map(found: Sealings, speeds: Sequence[float] = SPEEDS) -> CylinderMap:
-    """Figure 3: piston and rod seals, driven out."""
-    across = [p - found.return_pressure for p in PISTON_PRESSURES]
-    return CylinderMap(
-        piston=film_map(found.piston, across, speeds),
-        rod=film_map(found.rod, [found.return_pressure], speeds),
-        pressures=np.array(PISTON_PRESSURES),
+def ring_table(_: Design, study: HuangStudy) -> list[Block]:
+    """Figures 17 and 18: the step ring's contact and film over pressure."""
+    stress, mapped = study.stress, study.plunger
+    low, high = (float(np.interp(p, stress.pressures, stress.peak)) for p in (2e6, PAPER.tightest))
+    last = float(stress.peak[-1])
+    films = mapped.thickness[:, mapped.at(0.0, FILM_SPEED)[1], 0]
+    most = float(stress.pressures[int(np.argmax(stress.excess))])
+    rows = [
+        (
+            *claim("huang", "stress_rises"),
+            f"{pressure_text(low)} to {pressure_text(high)}",
+            holds(high > low),
+        ),
+        (
+            *claim("huang", "stress_falls"),
+            f"{pressure_text(last)} at 10 MPa; its excess over the oil pressure is largest, "
+            f"{pressure_text(float(stress.excess.max()))}, at {pressure_text(most)}",
+            verdict(float(np.mean([last < high, most < stress.pressures[-1]]))),
+        ),
+        (
+            *claim("huang", "contact_grows"),
+            f"{text.number(1e3 * float(stress.width[0]), 3)} to "
+            f"{text.number(1e3 * float(stress.width[-1]), 3)} mm",
+            holds(bool(np.all(np.diff(stress.width) > 0))),
+        ),
+        (
+            *claim("huang", "film_grows"),
+            f"{text.number(1e6 * float(films[0]), 4)} to {text.number(1e6 * float(films[-1]), 4)} "
+            f"µm from {pressure_text(mapped.pressures[0])} to "
+            f"{pressure_text(mapped.pressures[-1])}",
+            holds(bool(films[-1] > films[0]), float(films[0]), float(films[-1])),
+        ),
+    ]
+    drawn = Drawing(
+        "Huang 2017: step ring over the sealed pressure, as its figures 17 and 18",
+        ring_figure(study),
+        "Contact of a run-in face by its radial balance; films of the step ring in the tandem.",
+    )
+    note = ring_note(study)
+    return [text_table("Huang 2017: step ring at rest and running", CLAIMS, rows, note), drawn]
+
+
+def plunger_table(design: Design, study: HuangStudy) -> list[Block]:
+    """Figure 6: table 2 and our films over speed and pressure."""
+    mapped = study.plunger
+    columns = [mapped.at(0.0, v)[1] for v in SHOWN]
+    rows = []
+    for row in HUANG_TABLE_2:
+        theirs = np.array([float(huang_published.secant_of(row, v)) for v in SHOWN])
+        ours = mapped.damping[mapped.at(row.pressure, 0.0)[0], columns]
+        ratio = " / ".join(text.number(float(x), 2) for x in ours / theirs)
+        rows.append((pressure_text(row.pressure), megas(theirs), megas(ours), ratio))
+    for pressure in PAPER.simulated:
+        ours = mapped.damping[mapped.at(pressure, 0.0)[0], columns]
+        rows.append((pressure_text(pressure), text.DASH, megas(ours), text.DASH))
+    at = ", ".join(text.trimmed(1e3 * v) for v in SHOWN)
+    drawn = Drawing(
+        "Huang 2017: plunger over speed and pressure, as its figure 6",
+        plunger_figure(study),
+        "Above: eq. 31 with the paper's table 2. Below: step ring and Yx seal on their films, "
+        "flows matched, outstroke.",
+    )
+    names = ("pressure", f"table 2, MN·s/m at {at} mm/s", "our films", "ours over table 2")
+    note = plunger_note(design, study)
+    return [text_table("Huang 2017: plunger, test B", names, rows, note), drawn]
+
+
+def _power(fit: Fit) -> str:
+    a, b = fit.parameters["coefficient"], fit.parameters["exponent"]
+    return (
+        f"{text.number(a.value, 3)} v^{text.number(b.value, 4)} "
+        f"({text.number(b.lower, 4)} to {text.number(b.upper, 4)})"
     )
 
 
-def fast_map(found: Sealings) -> FilmMap:
-    """The plunger at 6 MPa beyond the tested speeds."""
-    return film_map(found.plunger, [PAPER.compared], FAST)
+def _double(fit: Fit) -> str:
+    parts = []
+    for k in ("1", "2"):
+        a, b = fit.parameters[f"coefficient_{k}"], fit.parameters[f"rate_{k}"]
+        half = b.upper - b.value
+        parts.append(f"{mega(a.value)} e^({text.number(b.value, 3)} ± {text.number(half, 2)})v")
+    return "; ".join(parts)
 
 
-def plunger_map(found: Sealings, speeds: Sequence[float] = SPEEDS) -> FilmMap:
-    """Figures 6 to 8, 15 and 16: the tandem of the plunger on the outstroke."""
-    return film_map(found.plunger, PRESSURES, speeds)
+def _quality(fit: Fit) -> str:
+    square = text.DASH if fit.r_squared is None else f"{fit.r_squared:.4f}"
+    return f"{square}, {percent(fit.largest_error)}"
+
+
+def fits_table(_: Design, study: HuangStudy) -> list[Block]:
+    """Figures 7 and 8: both laws through table 2 and through our films."""
+    curves: list[tuple[str, CurveFits]] = [
+        (f"table 2, {pressure_text(fits.row.pressure)}", fits) for fits in study.published
+    ]
+    curves += [(f"our films, {pressure_text(p)}", fits) for p, fits in study.films]
+    rows = [
+        (
+            name,
+            _power(fits.power),
+            _quality(fits.power),
+            _double(fits.double),
+            _quality(fits.double),
+        )
+        for name, fits in curves
+    ]
+    drawn = Drawing(
+        "Huang 2017: damping over speed and over pressure, as its figures 7 and 8",
+        speed_figure(study),
+        "Left the paper's table 2, right our films.",
+    )
+    names = (
+        "curve",
+        "a v^b, SI; bounds of b",
+        "R², largest error",
+        "a1 e^(b1 v) + a2 e^(b2 v), MN·s/m, s/m",
+        "R², largest error",
+    )
+    return [text_table("Huang 2017: fits over speed", names, rows, fits_note(study)), drawn]
+
+
+def parts_table(_: Design, study: HuangStudy) -> list[Block]:
+    """Equation 26 with every part, figures 19 and 20."""
+    rows = []
+    for total in study.totals:
+        parts = total.parts
+        seals = [name for name in parts if name not in (BACK_UP, CHAMBER)]
+        rows.append(
+            (
+                f"{pressure_text(total.pressure)}, {speed_text(total.speed)}",
+                " / ".join(rounded(parts[name]) for name in seals),
+                f"{rounded(parts[BACK_UP])} ({rounded(total.ring_range[0])} to "
+                f"{rounded(total.ring_range[1])})",
+                f"{parts[CHAMBER]:.2f}",
+                rounded(total.damping),
+                percent(total.beside_share),
+            )
+        )
+    drawn = Drawing(
+        "Huang 2017: back-up ring, as its figures 19 and 20",
+        back_up_figure(study),
+        "PTFE of the step ring, 15 mm wide, edges rounded by 5 µm, 0.1 MPa of mean contact "
+        "pressure: all assumed; the paper prints none.",
+    )
+    labels = " / ".join(map(kind_name, study.sealings.plunger.rings))
+    names = (
+        "N·s/m at",
+        labels,
+        "back-up ring (0.02 to 0.2 MPa)",
+        "chamber",
+        "total, eq. 26",
+        "ring and chamber over seals",
+    )
+    note = parts_note(study, dry_ring(study.sealings))
+    return [text_table("Huang 2017: plunger part by part", names, rows, note), drawn]
+
+
+def kinds_table(_: Design, study: HuangStudy) -> list[Block]:
+    """Why the pressure trends of both cylinders can be opposite, by seal type."""
+    rows = [
+        (
+            kind.name,
+            text.trimmed(kind.balance, 3),
+            mega(kind.damping[0]),
+            mega(kind.damping[1]),
+            text.number(kind.rise, 3),
+        )
+        for kind in study.kinds
+    ]
+    names = (
+        f"seal, {speed_text(TYPICAL)}",
+        "balance k",
+        "B at 0.6 MPa, MN·s/m",
+        "B at 6 MPa",
+        "6 over 0.6 MPa",
+    )
+    note = kinds_note(study)
+    return [text_table("Huang 2017: why pressure acts both ways", names, rows, note)]
+
+
+def relief_table(_: Design, study: HuangStudy) -> list[Block]:
+    """What the relief of the step ring does to the trend over pressure."""
+    both = list(zip(study.whole, study.drained, strict=True)) or [(math.nan, math.nan)] * len(
+        study.reliefs
+    )
+    rows = [
+        (
+            f"{1e3 * relief.relief:.2f} mm",
+            f"{1e3 * relief.land:.2f} mm",
+            text.number(relief.balance, 3),
+            *(text.number(x, 3) for x in (relief.rise, drained, whole)),
+        )
+        for relief, (whole, drained) in zip(study.reliefs, both, strict=True)
+    ]
+    ink, drawn = relief_figure(study), []
+    if ink is not None:
+        drawn = [
+            Drawing(
+                "Huang 2017: relief of the step ring and the trend over pressure",
+                ink,
+                "The land is the design's while the ring has room for it, then what the relief "
+                "leaves. k: pressure balance at 3.3 MPa.",
+            )
+        ]
+    names = (
+        "relief",
+        "land",
+        "balance k",
+        "B at 6 over 0.6 MPa: alone",
+        "both, no pressure between",
+        "both, flows matched",
+    )
+    note = relief_note(study)
+    none = [("no step ring", *(text.DASH,) * 5)]
+    title = "Huang 2017: relief of the step ring"
+    return [text_table(title, names, rows or none, note), *drawn]
+
+
+def equations_table(_: Design, study: HuangStudy) -> list[Block]:
+    """Every equation of the paper with its function."""
+    return table(study.readings)
+
+
+TABLES: tuple[Callable[[Design, HuangStudy], list[Block]], ...] = (
+    cylinder_table,
+    plunger_table,
+    fits_table,
+    simulated_table,
+    ring_table,
+    parts_table,
+    kinds_table,
+    relief_table,
+    equations_table,
+)
+"""Every table: test A, test B by its figures, the trends, the equations last."""
+
+
+def blocks(evaluation: Evaluation) -> list[Block]:
+    """Every table and drawing, of one study."""
+    study = study_of(evaluation.design)
+    return [block for table in TABLES for block in table(evaluation.design, study)]
+
+
+NEGLIGIBLE = 0.05
+"""Share of the seals up to which a part can be neglected."""
+
+EVEN = 0.02
+"""Change below which a damping does not change with pressure."""
+
+
+def _dry(viscous: np.ndarray) -> str:
+    """Who holds the friction at the tested speeds."""
+    most = float(np.nanmax(np.abs(viscous))) if np.any(np.isfinite(viscous)) else math.nan
+    if math.isnan(most):
+        return "No point has a film."
+    if most < 0.05:
+        return (
+            f"Oil shears with at most {percent(most)} of the friction: at these speeds asperities "
+            "hold it, so it hardly changes with speed and B falls as 1/v."
+        )
+    return f"Oil shears with up to {percent(most)} of the friction."
+
+
+def _reasons(why: tuple[Missing, ...]) -> str:
+    """Points without a film."""
+    if not why:
+        return ""
+    more = f", and {len(why) - 1} more" if len(why) > 1 else ""
+    first = why[0]
+    at = f"{pressure_text(first.pressure)}, {speed_text(first.speed)}"
+    return f" No film at {at}: {first.reason}{more}."
+
+
+def cylinder_note(design: Design, study: HuangStudy) -> str:
+    """Below figure 3."""
+    mapped = study.cylinder
+    i, j = int(np.argmin(np.abs(mapped.pressures - PAPER.shown_pressure))), -1
+    piston, rod = float(mapped.piston.friction[i, j]), float(mapped.rod.friction[0, j])
+    return (
+        f"{other_cylinder(design)}Seals, oil and their numbers are those of this "
+        "design; the paper gives kinds of seals only. Nothing is fitted to its curves. At "
+        f"7.15 MPa and 10 mm/s the piston seal takes {newtons(piston)}, the rod's at return "
+        f"pressure {newtons(rod)}; wiper and guides are left out. "
+        f"{_dry(mapped.piston.viscous)} The paper's R² of 1 (sums of squares "
+        f"{listed([text.number(x, 2) for x in PAPER.interpolation])}) is that of surfaces drawn "
+        "through every point: it says nothing of the errors."
+        f"{_reasons(mapped.piston.why + mapped.rod.why)}"
+    )
+
+
+def plunger_note(design: Design, study: HuangStudy) -> str:
+    """Below figure 6."""
+    mapped = study.plunger
+    j = mapped.at(0.0, TYPICAL)[1]
+    curve = mapped.damping[:, j]
+    ours = float(curve[mapped.at(PAPER.pressures[1], 0.0)[0]] / curve[0])
+    table = [float(huang_published.secant_of(row, TYPICAL)) for row in HUANG_TABLE_2]
+    theirs = table[-1] / table[0]
+    if math.isnan(ours):
+        words = "Ours has no film at both pressures. "
+    elif ours > 1 + EVEN:
+        words = (
+            f"Table 2 falls to {text.trimmed(theirs, 2)} of its value from 0.6 to 6 MPa at "
+            f"{speed_text(TYPICAL)}, ours rises {times(ours)}: we do not meet the measured trend. "
+        )
+    elif ours < 1 - EVEN:
+        words = f"Both fall with pressure: to {theirs:.2f} (table 2) and {ours:.2f} (ours). "
+    else:
+        words = f"Table 2 falls to {theirs:.2f}, ours does not change with pressure. "
+    share = [huang_published.balance_error(float(v)) for v in huang_published.SPEEDS]
+    return (
+        f"{words}{_dry(mapped.viscous)} {_between(study)}The measured fall deserves a doubt: "
+        "friction is the difference of two large forces (eq. 1), and an error of "
+        f"{percent(min(share))} to {percent(max(share))} in the change of the pressure force, in "
+        "sensor or area, is as large as the whole fall at the tested speeds. The paper states no "
+        "accuracy. We cannot tell which of the two is right."
+        f"{_reasons(mapped.why)}"
+    )
+
+
+def _between(study: HuangStudy) -> str:
+    """Who carries the pressure in the tandem."""
+    mapped = study.plunger
+    share = mapped.between / mapped.pressures[:, None]
+    if not np.any(np.isfinite(share)):
+        return ""
+    i, j = mapped.at(PAPER.compared, TYPICAL)
+    step, second = (float(x) for x in mapped.parts[i, j])
+    return (
+        f"At 6 MPa the outer seal bears {percent(float(share[i, j]))} of the pressure when both "
+        f"pass the same flow, and makes {newtons(second)} of {newtons(step + second)}. "
+    )
+
+
+def fits_note(study: HuangStudy) -> str:
+    """Below the fits."""
+    exponents = [fits.power.values["exponent"] for fits in study.published]
+    exponents += [fits.power.values["exponent"] for _, fits in study.films]
+    rates = [
+        value
+        for fits in (*study.published, *(fit for _, fit in study.films))
+        for name, value in fits.double.values.items()
+        if name.startswith("rate")
+    ]
+    errors = [max(fits.power.largest_error, fits.double.largest_error) for fits in study.published]
+    if max(*exponents, *rates) < 0:
+        words = (
+            "Every exponent is below 0, so the printed conditions b > 0 do not describe these "
+            "curves (our copy of the text may have lost a minus, as it did in eq. 2 and 31). "
+        )
+    else:
+        words = "Not every exponent is below 0. "
+    loose = [
+        text.trimmed(fits.row.pressure / 1e6)
+        for fits in study.published
+        if not (fits.power.determined and fits.double.determined)
+    ]
+    doubt = ""
+    if loose:
+        doubt = f" At {listed(loose)} MPa of table 2 not every parameter is known to 30 %."
+    return (
+        f"Bounds hold 95 % (Student's t of the linearised law), least squares of B. {words}A high "
+        f"R² sees the slow points: errors of table 2's fits still reach {percent(max(errors))} of "
+        f"B at the fast ones. Ours are power laws near v^−1: friction that does not depend on "
+        f"speed.{doubt}"
+    )
+
+
+def simulated_note(study: HuangStudy) -> str:
+    """Below figures 15 and 16."""
+    mapped = study.plunger
+    i = mapped.at(PAPER.compared, 0.0)[0]
+    ours = mapped.friction[i]
+    theirs = [huang_published.friction_of(HUANG_TABLE_2[-1], v) for v in PAPER.speeds]
+    return (
+        "The paper gives neither the inputs of its simulation nor its static pressures, so its "
+        "curves cannot be re-computed; these are ours, from this design. Friction at 6 MPa from "
+        f"0.5 to 10 mm/s: table 2 {newtons(float(theirs[0]))} to {newtons(float(theirs[1]))}, "
+        f"ours {newtons(ours[0])} to {newtons(ours[-1])}. {_stribeck(ours, study)}"
+        f"sigma2 v is {percent(huang_published.viscous_share(HUANG_TABLE_2[0], 10e-3))} to "
+        f"{percent(huang_published.viscous_share(HUANG_TABLE_2[-1], 10e-3))} of table 2's "
+        "friction at 10 mm/s: its asymptote lies outside the tests."
+        f"{_reasons(study.fast.why)}"
+    )
+
+
+def _stribeck(ours: np.ndarray, study: HuangStudy) -> str:
+    """Whether our friction falls over the tested speeds as table 2 does."""
+    if not np.all(np.isfinite(ours)) or ours[-1] < 0.9 * ours[0]:
+        return ""
+    i = study.plunger.at(PAPER.compared, 0.0)[0]
+    share = float(np.max(np.abs(study.plunger.viscous[i])))
+    return (
+        "The Stribeck fall of table 2 is not in our films: none is carried by speed below "
+        f"10 mm/s (oil shears with {percent(share)} at most). "
+    )
+
+
+def ring_note(study: HuangStudy) -> str:
+    """Below figures 17 and 18."""
+    ring = study.sealings.plunger.rings[0]
+    kind = study.kinds[1]
+    words = (
+        f"First rod seal on {text.trimmed(1e3 * PAPER.plunger)} mm, section "
+        f"{text.trimmed(1e3 * ring['section'])} mm, squeeze {percent(ring['squeeze'])}"
+    )
+    if "relief" in ring.numbers:
+        words += (
+            f", relief {text.trimmed(1e3 * ring['relief'])} of {text.trimmed(1e3 * ring['width'])} "
+            "mm, assumed"
+        )
+    words += (
+        f"; pressure balance {text.trimmed(kind.balance, 3)}. The largest stress contains the "
+        "sealed pressure itself, so it can fall only where the balance is below 0; the excess over "
+        "the oil pressure, which asperities carry, falls below 1/2. The paper's peak may be one of "
+        "a tilting, unworn edge, which a run-in face does not have. "
+    )
+    thickness = study.plunger.thickness[:, :, 0]
+    known = thickness[np.isfinite(thickness)]
+    if not known.size:
+        return words
+    spread = float(known.max() / known.min() - 1)
+    return f"{words}Over all points of the map its mean film changes by {percent(spread)}."
+
+
+def parts_note(study: HuangStudy, dry: float) -> str:
+    """Below the parts of eq. 26."""
+    most = max(total.beside_share for total in study.totals)
+    chamber = max(total.share(CHAMBER) for total in study.totals)
+    member = huang_published.plausible_chamber()
+    ring = min(float(np.min(ring.film.film)) for ring in study.rings)
+    seals = min(total.seals * total.speed for total in study.totals)
+    verdict = "can be neglected, as the paper says" if most < NEGLIGIBLE else "cannot be neglected"
+    if math.isnan(most):
+        verdict = "have no film at a point"
+    return (
+        f"Ring and chamber {verdict}: at most {percent(most)} of the seals, the chamber "
+        f"{percent(chamber, 1)}. This holds for a ring on a smooth film; its least film, "
+        f"{text.trimmed(1e6 * ring, 2)} µm, is thinner than the seals' roughness, and dry the ring "
+        f"would rub with {newtons(dry)}, {percent(dry / seals)} of the least friction of the "
+        f"seals. The chamber's printed {PAPER.chamber_shear} N·s/m comes without inputs: "
+        "eta pi d L/h_v gives it "
+        f"for L = {text.trimmed(1e3 * member.length)} mm, eta = {SEAL_VISCOSITY} Pa·s (both "
+        f'assumed) and h_v = {text.trimmed(1e3 * member.gap, 2)} mm, no "fairly large gap"; '
+        f"1 mm would need {text.trimmed(huang_published.chamber_length(gap=1e-3), 3)} m of plunger "
+        "in the oil."
+    )
+
+
+def kinds_note(study: HuangStudy) -> str:
+    """Why pressure may act both ways."""
+    words = (
+        "The balance k is the rise of a face's load with pressure over its width. Oil that falls "
+        "evenly across the face carries half of the pressure; where asperities hold the friction, "
+        "B rises with pressure above k = 1/2 and falls below it. "
+    )
+    compact = study.kinds[0]
+    if compact.rise > 1 + EVEN:
+        share = text.trimmed(compact.balance, 2)
+        words += f"The piston's seal has k = {share} and rises {times(compact.rise)}. "
+    whole = [kind for kind in study.kinds if kind.name == BOTH]
+    for kind in whole:
+        words += (
+            f"The tandem rises {times(kind.rise)}, because its outer seal bears most of the "
+            "pressure when both pass the same flow. "
+            if kind.rise > 1 + EVEN
+            else "The tandem does not rise. "
+        )
+    return words + (_proven(study) if whole else "")
+
+
+def relief_note(study: HuangStudy) -> str:
+    """What relief turns the trend."""
+    turn = study.turn
+    if turn is None:
+        return "This design's first rod seal is no step ring: nothing turns its trend."
+    if math.isnan(turn.relief):
+        return "No relief turns the trend of its step ring. " + _tandem(study)
+    return (
+        f"Alone, the step ring turns from rising to falling at a relief of "
+        f"{1e3 * turn.relief:.2f} mm, {percent(turn.share)} of its width, where "
+        f"k = {turn.balance:.2f}; the design has "
+        f"{text.trimmed(1e3 * study.sealings.plunger.rings[0]['relief'])} mm. " + _tandem(study)
+    )
+
+
+def _tandem(study: HuangStudy) -> str:
+    """What the second seal makes of it."""
+    if not study.whole:
+        return ""
+    least = float(np.nanmin(study.whole))
+    falls = [
+        (shape.relief, rise)
+        for shape, rise in zip(study.reliefs, study.drained, strict=True)
+        if rise < 1 - EVEN
+    ]
+    words = (
+        f"With both seals passing the same flow no relief shown turns it (B rises at least "
+        f"{times(least)}): the Yx behind bears the pressure. "
+        if least > 1
+        else "With both seals passing the same flow some reliefs turn it too. "
+    )
+    if falls:
+        relief, rise = falls[-1]
+        words += (
+            "Without pressure between the seals, as if the room there were drained, B "
+            f"falls to {text.number(rise, 2)} at a relief of {1e3 * relief:.2f} mm. "
+        )
+    return words
+
+
+def _proven(study: HuangStudy) -> str:
+    """What is shown, and what is only plausible."""
+    measured = study.kinds[-1]
+    drained = study.kinds[-2]
+    return (
+        "Shown: seal types alone can make B rise on one cylinder and fall on the other. Not "
+        "shown: that they did in this one. A fall needs a long relief and no pressure between the "
+        "seals, neither of which the paper states, and table 2 falls to "
+        f"{text.number(measured.rise, 2)} from {mega(measured.damping[0])} MN·s/m at 0.6 MPa, "
+        f"{times(measured.damping[0] / drained.damping[0])} ours without pressure between. "
+        "Chosen by us: relief, land, squeeze, lip, oil and roughness; given by the paper: dry "
+        f"friction {listed([text.trimmed(x) for x in PAPER.dry_friction])}."
+    )
+
+
+TRACES = equations("huang")
+"""All of eq. 1 to 31, in order."""
+
+
+def table(readings: Readings) -> list[Block]:
+    """Every equation of the paper with its function."""
+    note = (
+        "Functions stand in actuator_opt. Beside the numbered ones the paper fits B = a v^b and "
+        "B = a1 e^(b1 v) + a2 e^(b2 v), here fits.fit_power_law and fits.fit_double_exponential. "
+    )
+    if readings.shift == readings.shift:
+        thinner = "thinner" if readings.shift > 0 else "thicker"
+        note += (
+            f"What the letters would do to the first seal alone at 6 MPa and 5 mm/s: without the "
+            f"rigid shift its film of {text.trimmed(1e6 * readings.mean, 3)} µm would be "
+            f"{text.trimmed(1e6 * abs(readings.shift), 2)} µm {thinner} and carry "
+            f"{percent(abs(readings.excess))} {'more' if readings.excess > 0 else 'less'} than "
+            "presses it down, so no film meets eq. 12; with the rough side on the rod it passes "
+            f"{percent(readings.swapped / readings.flow - 1)} more."
+        )
+    return [
+        text_table("Huang 2017: where its equations are", TRACE_COLUMNS, trace_rows(TRACES), note)
+    ]

@@ -1,8 +1,8 @@
 """What [Huang2017] prints of its seal damping, and what its own numbers make of it.
 
-Table 2 (in `models.friction`) stands for the measured curves, whose figures carry no numbers. SI
+Table 2 (in `models.friction`) replaces the measured curves, whose figures carry no numbers. SI
 throughout. The text copy that was read loses leading minus signs (eq. 2 and 31), so the printed
-conditions b > 0 of its two fits may be meant for exponents -b; as they stand they cannot hold.
+conditions b > 0 of its two fits may be meant for exponents -b; as printed they cannot hold.
 """
 
 from __future__ import annotations
@@ -16,27 +16,29 @@ from ..base.numeric import Array
 from ..design.material_fits import Fit, fit_double_exponential, fit_power_law
 from ..models import damping, forces, friction
 from ..models.friction import HUANG_TABLE_2, StribeckParameters
+from .papers import published_numbers
 
 
 @dataclass(frozen=True, slots=True)
 class Paper:
-    """What the paper prints beside table 2, SI; the comment is its place."""
+    """What the paper prints beside table 2, SI; ``notes/huang.yaml`` has the places."""
 
-    bore: float = 0.110  # table 1, test A: piston, DAS seal
-    rod: float = 0.080
-    stroke: float = 0.560  # section 2
-    plunger: float = 0.125  # table 1, test B: one chamber, step ring and Yx seal
-    speeds: tuple[float, float] = (0.5e-3, 10e-3)  # section 2
-    shown_a: tuple[float, float] = (9.17e-3, 7.15e6)  # figure 3, speed and pressure
-    pressures: tuple[float, float] = (0.6e6, 6e6)  # section 2, test B
-    claimed: tuple[float, float] = (0.65e6, 0.2e6)  # B at these pressures, at no stated speed
-    compared: float = 6e6  # figure 15, measured and simulated
-    simulated: tuple[float, float] = (8e6, 10e6)  # figure 16
-    tightest: float = 5e6  # figure 17: beyond it the largest contact stress falls
-    ring_speeds: tuple[float, float, float] = (0.5e-3, 1e-3, 3e-3)  # figures 19 and 20
-    chamber_shear: float = 41.72  # section 4
-    dry_friction: tuple[float, float] = (0.1, 0.25)  # step ring and Yx seal, section 3.1.2
-    interpolation: tuple[float, float] = (1.3691e-26, 4.4979e-26)  # figures 3, 6: sums of squares
+    bore: float
+    rod: float
+    stroke: float
+    plunger: float
+    speeds: tuple[float, float]
+    shown_speed: float
+    shown_pressure: float
+    pressures: tuple[float, float]
+    claimed: tuple[float, float]
+    compared: float
+    simulated: tuple[float, float]
+    tightest: float
+    ring_speeds: tuple[float, float, float]
+    chamber_shear: float
+    dry_friction: tuple[float, float]
+    interpolation: tuple[float, float]
 
     @property
     def plunger_area(self) -> float:
@@ -44,11 +46,14 @@ class Paper:
         return float(forces.piston_area(bore=self.plunger))
 
 
-PAPER = Paper()
+PAPER = published_numbers(Paper, "huang")
+
 SPEEDS = np.linspace(*PAPER.speeds, 20)
 """Speeds the curves of figures 7 and 15 are drawn and fitted at: the printed range, our places."""
+
 TOLERANCE = 0.15
 """How near a printed value counts as holding."""
+
 SEAL_VISCOSITY = 0.043
 """Of the published rod-seal studies the paper takes its friction from (Pa s); it prints none."""
 
@@ -81,15 +86,15 @@ class Claim(NamedTuple):
 def claim_at(speed: float) -> Claim:
     """What table 2 makes of the printed linear fall at a speed."""
     pressures = np.array([row.pressure for row in HUANG_TABLE_2])
-    found = np.array([float(secant_of(row, speed)) for row in HUANG_TABLE_2])
-    line = np.interp(pressures, pressures[[0, -1]], found[[0, -1]])
-    errors = (found[0] / PAPER.claimed[0] - 1, found[-1] / PAPER.claimed[1] - 1)
+    dampings = np.array([float(secant_of(row, speed)) for row in HUANG_TABLE_2])
+    line = np.interp(pressures, pressures[[0, -1]], dampings[[0, -1]])
+    errors = (dampings[0] / PAPER.claimed[0] - 1, dampings[-1] / PAPER.claimed[1] - 1)
     return Claim(
         speed=speed,
-        low=float(found[0]),
-        high=float(found[-1]),
+        low=float(dampings[0]),
+        high=float(dampings[-1]),
         errors=(float(errors[0]), float(errors[1])),
-        bend=float(np.max(np.abs(found / line - 1))),
+        bend=float(np.max(np.abs(dampings / line - 1))),
     )
 
 

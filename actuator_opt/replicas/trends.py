@@ -1,16 +1,16 @@
 """[AaltoThesis] Table 1 on a design's O-rings: which way each of ten factors moves friction.
 
 Table 1 lists what raises the friction of an O-ring, from an O-ring handbook. Here every factor of a
-design is moved by a little and the friction of its two rings is evaluated again: with coefficients
-of friction, and on the oil film. The relative change of friction over that of the factor, the
-elasticity, bears the verdict. The film answers to the first order by its exact slopes, as in every
-evaluation; where a contact law has a kink, as at a squeeze of 15 %, the slope is of one side.
+design moves by a little and the friction of its two rings is evaluated again: with coefficients of
+friction, and on the oil film. The elasticity, relative change of friction over that of the factor,
+gives the verdict. The film answers to the first order by its exact slopes, as in every evaluation;
+where a contact law has a kink, as at a squeeze of 15 %, the slope is of one side.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Container, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
@@ -19,6 +19,7 @@ import numpy as np
 from ..base.errors import InputError, Unsolvable
 from ..design.model import Design
 from ..design.seals import Seal
+from ..evaluation import Evaluation
 from ..evaluation.build import prepare
 from ..evaluation.film_tables import floats
 from ..evaluation.kernel import PreparedDesign, base, compute
@@ -26,17 +27,23 @@ from ..evaluation.rings import Place, Ring
 from ..evaluation.seal_contact import seal_contact
 from ..evaluation.values import Values, of_case
 from ..friction import coefficient, film
+from ..rendering import text
+from ..rendering.blocks import Table, text_table
 from ..seals import o_ring
 from ..seals.kinds import SIZES
+from .papers import Reasons, listed, reasons
 
 Verdict = Literal["agrees", "disagrees", "no effect", "no answer"]
 
 PLACES: tuple[Place, ...] = ("piston", "rod")
+
 STEP = 1e-3
 """Relative step of a factor, both ways (absolute temperature: 0.3 K)."""
+
 NEGLIGIBLE = 1e-3
 """Elasticity below which a factor has no effect: doubled, it moves friction by 0.1 % (a choice,
 below what the film's own nodes leave uncertain)."""
+
 ELASTOMER = "nbr_70"
 """Compound of the O-rings put where the design has another seal: the thesis names none."""
 
@@ -188,7 +195,7 @@ def trends(design: Design) -> Trends | None:
     (running,) = compute(subject, v).computed.metrics["friction_running"].values()
     index = max(moving, key=lambda i: np.nan_to_num(of_case(running, i)))
     case = design.load_cases[index]
-    dry, wet = (one.model_copy(update={"load_cases": (case,)}) for one in (dry, wet))
+    dry, wet = (fitted.model_copy(update={"load_cases": (case,)}) for fitted in (dry, wet))
     oiled = prepare(wet)
     return Trends(
         case=case.name,
@@ -236,12 +243,12 @@ def _model(subject: PreparedDesign) -> Model:
     """Friction of a design of one load case, and how every factor moves it."""
     nothing = (math.nan,) * len(FACTORS)
     try:
-        found = compute(subject, subject.values(_moved(subject))).computed.metrics
+        metrics = compute(subject, subject.values(_moved(subject))).computed.metrics
     except (InputError, Unsolvable) as error:
         return Model(math.nan, math.nan, nothing, error.diagnostics[0].message)
     columns = 2 * len(FACTORS) + 1
     (running,), (breakaway,) = (
-        found[name].values() for name in ("friction_running", "friction_breakaway")
+        metrics[name].values() for name in ("friction_running", "friction_breakaway")
     )
     row = np.broadcast_to(np.asarray(running, dtype=float), (1, columns))[0]
     if not (row > 0).all():
@@ -267,7 +274,7 @@ def _moved(subject: PreparedDesign) -> dict[str, np.ndarray]:
 
 def _paths(subject: PreparedDesign, factor: Factor, v: Values) -> Sequence[str]:
     """PATHs of a factor in a design; a groove's width may be left to its default."""
-    found = [
+    paths = [
         path.format(
             place=place,
             compound=getattr(subject.design.seals, place).compound,
@@ -276,4 +283,128 @@ def _paths(subject: PreparedDesign, factor: Factor, v: Values) -> Sequence[str]:
         for path in factor.paths
         for place in PLACES
     ]
-    return [path for path in dict.fromkeys(found) if path in v or path.endswith("groove_width")]
+    return [path for path in dict.fromkeys(paths) if path in v or path.endswith("groove_width")]
+
+
+TITLE = "Aalto thesis: what raises O-ring friction, its table 1"
+
+COLUMNS = ("to increase friction, as printed", "ours by coefficient", "ours on the oil film")
+
+PRINTED = {1: "increase", -1: "decrease"}
+"""What the column "to increase friction" prints."""
+
+COEFFICIENT, FILM = reasons("aalto", "coefficient"), reasons("aalto", "film")
+"""Why the friction by coefficients, and on the oil film, goes the way it does."""
+
+OTHERWISE: Mapping[Verdict, str] = {
+    "agrees": "as printed",
+    "disagrees": "we do not know why",
+    "no effect": "it does not enter",
+}
+"""Where the numbers go another way than any explained above."""
+
+
+def trends_table(evaluation: Evaluation) -> Table:
+    """Table 1 beside the design's friction by coefficient and on the film."""
+    table_1 = trends(evaluation.design)
+    printed = [f"{PRINTED[factor.direction]} {factor.name}" for factor in FACTORS]
+    if table_1 is None:
+        note = "No load case moves: friction that runs needs a speed above zero."
+        return text_table(
+            TITLE, COLUMNS, [(factor, text.DASH, text.DASH) for factor in printed], note
+        )
+    facts = {
+        "ratio": text.trimmed(table_1.stribeck_ratio, 2),
+        "roughness": text.trimmed(table_1.roughness_ratio, 2),
+        "contact": f"{100 * table_1.contact_share:.0f} %",
+        "oil": "and thin oil acts like less speed: less friction as well"
+        if table_1.film.elasticities[_index("relative motion speed")] > 0
+        else "which counts for more than the lift that thin oil loses",
+    }
+    rows = [
+        (
+            words,
+            _cell(table_1.coefficient, COEFFICIENT, index).format(**facts),
+            _cell(table_1.film, FILM, index).format(**facts),
+        )
+        for index, words in enumerate(printed)
+    ]
+    return text_table(TITLE, COLUMNS, rows, _note(table_1))
+
+
+def _cell(model: Model, known: Reasons, index: int) -> str:
+    """Elasticity, verdict and reason."""
+    said = model.verdict(index)
+    if said == "no answer":
+        return text.DASH
+    value = model.elasticities[index]
+    shown = "" if said == "no effect" else f"{text.number(value, 2, signed=True)} "
+    return f"{shown}{said}: {known.get(FACTORS[index].name, {}).get(said, OTHERWISE[said])}"
+
+
+def _note(table_1: Trends) -> str:
+    dry, two = table_1.coefficient, table_1.film
+    point = (
+        f"Numbers: relative change of friction over that of the factor (no effect below "
+        f"{text.trimmed(NEGLIGIBLE)}), both rings together, in the case "
+        f"{table_1.case}: {text.trimmed(dry.running, 3)} N by coefficient, "
+    )
+    point += (
+        f"no film ({two.why}). "
+        if two.why
+        else f"{text.trimmed(two.running, 3)} N on the film ({text.trimmed(two.breakaway, 3)} N "
+        "with all oil squeezed out). "
+    )
+    return (
+        point
+        + "Temperature is absolute: 1 % is 3 K. All pressures move together, squeeze stays a share "
+        "of the section. " + _rings(table_1) + _pressure(table_1) + _rest(table_1)
+    )
+
+
+def _rings(table_1: Trends) -> str:
+    if not table_1.replaced:
+        return ""
+    return (
+        f"The table is of O-rings: the design's {listed(table_1.replaced)} got one of "
+        f"{ELASTOMER} with section and squeeze as they are. "
+    )
+
+
+def _pressure(table_1: Trends) -> str:
+    """The one row that the thesis prints against its own source."""
+    odd = [factor.name for factor in FACTORS if factor.direction != factor.handbook]
+    said = table_1.coefficient.verdict(_index("hydraulic pressure"))
+    ours = {
+        "agrees": "ours falls too here",
+        "disagrees": "ours rises, as an energised ring must",
+    }.get(said, "ours has no pressure to answer to here")
+    return (
+        f"One row is turned: less {listed(odd)} cannot press a ring on harder. In the "
+        "scanned text all ten rows print opposite words left and right: no column is swapped. But "
+        "the O-ring handbook's own table (ORingFriction, A6-1), which prints nine rows alike, "
+        f"prints Increase there; {ours}. A fall with pressure was measured on other seals: Huang "
+        "2017, table 2, a step ring with a lip seal. "
+    )
+
+
+def _rest(table_1: Trends) -> str:
+    """What is ambiguous in print, and the order of significance."""
+    model = table_1.coefficient if table_1.film.why else table_1.film
+    order = table_1.order(model)
+    significance = (
+        f"The thesis lists the factors in order of significance, metal finish second; 1 % more "
+        f"weighs most for {listed(order[:3])} here. "
+        if order
+        else ""
+    )
+    either = model.verdict(_index("O-ring surface finish"))
+    turned = "and the verdict turns" if either in ("agrees", "disagrees") else "to the same effect"
+    return (
+        significance + "Surface finish of the O-ring is read as roughness like the metal's; read "
+        f"as quality, a decrease means rougher rubber, {turned}."
+    )
+
+
+def _index(name: str) -> int:
+    return next(i for i, factor in enumerate(FACTORS) if factor.name == name)

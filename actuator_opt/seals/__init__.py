@@ -1,6 +1,6 @@
 """Seal types: one module each, listed in `kinds.TYPES`.
 
-A new type is a module with `TYPE = SealType(...)` and one line in `kinds`. Everything that depends
-on the type reads its `SealType`: words and help of the design file, JSON Schema, faults, groove,
-contact, outline, provenance and finite elements.
+A new type is a module with `TYPE = SealType(...)` and one line in `kinds`. Choices and
+help of the design file, JSON Schema, faults, groove, contact, outline, provenance and finite
+elements read its `SealType`.
 """

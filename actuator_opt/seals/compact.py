@@ -1,4 +1,4 @@
-"""A compact seal: a rubber block between two guides, sealing both ways."""
+"""A compact seal: a rubber block between two guides, effective in both directions."""
 
 from __future__ import annotations
 
@@ -37,14 +37,14 @@ def contact(seal: SealSizes) -> SealContact:
 
 
 def groove(sizes: Mapping[str, Array]) -> SealGroove:
-    """A block of its free section."""
+    """Groove for a block of the free section."""
     section, width = sizes["section"], sizes["width"]
     depth = gland.gland_depth(squeeze=sizes["squeeze"], section=section)
     return SealGroove(depth, width, AXIAL_PLAY * width, (Piece(section * width, depth / 2),))
 
 
 def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
-    """A block whose face is the land, flanked where the body is wider."""
+    """A block with the land as its face, tapered where the body is wider."""
     width, depth, middle = sizes["width"], room.depth, room.middle
     land = min(sizes["land"], width)
     a, b = middle - width / 2, middle + width / 2
@@ -58,7 +58,7 @@ def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
 TYPE = SealType(
     name="compact",
     title="compact seal",
-    help="a rubber body between two guides, sealing both ways",
+    help="a rubber body between two guides, effective in both directions",
     fields=(SizeField(WIDTH, None), SizeField(LAND, lambda sizes: 1.0 * sizes["width"])),
     faults=no_faults,
     groove=groove,

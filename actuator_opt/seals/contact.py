@@ -9,7 +9,7 @@ from ..base.numeric import Array, maximum
 from ..models import contact_land
 
 WITHIN, TOUCHING = 1e-6, 1.0
-"""Least excess of a static profile, as a part of the sealed pressure and in Pa: with less the
+"""Least excess of a static profile, as a share of the sealed pressure and in Pa: below it the
 sealed pressure would open the contact."""
 
 
@@ -20,13 +20,12 @@ class SealContact:
     Parameters
     ----------
     line_load : normal force per length of circumference [N/m]
-    width : of the contact [m]
-    peak : highest contact pressure, over the outer one [Pa]
-    profile : static contact pressure over the outer one [Pa] at t = x/b, 0 on the sealed side
-    excess : of the profile over the oil pressure [Pa]; where it is not above zero the sealed
-        pressure opens the contact, and the profile shows a bare touch
-    profile_width : width the profile stands on [m]: the contact's, or less where the load is too
-        small
+    width : contact width [m]
+    peak : highest contact pressure above the outer pressure [Pa]
+    profile : static contact pressure above the outer pressure [Pa] at t = x/b, 0 on the sealed side
+    excess : excess of the profile over the oil pressure [Pa]; without an excess the sealed
+        pressure opens the contact, and the profile shows bare touch
+    profile_width : width of the profile [m]: the contact width, or less if the load is too small
     """
 
     line_load: Array
@@ -46,7 +45,7 @@ def shaped(
     excess_law: Callable[..., Array],
     profile_law: Callable[..., Array],
 ) -> SealContact:
-    """A contact whose profile is a shape with the excess that carries the load."""
+    """A contact with a given profile shape, scaled to carry the load."""
     ends = {"sealed_pressure": pressure, "outer_pressure": 0.0}
     excess = excess_law(line_load=load, width=width, **ends)
 

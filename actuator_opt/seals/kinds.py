@@ -1,4 +1,4 @@
-"""Every seal type, by the word of a design file."""
+"""All seal types of a design file."""
 
 from __future__ import annotations
 
@@ -17,4 +17,4 @@ TYPES: Kinds[SealType] = kinds_in(
 )
 
 SIZES = tuple(dict.fromkeys((*SHARED, *(x.size for one in TYPES.values() for x in one.fields))))
-"""Sizes a design file knows: the shared ones, then those of single types."""
+"""All sizes of a design file: shared sizes first, then those of single types."""

@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from ..finite_elements.result import SealSolution
 
 ON_LIMIT = 1e-6
-"""Squeeze beyond an end of a law's range that an optimum on its limit may have."""
+"""Squeeze beyond the range of a law that an optimum on its limit may have."""
 
 
 def law_inputs(seal: SealSizes) -> dict[str, Array]:
-    """What a law of `models.seals.LAWS` reads of a round ring."""
+    """Inputs of a law of `models.seals.LAWS` for a round ring."""
     return {
         "squeeze": seal["squeeze_left"],
         "section": seal["section"],
@@ -33,7 +33,7 @@ def law_inputs(seal: SealSizes) -> dict[str, Array]:
 
 
 def contact(seal: SealSizes) -> SealContact:
-    """Contact by the law of the ring, no wider than the groove."""
+    """Contact by the law of the ring, limited to the groove width."""
     law, inputs, pressure = seals.LAWS[seal.law], law_inputs(seal), seal["pressure"]
     width = gland.limited_width(
         contact_width=law.contact_width(**inputs), groove_width=seal["groove_width"]
@@ -43,7 +43,7 @@ def contact(seal: SealSizes) -> SealContact:
         excess=peak - pressure, sealed_pressure=pressure, outer_pressure=0.0
     )
     touching = real(at_rest) > 0
-    narrow = minimum(width, load / where(touching, at_rest, 1.0))  # a soft ring's law is too wide
+    narrow = minimum(width, load / where(touching, at_rest, 1.0))  # soft rings: too wide
     found = shaped(
         load,
         narrow,
@@ -74,13 +74,13 @@ def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
 
 
 def law_warnings(seal: SealSizes) -> Iterable[str]:
-    """A law outside the hardness, squeeze and pressure it was compared with data on."""
+    """A law outside the hardness, squeeze or pressure of its test data."""
     law = seals.LAWS[seal.law]
     by = elastomer.MODULUS_LAWS[seal.hardness_model]
     hardness = float(np.max(seal["hardness"]))
     if not by.hardness_range[0] <= hardness <= by.hardness_range[1]:
         yield (
-            f"{hardness:g} Shore A, the {by.name} law holds from "
+            f"{hardness:g} Shore A, the {by.name} law is valid from "
             f"{by.hardness_range[0]:g} to {by.hardness_range[1]:g}"
         )
     ratio = float(np.max(np.abs(seal["pressure"] / seal["youngs_modulus"])))
@@ -117,7 +117,7 @@ def _solve(seal: SealSizes, width: float, pressures: Sequence[float]) -> SealSol
 TYPE = SealType(
     name="o_ring",
     title="O-ring",
-    help="a rubber ring of round section",
+    help="a rubber ring with round section",
     fields=(),
     faults=no_faults,
     groove=groove,
@@ -130,5 +130,5 @@ TYPE = SealType(
     model=None,
     contact_model="{law} O-ring",
     warnings=law_warnings,
-    elements=Elements(_solve, "The last step down to the outer side depends on the mesh."),
+    elements=Elements(_solve, "The last step towards the outer side depends on the mesh."),
 )

@@ -1,7 +1,7 @@
-"""Outlines of seals as polygons, in their groove, mounted without pressure.
+"""Outlines of seals as polygons, mounted in their groove without pressure.
 
 x runs from the sealed side of the groove, r from the counterface into the groove; m. A round ring
-keeps its section: squeezed, it is a rectangle between two half circles.
+keeps its section area: squeezed, it is a rectangle between two half circles.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ _CORNERS = 24
 
 
 class Shape(NamedTuple):
-    """A closed polygon of one kind; `free` is the outline before mounting."""
+    """A named closed polygon; `free` is the outline before mounting."""
 
     kind: Literal["elastomer", "polymer", "back-up", "free"]
     points: Polygon
@@ -26,7 +26,7 @@ def box(left: float, right: float, low: float, high: float) -> Polygon:
 
 
 def stadium(middle: float, low: float, high: float, section: float) -> Polygon:
-    """Outline of a round section pressed to the height high - low; a circle where it is not.
+    """Outline of a round section compressed to the height high - low; a circle if uncompressed.
 
     >>> points = stadium(0.0, 0.0, 0.8, 1.0)
     >>> f"{max(x for x, _ in points) - min(x for x, _ in points):.4f}"

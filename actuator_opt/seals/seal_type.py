@@ -1,4 +1,4 @@
-"""What a seal type states: words, sizes, faults, groove, contact, outline, elements."""
+"""Interface of a seal type: names, sizes, faults, groove, contact, outline, elements."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ if TYPE_CHECKING:
     from ..finite_elements.result import SealSolution
 
 AXIAL_PLAY = 1.1
-"""Groove over seal width where no groove is stated (choice: 10 % room to move and swell)."""
+"""Default groove over seal width (choice: 10 % clearance for motion and swell)."""
 
 
 @dataclass(frozen=True, slots=True)
 class SealSizes:
-    """Numbers of a seal by name, SI, and the words that pick its laws.
+    """Numbers of a seal by name, SI, and the names of its laws.
 
     Parameters
     ----------
     numbers : those of the design file (`section`, `squeeze`, every size of the type) and
-        `gland_depth`, `groove_width`, `diameter` of the counterface, `youngs_modulus` of what is
-        squeezed, `pressure` it seals and `squeeze_left` under it; `hardness` where it is read;
-        `face_modulus` and `face_poissons_ratio` of the sliding face where the type has `face`;
+        `gland_depth`, `groove_width`, `diameter` of the counterface, `youngs_modulus` of the
+        squeezed part, sealed `pressure` and remaining `squeeze_left`; `hardness` if needed;
+        `face_modulus` and `face_poissons_ratio` of the sliding face if the type has `face`;
         floats, or arrays that broadcast
-    law : of contact of a round ring (`models.seals.LAWS`)
-    hardness_model : of its modulus (`models.elastomer.MODULUS_LAWS`)
+    law : contact law of a round ring (`models.seals.LAWS`)
+    hardness_model : law of its modulus (`models.elastomer.MODULUS_LAWS`)
     on_rod : whether the counterface is a rod, not a bore
     """
 
@@ -45,7 +45,7 @@ class SealSizes:
 
 
 class SizeFault(NamedTuple):
-    """A size that does not fit the others: its key, what is wrong, what to do."""
+    """A size that contradicts others: its key, the fault, the remedy."""
 
     key: str
     message: str
@@ -53,7 +53,7 @@ class SizeFault(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """A part in a groove, of the seal's compound: free section [m^2], depth of its centre [m]."""
+    """A part in a groove, of the seal compound: free section [m^2], depth of its centre [m]."""
 
     area: Array
     depth: Array
@@ -64,10 +64,10 @@ class SealGroove(NamedTuple):
 
     Parameters
     ----------
-    depth : from the counterface, at nominal squeeze [m]
+    depth : depth from the counterface at nominal squeeze [m]
     ring_width : axial width of the seal [m]
-    width : of the groove where the design states none [m]
-    pieces : what lies in it
+    width : default groove width [m]
+    pieces : parts in the groove
     """
 
     depth: Array
@@ -77,7 +77,7 @@ class SealGroove(NamedTuple):
 
 
 class Room(NamedTuple):
-    """The groove that back-up rings leave: its ends along the cylinder, its depth [m]."""
+    """Space of a seal between its back-up rings: axial ends, depth [m]."""
 
     start: float
     end: float
@@ -90,13 +90,13 @@ class Room(NamedTuple):
 
 
 class Elements(NamedTuple):
-    """Finite elements of a seal type.
+    """Finite-element solution of a seal type.
 
     Parameters
     ----------
-    solve : contacts of a seal of floats, of the groove's width that back-up rings leave [m] and
-        rising sealed pressures [Pa]; imports what it needs itself
-    note : how far the peak of their contact depends on the mesh
+    solve : contacts of a seal of floats, from groove width without back-up rings [m] and
+        increasing sealed pressures [Pa]; imports its libraries itself
+    note : mesh dependence of the contact peak
     """
 
     solve: Callable[[SealSizes, float, Sequence[float]], SealSolution]
@@ -105,29 +105,29 @@ class Elements(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class SealType:
-    """A type of seal; every piece must be given.
+    """A type of seal; every field must be stated.
 
     Parameters
     ----------
-    name : word in a design file
-    title : in reports
-    help : what the word means
-    fields : sizes it has; a design refuses the others
-    faults : sizes (floats by key, those a design states) that contradict each other
-    groove : of `section`, `squeeze` and the needed sizes, floats or arrays by key
-    contact : at the numbers of a seal
-    outline : mounted, of floats by key, in the room it has
-    round_ring : whether a round ring is squeezed: its contact follows from a law of `LAWS`, its
-        modulus from its hardness, and both have a range of squeeze and hardness
-    modulus_by : Young's modulus of what is squeezed: by the compound's hardness, because its stated
-        modulus is that of a plastic ring before the rubber; else stated, or by hardness
-    face : whether its contact reads modulus and Poisson's ratio of the sliding face
-    o_ring_gland : whether it lies alone in a standard O-ring gland: its fill, stretch and section
-        are checked, sizes and compounds of O-rings fit
-    model : function that computes its line load, cited as its model; None: its law of `LAWS`
-    contact_model : the same in words; {law} is replaced by the law's name
-    warnings : what to doubt about its contact at the numbers of a seal
-    elements : finite elements; None: there are none
+    name : name in a design file
+    title : title in reports
+    help : meaning of the name
+    fields : its sizes; a design must not state others
+    faults : contradictions between stated sizes (floats by key)
+    groove : groove for `section`, `squeeze` and the required sizes, floats or arrays by key
+    contact : contact for the numbers of a seal
+    outline : mounted outline for floats by key, in its space
+    round_ring : whether the squeezed part is a round ring: its contact follows from a law of
+        `LAWS`, its modulus from its hardness, and both have a range of squeeze and hardness
+    modulus_by : source of the modulus of the squeezed part: always hardness, if the compound
+        states the modulus of a plastic ring; else stated, or by hardness
+    face : whether its contact depends on the elastic constants of the sliding face
+    o_ring_gland : whether it is alone in a standard O-ring gland: fill, stretch and section are
+        checked, sizes and compounds of O-rings apply
+    model : function of its line load, cited as its model; None: its law of `LAWS`
+    contact_model : the same in words; {law} is replaced by the name of the law
+    warnings : doubts about the contact for the numbers of a seal
+    elements : finite-element solution, or None
     """
 
     name: str
@@ -154,23 +154,23 @@ class SealType:
 
     @cached_property
     def needed(self) -> tuple[str, ...]:
-        """Keys of the sizes that a design must state."""
+        """Keys of the required sizes."""
         return tuple(field.key for field in self.fields if field.default is None)
 
     @property
     def width_key(self) -> str:
-        """Key of its axial width: that of a round ring is its section."""
+        """Key of its axial width; for a round ring its section."""
         return "width" if "width" in self.keys else "section"
 
     def sizes(
         self, stated: Mapping[str, Array], *, section: Array, gland_depth: Array
     ) -> dict[str, Array]:
-        """Every size of the type: stated, else its default; a needed one must be stated.
+        """All sizes of the type: stated value, else default; required sizes must be stated.
 
         Parameters
         ----------
         stated : sizes by key, SI
-        section, gland_depth : of the seal and its groove [m]
+        section, gland_depth : section of the seal, depth of its groove [m]
         """
         known: dict[str, Array] = {"section": section, "gland_depth": gland_depth}
         for field in self.fields:
@@ -183,10 +183,10 @@ class SealType:
 
 
 def no_faults(sizes: Mapping[str, float]) -> Iterable[SizeFault]:
-    """Of a type whose sizes never contradict each other."""
+    """No faults, for a type whose sizes cannot contradict each other."""
     return ()
 
 
 def no_warnings(seal: SealSizes) -> Iterable[str]:
-    """Of a type whose model has no range of its own."""
+    """No warnings, for a type whose model has no limited range."""
     return ()

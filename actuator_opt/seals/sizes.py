@@ -1,4 +1,4 @@
-"""Sizes a seal type can have beside section and squeeze: their keys in a design file."""
+"""Sizes of seal types besides section and squeeze, as keys of a design file."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from ..base.numeric import Array
 
 
 class Size(NamedTuple):
-    """A size of a seal, a key of the design file.
+    """A size of a seal, as a key of the design file.
 
     Parameters
     ----------
-    key : in the design file
-    quantity : name of its `quantities.INPUTS`
+    key : key in the design file
+    quantity : its name in `quantities.INPUTS`
     help : its meaning, for the JSON Schema
-    example : a good value, for messages
+    example : valid value, for messages
     """
 
     key: str
@@ -31,8 +31,8 @@ class SizeField(NamedTuple):
     Parameters
     ----------
     size : the size
-    default : its value where the design states none, of the numbers before it (SI), among them
-        `section` and `gland_depth`; None where the design must state it
+    default : function of default value from the preceding numbers (SI), such as `section` and
+        `gland_depth`; None if the design must state the size
     """
 
     size: Size
@@ -62,29 +62,29 @@ GROOVE_WIDTH = Size(
 LAND = Size(
     "land",
     "part_length",
-    "axial width of the face that touches without pressure; default: half of a step "
-    "ring's width, all of a compact seal's; of a U-cup twice the radius of its rim, "
-    "default a tenth of the lip's length",
+    "axial width of the face in contact without pressure; default: half the width of a "
+    "step ring, the whole width of a compact seal; for a U-cup twice its rim radius, "
+    "default a tenth of the lip length",
     "2 mm",
 )
 RELIEF = Size(
     "relief",
     "length",
-    "face of a step ring before its land, wetted by the pressure; default: half of what "
-    "the land leaves",
+    "pressure-wetted face of a step ring in front of its land; default: half of the "
+    "width outside the land",
     "1 mm",
 )
 TAPER = Size(
     "taper",
     "taper",
-    "angle between the flanks of a step ring's land and its counterface; default: 6 deg",
+    "angle between the counterface and the tapers beside a step ring's land; default: 6 deg",
     "6 deg",
 )
 ROOT_CLEARANCE = Size(
     "root_clearance",
     "length",
-    "gap under a U-cup's lip where it leaves the body; default: its interference",
+    "gap under a U-cup's lip at the body; default: its interference",
     "0.3 mm",
 )
 SHARED = (THICKNESS, WIDTH, GROOVE_WIDTH, LAND, RELIEF, TAPER, ROOT_CLEARANCE)
-"""Sizes in the order of a design file; a type may have more of its own."""
+"""Sizes in the order of a design file; a type may have further sizes."""

@@ -13,7 +13,7 @@ from .contact import SealContact
 
 
 class Profile(Protocol):
-    """Contact pressures over the outer one [Pa] at positions [m], at one sealed pressure [Pa]."""
+    """Contact pressures above the outer pressure [Pa] at positions [m], for one sealed pressure."""
 
     @property
     def pressure(self) -> float:
@@ -21,20 +21,20 @@ class Profile(Protocol):
 
     @property
     def positions(self) -> tuple[float, ...]:
-        """From the sealed side, from 0 upwards [m]."""
+        """Distances from the sealed side, increasing from 0 [m]."""
 
     @property
     def stresses(self) -> tuple[float, ...]:
-        """Contact pressures there [Pa]."""
+        """Contact pressures at the positions [Pa]."""
 
 
 def contact(tables: Sequence[Profile], pressure: Array) -> SealContact:
-    """Stated profiles, interpolated between the two pressures around, at equal t.
+    """Stated profiles, interpolated between neighbouring pressures at equal t.
 
     Parameters
     ----------
-    tables : in the order of their sealed pressures
-    pressure : sealed [Pa]
+    tables : profiles in order of sealed pressure
+    pressure : sealed pressure [Pa]
     """
     known = [table.pressure for table in tables]
     shares = [_share(pressure, known, i) for i in range(len(tables))]
@@ -64,13 +64,13 @@ def contact(tables: Sequence[Profile], pressure: Array) -> SealContact:
     mixed = sum(
         np.asarray(share)[..., None] * row for share, row in zip(shares, at_knots, strict=True)
     )
-    highest = np.argmax(real(mixed), axis=-1)[..., None]  # straight lines peak at a knot
+    highest = np.argmax(real(mixed), axis=-1)[..., None]  # piecewise linear: peak at a knot
     peak = np.take_along_axis(mixed, highest, axis=-1)[..., 0]
     return SealContact(load, width, peak, profile, peak - pressure, width)
 
 
 def _share(pressure: Array, known: Sequence[float], index: int) -> Array:
-    """Weight of one table at a pressure: 1 at its own, falling to 0 at its neighbours'."""
+    """Weight of a table at a pressure: 1 at its own, falling to 0 at the neighbouring pressures."""
     own = known[index]
     rising: Array = 1.0
     falling: Array = 1.0

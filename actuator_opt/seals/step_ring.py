@@ -1,4 +1,4 @@
-"""A step ring: a plastic ring with a worn-in land, pressed on by an O-ring behind it."""
+"""A step ring: a plastic ring with a worn-in land, energised by an O-ring behind it."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ if TYPE_CHECKING:
     from ..finite_elements.result import SealSolution
 
 TAPER_DEFAULT = math.radians(6.0)
-"""Taper beside the land where none is stated: a choice."""
+"""Default taper beside the land (a choice)."""
 
 LAND_SHARE = 0.5
-"""Land over width where none is stated: a choice."""
+"""Default land over width (a choice)."""
 
 ROOM = 0.1
-"""Share by which the O-ring may be wider than the ring: its groove is that much wider."""
+"""Share by which the O-ring may exceed the ring width: its groove is wider by this share."""
 
 ENERGISER_ELEMENTS = 96
-"""Elements around the O-ring: with 64 some load steps leave a dent in its contact, 8 % of the line
-load, or find no balance."""
+"""Elements around the O-ring: with 64, some load steps dent its contact by 8 % of the line
+load, or do not converge."""
 
 EDGE = 0.15e-3
 """Radius of the edges of the land in finite elements, m (choice: broken edges of a turned PTFE
@@ -39,7 +39,7 @@ _text = INPUTS["length"].text
 
 
 def contact(seal: SealSizes) -> SealContact:
-    """Load of the O-ring and the pressure behind the ring, on its land."""
+    """Load of the O-ring and of the pressure behind the ring, on its land."""
     law, inputs = seals.LAWS[seal.law], law_inputs(seal)
     pressure, width, land = seal["pressure"], seal["width"], seal["land"]
     foot = law.contact_width(**inputs | {"pressure": 0.0 * pressure})
@@ -66,7 +66,7 @@ def contact(seal: SealSizes) -> SealContact:
 
 
 def groove(sizes: Mapping[str, Array]) -> SealGroove:
-    """The ring, and the O-ring behind it."""
+    """Groove for the ring and the O-ring behind it."""
     section, width, thickness = sizes["section"], sizes["width"], sizes["thickness"]
     behind = gland.gland_depth(squeeze=sizes["squeeze"], section=section)
     ring = round_piece(section, behind)
@@ -97,14 +97,14 @@ def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
 
 
 def faults(sizes: Mapping[str, float]) -> Iterable[SizeFault]:
-    """The O-ring is no wider than its ring; land and relief lie on it."""
+    """The O-ring is not wider than its ring; land and relief fit the ring."""
     width, section = sizes.get("width"), sizes.get("section")
     if width is None or section is None:
         return
     if section > width * (1 + ROOM):
         yield SizeFault(
             "section",
-            f"{_text(section)}: the O-ring behind is wider than the ring ({_text(width)})",
+            f"{_text(section)}: the O-ring is wider than the step ring ({_text(width)})",
             "widen the ring, or use a smaller O-ring",
         )
     land, relief = sizes.get("land"), sizes.get("relief")
@@ -113,7 +113,7 @@ def faults(sizes: Mapping[str, float]) -> Iterable[SizeFault]:
     if land <= width < (land + relief) * (1 - 1e-9):
         yield SizeFault(
             "relief",
-            f"{_text(relief)}: with the land it is wider than the ring ({_text(width)})",
+            f"{_text(relief)}: relief and land are wider than the ring ({_text(width)})",
             f"write at most {_text(width - land)}",
         )
 
@@ -150,7 +150,7 @@ def _solve(seal: SealSizes, width: float, pressures: Sequence[float]) -> SealSol
 TYPE = SealType(
     name="step_ring",
     title="step ring",
-    help="a sliding ring of PTFE, pressed on by an O-ring behind it",
+    help="a sliding ring of PTFE, energised by an O-ring behind it",
     fields=(
         SizeField(WIDTH, None),
         SizeField(LAND, lambda sizes: LAND_SHARE * sizes["width"]),
@@ -171,8 +171,8 @@ TYPE = SealType(
     warnings=law_warnings,
     elements=Elements(
         _solve,
-        "The peak stands at an end of the land and depends on the mesh and on the edge's"
-        " radius; line load and width hardly do. The fall of the peak beyond 5 MPa that Huang2017"
-        " shows is not found.",
+        "The peak is at an end of the land and depends on the mesh and on the edge radius;"
+        " line load and width hardly do. The decrease of the peak above 5 MPa in Huang2017"
+        " is not reproduced.",
     ),
 )

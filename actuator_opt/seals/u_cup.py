@@ -22,7 +22,7 @@ from .seal_type import (
 from .sizes import GROOVE_WIDTH, LAND, ROOT_CLEARANCE, THICKNESS, WIDTH, SizeField
 
 LAND_SHARE = 0.1
-"""Land over the lip's length where none is stated: a choice."""
+"""Default land over lip length (a choice)."""
 
 _text = INPUTS["length"].text
 
@@ -58,7 +58,7 @@ def contact(seal: SealSizes) -> SealContact:
 
 
 def groove(sizes: Mapping[str, Array]) -> SealGroove:
-    """A body as long as the groove, less the room between lips as long as `width`."""
+    """Groove of a body as long as the groove minus its clearance, with space between the lips."""
     section, width = sizes["section"], sizes["width"]
     depth = gland.gland_depth(squeeze=sizes["squeeze"], section=section)
     lips = (2 * sizes["thickness"] - section) * width
@@ -67,7 +67,7 @@ def groove(sizes: Mapping[str, Array]) -> SealGroove:
 
 
 def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
-    """Two lips open to the sealed side; the heel behind them fills the groove up to its play."""
+    """Two lips open to the sealed side; the heel behind them fills the groove but for clearance."""
     start, end, depth = room
     length, thick = sizes["width"], min(sizes["thickness"], 0.42 * depth)
     give = max(float(lip_seal.lip_interference(section=sizes["section"], gland_depth=depth)), 0.0)
@@ -94,17 +94,17 @@ def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
 
 
 def lip_faults(width: float, thickness: float) -> Iterable[SizeFault]:
-    """A lip is longer than thick: else it is no beam, and no model of ours."""
+    """A lip is longer than its thickness; otherwise the beam model does not apply."""
     if width < thickness:
         yield SizeFault(
             "width",
-            f"{_text(width)}: the lip is shorter than thick ({_text(thickness)})",
+            f"{_text(width)}: the lip is shorter than its thickness ({_text(thickness)})",
             f"write {_text(thickness)} or more",
         )
 
 
 def faults(sizes: Mapping[str, float]) -> Iterable[SizeFault]:
-    """Lips longer than thick, and room between them."""
+    """The lips are longer than thick, with space between them."""
     width, thickness, section = (sizes.get(key) for key in ("width", "thickness", "section"))
     if width is None or thickness is None or section is None:
         return
@@ -124,7 +124,7 @@ def _interference(sizes: Mapping[str, Array]) -> Array:
 TYPE = SealType(
     name="u_cup",
     title="U-cup",
-    help="two lips that the pressure spreads",
+    help="two lips, spread by the pressure",
     fields=(
         SizeField(WIDTH, None),
         SizeField(LAND, lambda sizes: LAND_SHARE * sizes["width"]),
@@ -141,7 +141,7 @@ TYPE = SealType(
     face=True,
     o_ring_gland=False,
     model=lip_seal.line_load,
-    contact_model="lip as a clamped short tube",
+    contact_model="lip as a short clamped tube",
     warnings=no_warnings,
     elements=None,
 )

@@ -1,4 +1,4 @@
-"""Time domain: a scenario around a design, its equations, their integration and what it tells."""
+"""Time-domain simulation: a scenario around a design, its equations, integration and results."""
 
 from .result import Simulation
 from .run import simulate

@@ -25,19 +25,19 @@ PRESSURES = INPUTS["pressure"]
 
 
 def ends_of(scenario: Scenario, plant: Plant) -> str:
-    """What the ports lead to."""
+    """What the lines at the ports end at."""
     if scenario.ends is not None:
         return scenario.ends
     return "valve" if plant.valve is not None else plant.design.ports.end
 
 
 def start_of(scenario: Scenario, plant: Plant, records: Records) -> Start:
-    """Position and pressures of the start: the load held by a valve that has closed."""
+    """Position and pressures at the start: a load held by a closed valve."""
     stated, turned, load = scenario.initial, scenario.motor, scenario.load
     place = None if stated.position is None else position_at(stated.position, plant.stroke)
     position = 0.5 * plant.stroke if place is None else float(place)
     areas = plant.area_a, plant.area_b
-    if turned is not None:  # volume per radian and torque, as area and force
+    if turned is not None:  # volume per radian and torque, in place of area and force
         areas = 2 * (turned.machine.setting * turned.machine.displacement / (2 * pi),)
         force = signals.at_start(turned.torque, records)
     else:
@@ -69,14 +69,14 @@ def assemble(
     *,
     linear: bool = False,
 ) -> Circuit:
-    """The equations of a scenario.
+    """Assemble the equations of a scenario.
 
     Parameters
     ----------
-    scenario, plant : what happens, to what
+    scenario, plant : what happens, and the actuator
     records : columns of the files that signals name
-    gains : of the controller, None where there is none
-    linear : leave the controller open at a free variable ``u``, and sticking friction out
+    gains : of the controller, None without one
+    linear : open the loop at a free variable ``u``, without sticking friction
     """
     circuit = Circuit(
         scenario=scenario,
@@ -97,7 +97,7 @@ def assemble(
 
 
 def _command(circuit: Circuit, measured: Feedback) -> Expression:
-    """Signal to the valve: free, stated over time, or the controller's."""
+    """Signal to the valve: free, prescribed over time, or from the controller."""
     system, loop, control = circuit.system, circuit.loop, circuit.scenario.control
     circuit.measured = measured.value
     if circuit.linear:
@@ -114,7 +114,7 @@ def _command(circuit: Circuit, measured: Feedback) -> Expression:
 def _driven(
     circuit: Circuit, wish: Expression, pressures: tuple[Expression, Expression]
 ) -> valve.Port:
-    """Valve with its supply between two far ends."""
+    """The valve with its supply, between two far ends."""
     data = circuit.plant.valve
     if data is None:
         message = "the design has no valve"
@@ -216,7 +216,7 @@ def _chambers(
     position: Symbol,
     speed: Symbol,
 ) -> Expression:
-    """Both chambers with what of their lines counts to them; the force of their pressures."""
+    """Both chambers with their share of the lines; returns the force of their pressures."""
     plant, (a, b) = circuit.plant, sides
     return chambers.cylinder(
         circuit,

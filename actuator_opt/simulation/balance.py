@@ -1,4 +1,4 @@
-"""Mass and energy of a run: what is stored against what came through the doors."""
+"""Mass and energy balance of a run: stored content against flows across the boundary."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .system import System
 
 
 def balance(circuit: Circuit, run: Trajectory) -> Balance:
-    """The balance of a run, from its states alone: content and energy are functions of them."""
+    """The balance of a run from its states, as content and energy are functions of them."""
     audit, system = circuit.audit, circuit.system
     at = {state.symbol.index: k for k, state in enumerate(system.states)}
 

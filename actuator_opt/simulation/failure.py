@@ -1,4 +1,4 @@
-"""What a run says that could not go on."""
+"""Explanation of a run that failed."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from .methods import Stuck
 from .system import Compiled
 
 TOLD = ("position", "speed", "shaft_speed", "pressure_a", "pressure_b", "pressure_supply")
-"""Signals that show what happened."""
+"""Signals that help to explain a failure."""
 OUT = 0.1
-"""Share of the stroke by which a piston beyond it is out of its stops (a choice)."""
+"""Overrun of the stroke, as a share of it, beyond which the stops have failed (a choice)."""
 
 
 def failed(stuck: Stuck, compiled: Compiled, plant: Plant) -> Unsolvable:
-    """The failure with what the actuator did there, and the likeliest cause."""
+    """The failure with the actuator's state there, and the likeliest cause."""
     flags = np.zeros((len(compiled.system.flags), 1), dtype=bool)
     signals = compiled.signals(np.array([stuck.time]), stuck.state[:, None], list(flags))
     words = [
@@ -34,13 +34,13 @@ def failed(stuck: Stuck, compiled: Compiled, plant: Plant) -> Unsolvable:
 
 
 def _outside(signals: Mapping[str, Array], plant: Plant) -> str:
-    """What to do where the piston has left its stroke; empty otherwise."""
+    """Remedy for a piston that has left its stroke; empty otherwise."""
     if "position" not in signals:
         return ""
     position = float(signals["position"][0])
     beyond = max(-position, position - plant.stroke)
     if plant.design.linkage is not None and beyond > 0:
-        return "the joint comes to its dead point beyond the stop: lower its load"
+        return "the joint reaches its dead centre beyond the stop: lower its load"
     if beyond > OUT * plant.stroke:
         return "the piston is beyond its stops: lower the load, or stiffen them (stop_travel)"
     return ""

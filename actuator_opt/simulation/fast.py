@@ -1,8 +1,8 @@
-"""CVODES of SUNDIALS through CasADi (extra ``fast``): the same equations, run without Python.
+"""Fast integration by CVODES of SUNDIALS through CasADi (extra ``fast``), without Python code.
 
-The graph of a system becomes symbols of CasADi, each operation once, and CasADi has the exact
-Jacobian of them; no compiler is needed. Where CVODES gives up, another integrator takes that piece
-or says why it cannot. A servo takes about half of LSODA's time, at the same error.
+The graph of a system becomes symbols of CasADi, each operation once; CasADi derives the exact
+Jacobian. No compiler is needed. If CVODES fails, another integrator takes over that section or
+reports why it cannot. A servo takes about half of LSODA's time, at the same error.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ from .methods import CHUNK, Advance
 from .system import Compiled
 
 SHARPER = 0.1
-"""Absolute tolerance over the stated one (a choice: the error is then LSODA's, measured)."""
+"""Absolute tolerance relative to the stated one (a choice: gives the measured error of LSODA)."""
 _EVEN = 1e-8
-"""Difference of two steps, over the step, that is rounding."""
+"""Relative difference of two steps that counts as rounding."""
 _BUFFERED = 1
-"""Number of the memory that CasADi gives a function's first buffer."""
+"""Address of the first buffer in the memory of a CasADi function."""
 
 
 def library() -> Any:
-    """The module ``casadi``; one clear line when the extra is not installed.
+    """Import ``casadi``, with a clear message if the extra is not installed.
 
     Raises
     ------
     InputError
-        where CasADi is missing
+        CasADi is missing
     """
     try:
         import casadi
@@ -48,7 +48,7 @@ def library() -> Any:
 
 
 def translate(outputs: Sequence[Any]) -> tuple[dict[str, Any], list[Any]]:
-    """Expressions in CasADi's symbols.
+    """Translate expressions to CasADi's symbols.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def translate(outputs: Sequence[Any]) -> tuple[dict[str, Any], list[Any]]:
     Raises
     ------
     InputError
-        for a record, which is looked up and has no formula
+        a record, which is looked up and has no formula
     """
     casadi = library()
     free: dict[str, Any] = {}
@@ -82,7 +82,7 @@ def translate(outputs: Sequence[Any]) -> tuple[dict[str, Any], list[Any]]:
 
 
 def _operation(casadi: Any, op: str, args: Sequence[Any]) -> Any:
-    """An operation by the number that CasADi gives it: its operators look at shapes, at length."""
+    """An operation by CasADi's own number; its operators are slow, as they check shapes."""
     unary, binary = casadi.SX.unary, casadi.SX.binary
     if op == "where":
         condition, yes, no = args
@@ -103,13 +103,13 @@ def cvodes(compiled: Compiled, relative: float, counted: list[int], otherwise: A
     ----------
     compiled : the equations
     relative : relative tolerance of a step
-    counted : evaluations of the rates, counted up
-    otherwise : takes a piece that CVODES cannot pass
+    counted : counter of rate evaluations
+    otherwise : takes over a section where CVODES fails
 
     Raises
     ------
     InputError
-        where CasADi is missing or a record is looked up
+        CasADi is missing or a record is looked up
     """
     casadi = library()
     equations = _equations(casadi, compiled)
@@ -137,7 +137,7 @@ def cvodes(compiled: Compiled, relative: float, counted: list[int], otherwise: A
 
 @contextmanager
 def interruptible() -> Iterator[None]:
-    """Ctrl-C stays one: CasADi turns it into a failure of the integration."""
+    """Preserve Ctrl-C, which CasADi turns into an integration failure."""
     pressed = False
     before = signal.getsignal(signal.SIGINT)
 
@@ -163,7 +163,7 @@ def interruptible() -> Iterator[None]:
 
 
 class _Integrator:
-    """CVODES over `CHUNK` samples, those that are not asked being of no length."""
+    """CVODES over `CHUNK` samples; unused ones have zero length."""
 
     def __init__(self, casadi: Any, equations: dict[str, Any], relative: float, most: int) -> None:
         options = {
@@ -184,19 +184,19 @@ class _Integrator:
     def __call__(
         self, start: float, stop: float, count: int, states: Array, m: tuple[bool, ...]
     ) -> Array:
-        """States at even samples after the start."""
+        """States at evenly spaced samples after the start."""
         self.begin[:], self.parameters[0], self.parameters[1:] = states, start, m
         self.steps[:count], self.steps[count:] = (stop - start) / count, 0.0
         self.call()
         return self.states[:count]
 
     def evaluations(self) -> int:
-        """Evaluations of the rates in the last call."""
+        """Rate evaluations in the last call."""
         return int(self.function.stats(_BUFFERED)["nfevals"])
 
 
 def _equations(casadi: Any, compiled: Compiled) -> dict[str, Any]:
-    """The rates per sample, in units of each state's tolerance: CVODES takes one for all."""
+    """The rates per sample, scaled by each state's tolerance, as CVODES takes a single one."""
     system, unit = compiled.system, compiled.tolerances
     free, rates = translate([state.rate for state in system.states])
 
@@ -216,7 +216,7 @@ def _equations(casadi: Any, compiled: Compiled) -> dict[str, Any]:
 
 
 def _even(times: Array) -> Iterator[tuple[int, int]]:
-    """First and last sample of every piece with even steps, `CHUNK` steps at most."""
+    """First and last sample of every evenly spaced section, at most `CHUNK` steps long."""
     steps = np.diff(times)
     changes = np.flatnonzero(np.abs(np.diff(steps)) > _EVEN * steps[1:]) + 1
     for first, last in zip([0, *changes], [*changes, len(steps)], strict=True):

@@ -20,31 +20,31 @@ from .loops import LOOPS, Loop, loop_of
 from .parts.signals import Records, steady_value
 
 MARGIN = {"p": 2.0, "pi": 3.0}
-"""Gain margin of tuning by margins (a choice: the P law as the design's default, half the ultimate
-gain; an integral part takes phase)."""
+"""Gain margin of tuning by margins (a choice: a P law gets the design's default, half the ultimate
+gain; an integral part costs phase)."""
 PHASE = radians(60.0)
-"""Phase margin above which none is missed (a choice)."""
+"""Phase margin that counts as sufficient (a choice)."""
 KEPT = 0.9
-"""Share of the margins of the gain alone that an integral part leaves (a choice)."""
+"""Share of the proportional loop's margins that must remain with an integral part (a choice)."""
 NO_GAIN = 1e-9
-"""Factor that stands for a gain of zero beside an integral or derivative part."""
+"""Replacement factor for a zero gain beside an integral or derivative part."""
 UNHELD = "the valve cannot hold the load"
 CAUSES = "lower the load or the piston's leakage, raise supply.pressure or the valve's flow"
 
 
 @dataclass(frozen=True, slots=True)
 class Tuned:
-    """The controller's gains and where they come from."""
+    """The controller's gains and their origin."""
 
     gains: ControllerGains
     origin: str
     ultimate: Ultimate
     margins: Margins
-    """In the linear loop, factors of the scenario included."""
+    """Gains in the linear loop, including the scenario's factors."""
     unit: str
     notes: tuple[str, ...] = ()
     unheld: str = ""
-    """Where nothing holds the load; empty where the valve does. Margins say nothing then."""
+    """Where the valve cannot hold the load, else empty. Margins are then meaningless."""
 
 
 def tune(
@@ -52,14 +52,15 @@ def tune(
 ) -> Tuned | None:
     """Gains of a scenario's controller; None without one. `held` keeps gains, with new margins.
 
-    The loop is taken without sticking friction where the valve holds the load of the start,
-    whatever pressures the scenario begins with: at the start and at every end of the reference, the
-    spool to either side; a speed loop also where it runs steadily. The least ultimate gain counts.
+    The linear loop has no sticking friction, and the valve holds the load of the start, whatever
+    pressures the scenario begins with. It is evaluated at the start and at every end of the
+    reference, for both spool directions; a speed loop also at steady speed. The least ultimate gain
+    counts.
 
     Raises
     ------
     InputError
-        a law that the rule does not give; a loop that no gain makes swing, or that swings alone;
+        a law without a tuning rule; a loop that no gain makes oscillate, or that oscillates open;
         a load that the valve cannot hold
     """
     control, loop = scenario.control, loop_of(scenario.control)
@@ -89,13 +90,13 @@ def tune(
     ):
         gains, origin = ControllerGains(design.gain, inf, 0.0), "control.gain of the design"
     elif unheld:
-        message = f"{UNHELD}{unheld}, so no rule gives a gain"
+        message = f"{UNHELD}{unheld}, so the gain cannot be tuned"
         remedy = f"{CAUSES}; or state the gain"
         raise InputError(Diagnostic(message, remedy, path=f"control.{loop}"))
     else:
         gains, origin, notes = _ruled(control, loop, limit, worst)
     factor, integral = control.gain_factor or NO_GAIN, control.integral_factor
-    shaped = Law(  # each factor on its own part, as `parts.control`
+    shaped = Law(  # each factor scales its own part, as in `parts.control`
         factor * gains.proportional_gain,
         factor / integral * gains.integral_time if integral else inf,
         control.derivative_factor / factor * gains.derivative_time,
@@ -105,7 +106,7 @@ def tune(
 
 
 def _held(scenario: Scenario) -> Scenario:
-    """The scenario from pressures that hold its load."""
+    """The scenario with initial pressures that hold its load."""
     held = scenario.initial.model_copy(update={"pressure_a": None, "pressure_b": None})
     return scenario.model_copy(update={"initial": held})
 
@@ -113,7 +114,7 @@ def _held(scenario: Scenario) -> Scenario:
 def _loops(
     linear: Linear, scenario: Scenario, plant: Plant, control: Control, loop: Loop
 ) -> tuple[list[OpenLoop], str]:
-    """Open loops at every point that counts; where nothing holds the load, in words."""
+    """Open loops at all relevant points; and where the valve cannot hold the load, in words."""
     if loop != "position":
         loops, held = linear.about()
         end = steady_value(getattr(control, loop))
@@ -130,7 +131,7 @@ def _loops(
 
 
 def _places(parts: Sequence[SignalSegment], start: float, stroke: float) -> list[float]:
-    """Where a position reference begins, and where each of its parts leads to."""
+    """Start of a position reference, and the end of each of its parts."""
     places, reached = {start}, start
     for part in sorted(parts, key=lambda one: one.start or 0.0):
         reached += steady_value([part])
@@ -139,7 +140,7 @@ def _places(parts: Sequence[SignalSegment], start: float, stroke: float) -> list
 
 
 def _running(linear: Linear, name: str, value: float) -> list[OpenLoop]:
-    """The open loop where the actuator runs steadily at a speed; none where it cannot."""
+    """The open loop at a steady speed; empty if the actuator cannot reach it."""
     guess = linear.circuit.centre + copysign(1.0, value)
     found = None if value == 0 else linear.steady(guess, **{name: value})
     return [] if found is None else [linear.loop(*found)]
@@ -148,25 +149,27 @@ def _running(linear: Linear, name: str, value: float) -> list[OpenLoop]:
 def _ruled(
     control: Control, loop: Loop, limit: Ultimate, worst: OpenLoop
 ) -> tuple[ControllerGains, str, tuple[str, ...]]:
-    """Gains by a rule from the ultimate point."""
+    """Gains from the ultimate point by a tuning rule."""
     if worst.swings:
-        message = "the circuit swings by itself, before the loop is closed"
+        message = "the open circuit oscillates by itself"
         remedy = "lower speed_feedback and pressure_feedback, or add leakage across the piston"
         raise InputError(Diagnostic(message, remedy, path="control"))
     if not isfinite(limit.gain) or limit.gain <= 0:
-        message = "no gain makes the linear loop swing, so no rule gives one"
+        message = "no gain makes the linear loop oscillate, so the gain cannot be tuned"
         raise InputError(Diagnostic(message, "state the gain", path=f"control.{loop}_gain"))
     if control.tuning == "ziegler_nichols":
         gains = ziegler_nichols(
             law=control.law, ultimate_gain=limit.gain, ultimate_period=limit.period
         )
         note = (
-            "Ziegler-Nichols knows no friction and leaves little margin on a lightly damped oil "
-            "spring: read the overshoot before the gain is used"
+            "Ziegler-Nichols ignores friction and leaves little margin on a lightly damped oil "
+            "spring: check the overshoot before using the gain"
         )
         return gains, "Ziegler and Nichols", (note,)
     if control.law == "pid":
-        message = "tuning by margins gives p or pi: a derivative part takes margin away here"
+        message = (
+            "tuning by margins supports p or pi, as a derivative part reduces the margins here"
+        )
         remedy = "write law: pi, or tuning: ziegler_nichols"
         raise InputError(Diagnostic(message, remedy, path="control.tuning"))
     margin = MARGIN[control.law] if control.margin is None else control.margin
@@ -188,7 +191,7 @@ def _ruled(
 
 
 def _integral_time(loop: OpenLoop, law: Law, shortest: float, period: float) -> float:
-    """Least integral time, from the shortest on, that keeps `KEPT` of the margins without it."""
+    """Least integral time from the shortest on that keeps `KEPT` of the margins without it."""
     alone = margins(loop, law)
     phase = PHASE if alone.phase is None else min(KEPT * alone.phase, PHASE)
     longest = 1e4 * period

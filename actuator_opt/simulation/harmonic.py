@@ -1,7 +1,7 @@
-"""Amplitude and phase at one frequency, of records that drift, and the dynamic stiffness.
+"""Amplitude and phase at one frequency for records with drift, and the dynamic stiffness.
 
-Mean, drift and swing are fitted together. Detrending first takes part of the swing with the drift:
-up to 6/(pi n)^2 of it over n cycles, 2.4 % over 5, depending on its phase [derived].
+Mean, drift and oscillation are fitted together. Detrending first would remove part of the
+oscillation: up to 6/(pi n)^2 of it over n cycles, 2.4 % over 5, depending on its phase [derived].
 """
 
 from __future__ import annotations
@@ -17,28 +17,28 @@ from ..base.numeric import Array
 from .sampled import sampled
 
 FEWEST_SAMPLES = 5
-"""Four unknowns and one sample more, to know the scatter."""
+"""Four unknowns and one more sample, to estimate the scatter."""
 RESOLVED = 1e-12
-"""Share of the largest position below which its swing is rounding (a choice)."""
+"""Share of the largest position below which its oscillation is rounding (a choice)."""
 
 
 class HarmonicFit(NamedTuple):
     """Fit x(t) = mean + slope (t - t_mid) + Re(amplitude e^(i omega t))."""
 
     mean: float
-    """Of the drift, at the middle of the time."""
+    """Mean at the middle of the time."""
     slope: float
     """Drift per second."""
     amplitude: complex
     """Phase 0: a cosine that peaks at t = 0."""
     residual: float
-    """Root of the squared residuals over n - 4."""
+    """Residual standard deviation: root of the squared residuals over n - 4."""
     standard_error: float
-    """Of each part of the amplitude, if residuals are independent; harmonics raise it."""
+    """Of each part of the amplitude, for independent residuals; harmonics increase it."""
 
 
 def harmonic_fit(*, time: Array, values: Array, frequency: float) -> HarmonicFit:
-    """Mean, drift and swing of a record by one least-squares fit on [1, t, cos wt, sin wt].
+    """Fit mean, drift and oscillation of a record by least squares on [1, t, cos wt, sin wt].
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def harmonic_fit(*, time: Array, values: Array, frequency: float) -> HarmonicFit
 
     Raises
     ------
-    InputError : samples that are no record, less than one cycle, two samples a cycle or fewer
+    InputError : invalid samples, less than one cycle, two samples a cycle or fewer
 
     Notes
     -----
@@ -77,18 +77,18 @@ class Stiffness(NamedTuple):
     """Dynamic stiffness of a record."""
 
     stiffness: complex
-    """Force over position [N/m]; a positive phase: the force leads."""
+    """Force over position [N/m]; for a positive phase the force leads."""
     standard_error: float
-    """Of each part [N/m], if residuals are independent."""
+    """Of each part [N/m], for independent residuals."""
 
 
 def dynamic_stiffness_of_record(
     *, time: Array, position: Array, force: Array, frequency: float
 ) -> Stiffness:
-    """Dynamic stiffness k = F/x of the swings of force and position at one frequency.
+    """Dynamic stiffness k = F/x of force and position oscillations at one frequency.
 
-    Both are fitted on the same [1, t, cos wt, sin wt]. The force counts in the direction of the
-    position: a load that opposes extension enters with its sign changed.
+    Both are fitted on the same [1, t, cos wt, sin wt]. The force is positive in the direction of
+    the position: reverse the sign of a load that opposes extension.
 
     Parameters
     ----------
@@ -103,11 +103,11 @@ def dynamic_stiffness_of_record(
 
     Raises
     ------
-    InputError : as `harmonic_fit`; a position that does not move at the frequency
+    InputError : as `harmonic_fit`; a position that does not oscillate at the frequency
 
     Notes
     -----
-    Valid: small swings; noise of position and force independent.
+    Valid: small oscillations; noise of position and force independent.
 
     References
     ----------
@@ -126,7 +126,7 @@ def dynamic_stiffness_of_record(
     moved, pushed = _fitted(design, x), _fitted(design, f)
     size = abs(moved.amplitude)
     if size <= RESOLVED * np.max(np.abs(x)):
-        message = f"the position does not swing at {frequency:g} Hz"
+        message = f"the position does not oscillate at {frequency:g} Hz"
         raise InputError(Diagnostic(message, "give the frequency of the load"))
     stiffness = pushed.amplitude / moved.amplitude
     error = np.hypot(pushed.standard_error, abs(stiffness) * moved.standard_error) / size
@@ -134,9 +134,10 @@ def dynamic_stiffness_of_record(
 
 
 def windows(*, time: Array, frequency: float, cycles: int) -> tuple[slice, ...]:
-    """Slices of a record, each of whole cycles, one after the other: a stroke in pieces.
+    """Consecutive slices of a record, each of whole cycles.
 
-    A window ends before the sample that begins the next one; what is left at the end is left out.
+    A window ends before the first sample of the next one; an incomplete window at the end is
+    dropped.
 
     Parameters
     ----------
@@ -154,7 +155,7 @@ def windows(*, time: Array, frequency: float, cycles: int) -> tuple[slice, ...]:
 
     Notes
     -----
-    Valid: steps about even.
+    Valid: nearly even steps.
 
     Examples
     --------
@@ -169,9 +170,9 @@ def windows(*, time: Array, frequency: float, cycles: int) -> tuple[slice, ...]:
     length = cycles / frequency
     count = floor((t[-1] - t[0] + step) / length + 1e-6)
     if count < 1:
-        message = f"{t[-1] - t[0]:.3g} s hold no {cycles} cycles of {frequency:g} Hz"
+        message = f"{t[-1] - t[0]:.3g} s are shorter than {cycles} cycles of {frequency:g} Hz"
         raise InputError(Diagnostic(message, "take fewer cycles"))
-    edges = t[0] + length * np.arange(count + 1) - 1e-3 * step  # a sample on an edge begins there
+    edges = t[0] + length * np.arange(count + 1) - 1e-3 * step  # edges start a window
     places = np.searchsorted(t, edges)
     if np.min(np.diff(places)) < FEWEST_SAMPLES:
         message = f"a window of {length:.3g} s holds fewer than {FEWEST_SAMPLES} samples"
@@ -188,14 +189,14 @@ class _Design(NamedTuple):
 
 
 def _design(t: np.ndarray, frequency: float) -> _Design:
-    """Columns [1, (t - t_mid)/half, cos wt, sin wt]: all about one in size."""
+    """Columns [1, (t - t_mid)/half, cos wt, sin wt], all of order one."""
     span = t[-1] - t[0]
     step = span / (len(t) - 1)
     if not frequency > 0 or (span + step) * frequency < 1 - 1e-6:
-        message = f"{span:.3g} s hold less than one cycle of {frequency:g} Hz"
+        message = f"{span:.3g} s are less than one cycle of {frequency:g} Hz"
         raise InputError(Diagnostic(message, "give a longer record or a higher frequency"))
     if 2 * step * frequency >= 1:
-        message = f"samples every {step:.3g} s do not show {frequency:g} Hz"
+        message = f"samples every {step:.3g} s do not resolve {frequency:g} Hz"
         raise InputError(Diagnostic(message, "give more than two samples a cycle"))
     middle, half = 0.5 * (t[0] + t[-1]), 0.5 * span
     phase = 2 * pi * frequency * t

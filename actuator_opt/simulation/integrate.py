@@ -1,4 +1,4 @@
-"""Integration in time: restarted where an input jumps or a switch turns, never across it."""
+"""Integration in time, restarted where an input jumps or a switch changes state."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ from .methods import CHUNK, MOST, RELATIVE, Advance, Method, Stuck, lsoda, radau
 from .system import Compiled
 
 LOOK = 2e-3
-"""Longest time between two samples of a switch [s] (a choice: a half swing of the oil)."""
+"""Longest time between two samples of a switch [s] (a choice: half an oil oscillation)."""
 MOST_TURNS = 20_000
-"""Turns of switches before a run counts as chattering (a choice)."""
+"""Changes of a switch before a run counts as chattering (a choice)."""
 APART = 1e-9
-"""Instants that are nearer to one another are one [s] (a choice)."""
+"""Instants closer than this count as one [s] (a choice)."""
 FEW = 2_000
-"""Steps between two samples of a first try, which may run past a switch."""
+"""Steps between two samples of a first attempt, which may overrun a switch."""
 TRIES = 12
-"""Shorter and shorter pieces up to where the equations end, in search of a turn before."""
+"""Number of ever shorter sections tried where the equations fail, to find a switch before."""
 PARTS, LEVELS = 16, 5
-"""An interval in which a switch may turn is looked at in so many parts, and these again."""
+"""Parts of an interval in which a switch may change; each is divided again."""
 _LOCATED = 1e-12
 
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """A switch that turned."""
+    """A switch that changed state."""
 
     name: str
     time: float
@@ -40,7 +40,7 @@ class Event:
 
 @dataclass(slots=True)
 class Trajectory:
-    """States at samples; an instant or event stands twice, with the flags before and after it."""
+    """States at samples; an instant or event appears twice, with the flags before and after it."""
 
     time: Array
     states: Array
@@ -77,22 +77,22 @@ def integrate(
     method: Method = "lsoda",
     relative: float | None = None,
 ) -> Trajectory:
-    """States over time.
+    """Integrate the states over time.
 
     Parameters
     ----------
     compiled : the equations
     duration : simulated time [s]
-    sample_time : of the result [s]; steps inside are the method's own
+    sample_time : of the result [s]; the method chooses its own internal steps
     method : "lsoda", "radau" or "cvodes" (extra ``fast``)
     relative : relative tolerance of a step
 
     Raises
     ------
     Unsolvable
-        where no step is small enough, or a state is no longer a number
+        no step is small enough, or a state is not finite
     InputError
-        "cvodes" without CasADi, or of a record
+        "cvodes" without CasADi, or with a record
     """
     counted = [0]
     tolerance = RELATIVE[method] if relative is None else relative
@@ -106,7 +106,7 @@ def integrate(
     for moment in sorted(compiled.instants):
         if stops[-1] + APART < moment < duration - APART:
             stops.append(moment)
-    near = 1e-6 * sample_time / looks  # a sample beside an instant is that instant
+    near = 1e-6 * sample_time / looks  # a sample close to an instant moves to it
     t, y = 0.0, compiled.initial.copy()
     m = _flags(compiled, t, y, ())
     for stop in (*stops[1:], duration):
@@ -126,7 +126,7 @@ def integrate(
 
 
 def _flags(compiled: Compiled, t: float, y: Array, before: tuple[bool, ...]) -> tuple[bool, ...]:
-    """Flags at an instant; switches keep what they had."""
+    """Flags at an instant; switches keep their state."""
     instants = tuple(t + APART >= one for one in compiled.instants)
     if before:
         return instants + before[len(instants) :]
@@ -135,7 +135,7 @@ def _flags(compiled: Compiled, t: float, y: Array, before: tuple[bool, ...]) -> 
 
 
 def _margins(run: _Run, t: Array, states: Array, m: tuple[bool, ...]) -> tuple[Array, Array]:
-    """How far every switch is from turning, and the rate of that, (switches, samples)."""
+    """Guard of every switch and its rate, (switches, samples)."""
     signs = np.where(m[len(run.compiled.instants) :], 1.0, -1.0)[:, None]
     margin = _each(run.compiled, run.compiled.guards, t, states, m) * signs
     return margin, _each(run.compiled, run.compiled.guard_rates, t, states, m) * signs
@@ -159,7 +159,7 @@ def _each(
 def _segment(
     run: _Run, times: Array, told: Array, y: Array, m: tuple[bool, ...]
 ) -> tuple[Array, tuple[bool, ...]]:
-    """From the first to the last of some times, no input jumping between; some are told."""
+    """Integrate over some times without an input jump; only some samples are stored."""
     first, last = len(run.compiled.instants), len(times) - 1
     begin, start, own = 0, float(times[0]), True
     while begin < last:
@@ -170,7 +170,7 @@ def _segment(
         run.restarts += 1
         tell("simulating", start / run.duration)
         if turn is None:
-            wanted[-1] &= end == last  # the next piece has its first sample
+            wanted[-1] &= end == last  # the next section has its first sample
             run.keep(asked[wanted], found[wanted], m)
             y, start, own, begin = found[-1], float(times[end]), bool(told[end]), end
             continue
@@ -181,21 +181,21 @@ def _segment(
         name = run.compiled.system.switches[which].name
         run.events.append(Event(name, at, bool(m[first + which])))
         if len(run.events) > MOST_TURNS:
-            remedy = "raise the damping of what turns it"
-            raise Stuck(at, there, f"{name} turns without end", remedy)
+            remedy = "increase the damping of the part that switches"
+            raise Stuck(at, there, f"{name} switches without end", remedy)
         y, start, own = there, at, True
         begin += k + (at >= times[begin + k + 1])
     return y, m
 
 
 Turn = tuple[int, float, Array, int]
-"""Sample before it, time, states and number of a switch that turns."""
+"""Sample before it, time, states and number of a switch that changes."""
 
 
 def _ahead(
     run: _Run, times: Array, y: Array, m: tuple[bool, ...]
 ) -> tuple[Array, Array, Turn | None]:
-    """States at some times and the first turn; without that turn the equations may end early."""
+    """States at some times and the first switch, beyond which the equations may fail."""
     try:
         found = run.advance(times, y, m, FEW)
         return times, found, _first_turn(run, times, found, m)
@@ -219,7 +219,7 @@ def _ahead(
 
 
 def _first_turn(run: _Run, times: Array, found: Array, m: tuple[bool, ...]) -> Turn | None:
-    """The first switch that turns between samples."""
+    """The first switch between samples."""
     if not run.compiled.system.switches:
         return None
     suspect = _suspects(times, *_margins(run, times, found, m))
@@ -235,7 +235,7 @@ def _first_turn(run: _Run, times: Array, found: Array, m: tuple[bool, ...]) -> T
 
 
 def _suspects(times: Array, margin: Array, slope: Array) -> Array:
-    """Intervals at whose end a margin is gone, or in which the cubic through both ends has none."""
+    """Intervals with a guard crossing at the end, or on the cubic through both ends."""
     step = np.diff(times)
     (a, b), (c, d) = (
         (margin[:, :-1], margin[:, 1:]), (slope[:, :-1] * step, slope[:, 1:] * step),
@@ -253,7 +253,7 @@ def _suspects(times: Array, margin: Array, slope: Array) -> Array:
 def _turn(
     run: _Run, span: Array, y: Array, m: tuple[bool, ...], which: int, level: int = 0
 ) -> tuple[float, Array] | None:
-    """Time and states at which a switch turns in an interval, if it does."""
+    """Time and states at which a switch changes within an interval, or None."""
     from scipy.optimize import brentq
 
     times = np.linspace(span[0], span[1], PARTS + 1)

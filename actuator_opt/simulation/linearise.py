@@ -1,4 +1,4 @@
-"""The linear loop of a circuit: its equations about a point, open at the valve's signal."""
+"""The linear loop of a circuit: equations about a point, opened at the valve signal."""
 
 from __future__ import annotations
 
@@ -14,31 +14,32 @@ from ..base.symbolic import function, jacobian
 from .parts.circuit import Circuit
 
 TOUCH = 1e-9
-"""Position of the spool beside its centre [V]: which pair of edges opens."""
+"""Spool offset from its centre [V], which selects the open pair of edges."""
 SIZE = 1e5
-"""Size of a state over its tolerance, as an equation solver takes it (a choice)."""
+"""State size relative to its tolerance, as scale for the equation solver (a choice)."""
 RESTING = 1.0
-"""Rate of a state that is left at rest, in its tolerances per second (a choice)."""
+"""Rate of a state that counts as zero, in its tolerances per second (a choice)."""
 PLACES = ("position", "shaft angle")
-"""States that change while an actuator runs steadily."""
+"""States that change during steady motion."""
 CREEP = 1e-3
-"""Rate of a growing pole that does not swing, over the slowest swing, that counts as creep (a
-choice: beside a point of rest the load drifts a little)."""
+"""Rate of a growing real pole, relative to the slowest oscillation, that counts as creep (a choice:
+near an equilibrium the load drifts a little)."""
 STILL = 1e-3
 """Size of a pole that counts as zero [rad/s] (a choice: a quarter of an hour)."""
 SLOWER = 1e-3
-"""Frequency of a steady rate over the slowest pole that is not zero: its square is the error."""
+"""Frequency for a steady rate, relative to the slowest non-zero pole: its square is the error."""
 ROUNDING = 1e-6
-"""Real part over the size of a swinging pole that is rounding."""
+"""Real part of an oscillating pole, relative to its size, that counts as rounding."""
 POINTS = 2000
-"""Frequencies between two decades below the slowest and one above the fastest pole."""
+"""Frequencies from two decades below the slowest to one above the fastest pole."""
 
 
 @dataclass(frozen=True, slots=True)
 class OpenLoop:
-    """Measured value over signal, L(s) = c (s - T)^-1 b with an upper triangle T.
+    """Measured value over signal, L(s) = c (s - T)^-1 b with an upper triangular T.
 
-    Poles may coincide: a valve that leaks nothing leaves position and common pressure both at zero.
+    Poles may coincide: with a leak-free valve, position and common pressure both have a pole at
+    zero.
     """
 
     triangle: Array
@@ -49,7 +50,7 @@ class OpenLoop:
 
     @classmethod
     def of(cls, a: Array, b: Array, c: Array) -> OpenLoop:
-        """Of x' = a x + b u, y = c x."""
+        """Build from x' = a x + b u, y = c x."""
         from scipy.linalg import schur
 
         triangle, q = schur(a, output="complex")
@@ -80,7 +81,7 @@ class OpenLoop:
 
     @property
     def swings(self) -> bool:
-        """Whether a pole grows, apart from creep that any hold suppresses."""
+        """Whether a pole grows, other than slow creep."""
         return _grow(self.poles)
 
     @property
@@ -92,16 +93,16 @@ class OpenLoop:
 
 
 class Around(NamedTuple):
-    """Loops about a point, the spool opening to either side."""
+    """Loops about a point, for both spool directions."""
 
     loops: list[OpenLoop]
     held: bool
-    """Whether the valve holds the load there."""
+    """Whether the valve can hold the load there."""
 
 
 @dataclass(frozen=True, slots=True)
 class Linear:
-    """A circuit's linearisation, to be taken at any state."""
+    """Linearisation of a circuit at any state."""
 
     circuit: Circuit
     names: tuple[str, ...]
@@ -113,7 +114,7 @@ class Linear:
 
     @classmethod
     def of(cls, circuit: Circuit) -> Linear:
-        """Of a circuit assembled with ``linear=True``; its integrals are left out."""
+        """Build from a circuit assembled with ``linear=True``; its integrals are left out."""
         system = circuit.system
         states = [one for one in system.states if not one.integral]
         symbols = [one.symbol for one in states]
@@ -139,17 +140,17 @@ class Linear:
         return OpenLoop.of(a, table[:size, size] / d, table[size, :size] * d)
 
     def _table(self, state: Array, signal: float) -> Array:
-        """Slopes of the rates and the measured value over the states and the signal."""
+        """Derivatives of the rates and the measured value by the states and the signal."""
         size = len(state) + 1
         flat = self.slopes(0.0, state.tolist(), signal, self.flags)
         return np.array(flat).reshape(size, size)
 
     def about(self, **states: float) -> Around:
-        """Open loops where the valve holds the load, some states given, to either side of it.
+        """Open loops where the valve holds the load, with some states given, for both directions.
 
-        On the side on which its spool rests that is the state of rest; on the other side, and
-        without load on both, the centre, which the spool passes as the load drifts. About the
-        states given where nothing holds it.
+        On the side where the spool rests, the equilibrium is used. On the other side, and without
+        load on both, the spool is centred, as it passes there when the load drifts. If the valve
+        cannot hold the load, the given states are used.
         """
         still = {one: 0.0 for one in ("speed", "shaft_speed") if self._known(one)}
         centre = self.circuit.centre
@@ -169,16 +170,16 @@ class Linear:
         return Around(loops, held is not None)
 
     def steady(self, guess: float, **states: float) -> tuple[Array, float] | None:
-        """State and signal at which nothing but the place changes, some states given.
+        """State and signal in steady motion, with some states given.
 
         Parameters
         ----------
-        guess : signal near it [V]
-        states : by name, SI; the place is given or that of the start
+        guess : signal near the solution [V]
+        states : by name, SI; default position: that of the start
 
         Returns
         -------
-        None where there is no such state
+        None if there is no such state
         """
         from scipy.optimize import root
 
@@ -207,12 +208,12 @@ class Linear:
             with np.errstate(all="ignore"):
                 solved = root(missing, start, jac=slopes, method="hybr", tol=1e-12)
             left = missing(solved.x)
-        except (ArithmeticError, ValueError):  # the equations end on the way
+        except (ArithmeticError, ValueError):  # the equations fail on the way
             return None
-        return point(solved.x) if np.max(np.abs(left)) < RESTING else None  # NaN is none
+        return point(solved.x) if np.max(np.abs(left)) < RESTING else None  # rejects NaN
 
     def _guesses(self) -> Iterator[float]:
-        """Signals over the centre from which a rest is searched."""
+        """Offsets of the signal from the centre to start the search for an equilibrium."""
         valve = self.circuit.plant.valve
         assert valve is not None
         return (share * valve.signal for share in (0.0, 0.3, -0.3))
@@ -230,7 +231,7 @@ class Linear:
 
 @dataclass(frozen=True, slots=True)
 class Ultimate:
-    """Where a proportional loop begins to swing."""
+    """Point at which a proportional loop begins to oscillate."""
 
     gain: float
     period: float
@@ -238,7 +239,7 @@ class Ultimate:
 
 
 def ultimate(loop: OpenLoop) -> Ultimate:
-    """Smallest gain with K L(i omega) = -1; infinite where none swings."""
+    """Smallest gain with K L(i omega) = -1; infinite if there is none."""
     found = [(-1 / value.real, omega) for omega, value in _crossings(loop, loop.at)]
     gain, omega = min(found, default=(inf, 0.0))
     return Ultimate(gain, 2 * pi / omega if omega > 0 else inf)
@@ -304,14 +305,14 @@ class Margins:
     """Margins of a loop with its controller."""
 
     gain: float
-    """Factor on the gain at which it swings: above one where it is stable, else below."""
+    """Gain factor at which it oscillates: above one if stable, else below."""
     phase: float | None
-    """[rad]; None where the loop's gain never passes one."""
+    """[rad]; None if the loop gain never exceeds one."""
     stable: bool
 
 
 def _grow(poles: Array) -> bool:
-    """Whether a pole grows: any that swings, and a real one faster than creep."""
+    """Whether a pole grows: any oscillating one, or a real one faster than creep."""
     size = np.abs(poles)
     swings = (np.abs(poles.imag) > 1e-3 * size) & (size > STILL)
     slowest = np.min(size[swings]) if swings.any() else np.max(size)
@@ -320,7 +321,7 @@ def _grow(poles: Array) -> bool:
 
 
 def margins(loop: OpenLoop, law: Law) -> Margins:
-    """Gain and phase margin of L(i omega) C(i omega); its closed poles say whether it is stable."""
+    """Gain and phase margin of L(i omega) C(i omega); closed-loop poles decide on stability."""
 
     def response(omega: Array) -> Array:
         return loop.at(omega) * law.at(omega)
@@ -344,6 +345,6 @@ def margins(loop: OpenLoop, law: Law) -> Margins:
 
 
 def least(loops: Sequence[OpenLoop]) -> tuple[Ultimate, OpenLoop]:
-    """The loop that swings first; one that swings by itself before all."""
+    """The loop with the lowest ultimate gain; one that is unstable open comes first."""
     found = [(Ultimate(0.0, inf) if one.swings else ultimate(one), one) for one in loops]
     return min(found, key=lambda pair: pair[0].gain)

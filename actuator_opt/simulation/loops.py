@@ -1,4 +1,4 @@
-"""What a controller may follow: a place or a speed, of the piston or of a motor's shaft."""
+"""Reference quantities of a controller: position or speed, of the piston or of a motor shaft."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ Loop = Literal["position", "speed", "shaft_speed", "shaft_angle"]
 
 
 class Followed(NamedTuple):
-    """What a loop follows."""
+    """The quantity a loop controls."""
 
     words: str
     quantity: Quantity
     unit: str
-    """Of the loop's gain."""
+    """Quantity of the loop's gain."""
     typical: float
     """A typical error, for tolerances (SI)."""
 
@@ -39,7 +39,7 @@ LOOPS: dict[Loop, Followed] = {
 
 
 def loop_of(control: Control | None) -> Loop | None:
-    """Which reference closes the loop."""
+    """The loop that a reference closes, or None."""
     if control is None:
         return None
     return next((name for name in LOOPS if getattr(control, name)), None)

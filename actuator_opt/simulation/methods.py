@@ -1,7 +1,7 @@
-"""Integrators of a smooth piece: states at its samples, or how far they came.
+"""Integrators of a smooth section: states at its samples, or how far they got.
 
-LSODA changes between stiff and non-stiff steps by itself and has the exact Jacobian; Radau is the
-second opinion; CVODES (`fast`) is the faster one.
+LSODA switches between stiff and non-stiff steps and uses the exact Jacobian. Radau gives the second
+opinion, CVODES (`fast`) is the faster one.
 """
 
 from __future__ import annotations
@@ -18,18 +18,18 @@ from .system import Compiled
 
 Method = Literal["lsoda", "radau", "cvodes"]
 RELATIVE: Final = {"lsoda": 1e-6, "radau": 1e-8, "cvodes": 1e-7}
-"""Relative tolerance of a step; the second opinion is the sharper one."""
+"""Relative tolerance of a step; the second opinion uses the tighter one."""
 CHUNK = 200
-"""Samples after which the switches are looked at (a choice: what runs past a stop is lost)."""
+"""Samples between checks of the switches (a choice: work beyond a switch is lost)."""
 MOST = 100_000
-"""Steps between two samples at most."""
+"""Maximum steps between two samples."""
 
 Advance = Callable[[Array, Array, tuple[bool, ...], int], Array]
-"""States (times, states) at times from the first on, with at most so many steps between two."""
+"""States (times, states) at the given times, with a maximum number of steps between two."""
 
 
 class Stuck(Unsolvable):
-    """An integration that came no further than a time, near a state."""
+    """An integration that failed at a time, near a state."""
 
     def __init__(self, time: float, state: Array, message: str, remedy: str) -> None:
         super().__init__(Diagnostic(f"at {time:.6g} s: {message}", remedy))
@@ -37,7 +37,7 @@ class Stuck(Unsolvable):
 
 
 def _checked(times: Array, found: Array) -> Array:
-    """The states, where all of them are numbers."""
+    """The states, if all are finite."""
     bad = ~np.isfinite(found).all(axis=1)
     if bad.any():
         first = int(np.argmax(bad))
@@ -46,7 +46,9 @@ def _checked(times: Array, found: Array) -> Array:
     return found
 
 
-REMEDY = "a gain, a volume or a leakage may be absurd; end the run before and look at its signals"
+REMEDY = (
+    "a gain, a volume or a leakage may be implausible; end the run earlier and check its signals"
+)
 
 
 def _why(error: Exception) -> str:
@@ -54,7 +56,7 @@ def _why(error: Exception) -> str:
 
 
 def _longest(compiled: Compiled, times: Array) -> float:
-    """Longest step that does not miss what a record does in some time; 0 without a limit."""
+    """Longest step that resolves a record; 0 without a limit."""
     bends = compiled.bends
     first, last = np.searchsorted(bends, times[0]), np.searchsorted(bends, times[-1], "right")
     if first == last:
@@ -64,7 +66,7 @@ def _longest(compiled: Compiled, times: Array) -> float:
 
 
 def lsoda(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
-    """Integration by LSODA; Radau takes a piece whose stiffness it does not see."""
+    """Integration by LSODA; Radau takes over sections whose stiffness LSODA misses."""
     from scipy.integrate import ODEintWarning, odeint
 
     reached: list[Any] = [0.0, compiled.initial]
@@ -89,7 +91,7 @@ def lsoda(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
         if report["message"] != "Integration successful.":
             if most < MOST:
                 raise Stuck(reached[0], reached[1], "no step is small enough", REMEDY)
-            return stiff(times, y, m, most)  # near rest LSODA may not see that they are stiff
+            return stiff(times, y, m, most)  # near rest LSODA may miss their stiffness
         counted[0] += int(report["nfe"][-1])
         return _checked(times, found)
 

@@ -1,4 +1,4 @@
-"""What the signals of a run say: the loop's figures, pressures, stiffness, requirements."""
+"""Results from the signals of a run: loop performance, pressures, stiffness, requirements."""
 
 from __future__ import annotations
 
@@ -22,9 +22,16 @@ from .result import Balance, HarmonicLoad, RequirementResult, Servo, Window
 from .step_response import step_metrics
 
 LAST = 0.1
-"""Share of the time whose creep is told."""
+"""Final share of the time used for creep."""
 RISE = 4
-"""Samples of a rise, at least, for its figures to be the response's own (a choice)."""
+"""Least number of samples of a rise for reliable results (a choice)."""
+NOT_HERE = "does not apply to this scenario"
+NO_STEP = "the reference has no step"
+NO_MOTION = "the reference does not move on"
+NO_SINE = "no sinusoidal load acts on the rod"
+NO_STOP = "the piston does not reach a stop"
+EXPECTED = (NOT_HERE, NO_STEP, NO_MOTION, NO_SINE, NO_STOP)
+"""Reasons of missing results that follow from the scenario and need no report."""
 _STEP = ("rise_time", "settling_time", "overshoot", "steady_state_ratio")
 
 
@@ -35,20 +42,20 @@ def reference(scenario: Scenario) -> tuple[Loop | None, Sequence[SignalSegment]]
 
 
 def servo(scenario: Scenario, time: Array, signals: Mapping[str, Array]) -> Servo | None:
-    """The first step of the reference, until it changes again; None without a step."""
+    """Response to the first step of the reference, until it changes again; None without a step."""
     loop, parts = reference(scenario)
     steps = [part for part in parts if part.shape == "step"]
     if loop is None or not steps or not all(SHAPES[part.shape].settles for part in parts):
         return None
     first = min(steps, key=lambda part: part.start)
     moving = [part for part in parts if SHAPES[part.shape].moves_on]
-    if any(one.start <= first.start < (one.end or 0.0) for one in moving):  # no target stands
+    if any(one.start <= first.start < (one.end or 0.0) for one in moving):  # no constant target
         return None
     changes = [t for part in parts for t in (part.start, part.end) if t is not None]
     end = min((t for t in changes if t > first.start), default=scenario.duration)
     value = signals[loop]
     inside = np.flatnonzero((time >= first.start) & (time <= end))
-    if first.start > 0 and inside.size:  # the instant stands twice
+    if first.start > 0 and inside.size:  # the instant appears twice
         inside = inside[time[inside] > first.start]
         inside = np.concatenate(([inside[0] - 1], inside)) if inside.size else inside
     if inside.size < 3:
@@ -65,10 +72,9 @@ def servo(scenario: Scenario, time: Array, signals: Mapping[str, Array]) -> Serv
 def shaken(
     scenario: Scenario, time: Array, signals: Mapping[str, Array]
 ) -> tuple[HarmonicLoad | None, str]:
-    """Dynamic stiffness along the stroke where sines of one frequency shake the rod, or why not."""
-    none = "no sine shakes the rod"
+    """Dynamic stiffness along the stroke under a sinusoidal load, or the reason for none."""
     if "position" not in signals:
-        return None, none
+        return None, NO_SINE
     load = scenario.load
     parts: list[SignalSegment] = [
         *load.force,
@@ -78,7 +84,8 @@ def shaken(
     sines = [part for part in parts if "frequency" in SHAPES[part.shape].needed]
     tones = set(frequencies(sines))
     if len(tones) != 1:
-        return None, none if not tones else "sines of several frequencies shake the rod"
+        several = "sinusoidal loads of several frequencies act on the rod"
+        return None, several if tones else NO_SINE
     tone = tones.pop()
     begin = max(part.start for part in sines)
     end = min(part.end or scenario.duration for part in sines)
@@ -102,11 +109,11 @@ def _window(time: Array, position: Array, force: Array, frequency: float) -> Win
 
 
 def _answer(step: Servo, apart: float) -> tuple[dict[str, float | None], dict[str, str]]:
-    """Figures of a step's answer, samples so far apart [s], and why one may be missing."""
+    """Step response results at a sample spacing [s], and reasons for missing ones."""
     own = step.metrics
     error = abs(own.steady_state_error) / abs(step.target - step.start)
     if own.rise_time is not None and own.rise_time < RISE * apart:
-        coarse = f"the response rises within {RISE} samples: state a shorter sample_time"
+        coarse = f"the rise takes at most {RISE} samples: state a shorter sample_time"
         return dict.fromkeys(_STEP) | {"steady_state_ratio": error}, dict.fromkeys(_STEP, coarse)
     found = {
         "rise_time": own.rise_time,
@@ -115,7 +122,7 @@ def _answer(step: Servo, apart: float) -> tuple[dict[str, float | None], dict[st
         "steady_state_ratio": error,
     }
     return found, {
-        "rise_time": "the response never gets to 90 % of the step",
+        "rise_time": "the response never reaches 90 % of the step",
         "settling_time": "the response does not stay within 2 % of the step",
     }
 
@@ -132,10 +139,10 @@ def values(
     still: str,
     records: Records,
 ) -> tuple[dict[str, float | None], dict[str, str]]:
-    """Every result of `quantities.RESULTS`, None with a reason where it does not apply."""
+    """Every result of `quantities.RESULTS`, None with a reason if it does not apply."""
     found: dict[str, float | None] = dict.fromkeys(RESULTS)
-    why = dict.fromkeys(RESULTS, "does not apply to this scenario")
-    why |= dict.fromkeys(_STEP, "the reference has no step")
+    why = dict.fromkeys(RESULTS, NOT_HERE)
+    why |= dict.fromkeys(_STEP, NO_STEP)
     if step is not None:
         figures, reasons = _answer(step, float(np.median(np.diff(time))))
         found |= figures
@@ -148,28 +155,28 @@ def values(
         found["cavitation_margin"] = lowest + ATMOSPHERIC_PRESSURE - plant.oil.vapour_pressure
     if "position" in signals:
         found["hold_drift"] = _drift(scenario, records, time, signals)
-        why["hold_drift"] = "the signal, reference or load still moves it in the last tenth"
+        why["hold_drift"] = "signal, reference or load still cause motion in the last tenth"
         speed = _stop_speed(time, signals["speed"], events)
-        found["stop_speed"], why["stop_speed"] = speed, "the piston meets no stop"
+        found["stop_speed"], why["stop_speed"] = speed, NO_STOP
     loop, parts = reference(scenario)
     if loop == "position" and any(SHAPES[part.shape].moves_on for part in parts):
         late = time >= _settled_from(parts, scenario.duration)
         found["following_error"] = float(np.max(np.abs(signals["error"][late])))
-    why["following_error"] = "the reference does not move on"
+    why["following_error"] = NO_MOTION
     came = {flow.name: flow.energy for flow in balance.flows}
     if "supply" in came:
         found["supply_energy"] = came["supply"]
         work = -(came.get("load", 0.0) + came.get("joint", 0.0))
         net = came["supply"] + came.get("return line", 0.0)
         found["efficiency"] = work / net if work > 0 and net > 0 else None
-        why["efficiency"] = "the load took no work"
+        why["efficiency"] = "no work was done on the load"
         if scenario.supply.accumulator is not None:
             found["efficiency"] = None
-            why["efficiency"] = "the accumulator gives work of its own"
+            why["efficiency"] = "the accumulator supplies part of the work"
         if scenario.load.cylinder is not None or scenario.load.drive is not None:
-            why["efficiency"] = "what a machine outside takes is not counted"
+            why["efficiency"] = "work of an external machine is not counted"
     if dynamic is not None:
-        settled = dynamic.windows[1:] or dynamic.windows  # the first one holds the start
+        settled = dynamic.windows[1:] or dynamic.windows  # the first value belongs to the start
         worst = min(settled, key=lambda one: abs(one.stiffness))
         found["dynamic_stiffness"] = abs(worst.stiffness)
         found["dynamic_phase"] = float(np.angle(worst.stiffness))
@@ -178,7 +185,7 @@ def values(
 
 
 def _settled_from(parts: Sequence[SignalSegment], duration: float) -> float:
-    """After one period of the slowest sine, or at once."""
+    """Time after one period of the slowest sine, or zero."""
     tones = frequencies(parts)
     begin = min(part.start for part in parts)
     return min(begin + (1 / min(tones) if tones else 0.0), 0.9 * duration)
@@ -187,7 +194,7 @@ def _settled_from(parts: Sequence[SignalSegment], duration: float) -> float:
 def _drift(
     scenario: Scenario, records: Records, time: Array, signals: Mapping[str, Array]
 ) -> float | None:
-    """Mean speed over the last part, where nothing asks for motion."""
+    """Mean speed over the last part, if nothing commands motion."""
     begin = (1 - LAST) * scenario.duration
     loop, parts = reference(scenario)
     load = scenario.load
@@ -223,7 +230,7 @@ def requirements(
                 continue
             value = found.get(metric)
             if value is None and metric == "stop_speed" and sense == "max":
-                value = 0.0  # no stop is met
+                value = 0.0  # no stop is reached
             if value is None:
                 rows.append(
                     RequirementResult(metric, sense, bound, None, None, False, why.get(metric, ""))

@@ -1,4 +1,4 @@
-"""What a simulation tells, as plain records."""
+"""Results of a simulation."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .step_response import StepMetrics
 
 @dataclass(frozen=True, slots=True)
 class Flow:
-    """Energy through one door over the run [J]; what comes in is positive."""
+    """Energy flow across the boundary over the run [J]; inflow is positive."""
 
     name: str
     energy: float
@@ -30,28 +30,28 @@ class Flow:
 
 @dataclass(frozen=True, slots=True)
 class Balance:
-    """What the run adds up to, over what went through."""
+    """Mass and energy balance of a run, relative to the throughput."""
 
     mass: float
-    """Largest |content - what flowed in| of any volume, over its content."""
+    """Largest |content - inflow| of any volume, over its content."""
     energy: float
-    """|stored - what came in|, over everything that went through a door."""
+    """stored - net inflow|, relative to all energy across the boundary."""
     flows: tuple[Flow, ...]
     stored: tuple[Flow, ...]
-    """Change of what is stored."""
+    """Change of the stored energy."""
 
 
 @dataclass(frozen=True, slots=True)
 class Second:
-    """A second integrator on the same equations."""
+    """Check by a second integrator on the same equations."""
 
     method: str
     max_difference: float
-    """Largest difference of any signal compared, over its span."""
+    """Largest difference of any compared signal, over its span."""
     signal: str
-    """Which one."""
+    """Its signal."""
     time: float
-    """When [s]."""
+    """Its time [s]."""
     differences: Mapping[str, float]
 
 
@@ -61,7 +61,7 @@ class Window:
 
     time: float
     position: float
-    """Their means."""
+    """Mean pressures of the chambers."""
     stiffness: complex
     """Force over position [N/m]."""
     standard_error: float
@@ -77,7 +77,7 @@ class HarmonicLoad:
 
 @dataclass(frozen=True, slots=True)
 class Servo:
-    """How the loop follows."""
+    """Response of the loop to a step."""
 
     loop: Loop
     time: float
@@ -101,7 +101,7 @@ class RequirementResult:
 
     @property
     def state(self) -> State:
-        """Whether it is met, and with reserve (`reserve.NO_RESERVE`)."""
+        """Whether it is met, and with what margin (`reserve.NO_RESERVE`)."""
         if not self.met:
             return "missed"
         return "no_reserve" if without_reserve(self.margin, self.limit) else "met"
@@ -109,7 +109,7 @@ class RequirementResult:
 
 @dataclass(frozen=True, slots=True)
 class Told:
-    """A signal's name in words and its quantity."""
+    """Label and quantity of a signal."""
 
     label: str
     quantity: Quantity
@@ -117,10 +117,10 @@ class Told:
 
 @dataclass(frozen=True, slots=True)
 class Simulation:
-    """A scenario, simulated.
+    """Results of a simulated scenario.
 
-    `time` may hold an instant twice: before and after a jump. `values` are results by the names of
-    `quantities.RESULTS`, None where they do not apply, with the reason in `why`.
+    `time` may contain an instant twice: before and after a jump. `values` are results by the names
+    of `quantities.RESULTS`, None if they do not apply, with the reason in `why`.
     """
 
     scenario: Scenario
@@ -144,7 +144,7 @@ class Simulation:
 
     @property
     def met(self) -> bool:
-        """Whether every requirement holds."""
+        """Whether all requirements are met."""
         return all(row.met for row in self.requirements)
 
     def __str__(self) -> str:

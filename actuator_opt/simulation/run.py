@@ -32,21 +32,21 @@ from .result import Second, Simulation, Told
 from .system import Compiled
 
 SECOND: Final[dict[Method, Method]] = {"lsoda": "radau", "cvodes": "radau", "radau": "lsoda"}
-"""Second opinion on each method."""
+"""Second integrator for each method."""
 COMPARED = (
     "position", "speed", "pressure_a", "pressure_b", "shaft_speed", "shaft_angle", "spool",
     "flow_a", "flow_b",
 )  # fmt: skip
-"""Signals on which two integrators are compared."""
+"""Signals compared between the two integrators."""
 TORN = -0.8e5
-"""Gauge pressure below which oil is told to be torn [Pa] (a choice: air comes out before)."""
+"""Gauge pressure below which cavitation is reported [Pa] (a choice: air is released before)."""
 COARSE = 1e-3
-"""Sample time above which peaks of the oil's swing may be missed [s] (a choice: at 125 Hz, an
-eighth of a swing)."""
+"""Sample time above which oil pressure peaks may be missed [s] (a choice: at 125 Hz, an eighth of a
+period)."""
 SETTLED = 0.02
-"""Share of its pressure from which the start of a pump's line is told (a choice)."""
+"""Difference of a pump line's initial pressure, as a share, that is reported (a choice)."""
 WARN_PLANE = 0.02
-"""Error of the friction's fit over the pressures that is told."""
+"""Fit error of friction over pressure that is reported."""
 
 
 def simulate(
@@ -57,22 +57,22 @@ def simulate(
     verify: bool = False,
     method: Method = "lsoda",
 ) -> Simulation:
-    """A scenario around a design over time.
+    """Simulate a scenario around a design.
 
     Parameters
     ----------
     scenario : what happens
     subject : the design, with the values that the scenario sets
     records : columns of the files that its signals name
-    verify : integrate again by another method and tell the difference
+    verify : integrate again by another method and compare
     method : of the integration
 
     Raises
     ------
     InputError
-        a valve or a gain that is missing, a law that no rule gives
+        a missing valve or gain, or a law without a tuning rule
     Unsolvable
-        where the integration cannot go on, with the time
+        the integration fails; gives the time
     """
     begin = perf_counter()
     files = {} if records is None else records
@@ -95,7 +95,7 @@ def run(
     spec: str = "",
     begin: float | None = None,
 ) -> Simulation:
-    """A scenario around a plant with known gains; parameters as `simulate`."""
+    """Simulate a scenario around a plant with known gains; parameters as `simulate`."""
     begin = perf_counter() if begin is None else begin
     circuit = assemble(scenario, own, records, None if tuned is None else tuned.gains)
     compiled = circuit.system.compiled()
@@ -151,7 +151,7 @@ def _second(
     signals: dict[str, Array],
     method: Method,
 ) -> Second:
-    """The same equations by another integrator: largest differences over each signal's span."""
+    """Integrate again by another method: largest difference, relative to each signal's span."""
     other = integrate(compiled, duration=scenario.duration, sample_time=step, method=method)
     again = compiled.signals(other.time, other.states, other.flags)
     grid, at = _single(first.time)
@@ -174,35 +174,35 @@ def _second(
 
 
 def _single(time: Array) -> tuple[Array, Array]:
-    """Samples whose time stands once: jumps are compared where both are sure."""
+    """Samples without the doubled instants, so that jumps are compared away from the edge."""
     kept, first, count = np.unique(time, return_index=True, return_counts=True)
     alone = count == 1
     return kept[alone], first[alone]
 
 
 def _notes(circuit: Circuit, own: Plant, tuned: Tuned | None) -> tuple[str, ...]:
-    """What a reader should know of this run."""
+    """Notes on a run for its reader."""
     notes = [*circuit.system.notes]
     if tuned is not None:
         notes += tuned.notes
         if tuned.unheld:
-            said = "margins of the linear loop say nothing"
+            said = "the margins of the linear loop are meaningless"
             notes.append(f"{UNHELD}{tuned.unheld}: {said}; {CAUSES}")
         elif not tuned.margins.stable:
             notes.append(
-                f"the linear loop is unstable: gain margin {tuned.margins.gain:.2f}, it swings "
-                "until the valve's limits or the friction hold it"
+                f"the linear loop is unstable: gain margin {tuned.margins.gain:.2f}; it "
+                "oscillates until limited by the valve or the friction"
             )
     stated, seals = circuit.scenario.friction, own.seals
     if stated.coulomb is None and stated.model != "none" and circuit.scenario.motor is None:
         error = max(seals.coulomb.error, seals.static.error)
         if error > WARN_PLANE:
-            notes.append(f"friction over the pressures is fitted within {100 * error:.1f} %")
+            notes.append(f"the fit of friction over the pressures is within {100 * error:.1f} %")
         films = [one for one in ("piston", "rod") if own.films[one]]
         if films:
             notes.append(
-                f"the {' and '.join(films)} seal's oil film is simulated as dry friction by its "
-                "coefficient: state friction.coulomb and viscous for its running friction"
+                f"the {' and '.join(films)} seal's oil film is simulated as dry friction with "
+                "its coefficient: state friction.coulomb and viscous for its running friction"
             )
     if own.design.ports.accumulators:
         notes.append("accumulators at the ports (ports.accumulators) are not simulated")
@@ -210,7 +210,7 @@ def _notes(circuit: Circuit, own: Plant, tuned: Tuned | None) -> tuple[str, ...]
 
 
 def _limits(scenario: Scenario, own: Plant, signals: Mapping[str, Array]) -> Iterator[str]:
-    """Torn oil, too much pressure, a load cylinder's end: the equations go on, a rig does not."""
+    """Cavitation, excess pressure, or a load cylinder at its end, which the equations ignore."""
     where = "chamber" if scenario.motor is None else "pipe"
     for name in ("pressure_a", "pressure_b"):
         if name not in signals:
@@ -218,26 +218,29 @@ def _limits(scenario: Scenario, own: Plant, signals: Mapping[str, Array]) -> Ite
         text, side = INPUTS["pressure"].text, f"{where} {name[-1].upper()}"
         lowest, highest = float(np.min(signals[name])), float(np.max(signals[name]))
         if lowest < TORN:
-            yield f"the oil of {side} is torn: {text(lowest)} gauge"
+            yield f"the oil in {side} cavitates: {text(lowest)} gauge"
         if highest > own.proof_pressure:
             proof = text(own.proof_pressure)
-            yield f"the pressure in {side} peaks at {text(highest)}, beyond the proof of {proof}"
+            yield (
+                f"the pressure in {side} peaks at {text(highest)}, above the proof pressure of "
+                f"{proof}"
+            )
     bench = scenario.load.cylinder
     if bench is not None and "position" in signals:
         x = signals["position"]
         if float(np.max(np.abs(x - x[0]))) > 0.5 * bench.stroke:
-            yield "the load cylinder leaves its stroke: it begins in its middle and has no stops"
+            yield "the load cylinder exceeds its stroke: it starts in the middle and has no stops"
 
 
 def _coarse(step: float, signals: Mapping[str, Array]) -> Iterator[str]:
     """Samples that may miss a peak."""
     if step > COARSE and "pressure_a" in signals:
         apart = f"{1e3 * step:.3g} ms apart"
-        yield f"peaks and steps are read at samples, {apart}: state a shorter sample_time"
+        yield f"peaks and step results are taken from samples, {apart}: state a shorter sample_time"
 
 
 def _unsettled(scenario: Scenario, own: Plant) -> Iterator[str]:
-    """A pump that does not begin where its relief valve takes its flow."""
+    """A pump that does not start in equilibrium with its relief valve."""
     from scipy.optimize import brentq
 
     unit = scenario.supply
@@ -254,17 +257,17 @@ def _unsettled(scenario: Scenario, own: Plant) -> Iterator[str]:
         )
         return float(passed) - flow
 
-    over = float(brentq(missing, 0.0, 2 * relief.override))  # it takes the pump, as is checked
+    over = float(brentq(missing, 0.0, 2 * relief.override))  # includes the pump, as checked
     rest = own.return_pressure + relief.pressure + over
     if abs(rest - own.supply_pressure) > SETTLED * own.supply_pressure:
         yield (
-            f"the supply line begins at {text(own.supply_pressure)} (supply.pressure), pump and "
-            f"relief valve come to rest near {text(rest)}: set supply.pressure there"
+            f"the supply line starts at {text(own.supply_pressure)} (supply.pressure), but pump "
+            f"and relief valve settle near {text(rest)}: set supply.pressure there"
         )
 
 
 def _reach(own: Plant, signals: Mapping[str, Array]) -> Iterator[str]:
-    """A reference that the stroke does not hold."""
+    """A reference outside the stroke."""
     if "reference" not in signals or "position" not in signals:
         return
     asked = signals["reference"]
@@ -273,13 +276,13 @@ def _reach(own: Plant, signals: Mapping[str, Array]) -> Iterator[str]:
     if follows and (low < 0 or high > own.stroke):
         length = INPUTS["position"].text
         yield (
-            f"the reference goes from {length(low)} to {length(high)}, the stroke ends at "
+            f"the reference ranges from {length(low)} to {length(high)}, but the stroke ends at "
             f"{length(own.stroke)}"
         )
 
 
 def spec_of(subject: PreparedDesign, scenario: Scenario) -> str:
-    """Hash of everything that decides the result."""
+    """Hash of everything that affects the result."""
     content = json.dumps(scenario.model_dump(mode="json"), sort_keys=True, default=str)
     text = spec_hash(subject) + content
     return hashlib.sha256(text.encode()).hexdigest()[:16]

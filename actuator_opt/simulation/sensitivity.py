@@ -1,8 +1,8 @@
-"""Which parameters the results of a scenario are sensitive to: central differences, ranked.
+"""Sensitivity of a scenario's results to its parameters: central differences, ranked.
 
-The controller keeps the gains it has; only parameters of `control` change them. A change is told
-for 1 % of the parameter, of a temperature for 1 K. Each difference is repeated with half the step:
-where both do not agree, noise or a jump of the result rules, and the figure is marked.
+The controller keeps its gains; only parameters of `control` change them. A change refers to 1 % of
+the parameter, or 1 K for a temperature. Each difference is repeated with half the step; if both
+disagree, noise or a jump dominates, and the value is marked.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ from .result import Simulation
 from .run import run
 
 STEP = 0.02
-"""Share of a parameter by which it is moved (a choice: well above the error of a run)."""
+"""Relative step of a parameter (a choice: well above the error of a run)."""
 AGREE = 0.1
-"""Share within which a difference with half the step must agree."""
+"""Agreement required of a difference with half the step."""
 NOTHING = 0.05
-"""Change of a result, in per cent for 1 %, that counts as none (a choice)."""
+"""Change of a result, in per cent for 1 %, that counts as zero (a choice)."""
 DESIGN = (
     "fluid.air_content", "fluid.temperature", "supply.pressure", "supply.return_pressure",
     "cylinder.bore", "rod.outer_diameter", "cylinder.dead_volume_a", "cylinder.dead_volume_b",
@@ -43,23 +43,23 @@ DESIGN = (
     "valve.leakage_flow", "valve.natural_frequency", "valve.damping_ratio", "control.gain",
     "load.mass", "load.inertia",
 )  # fmt: skip
-"""Numbers of a design that are moved where none are named."""
+"""Numbers of a design that are varied by default."""
 LEAST = {"hold_drift": 1e-7, "overshoot": 1e-5, "steady_state_ratio": 1e-5, "following_error": 1e-7}
-"""Results below which nothing is left but rounding [SI] (a choice)."""
+"""Results below this are rounding [SI] (a choice)."""
 _TIMES = ("start", "end", "phase", "frequency")
 _APART = ("duration", "sample_time", "requirements", "analysis", "set")
 
 
 @dataclass(frozen=True, slots=True)
 class Effect:
-    """What 1 % of a parameter changes (1 K of a temperature)."""
+    """Effect of a 1 % change of a parameter (1 K for a temperature)."""
 
     percent: float | None
-    """Of the result, per cent; None where the result is zero."""
+    """Change of the result, per cent; None if the result is zero."""
     change: float
-    """Of the result [SI]."""
+    """Change of the result [SI]."""
     reliable: bool
-    """Whether half the step says the same within 10 %; where nothing moves, only that."""
+    """Whether half the step agrees within 10 %; if nothing changes, only that."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,10 +87,10 @@ class Sensitivities:
 
     name: str
     results: Mapping[str, float]
-    """Results of the scenario as it is."""
+    """Results of the unchanged scenario."""
     parameters: tuple[Parameter, ...]
     skipped: Mapping[str, str]
-    """Parameters without an answer, with the reason."""
+    """Parameters that failed, with the reason."""
     step: float
     runs: int
     seconds: float
@@ -139,18 +139,18 @@ def sensitivities(
 
     Parameters
     ----------
-    scenario, subject : what happens, to what
+    scenario, subject : what happens, and the design
     names : PATHs of design or scenario; default: `DESIGN` and the numbers that the scenario states
-    step : share of a parameter by which it is moved
+    step : relative step of a parameter
     results : names of `quantities.RESULTS`; default: all that the scenario has
     records : columns of the files that the scenario's signals name
 
     Raises
     ------
     InputError
-        a PATH that names no number, a result that does not exist, a step that is not positive
+        a PATH that is not a number, a result that does not exist, a step that is not positive
     Unsolvable
-        where the scenario itself has no solution
+        the scenario itself fails
     """
     begin = perf_counter()
     if not 0 < step < 0.5:
@@ -161,9 +161,9 @@ def sensitivities(
     chosen = _results(base, results)
     found: list[Parameter] = []
     skipped: dict[str, str] = {}
-    for one in steps("moving each parameter", [*bench.targets(names)]):
+    for one in steps("varying each parameter", [*bench.targets(names)]):
         if one.value == 0:
-            skipped[one.path] = "it is 0: a share of it moves nothing"
+            skipped[one.path] = "it is 0, so a relative step has no effect"
             continue
         try:
             found.append(bench.parameter(one, chosen, step))
@@ -197,17 +197,17 @@ class _Target:
 
     @property
     def amount(self) -> float:
-        """1 % of it; of a temperature 1 K."""
+        """1 % of its value; 1 K for a temperature."""
         return 1.0 if _absolute(self.quantity) else 0.01 * abs(self.value)
 
 
 _Slope: TypeAlias = tuple[float | None, float]
-"""Change of a result for one unit of a parameter: in per cent of it, and in SI."""
+"""Change of a result per unit of a parameter: in per cent, and in SI."""
 
 
 @dataclass(slots=True)
 class _Bench:
-    """A scenario around a design, to be run with other numbers."""
+    """A scenario around a design, for runs with other numbers."""
 
     scenario: Scenario
     subject: PreparedDesign
@@ -217,16 +217,16 @@ class _Bench:
 
     @classmethod
     def of(cls, scenario: Scenario, subject: PreparedDesign, records: Records) -> _Bench:
-        """With the gains as they are."""
+        """Build with the present gains."""
         return cls(scenario, subject, records, tune(scenario, plant(subject), records))
 
     def base(self) -> Simulation:
-        """The scenario as it is."""
+        """The unchanged scenario."""
         self.runs += 1
         return run(self.scenario, plant(self.subject), self.records, self.tuned)
 
     def targets(self, names: Sequence[str] | None) -> Iterable[_Target]:
-        """What is moved."""
+        """The numbers to vary."""
         if names is not None:
             yield from (self._target(name) for name in names)
             return
@@ -267,7 +267,7 @@ class _Bench:
         return Parameter(one.path, one.origin, one.quantity, one.value, per, effects)
 
     def _slopes(self, one: _Target, chosen: Mapping[str, float], step: float) -> dict[str, _Slope]:
-        """Changes of the results for one unit of a parameter, where both sides have them."""
+        """Change of the results per unit of a parameter, where both sides have them."""
         units = step / 0.01
         high, low = (self._values(one, one.value + way * units * one.amount) for way in (1, -1))
         found: dict[str, _Slope] = {}
@@ -298,18 +298,18 @@ class _Bench:
 
 
 def _least(name: str, step: float) -> float:
-    """Change of a result for one unit of a parameter that is rounding [SI]."""
+    """Change of a result per unit of a parameter that counts as rounding [SI]."""
     return LEAST.get(name, 0.0) * 0.01 / step
 
 
 def _moves(one: _Slope, least: float) -> bool:
-    """Whether a result changes at all; one that is zero by more than rounding."""
+    """Whether a result changes by more than rounding."""
     percent, change = one
     return abs(change) > least if percent is None else abs(percent) > NOTHING
 
 
 def _same(one: _Slope, other: _Slope, least: float) -> bool:
-    """Whether two differences agree, or are both nothing."""
+    """Whether two differences agree, or are both zero."""
     if not (_moves(one, least) or _moves(other, least)):
         return True
     index = 1 if one[0] is None else 0
@@ -318,12 +318,12 @@ def _same(one: _Slope, other: _Slope, least: float) -> bool:
 
 
 def _absolute(quantity: Quantity) -> bool:
-    """Whether the zero of a quantity is far off: a share of it says nothing."""
+    """Whether a quantity has an offset zero, so that relative changes are meaningless."""
     return quantity.dimension == "temperature"
 
 
 def _put(node: Any, loc: Loc, value: float) -> Any:
-    """A section with another number at a place."""
+    """A section with another number at a location."""
     key, rest = loc[0], loc[1:]
     old = child(node, key)
     new: Any = _put(old, rest, value) if rest else value
@@ -335,7 +335,7 @@ def _put(node: Any, loc: Loc, value: float) -> Any:
 
 
 def _stated(node: Any, loc: Loc) -> bool:
-    """Whether a file states what stands at a place: no default."""
+    """Whether a file states the value at a location, as opposed to a default."""
     for key in loc:
         if isinstance(key, str) and key not in node.model_fields_set:
             return False

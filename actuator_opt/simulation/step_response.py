@@ -1,4 +1,4 @@
-"""How a servo follows a step."""
+"""Step response of a servo."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ from ..base.numeric import Array
 from .sampled import LAST, last_mean, sampled
 
 BAND = 0.02
-"""Share of the step within which a response has settled, the usual 2 %."""
+"""Settling band as a share of the step, the usual 2 %."""
 
 
 class StepMetrics(NamedTuple):
     """Figures of a step response; times count from its first sample."""
 
     rise_time: float | None
-    """From 10 to 90 % of the step [s]; None where it never gets there."""
+    """From 10 to 90 % of the step [s]; None if it never gets there."""
     settling_time: float | None
-    """Last time outside the band about the target [s]; None where it does not stay inside."""
+    """Last time outside the band about the target [s]; None if it does not stay inside."""
     overshoot: float
-    """Beyond the target, share of the step; 0 where it never gets there."""
+    """Excess over the target, as a share of the step; 0 if the target is never reached."""
     steady_state_error: float
     """Target less the mean of the last tenth, in the response's unit."""
     peak: float
-    """Farthest response in the direction of the step."""
+    """Extreme response in the direction of the step."""
     peak_time: float
-    """Of that sample [s]."""
+    """Time of the peak [s]."""
     decay: float | None
-    """Next overshoot over the largest one; None where there is no next one."""
+    """Next overshoot over the largest one; None without a next one."""
 
 
 def step_metrics(
@@ -39,8 +39,8 @@ def step_metrics(
     """Rise, settling, overshoot and steady-state error of a sampled step response.
 
     Samples are joined by straight lines. The band and the overshoot are shares of the step about
-    the target, so that a response that settles elsewhere has an error and no settling time. It must
-    also stay inside for the last tenth of the record.
+    the target, so a response that settles elsewhere has an error but no settling time. It must also
+    stay inside for the last tenth of the record.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def step_metrics(
 
     Raises
     ------
-    InputError : samples that are no record, no step, a band that is not positive
+    InputError : invalid samples, no step, or a band that is not positive
 
     Notes
     -----
@@ -75,7 +75,7 @@ def step_metrics(
     t, x = sampled(time=time, response=response)
     if not np.isfinite(target - start) or target == start:
         message = f"a step from {start:g} to {target:g}"
-        raise InputError(Diagnostic(message, "give a start and a target that differ"))
+        raise InputError(Diagnostic(message, "give different values for start and target"))
     if not 0 < band < 1:
         raise InputError(Diagnostic(f"band {band:g} of the step", "give one between 0 and 1"))
     t = t - t[0]
@@ -103,13 +103,13 @@ def _reached(t: np.ndarray, done: np.ndarray, level: float) -> float | None:
 
 
 def _crossing(t: np.ndarray, values: np.ndarray, at: int, level: float) -> float:
-    """Time between a sample and the next where the straight line meets a level."""
+    """Time at which the straight line between two samples crosses a level."""
     share = (level - values[at]) / (values[at + 1] - values[at])
     return float(t[at] + share * (t[at + 1] - t[at]))
 
 
 def _settled(t: np.ndarray, error: np.ndarray, band: float) -> float | None:
-    """Last time outside the band, if what follows covers the last tenth."""
+    """Last time outside the band, if the rest covers the last tenth."""
     outside = np.flatnonzero(np.abs(error) > band)
     if not outside.size:
         return 0.0

@@ -1,9 +1,9 @@
 """A system of ordinary differential equations under construction, and its compiled form.
 
-Parts (`parts`) add states, rates and signals as expressions of the same symbols; the models of
-`actuator_opt.models` are called with these symbols, so that simulation has no formula of its own.
-What jumps is a flag that holds between two restarts: an instant of an input, or a switch that
-follows the sign of a guard.
+Parts (`parts`) add states, rates and signals as expressions of the same symbols. They call the
+models of `actuator_opt.models` with these symbols, so the simulation has no formulas of its own.
+Jumps are flags that are constant between restarts: an instant of an input, or a switch that follows
+the sign of a guard.
 """
 
 from __future__ import annotations
@@ -21,20 +21,21 @@ from ..base.symbolic import Expression, Graph, Namespace, Symbol, function, jaco
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 
 LOOSE = 1e-4
-"""Tolerance of an integral over its scale (a choice): it follows, the states lead."""
+"""Tolerance of an integral relative to its scale (a choice): the states control the steps."""
 
 
 PRESSURE = 1.0
-"""Error of a pressure that is let pass [Pa]."""
+"""Error tolerance of a pressure [Pa]."""
 EMPTY = -40.0
-"""State of a pressure over the atmosphere's at which no digit is left to the vacuum."""
+"""Pressure state, relative to the atmosphere's, at which the distance to vacuum has no digits
+left."""
 VACUUM = 1e-6
-"""Least absolute pressure that a start may have, over the atmosphere's."""
+"""Least absolute initial pressure, relative to the atmosphere's."""
 
 
 @dataclass(slots=True)
 class SystemState:
-    """A state with its start, the error that is let pass, and its rate."""
+    """A state with its start, error tolerance and rate."""
 
     name: str
     symbol: Symbol
@@ -42,12 +43,12 @@ class SystemState:
     tolerance: float
     rate: Expression = 0.0
     integral: bool = False
-    """Whether it only adds up: nothing depends on it."""
+    """Whether it is a pure integral, on which nothing depends."""
 
 
 @dataclass(frozen=True, slots=True)
 class Switch:
-    """A flag that is true where its guard is above zero."""
+    """A flag that is true while its guard is positive."""
 
     name: str
     flag: str
@@ -64,7 +65,7 @@ class Instant:
 
 @dataclass(frozen=True, slots=True)
 class Signal:
-    """What is told of a run: an expression with its quantity."""
+    """An output signal: an expression with its quantity."""
 
     name: str
     label: str
@@ -82,11 +83,11 @@ class System:
     instants: list[Instant] = field(default_factory=list)
     signals: list[Signal] = field(default_factory=list)
     curved: dict[int, Symbol] = field(default_factory=dict)
-    """States that stand for a pressure, by the number of that pressure."""
+    """States that represent pressures, by number of the pressure."""
     bends: list[float] = field(default_factory=list)
-    """Instants at which a record changes its course: no step is longer than between two."""
+    """Instants at which a record changes its slope; no step is longer than the interval."""
     notes: list[str] = field(default_factory=list)
-    """What a reader of the result should know: choices and simplifications that acted."""
+    """Notes for the reader of the result: choices and simplifications that had an effect."""
 
     @property
     def time(self) -> Symbol:
@@ -94,16 +95,17 @@ class System:
         return self.graph.variable("t")
 
     def state(self, name: str, initial: float, *, tolerance: float) -> Symbol:
-        """A new state; `rate` gives it its equation."""
+        """Add a state; `rate` gives it its equation."""
         symbol = self.graph.variable(f"y_{len(self.states)}")
         self.states.append(SystemState(name, symbol, float(initial), tolerance))
         return symbol
 
     def pressure(self, name: str, initial: float) -> Symbol:
-        """A new state that is a gauge pressure and cannot fall below a vacuum.
+        """Add a gauge pressure as a state that cannot fall below vacuum.
 
-        The state s is the pressure p above zero and s = p_a ln(1 + p/p_a) below, with p_a of the
-        atmosphere: an error of s is a share of what is left to the vacuum, and there is no end.
+        The state s is the pressure p above zero and s = p_a ln(1 + p/p_a) below, with p_a the
+        atmospheric pressure. An error of s is relative to the distance from vacuum, and s has no
+        lower end.
         """
         air = ATMOSPHERIC_PRESSURE
         held = max(float(initial), (VACUUM - 1) * air)
@@ -115,7 +117,7 @@ class System:
         return symbol
 
     def rate(self, symbol: Symbol, rate: Expression) -> None:
-        """The time derivative of a state, or of a pressure."""
+        """Set the time derivative of a state, or of a pressure."""
         state = self.curved.get(symbol.index)
         if state is not None:
             slope = Namespace.exp(-_below(state) / ATMOSPHERIC_PRESSURE)
@@ -123,13 +125,13 @@ class System:
         next(s for s in self.states if s.symbol is symbol).rate = rate
 
     def integral(self, name: str, rate: Expression, *, scale: float) -> Symbol:
-        """The integral of an expression over time, from zero; it does not steer the steps."""
+        """Add the integral of an expression over time, from zero; it does not control the steps."""
         symbol = self.state(name, 0.0, tolerance=LOOSE * scale)
         self.states[-1].rate, self.states[-1].integral = rate, True
         return symbol
 
     def after(self, time: float) -> Any:
-        """A flag that is true from an instant on; the integration stops and starts there."""
+        """A flag that is true from an instant on; the integration restarts there."""
         if time <= 0:
             return True
         known = next((one for one in self.instants if one.time == time), None)
@@ -139,13 +141,13 @@ class System:
         return self.graph.flag(known.flag)
 
     def switch(self, name: str, guard: Expression) -> Symbol:
-        """A flag that is true while the guard is above zero; its change is located."""
+        """A flag that is true while the guard is positive; its changes are located in time."""
         flag = f"s_{len(self.switches)}"
         self.switches.append(Switch(name, flag, guard))
         return self.graph.flag(flag)
 
     def signal(self, name: str, label: str, quantity: Quantity, value: Expression) -> None:
-        """Tell a value under a name; a later one of the same name replaces it."""
+        """Add an output signal; a later one of the same name replaces it."""
         self.signals = [one for one in self.signals if one.name != name]
         self.signals.append(Signal(name, label, quantity, value))
 
@@ -155,7 +157,7 @@ class System:
         return [one.flag for one in self.instants] + [one.flag for one in self.switches]
 
     def unpack(self, symbols: Sequence[Symbol], states: str) -> dict[str, str]:
-        """How written code takes the states from an argument, and the flags from ``m``."""
+        """How generated code reads the states from an argument, and the flags from ``m``."""
         names = ", ".join(str(symbol.args[0]) for symbol in symbols)
         flags = ", ".join(self.flags)
         return ({f"{names},": states} if names else {}) | ({f"{flags},": "m"} if flags else {})
@@ -177,20 +179,20 @@ class Compiled:
     slopes: Callable[[float, Array, tuple[bool, ...]], Array]
     """Jacobian of the rates, row by row."""
     guards: Callable[[Array, Array, tuple[Array, ...]], list[Array]]
-    """Of every switch, at many samples: y is (states, samples)."""
+    """Guards of all switches at many samples: y is (states, samples)."""
     guard_rates: Callable[[Array, Array, tuple[Array, ...]], list[Array]]
-    """Their rates."""
+    """Rates of the guards."""
     told: Callable[[Array, Array, tuple[Array, ...]], list[Array]]
     """The signals, at many samples."""
     initial: Array
     tolerances: Array
     instants: tuple[float, ...]
     bends: Array
-    """Instants at which a record changes its course, each once."""
+    """Instants at which a record changes its slope, without repetition."""
 
     @classmethod
     def of(cls, system: System) -> Compiled:
-        """Trace, differentiate, write and compile."""
+        """Trace, differentiate, generate code and compile."""
         symbols = [state.symbol for state in system.states]
         rates = [state.rate for state in system.states]
         one, many = (system.unpack(symbols, states) for states in ("y.tolist()", "y"))
@@ -228,7 +230,7 @@ class Compiled:
 
 
 def _below(state: Symbol) -> Expression:
-    """A pressure's state where it is below zero, down to where no pressure is left."""
+    """A pressure's state below zero, down to vacuum."""
     return clip(state, EMPTY * ATMOSPHERIC_PRESSURE, 0.0)
 
 

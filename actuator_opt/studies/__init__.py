@@ -1,1 +1,1 @@
-"""Closer looks at one design: a seal, the plant of a simulation, the test bench."""
+"""Detailed studies of one design: a seal, the plant of a simulation, the test bench."""

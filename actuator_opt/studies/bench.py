@@ -1,4 +1,4 @@
-"""What a test bench record is read with: areas, moving mass, contact forces, stiffness."""
+"""Properties of a design for evaluating test records: areas, mass, forces, stiffness."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ from ..seals.contact import SealContact
 
 @dataclass(frozen=True, slots=True)
 class Bench:
-    """A design as a test bench meets it, SI.
+    """Properties of a design on a test bench, SI.
 
     Parameters
     ----------
     design : the actuator tested
     growth : radial growth of the bore at the piston seal over chamber pressure [m/Pa]
-    mass : of what moves inside the force sensor: rod, piston, fastening [kg]
+    mass : moving mass inside the force sensor: rod, piston, fastening [kg]
     rings, wipers : of the first load case
     springs : stiffness budget
-    oil_pressures : of chambers A and B in its first load case [Pa]
-    temperature : of its oil [K]
+    oil_pressures : of chambers A and B in the first load case [Pa]
+    temperature : of the oil [K]
     bulk_modulus : of the oil with air over gauge pressure, at the first case's temperature [Pa]
     """
 
@@ -56,15 +56,15 @@ class Bench:
 
     @property
     def plunger(self) -> bool:
-        """Whether no piston seal parts the chambers."""
+        """Whether no piston seal separates the chambers."""
         return all(ring.name != "piston" for ring in self.rings)
 
     def areas(self, highest_pressure: Array) -> tuple[Array, Array]:
-        """Piston areas of cap and rod end in the bore as grown at its higher chamber pressure.
+        """Return cap and rod-end piston areas in the bore as grown at the higher chamber pressure.
 
-        A_1 = pi (D/2 + u)^2, A_2 = A_1 - pi d^2/4, u the growth at the piston seal: what the seal
-        closes is what the pressure pushes. Without a piston seal the rod is a plunger: pi d^2/4 and
-        nothing. Pressure gauge [Pa]; areas [m^2].
+        A_1 = pi (D/2 + u)^2, A_2 = A_1 - pi d^2/4, u the growth at the piston seal: the pressure
+        acts on the area that the seal closes. Without a piston seal the rod is a plunger: pi d^2/4
+        and zero. Pressure gauge [Pa]; areas [m^2].
         """
         if self.plunger:
             area = forces.piston_area(bore=self.rod_diameter)
@@ -76,9 +76,9 @@ class Bench:
         )
 
     def normal_forces(self, pressure_1: Array, pressure_2: Array) -> list[tuple[Ring, Array]]:
-        """Every ring with its normal force at chamber pressures, f pi D [N].
+        """Return every ring with its normal force at chamber pressures, f pi D [N].
 
-        The first ring of a place carries the pressure, others in the row their squeeze. Gauge
+        The first ring in a row seals the pressure; the others only have their squeeze. Gauge
         pressures [Pa], any shape.
         """
         return [(ring, force) for ring, _, force in self._rubbing(pressure_1, pressure_2)]
@@ -86,7 +86,7 @@ class Bench:
     def _rubbing(
         self, pressure_1: Array, pressure_2: Array
     ) -> Iterator[tuple[Ring, SealContact, Array]]:
-        """Every ring with its contact, and the normal force of its row [N]."""
+        """Yield every ring with its contact, and the normal force of its row [N]."""
         for ring in self._held(pressure_1, pressure_2):
             contact = seal_contact(ring)
             load = contact.line_load
@@ -97,27 +97,27 @@ class Bench:
             yield ring, contact, pi * ring["diameter"] * load
 
     def contact_forces(self, pressure_1: Array, pressure_2: Array) -> dict[str, Array]:
-        """Normal force of all rings of piston and rod at chamber pressures [N]."""
+        """Return the normal force of all rings of piston and rod at chamber pressures [N]."""
         total = {"piston": 0.0 * pressure_1, "rod": 0.0 * pressure_1}
         for ring, force in self.normal_forces(pressure_1, pressure_2):
             total[ring.name] = total[ring.name] + force
         return total
 
     def coulomb(self, pressure_1: Array, pressure_2: Array) -> Array:
-        """Coulomb friction that the design states: rings and wipers, no side load on guides [N]."""
+        """Return the design's Coulomb friction [N]: rings and wipers, no side load on guides."""
         wiped = sum(float(one.friction) for one in self.wipers)
         return sum((own for _, own in self._coulomb(pressure_1, pressure_2)), wiped)
 
     def _coulomb(self, pressure_1: Array, pressure_2: Array) -> Iterator[tuple[Ring, Array]]:
-        """Every ring with the Coulomb friction of its row by its friction law [N]."""
+        """Yield every ring with the Coulomb friction of its row, by its friction law [N]."""
         for ring, contact, force in self._rubbing(pressure_1, pressure_2):
             yield ring, ring.element.friction_law.coefficient(ring.sizes, contact) * force
 
     def sliding(self, speed: Array, pressure_1: Array, pressure_2: Array) -> tuple[Array, Array]:
-        """Friction that the design states, without side load on guides: level and viscous [N].
+        """Return the design's friction without side load on guides: level and viscous part [N].
 
-        The level is Coulomb friction and what of breakaway is left at a speed [m/s]. Gauge
-        pressures [Pa].
+        The level is Coulomb friction plus the breakaway friction that remains at a speed [m/s].
+        Gauge pressures [Pa].
         """
         level = sum((float(one.friction) for one in self.wipers), 0.0 * speed)
         viscous = 0.0 * speed
@@ -127,7 +127,7 @@ class Bench:
         return level, viscous
 
     def contact_pressure(self, pressure_1: float, pressure_2: float) -> float:
-        """Normal force of the rings that hold the pressure over their contact area [Pa]."""
+        """Return the normal force of the rings that seal the pressure, per contact area [Pa]."""
         held = [ring for ring in self._held(pressure_1, pressure_2) if _leads(ring)]
         touches = [seal_contact(ring) for ring in held]
         around = [float(ring["diameter"]) for ring in held]
@@ -137,7 +137,7 @@ class Bench:
 
     @property
     def contact_law(self) -> str:
-        """Contact law of the rings that hold the pressure, in words."""
+        """Return the name of the contact law of the rings that seal the pressure."""
         return "; ".join(
             f"{ring.label}: "
             + ("stated profile" if ring.element.contact else ring.element.seal_type.title)
@@ -151,7 +151,7 @@ class Bench:
         )
 
     def _held(self, pressure_1: Array, pressure_2: Array) -> list[Ring]:
-        """The rings at chamber pressures: the first of a place carries them."""
+        """Return the rings at chamber pressures; the first of each row seals the pressure."""
         p1, p2 = (np.maximum(one, 0.0) for one in np.broadcast_arrays(pressure_1, pressure_2))
         seen = {"piston": np.abs(p1 - p2), "rod": p1 if self.plunger else p2}
         outer = {"piston": np.minimum(p1, p2), "rod": 0.0 * p2}
@@ -168,7 +168,7 @@ class Bench:
         return found
 
     def stiffness(self, position: Array, pressure_1: Array, pressure_2: Array) -> Array:
-        """Stiffness with the ports closed at a moment of a record [N/m]; NaN of a plunger.
+        """Return the stiffness with closed ports over a record [N/m]; NaN for a plunger.
 
         Position of the piston from the cap end [m], gauge pressures [Pa], all (samples). The oil of
         each chamber has its bulk modulus with air at the pressure there.
@@ -195,17 +195,17 @@ class Bench:
 
 
 def _leads(ring: Ring) -> bool:
-    """Whether a ring is the one of its place that holds the pressure."""
+    """Whether a ring is the one of its row that seals the pressure."""
     return ring.groove.path == f"seals.{ring.name}."
 
 
 def _first(parts: dict[str, Array]) -> list[Array]:
-    """Compliances of the first load case, (1, positions) each."""
+    """Return the compliances of the first load case, (1, positions) each."""
     return [np.atleast_2d(np.asarray(one))[:1] for one in parts.values()]
 
 
 def bench(subject: PreparedDesign) -> Bench:
-    """What a record of the design is read with; its oil and temperature are the first case's."""
+    """Return the bench properties of a design; oil and temperature are those of the first case."""
     v = subject.values()
     done = compute(subject, v)
     g = done.geometry
@@ -243,10 +243,10 @@ def bench(subject: PreparedDesign) -> Bench:
 
 
 def _first_of(value: Array) -> float:
-    """A number of the first case of one design."""
+    """Return the value of the first load case of a single design."""
     return float(np.ravel(np.real(np.asarray(value)))[0])
 
 
 def _cases(value: Array) -> Array:
-    """The values of all cases of one design."""
+    """Return the values of all load cases of a single design."""
     return np.real(np.atleast_2d(np.asarray(value))[:, 0])

@@ -1,4 +1,4 @@
-"""The films of a sealing over pressure and speed, each begun from the one before."""
+"""Oil films of a seal row over pressure and speed; each solution starts from the previous one."""
 
 from __future__ import annotations
 
@@ -21,26 +21,26 @@ from ..models import friction
 from ..seals.contact import SealContact
 
 Stroke = Literal["out", "in"]
-"""Way of the counterface past the seal: out of the sealed room, or in."""
+"""Direction of the counterface past the seal: out of the sealed room, or in."""
 
 
 def drives(place: Place) -> Stroke:
-    """The stroke of a driven actuator.
+    """Return the stroke direction of a driven actuator.
 
-    A driven piston runs away from the pressure it seals: the bore moves in past its seal. Out it
-    moves where a load overruns it.
+    A driven piston moves away from the pressure it seals, so the bore moves in past its seal. It
+    moves out where a load overruns the actuator.
     """
     return "in" if place == "piston" else "out"
 
 
 @dataclass(frozen=True, slots=True)
 class Sealing:
-    """Rings of floats of one place that share the oil, from the sealed side outwards.
+    """The rings of one seal row, which share the oil, from the sealed side outwards.
 
     Parameters
     ----------
-    rings : each with the pressure of its outer side
-    outward : whether their counterface moves to the outer side
+    rings : each with the pressure on its outer side; plain floats
+    outward : whether the counterface moves towards the outer side
     growth : of the counterface over the pressure on it [m/Pa]
     """
 
@@ -49,11 +49,11 @@ class Sealing:
     growth: float = 0.0
 
     def grown(self, pressure: float) -> float:
-        """Growth of the counterface at a pressure difference [m]."""
+        """Return the growth of the counterface at a pressure difference [m]."""
         return self.growth * (pressure + float(self.rings[-1]["outer_pressure"]))
 
     def row(self, pressure: float, speed: float, **changes: float) -> FilmRow:
-        """The rings at a pressure difference and speed; `changes` are of the first."""
+        """Return the films at a pressure difference and speed, with the first ring's `changes`."""
         grown = self.grown(pressure)
         rings = []
         for ring in self.rings:
@@ -63,12 +63,12 @@ class Sealing:
         return FilmRow(tuple(rings), self.outward)
 
     def alone(self, index: int) -> Sealing:
-        """One of the rings without the others."""
+        """Return one of the rings without the others."""
         return Sealing((self.rings[index],), self.outward, self.growth)
 
 
 def sealing(found: Base, place: Place, case: int) -> Sealing:
-    """The rings of a place with the oil and the outer side of a load case, driven."""
+    """Return the rings of a place with the oil and outer side of a load case, driven."""
     rings = tuple(floats(ring, case) for ring in of_place(found.rings, place))
     pressure = float(of_case(found.state.driven_pressure, case))
     growth = 0.0
@@ -79,7 +79,7 @@ def sealing(found: Base, place: Place, case: int) -> Sealing:
 
 
 class Missing(NamedTuple):
-    """A point without a film: pressure difference [Pa], speed [m/s], and why."""
+    """A point without a film: pressure difference [Pa], speed [m/s], and the reason."""
 
     pressure: float
     speed: float
@@ -88,7 +88,7 @@ class Missing(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class FilmMap:
-    """Friction of a sealing over pressure and speed; NaN where there is no film.
+    """Friction of a seal row over pressure and speed; NaN without a film.
 
     Parameters
     ----------
@@ -96,9 +96,9 @@ class FilmMap:
     parts : friction of every ring (p, v, rings) [N]
     between : pressure between two rings over the outer side (p, v) [Pa]; NaN for one
     thickness : mean film of every ring (p, v, rings) [m]
-    viscous : share of the oil's shear in the friction (p, v)
-    breakaway : of all rings, dry (p,) [N]; of two as the film of the lowest speed shares the
-        pressure
+    viscous : share of oil shear in the friction (p, v)
+    breakaway : of all rings, dry (p,) [N]; two rings share the pressure as in the film at the
+        lowest speed
     why : the points without a film
     """
 
@@ -113,16 +113,16 @@ class FilmMap:
 
     @property
     def friction(self) -> Array:
-        """Of all rings (p, v) [N]."""
+        """Return the friction of all rings (p, v) [N]."""
         return np.sum(self.parts, axis=2)
 
     @property
     def damping(self) -> Array:
-        """Secant damping (p, v) [N s/m]."""
+        """Return the secant damping (p, v) [N s/m]."""
         return self.friction / self.speeds
 
     def at(self, pressure: float, speed: float) -> tuple[int, int]:
-        """Place of a pressure and a speed in the tables."""
+        """Return the indices of a pressure and a speed in the tables."""
         return (
             int(np.argmin(np.abs(self.pressures - pressure))),
             int(np.argmin(np.abs(self.speeds - speed))),
@@ -132,7 +132,7 @@ class FilmMap:
 def film_map(
     sealing: Sealing, pressures: Sequence[float], speeds: Sequence[float], **changes: float
 ) -> FilmMap:
-    """The films at every pressure and speed; `changes` are of the first ring."""
+    """Return the films at every pressure and speed; `changes` are those of the first ring."""
     shape = len(pressures), len(speeds)
     count = len(sealing.rings)
     parts, thickness = np.full((2, *shape, count), nan)
@@ -175,21 +175,21 @@ def film_map(
 
 
 def ring_friction(solved: Solved) -> tuple[float, ...]:
-    """Friction of every ring of a row [N]; NaN without a film."""
+    """Return the friction of every ring of a row [N]; NaN without a film."""
     if solved.why:
         return (nan,) * len(solved.row.rings)
     return tuple(float(one) for one in solved.row.frictions(solved.values))
 
 
 def breakaway(ring: Ring) -> float:
-    """Friction of a ring with all oil squeezed out [N]; 0 where the pressure lifts it off."""
+    """Return a ring's friction with all oil squeezed out [N]; 0 where pressure lifts it off."""
     return dry_friction(
         ring, seal_contact(ring.at(pressure=abs(ring["pressure"]))), "asperity_friction"
     )
 
 
 def dry_friction(ring: Ring, contact: SealContact, coefficient: str) -> float:
-    """Friction of a ring's contact by one of its coefficients [N]."""
+    """Return the friction of a ring's contact for one of its coefficients [N]."""
     return float(
         friction.seal_friction(
             line_load=contact.line_load,

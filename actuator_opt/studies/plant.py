@@ -1,4 +1,4 @@
-"""A design as a simulation in time meets it: plain numbers, SI, of the oil's own temperature."""
+"""The plant of a simulation: plain numbers of a design, SI, at its own oil temperature."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from ..models import end_stop, lines, linkage
 from .bench import Bench, bench
 
 LEAST_AIR = 1e-4
-"""Free air from which on it bounds a vacuum itself (a choice, 0.01 %)."""
+"""Free air content above which the air itself limits a vacuum (a choice, 0.01 %)."""
 
 CAVITY = 1e-6
-"""Content of the cavity that bounds it in oil of less air, below atmospheric pressure only (a
-choice: at 0.05 bar absolute it takes 0.006 % of the volume)."""
+"""Volume share of the cavity that limits a vacuum in oil with less air, below atmospheric pressure
+only (a choice: at 0.05 bar absolute it takes 0.006 % of the volume)."""
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
-"""Chamber pressures over the supply's at which the friction is read."""
+"""Chamber pressures, relative to the supply pressure, for fitting the friction."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,9 +35,9 @@ class Oil:
 
     temperature: float
     bulk_modulus: float
-    """Tangent value of the pure oil at zero gauge pressure."""
+    """Tangent bulk modulus of the pure oil at zero gauge pressure."""
     slope: float
-    """Of it over pressure; a Tait law is replaced by its secant to the supply pressure."""
+    """Its increase with pressure; a Tait law becomes its secant up to the supply pressure."""
     air_content: float
     polytropic_index: float
     density: float
@@ -47,12 +47,12 @@ class Oil:
 
     @property
     def cavity(self) -> float:
-        """Content of the cavity that opens below atmospheric pressure; none where air does it."""
+        """Return the cavity content below atmospheric pressure; zero if air limits the vacuum."""
         return CAVITY if self.air_content < LEAST_AIR else 0.0
 
     @property
     def law(self) -> dict[str, float]:
-        """What the functions of `models.chamber` take."""
+        """Return the arguments for the functions of `models.chamber`."""
         return {
             "bulk_modulus": self.bulk_modulus,
             "slope": self.slope,
@@ -63,7 +63,7 @@ class Oil:
 
 @dataclass(frozen=True, slots=True)
 class ValveData:
-    """The valve's edges and spool."""
+    """Edges and spool of the valve."""
 
     rated: float
     leakage_supply: float
@@ -73,12 +73,12 @@ class ValveData:
     natural_frequency: float
     damping_ratio: float
     offset: float = 0.0
-    """Signal at which the spool is centred."""
+    """Signal that centres the spool."""
 
 
 @dataclass(frozen=True, slots=True)
 class LineData:
-    """The lines of one chamber: what is before a throttle, what lies beyond it or is their half."""
+    """The lines of one chamber: before and after a throttle, or two halves without one."""
 
     near_volume: float = 0.0
     near_wall: float = 0.0
@@ -90,17 +90,17 @@ class LineData:
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """A force over the chamber pressures, c0 + c1 |p_A - p_B| + c2 p_B + c3 max(p_A, p_B) [N]."""
+    """A force over chamber pressures, c0 + c1 |p_A - p_B| + c2 p_B + c3 max(p_A, p_B) [N]."""
 
     constant: float
     difference: float = 0.0
     rod_side: float = 0.0
     higher: float = 0.0
     error: float = 0.0
-    """Largest difference from the seals' own law, over its largest value."""
+    """Largest deviation from the seals' own law, relative to its largest value."""
 
     def at(self, pressure_a: Array, pressure_b: Array) -> Array:
-        """The force at chamber pressures [Pa]."""
+        """Return the force at chamber pressures [Pa]."""
         higher = maximum(pressure_a, pressure_b) if self.higher else 0.0
         across = absolute(pressure_a - pressure_b) if self.difference else 0.0
         rest = self.rod_side * pressure_b + self.higher * higher
@@ -120,10 +120,11 @@ class SealData:
 
 @dataclass(frozen=True, slots=True)
 class Plant:
-    """The numbers of a design that its equations of motion need, SI.
+    """Properties of a design in its equations of motion, SI.
 
     Chamber volumes at position x from the cap end: A_A x + dead volume, A_B (s - x) + dead volume,
-    lines not counted; `walls` is what barrel and rod add per pressure, without oil and lines.
+    lines not counted; `walls` is the expansion of barrel and rod per pressure, without oil and
+    lines.
     """
 
     design: Design
@@ -136,7 +137,7 @@ class Plant:
     flexibility: float
     """Of rod and mount in series [m/N]."""
     mass: float
-    """Of load, rod, piston and fastening, without a joint's inertia."""
+    """Mass of load, rod, piston and fastening, without a joint's inertia."""
     leakage: float
     oil: Oil
     supply_pressure: float
@@ -145,18 +146,18 @@ class Plant:
     valve: ValveData | None
     lines: dict[Chamber, LineData]
     throttle: dict[str, float] | None
-    """What the functions of `models.one_way_valve` take beside the pressures."""
+    """Arguments for the functions of `models.one_way_valve`, without the pressures."""
     reducing_valve: dict[str, float] | None
     seals: SealData
     films: dict[str, bool]
-    """Whether the seal of piston and rod runs on an oil film in the design."""
+    """Whether the piston and rod seals run on an oil film in the design."""
     oil_damping: float
-    """Shear of the oil in gaps, at the piston [N s/m]."""
+    """Oil shear in gaps, at the piston [N s/m]."""
     stop_stiffness: float
     closed_length: float
 
     def joint(self, position: Array) -> tuple[linkage.Linkage, linkage.ReflectedInertia] | None:
-        """The linkage at a position, with the joint's inertia as the rod feels it."""
+        """Return the linkage at a position, with the joint's inertia reflected to the rod."""
         pivots = self.design.linkage
         if pivots is None:
             return None
@@ -172,7 +173,7 @@ class Plant:
         return arm, felt
 
     def joint_angle(self, position: Array) -> Array:
-        """Angle of the joint at a position [rad]; of a design with a linkage."""
+        """Return the joint angle at a position [rad], for a design with a linkage."""
         pivots = self.design.linkage
         assert pivots is not None
         return linkage.linkage_angle(
@@ -183,15 +184,15 @@ class Plant:
         )
 
     def moving_mass(self, position: float) -> float:
-        """Everything the rod moves, a joint's inertia included [kg]."""
+        """Return the total moving mass, including a joint's reflected inertia [kg]."""
         joint = self.joint(position)
         return self.mass + (0.0 if joint is None else float(joint[1].mass))
 
 
 def plant(subject: PreparedDesign) -> Plant:
-    """The plant of a design, at the temperature of its first load case.
+    """Return the plant of a design, at the temperature of its first load case.
 
-    Friction of an oil film is taken as dry, by its coefficient.
+    Friction of an oil film is taken as dry, with its coefficient.
     """
     v = subject.values()
     done = compute(subject, v)
@@ -240,12 +241,12 @@ _NOT_WALLS = (*OIL, "pipes", "hoses")
 
 
 def _one(value: Array) -> float:
-    """The number of the first case of one design."""
+    """Return the value of the first load case of a single design."""
     return float(np.ravel(np.real(np.asarray(value)))[0])
 
 
 def _extra(done: ModelRun) -> float:
-    """Length of the barrel that neither stroke nor parts take."""
+    """Return the barrel length beyond the stroke and the parts."""
     g = done.geometry
     return _one(g.barrel_length - g.piston_length - g.head_length - g.stroke)
 
@@ -334,7 +335,7 @@ def _numbers(v: Values, section: Any, at: str) -> dict[str, float] | None:
 
 
 def _seals(v: Values, own: Bench, supply: float) -> SealData:
-    """Friction as a function of the pressures, fitted to that of the seals."""
+    """Return friction as a function of the pressures, fitted to the seals' own law."""
     p_a, p_b = (one.ravel() for one in np.meshgrid(*2 * (supply * np.array(SHARES),)))
     loads = [(ring, force) for ring, force in own.normal_forces(p_a, p_b)]
     coulomb = own.coulomb(p_a, p_b)
@@ -352,7 +353,7 @@ def _seals(v: Values, own: Bench, supply: float) -> SealData:
 
 
 def _falling(ring: Ring) -> Array:
-    """What of a seal's friction falls with speed, over its Coulomb friction, by its law [-]."""
+    """Return the breakaway friction in excess of Coulomb friction, relative to it [-]."""
     return ring.element.friction_law.breakaway(ring.sizes, 1.0) - 1.0
 
 

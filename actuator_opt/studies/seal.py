@@ -1,6 +1,6 @@
-"""A seal looked at closely: contact, oil film, friction, leakage, gland; at one point or a map.
+"""Study of a seal: contact, oil film, friction, leakage and gland, at one point or over a map.
 
-Works for every sealing element, whether the design asks for its film or for a coefficient.
+Works for every sealing element, whether the design uses its film or a friction coefficient.
 """
 
 from __future__ import annotations
@@ -40,13 +40,13 @@ __all__ = [
 ]
 
 HARDNESS_SCATTER = 5.0
-"""Scatter of a compound's hardness between batches, Shore A (usual delivery tolerance)."""
+"""Hardness scatter of a compound between batches, Shore A (usual delivery tolerance)."""
 
 SLOWEST = 1e-6
-"""Least speed a seal is looked at, m/s: a tenth of a millimetre in a minute and a half."""
+"""Lowest speed of a seal study, m/s: 0.1 mm in 100 s."""
 
 HARDEST = 98.0
-"""Hardness up to which the scatter is followed, Shore A."""
+"""Upper limit of the scattered hardness, Shore A."""
 
 CURVE_SPEEDS = tuple(float(v) for v in np.geomspace(1e-4, 1.0, 17))
 CURVE_SHARES = (0.02, 0.5, 1.0)
@@ -67,21 +67,21 @@ def study(
     mapped: bool = False,
     elements: tuple[Contact, ...] = (),
 ) -> SealStudy:
-    """The seals of piston or rod at one point, and around it.
+    """Study the seals of piston or rod at one point, and around it.
 
     Parameters
     ----------
-    subject : a design whose elements of the place all ask for a film
-    speed, pressure : of the counterface [m/s], sealed over the outer side [Pa]; default: those of
-        the moving load case of the highest pressure, which also gives the outer side and the oil
-    curves : whether to follow friction over speed at three pressures
-    mapped : whether to fill a map over speed and pressure
-    elements : what `with_elements` found, to be kept
+    subject : a design whose elements at the place all use a film
+    speed, pressure : of the counterface [m/s], sealed pressure over the outer side [Pa]; default:
+        those of the moving load case with the highest pressure, which also sets outer side and oil
+    curves : compute friction over speed at three pressures
+    mapped : compute a map over speed and pressure
+    elements : contacts from `with_elements`, to be stored
 
     Raises
     ------
     InputError
-        no speed, or a pressure or squeeze where the contact has none
+        no speed, or a pressure or squeeze for which the contact has no solution
     """
     v = subject.values()
     found = base(subject, v)
@@ -92,15 +92,15 @@ def study(
     if not held >= 0:
         raise InputError(
             Diagnostic(
-                f"pressure {held / 1e5:g} bar: below that of the outer side",
-                "state the sealed pressure over the outer one, 0 bar or more",
+                f"pressure {held / 100000.0:g} bar is below the pressure on the outer side",
+                "state the sealed pressure relative to the outer side, 0 bar or more",
                 path=f"seals.{place}",
             )
         )
     if not run >= SLOWEST:
         raise InputError(
             Diagnostic(
-                f"speed {run:g} m/s: a film and a secant damping need a moving seal",
+                f"speed {run:g} m/s: film and secant damping need a moving seal",
                 f'state {SLOWEST:g} m/s or more, e.g. --speed "0.1 m/s"',
                 path=f"seals.{place}",
             )
@@ -135,9 +135,9 @@ def study(
 def with_elements(
     subject: PreparedDesign, place: Place
 ) -> tuple[PreparedDesign, tuple[Contact, ...]]:
-    """The same design with contact profiles by finite elements for the seal of a place, and these.
+    """Return the design with finite-element contact profiles for a seal, and these contacts.
 
-    Of two rings the first; a second keeps its closed form.
+    Of two rings only the first gets a profile; the second keeps its closed form.
     """
     v = subject.values()
     ring = floats(of_place(base(subject, v).rings, place)[0], 0)
@@ -149,7 +149,7 @@ def with_elements(
 
 
 def _within(own: Sequence[Ring], place: Place, pressure: float) -> None:
-    """Stated profiles reach the pressure."""
+    """Check that stated profiles cover the pressure."""
     for ring in own:
         tables = ring.element.contact
         if tables and pressure > tables[-1].pressure * (1 + 1e-9):
@@ -158,12 +158,16 @@ def _within(own: Sequence[Ring], place: Place, pressure: float) -> None:
                 f"{tables[-1].pressure / 1e5:g} bar"
             )
             raise InputError(
-                Diagnostic(message, "add a profile, or ask less", path=f"seals.{place}.contact")
+                Diagnostic(
+                    message,
+                    "add a profile, or choose a lower pressure",
+                    path=f"seals.{place}.contact",
+                )
             )
 
 
 def _case(ring: Ring, speed: float | None) -> int:
-    """The load case that stands for the point: of the highest pressure among those that move."""
+    """Return the load case for the point: the moving one with the highest pressure."""
     pressures, speeds = (
         np.atleast_2d(np.asarray(ring[name], dtype=float))[:, 0] for name in ("pressure", "speed")
     )
@@ -195,23 +199,23 @@ def _point(row: FilmRow, temperature: float) -> SealPoint:
 
 
 def modulus_range(ring: Ring) -> tuple[float, float, float]:
-    """Lowest, assumed and highest Young's modulus of what is squeezed [Pa]."""
+    """Return the lowest, assumed and highest Young's modulus of the squeezed part [Pa]."""
     value = ring["youngs_modulus"]
     hardness = ring.numbers.get("hardness")
     if hardness is None:
         return value / STATED_FACTOR, value, value * STATED_FACTOR
-    scatter = min(HARDNESS_SCATTER, HARDEST - hardness)  # no law tells a modulus at 100 Shore A
+    scatter = min(HARDNESS_SCATTER, HARDEST - hardness)  # no law gives a modulus at 100 Shore A
     low, high = elastomer.modulus_bounds(hardness=hardness, hardness_scatter=max(scatter, 0.0))
     law = elastomer.MODULUS_LAWS[ring.element.hardness_model].modulus(hardness=hardness)
     return value * float(low / law), value, value * float(high / law)
 
 
 STATED_FACTOR = 1.5
-"""Scatter of a stated modulus, as that of the polyurethane of the rod-seal studies."""
+"""Scatter of a stated modulus, as for the polyurethane of the rod-seal studies."""
 
 
 def _bounds(solved: Solved) -> tuple[float, float]:
-    """Least and largest friction over the scatter of all moduli; NaN where an end has no film."""
+    """Return least and largest friction over the scatter of all moduli; NaN without a film."""
     if not solved.films:
         return nan, nan
     found = [solved.friction()]
@@ -231,10 +235,10 @@ def _bounds(solved: Solved) -> tuple[float, float]:
 
 
 def _face_factor(ring: Ring) -> tuple[float, float, float]:
-    """Lowest, assumed and highest modulus of the sliding face, over the assumed one."""
+    """Return the lowest, assumed and highest modulus of the sliding face, over the assumed one."""
     if (
         ring.element.seal_type.modulus_by == "hardness"
-    ):  # the face is of plastic, its modulus stated
+    ):  # the face is plastic, with a stated modulus
         return 1 / STATED_FACTOR, 1.0, STATED_FACTOR
     low, value, high = modulus_range(ring)
     return low / value, 1.0, high / value
@@ -269,7 +273,7 @@ def _ring_point(ring: Ring, solved: Solved, index: int) -> RingPoint:
 def _squeezes(
     subject: PreparedDesign, found: Base, own: Sequence[Ring], growth: float
 ) -> Sequence[SqueezeRow]:
-    """Squeeze over tolerance at coldest, case and hottest, without and with pressure."""
+    """Return squeeze over tolerance at coldest, case and hottest, without and with pressure."""
     design, v = subject.design, subject.values()
     temperatures = [float(np.max(found.state.temperature))]
     if design.environment is not None:

@@ -1,4 +1,4 @@
-"""The records of a seal looked at closely; `seal` fills them. SI throughout."""
+"""Results of a seal study, filled by `seal`. SI throughout."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ class RingPoint:
 
     Parameters
     ----------
-    ring : its numbers
+    ring : its properties
     contact : load per length, width and peak pressure
-    modulus : lowest, assumed and highest Young's modulus of what is squeezed [Pa]
+    modulus : lowest, assumed and highest Young's modulus of the squeezed part [Pa]
     x : distance from the sealed side [m]
     static, oil, asperity : pressures, absolute [Pa]
     film : distance of the mean planes [m]
     viscous, asperity_friction : of the whole circumference [N]
-    coefficient_friction : by the coefficient of friction instead [N]
+    coefficient_friction : from the coefficient of friction instead [N]
     breakaway : dry, all oil squeezed out [N]
     load_residual, mass_residual : of the film's balances
     """
@@ -56,14 +56,14 @@ class RingPoint:
 
 @dataclass(frozen=True, slots=True)
 class SealPoint:
-    """The seals of a place at one speed, pressure and stroke.
+    """The seals of a place at one speed, pressure and stroke direction.
 
     Parameters
     ----------
     stroke : of the counterface past the seal: out of the sealed room, or in
-    speed, pressure, temperature : [m/s], sealed over the outer side [Pa], [K]
+    speed, pressure, temperature : [m/s], sealed pressure over the outer side [Pa], [K]
     rings : from the sealed side outwards
-    why : why there is no film; empty where there is
+    why : reason for a missing film, else empty
     between : pressure between two rings, gauge [Pa]; NaN for one
     flow : towards the outer side [m^3/s]
     lower, upper : friction over the scatter of the modulus [N]
@@ -82,43 +82,43 @@ class SealPoint:
 
     @property
     def converged(self) -> bool:
-        """Whether there is a film."""
+        """Whether the film solution exists."""
         return not self.why
 
     @property
     def viscous(self) -> float:
-        """Friction of the oil [N]."""
+        """Return the oil friction [N]."""
         return sum(ring.viscous for ring in self.rings)
 
     @property
     def asperity(self) -> float:
-        """Friction of the asperities [N]."""
+        """Return the asperity friction [N]."""
         return sum(ring.asperity_friction for ring in self.rings)
 
     @property
     def friction(self) -> float:
-        """Friction of all rings [N]."""
+        """Return the friction of all rings [N]."""
         return self.viscous + self.asperity
 
     @property
     def breakaway(self) -> float:
-        """Friction after a standstill [N]."""
+        """Return the friction after a standstill [N]."""
         return sum(ring.breakaway for ring in self.rings)
 
     @property
     def coefficient_friction(self) -> float:
-        """Friction of all rings by the coefficient of friction, without a film [N]."""
+        """Return the friction of all rings from the friction coefficient, without a film [N]."""
         return sum(ring.coefficient_friction for ring in self.rings)
 
     @property
     def damping(self) -> float:
-        """Secant damping at the speed [N s/m]."""
+        """Return the secant damping at the speed [N s/m]."""
         return float(damping.secant(friction=self.friction, speed=self.speed))
 
 
 @dataclass(frozen=True, slots=True)
 class SqueezeRow:
-    """Loosest, nominal and tightest squeeze of a ring at a temperature and supply pressure or 0."""
+    """Least, nominal and greatest squeeze of a ring at a temperature and pressure."""
 
     label: str
     temperature: float
@@ -131,8 +131,8 @@ class SqueezeRow:
 class DoubleStroke(NamedTuple):
     """Oil past a rod seal, both strokes at one pressure [m^3]; NaN without a film.
 
-    What a stroke out carries out, what one in draws back (negative: it leaks out then too), and
-    what both leave outside.
+    Oil carried out by the stroke out, oil drawn back by the stroke in (negative: it leaks out too),
+    and the net oil left outside.
     """
 
     carried_out: float
@@ -143,7 +143,7 @@ class DoubleStroke(NamedTuple):
 class LuGre(NamedTuple):
     """Bristle stiffness [N/m] and damping [N s/m], and the speed up to which the model is passive.
 
-    Beyond that speed [m/s] the bristle damping has to be tapered.
+    Above that speed [m/s] the bristle damping must be tapered.
     """
 
     stiffness: float
@@ -153,20 +153,20 @@ class LuGre(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class SealStudy:
-    """Everything a seal sheet shows of the seals of piston or rod.
+    """Results of a seal study of piston or rod.
 
     Parameters
     ----------
     place : piston or rod
     out, back : the operating point on both strokes, at one speed and pressure
-    outer_pressure : gauge, on the outer side: for a piston that of the chamber it moves into [Pa]
+    outer_pressure : gauge, on the outer side; for a piston the chamber it moves into [Pa]
     stroke : of the actuator [m]
     clearance : radial, behind the seal [m]
     growth : of the bore over the piston seal at the pressure [m]; 0 at the rod
     squeezes : over tolerance, temperature and pressure
     curves : friction over speed at three pressures
-    map : over speed and pressure, where asked
-    elements : finite elements of the first ring, the mounted one first; empty where not asked
+    map : over speed and pressure, if requested
+    elements : finite elements of the first ring, as mounted first; empty if not requested
     """
 
     design: Design
@@ -184,12 +184,12 @@ class SealStudy:
 
     @property
     def drive(self) -> SealPoint:
-        """The point of a driven actuator."""
+        """Return the operating point of a driven actuator."""
         return self.out if drives(self.place) == "out" else self.back
 
     @property
     def other(self) -> SealPoint:
-        """The point of the other stroke: of the rod on its way in, of a piston overrun."""
+        """Return the point of the other stroke: rod moving in, or piston overrun by a load."""
         return self.back if drives(self.place) == "out" else self.out
 
     @property
@@ -199,7 +199,7 @@ class SealStudy:
 
     @property
     def double_stroke(self) -> DoubleStroke | None:
-        """Oil that a rod leaves outside; None for a piston, which does not run both ways so."""
+        """Return the oil that a rod leaves outside; None for a piston, which has no such cycle."""
         if self.place == "piston":
             return None
         time = self.stroke / self.out.speed
@@ -208,7 +208,7 @@ class SealStudy:
 
     @property
     def lugre(self) -> LuGre | None:
-        """Numbers of the LuGre model for a simulation; None without film or load mass."""
+        """Return the LuGre parameters for a simulation; None without a film or a load mass."""
         static, mass = self.drive.breakaway, self.design.load.mass
         if not self.drive.converged or not (static > 0 and mass > 0):
             return None
@@ -222,7 +222,7 @@ class SealStudy:
         return LuGre(float(stiffness), float(bristle), float(passive))
 
     def to_dict(self) -> dict[str, Any]:
-        """JSON form, SI; null where there is no film."""
+        """Return the JSON form, SI; null without a film."""
         point = self.drive
         both = {"out": self.out, "in": self.back}
         oil = self.double_stroke

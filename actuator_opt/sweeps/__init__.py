@@ -1,4 +1,4 @@
-"""Many designs at once: what to vary, chunk by chunk, kept in a database or reduced on the way."""
+"""Sweeps: many designs, evaluated in chunks, stored in a database or reduced to the best."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a sweep varies: a PATH with a range, or with a list of values or names."""
+"""Axes of a sweep: a PATH with a range, or with a list of values or names."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ Metrics: TypeAlias = Mapping[str, Quantity] | None
 _RANGE = re.compile(r"(?P<first>.+?)\.\.(?P<last>.+?)(?::(?P<count>[^:]*))?")
 FORM = 'write PATH=A..B:N or PATH=a,b,c, e.g. --vary cylinder.bore="18..40 mm:12"'
 MOST_LISTED = 10_000
-"""Most values of a list."""
+"""Maximum number of values in a list."""
 
 SAID = frozenset({"name", "notes", "reproduces", "waivers", "objective"})
-"""Blocks of a design that change no metric and no limit of it."""
+"""Blocks of a design that change none of its metrics or limits."""
 
 
 @dataclass(frozen=True)
 class Axis:
-    """One PATH with its values: numbers (SI), or texts that each make another design.
+    """One PATH with its values: numbers (SI), or texts, each of which makes another design.
 
-    A range has two `values` and `count` steps; None where the method chooses the points.
+    A range has two `values` and `count` steps; `count` is None where the method chooses the points.
     """
 
     path: str
@@ -43,25 +43,25 @@ class Axis:
 
     @property
     def listed(self) -> bool:
-        """Whether it takes listed values only."""
+        """Whether the axis lists its values instead of spanning a range."""
         return not self.range
 
     @property
     def size(self) -> int:
-        """Number of values of a full factorial."""
+        """Return the number of values in a full factorial."""
         if self.range:
             return self.count or 0
         return len(self.texts) if self.values is None else len(self.values)
 
     def numbers(self) -> Array:
-        """The values of a full factorial, of numbers."""
+        """Return the values of a numeric axis in a full factorial."""
         assert self.values is not None
         if not self.range:
             return self.values
         return self.at(np.arange(self.count or 2))
 
     def at(self, places: Array) -> Array:
-        """The values of some numbers of a full factorial: those of `numbers`, never all of them."""
+        """Return the values at some places of `numbers`, without computing all of them."""
         assert self.values is not None
         if not self.range:
             found: Array = self.values[places]
@@ -73,21 +73,21 @@ class Axis:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """The least and the greatest of its numbers."""
+        """Return the least and the greatest number."""
         assert self.values is not None
         return float(self.values.min()), float(self.values.max())
 
 
 def read_axis(text: str, design: Design, metrics: Metrics = None) -> Axis:
-    """An axis as a person writes it: ``PATH=A..B:N`` or ``PATH=a,b,c``.
+    """Return the axis for a user's text: ``PATH=A..B:N`` or ``PATH=a,b,c``.
 
-    Numbers without a unit take that of the last one; where it has none, they are SI. `metrics` are
-    those that the design may name, where some are the user's own.
+    Numbers without a unit take the unit of the last one; without any unit they are SI. `metrics`
+    are the names that the design may use; they include the user's own.
 
     Raises
     ------
     UsageError
-        not of this form
+        the text does not have this form
     InputError
         no such PATH, or a value that does not fit there
     """
@@ -96,7 +96,7 @@ def read_axis(text: str, design: Design, metrics: Metrics = None) -> Axis:
         raise UsageError(Diagnostic(f"--vary {shown(text)}: no values", FORM))
     path = canonical(path.strip(), design)
     if path.partition(".")[0] in SAID:
-        message = "says something about the design, which no model reads"
+        message = "is descriptive text that no model reads"
         raise InputError(Diagnostic(message, "vary a dimension, a material or a limit", path=path))
     found = _RANGE.fullmatch(given.strip())
     if found is None:
@@ -122,7 +122,7 @@ def _steps(text: str, count: str | None) -> int | None:
 
 
 def _with_unit(texts: list[str]) -> list[str]:
-    """Values, the bare numbers among them with the unit of the last."""
+    """Return the values; bare numbers take the unit of the last one."""
     try:
         unit = units.split(texts[-1])[1]
     except units.UnitError:
@@ -131,20 +131,22 @@ def _with_unit(texts: list[str]) -> list[str]:
 
 
 def _number(path: str, text: str, design: Design, metrics: Metrics) -> float:
-    """One value as the design holds it; every value is checked where it will stand."""
+    """Return one value as the design stores it, checked at its PATH."""
     value = _value(path, text, design, metrics)
     if not isinstance(value, (int, float)) or isinstance(value, bool):
-        message = f"{path}: {shown(text)} is no number, so it has no range"
+        message = f"{path}: {shown(text)} is not a number, so it cannot have a range"
         raise InputError(Diagnostic(message, "list its values: PATH=a,b,c"))
     if not _plain(path, text, value, design, metrics):
-        message = f"{shown(text)} is not of the kind that the design has there, so it has no range"
-        remedy = "list the values: PATH=a,b,c, or give one such value with --set first"
+        message = (
+            f"{shown(text)} differs in kind from the value of the design, so it cannot have a range"
+        )
+        remedy = "list the values: PATH=a,b,c, or set one such value with --set first"
         raise InputError(Diagnostic(message, remedy, path=path))
     return float(value)
 
 
 def _plain(path: str, text: str, value: float, design: Design, metrics: Metrics) -> bool:
-    """Whether a number says all of a value: 50 % of a stroke is not 0.5 m."""
+    """Whether a number fully describes a value: 50 % of a stroke is not 0.5 m."""
     said = _at(design, path, text, metrics)
     return said == _at(design, path, repr(float(value)), metrics)
 
@@ -164,7 +166,7 @@ def _at(design: Design, path: str, text: str, metrics: Metrics) -> Design:
 
 
 def _bare(text: str) -> float | None:
-    """A number without a unit, which is SI."""
+    """Return a number without a unit, which is SI; None for any other text."""
     try:
         number, unit = units.split(text)
     except units.UnitError:
@@ -179,7 +181,7 @@ def _listed(path: str, parts: list[str], design: Design, metrics: Metrics) -> Ax
         raise UsageError(Diagnostic(f"--vary {path}: {len(parts)} values", "write a range"))
     parts = _with_unit(parts)
     found = [_value(path, part, design, metrics) for part in dict.fromkeys(parts)]
-    if len(set(found)) < len(parts):  # 20 mm and 2 cm, too
+    if len(set(found)) < len(parts):  # catches 20 mm beside 2 cm
         raise UsageError(Diagnostic(f"--vary {path}: a value twice", FORM))
     if all(
         isinstance(one, (int, float))

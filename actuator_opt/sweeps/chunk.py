@@ -1,4 +1,4 @@
-"""One chunk of a sweep: its designs evaluated, each group that differs in numbers alone at once."""
+"""One chunk of a sweep: its designs, evaluated in groups that differ only in numbers."""
 
 from __future__ import annotations
 
@@ -28,21 +28,21 @@ from .plan import Plan, Points
 from .screen import roomy, screen
 
 LOOKED = 1024
-"""Designs evaluated at once in search of the best of a chunk."""
+"""Designs evaluated at once when only the best of a chunk are wanted."""
 
 WORTH = 2048
-"""Designs from which a screen, some 20 ms of work, is worth it."""
+"""Least number of designs that justifies a screen, which takes some 20 ms to build."""
 
-NO_ANSWER = "the models have no finite answer for these dimensions"
+NO_ANSWER = "the models have no finite result for these dimensions"
 MARGIN, MISSED, FEASIBLE = "least_margin", "governing_limit", "feasible"
-"""Columns beside the metrics: the least margin, the number of its limit, whether all are met."""
+"""Columns beside the metrics: least margin, number of its limit, whether all limits are met."""
 
 
 @dataclass(frozen=True)
 class Chunk:
-    """Rows from point `first` on, and how many of them were computed now.
+    """Rows from point `first` on, and how many of them were newly computed.
 
-    A reduced chunk has rows of its points numbered `places` alone: none of the others can be among
+    A reduced chunk only has the rows of the points numbered `places`; no other point can be among
     the best.
     """
 
@@ -53,33 +53,33 @@ class Chunk:
     feasible: Array
     places: Array | None = None
     damaged: int = 0
-    """Rows computed now because those in the database were damaged."""
+    """Rows computed again because the database holds them damaged."""
 
     @property
     def ranked(self) -> Array:
-        """Whether each row may be among the best: feasible, and with a value of the objective."""
+        """Whether each row may be among the best: feasible, with a value of the objective."""
         found: Array = self.feasible & ~np.isnan(self.objective)
         return found
 
     @property
     def numbers(self) -> Array:
-        """Number of the point of each row."""
+        """Return the point number of each row."""
         return self.first + np.arange(len(self.objective)) if self.places is None else self.places
 
 
 @dataclass
 class Study:
-    """A design with what varies: rows of any of its points."""
+    """A design with the axes that vary; computes the rows of any of its points."""
 
     design: Design
     plan: Plan
     plugins: tuple[Plugin, ...] = ()
     full: bool = True
-    """Whether every metric is asked for, or only what tells the best."""
+    """Whether to compute every metric, or only those that rank designs."""
     more: tuple[str, ...] = ()
-    """Metrics asked for beside what tells the best."""
+    """Metrics to compute beside those that rank designs."""
     engine: Engine = "numpy"
-    """What tells early which designs cannot be among the best."""
+    """Screen that rules out early designs that cannot be among the best."""
     goal: Goal = field(init=False)
     designs: Designs = field(init=False)
     _screens: dict[tuple[object, ...], Scores | None] = field(default_factory=dict, repr=False)
@@ -98,7 +98,7 @@ class Study:
         )
         paths = [axis.path for axis in self.plan.numeric]
         self.order = sorted(range(len(paths)), key=paths.__getitem__)
-        """The plan's numbers by PATH, whatever the order they are given in."""
+        """Values of the plan's numeric axes by PATH, in any order."""
         self.columns = (
             *(Column(paths[k], quantity_of(paths[k], self.design).si_unit) for k in self.order),
             *(Column(name, subject.quantities[name].si_unit) for name in self.metrics),
@@ -111,12 +111,12 @@ class Study:
         return self.__dict__ | {"_screens": {}}
 
     def chunk(self, first: int, count: int, some: Array | None = None) -> Chunk:
-        """Rows of some points in a row, or of those of them that are numbered in `some`."""
+        """Return the rows of consecutive points, or only of those numbered in `some`."""
         points = self.plan.points(first, count)
         return self.evaluated(first, points if some is None else points.some(some))
 
     def evaluated(self, first: int, points: Points, keep: int | None = None) -> Chunk:
-        """Rows of points; where `keep` is given, only so many of the best must stand as designs."""
+        """Return the rows of points; with `keep`, stop after that many valid best designs."""
         n = len(points.variant)
         rows = np.full((n, len(self.columns)), np.nan)
         rows[:, : len(points.numbers)] = points.numbers[self.order].T
@@ -138,9 +138,9 @@ class Study:
         return self.judged(first, Rows(rows, failures), n)
 
     def reduced(self, first: int, count: int, limit: float, keep: int) -> Chunk:
-        """Rows of points that may be among the `keep` best, with an objective below `limit`.
+        """Return the rows that may be among the `keep` best, with an objective below `limit`.
 
-        The most promising are evaluated first, until so many stand that the others cannot join.
+        The most promising points come first, until the others cannot improve on the best `keep`.
         """
         points = self.plan.points(first, count)
         scores = self._scores(points, limit)
@@ -158,7 +158,7 @@ class Study:
         return self._joined(first, parts, len(scores), keep)
 
     def _scores(self, points: Points, limit: float) -> Array:
-        """The objective that each point promises: infinite where ruled out, minus where unknown."""
+        """Return each point's estimated objective: infinite if ruled out, -inf if unknown."""
         found = np.full(len(points.variant), -np.inf)
         apart = self.designs.apart
         moving = [k for k, axis in enumerate(self.plan.numeric) if axis.path not in apart]
@@ -169,7 +169,7 @@ class Study:
         return found
 
     def _joined(self, first: int, parts: Sequence[Chunk], computed: int, keep: int) -> Chunk:
-        """Parts as one reduced chunk, without feasible designs beyond the `keep` best."""
+        """Join parts into one reduced chunk, without feasible designs beyond the `keep` best."""
         rows, failures, places = [np.empty((0, len(self.columns)))], {}, [np.empty(0, dtype=int)]
         done = 0
         for part in parts:
@@ -185,9 +185,9 @@ class Study:
         return replace(joined, places=np.concatenate(places))
 
     def _screen(self, variant: int, fixed: Mapping[str, float]) -> Scores | None:
-        """The screen of designs that differ in numbers alone, where they are enough to be worth it.
+        """Return a screen for designs that differ only in numbers, if there are enough of them.
 
-        None for the user's own metrics, which are no expressions.
+        None for the user's own metrics, which are not closed expressions.
         """
         axes = [axis for axis in self.plan.numeric if axis.path not in self.designs.apart]
         alike = self.plan.count / self.plan.variants / self.designs.apart_count
@@ -207,9 +207,9 @@ class Study:
         return self._screens[key]
 
     def _contradictions(self, chunk: Chunk, points: Points, most: int | None) -> dict[int, str]:
-        """What the design's file would refuse among feasible rows; models look at less.
+        """Return the faults of feasible rows that the design reader would reject.
 
-        Rows are tried from the best on, until `most` stand.
+        Rows are checked from the best on, until `most` are valid.
         """
         found: dict[int, str] = {}
         good = np.flatnonzero(chunk.feasible)
@@ -224,7 +224,7 @@ class Study:
         return found
 
     def judged(self, first: int, rows: Rows, computed: int) -> Chunk:
-        """A chunk with the objective, to be minimised, and whether designs are feasible."""
+        """Return a chunk with the objective, to be minimised, and the feasibility of each row."""
         place = {column.name: k for k, column in enumerate(self.columns)}
         total = np.zeros(len(rows.numbers))
         for name, weight in self.goal.weights.items():
@@ -240,20 +240,20 @@ class Study:
         rows[places, -3:] = np.stack([margin, found.missed, found.feasible], axis=1)
 
     def quantity(self, metric: str) -> Quantity:
-        """What a metric is."""
+        """Return the quantity of a metric."""
         return self._quantities[metric]
 
     def place(self, name: str) -> int:
-        """The column of a number that varies, of a metric or of what tells the verdict."""
+        """Return the column of a varied number, a metric or a verdict."""
         return next(k for k, column in enumerate(self.columns) if column.name == name)
 
     @property
     def text(self) -> str:
-        """The design as a file."""
+        """Return the design as the text of its file."""
         return to_yaml(self.design, metrics=self._quantities)
 
     def values(self, number: int) -> dict[str, float | str]:
-        """The varied values of a point, by PATH (SI)."""
+        """Return the varied values of a point, by PATH (SI)."""
         return self._at(self.plan.points(number, 1), 0)
 
     def _at(self, points: Points, k: int) -> dict[str, float | str]:
@@ -264,14 +264,14 @@ class Study:
 
     @property
     def hash(self) -> str:
-        """Hash of the design, its materials, its own metrics, the models and what varies."""
+        """Return a hash of the design, materials, custom metrics, models and axes."""
         sources = [_source(plugin) for plugin in self.plugins]
         paths = sorted(axis.path for axis in self.plan.axes)
         text = json.dumps([spec_hash(self.designs.made({})), sources, paths, self.columns])
         return hashlib.sha256(text.encode()).hexdigest()[:32]
 
     def keys(self, first: int, count: int) -> list[bytes]:
-        """Hash of the values of every point of a chunk."""
+        """Return a hash of the values of every point of a chunk."""
         points = self.plan.points(first, count)
         data = np.ascontiguousarray(points.numbers[self.order].T, dtype="<f8").tobytes()
         width = 8 * len(points.numbers)
@@ -288,12 +288,12 @@ class Study:
 
 
 def key_head(texts: Mapping[str, str]) -> hashlib.blake2b:
-    """A key as far as its texts decide it; the row's numbers come after them."""
+    """Return the part of a key that depends on texts; the row's numbers are added after it."""
     return hashlib.blake2b(json.dumps(dict(texts), sort_keys=True).encode(), digest_size=16)
 
 
 def _source(plugin: Plugin) -> str:
-    """The text of a user's metric, so that a changed one is another study."""
+    """Return the source of a custom metric, so that a change makes a new study."""
     try:
         return inspect.getsource(plugin.function)
     except (OSError, TypeError):

@@ -1,4 +1,4 @@
-"""A sweep on many machines: the same chunks as Dask tasks, in the same order."""
+"""Sweeps on many machines: the same chunks as Dask tasks, in the same order."""
 
 from __future__ import annotations
 
@@ -16,33 +16,33 @@ if TYPE_CHECKING:
 Task = TypeVar("Task")
 
 PATIENCE = "10s"
-"""Time in which a scheduler must answer."""
+"""Time limit for a scheduler to answer."""
 
 AGAIN = 5
-"""Times that a task is begun anew when the worker under it is lost."""
+"""How often a task restarts after its worker is lost."""
 
 WAITING = 3
-"""Tasks in hand for each thread of the cluster."""
+"""Tasks queued for each thread of the cluster."""
 
 
 def on_cluster(
     address: str, study: Study, work: Callable[[Study, Task], Chunk], tasks: Iterable[Task]
 ) -> Iterator[Chunk]:
-    """What tasks come to on a cluster, in their order.
+    """Yield the results of tasks run on a cluster, in order.
 
-    Every task carries the study, so that a worker may be lost and another join at any time.
+    Every task carries the study, so workers may leave and join at any time.
 
     Parameters
     ----------
     address : of the Dask scheduler, such as tcp://10.0.0.1:8786
     study : the sweep
-    work : makes a chunk of one task
+    work : computes the chunk of one task
     tasks : in order
 
     Raises
     ------
     UsageError
-        Dask is not installed, or nothing answers at the address
+        Dask is not installed, or no scheduler answers at the address
     """
     try:
         from distributed import Client
@@ -77,6 +77,6 @@ def _unpacked(blob: bytes) -> tuple[Any, Any]:
 
 
 def _done(blob: bytes, task: Any) -> Any:
-    """On a worker."""
+    """Run a task on a worker."""
     study, work = _unpacked(blob)
     return work(study, task)

@@ -1,4 +1,4 @@
-"""The designs of a plan: which of its numbers move as arrays, which make a design anew."""
+"""Designs of a sweep: which numbers vary as arrays, and which need a new design."""
 
 from __future__ import annotations
 
@@ -21,26 +21,26 @@ from .axes import Axis
 from .plan import Plan, Points
 
 KEPT = 64
-"""Prepared designs that a process keeps."""
+"""Prepared designs that a process caches."""
 
 VARIANTS = 8
-"""Most combinations of texts in which a number is tried."""
+"""Maximum number of text combinations in which a number is checked."""
 
 AT_ONCE = 4096
-"""Most designs of one call of the models: more would take memory, not less time."""
+"""Maximum number of designs in one model call; more take memory without saving time."""
 
 TRIED = (0.0, 1.0, 0.5, 0.25, 0.75)
-"""Shares of a range that are tried until two make a design."""
+"""Places within a range that are tried until two give a valid design."""
 
 LISTED = 32
-"""Most values of a list that are tried, an even choice of more."""
+"""Maximum number of listed values that are checked; longer lists are thinned evenly."""
 
 AGREE = 1e-9
-"""Relative difference up to which a number that varies counts as the same as one that is set."""
+"""Relative difference up to which varying a number agrees with setting it."""
 
 
 class _Moved(NamedTuple):
-    """Whether a number may be moved as an array, and whether any model reads it."""
+    """Whether a number can vary as an array, and whether any model reads it."""
 
     moves: bool
     read: bool
@@ -48,10 +48,10 @@ class _Moved(NamedTuple):
 
 @dataclass
 class Designs:
-    """The designs of a plan, prepared where needed.
+    """The designs of a plan, prepared when needed.
 
-    `apart` are numbers that a design must be made anew for: temperatures of strengths, say. A
-    number that no model reads in any of few combinations of texts is refused: `InputError`.
+    `apart` are numbers that need a new design for each value, such as temperatures of strengths. A
+    number that no model reads in any of the checked combinations raises `InputError`.
     """
 
     design: Design
@@ -59,7 +59,7 @@ class Designs:
     plugins: tuple[Plugin, ...] = ()
     apart: tuple[str, ...] = field(init=False)
     contradicts: bool = field(init=False, default=False)
-    """Whether some value of an axis contradicts the rest of the design, as its file would say."""
+    """Whether some value of an axis contradicts the rest of the design, by the reader's rules."""
     _subjects: dict[tuple[object, ...], PreparedDesign | str] = field(
         default_factory=dict, repr=False
     )
@@ -76,24 +76,24 @@ class Designs:
         return self.__dict__ | {"_subjects": {}}
 
     def changed(self, values: Mapping[str, float | str]) -> Design:
-        """The design with other values; raises `InputError`."""
+        """Return the design with other values; raises `InputError`."""
         if not values:
             return self.design
         own = with_own(self.plugins)
         return with_values(self.design, dict(values), metrics=own)
 
     def made(self, values: Mapping[str, float | str]) -> PreparedDesign:
-        """As `changed`, prepared."""
+        """Return the prepared design with other values."""
         return prepare(self.changed(values), plugins=self.plugins)
 
     def _is_temperature(self, axis: Axis) -> bool:
         return quantity_of(axis.path, self.design).dimension == "temperature"
 
     def _same_extremes(self) -> bool:
-        """Whether the lowest and the highest of all temperatures stay where they are.
+        """Whether the lowest and highest temperature stay the same over the sweep.
 
-        Strengths are prepared for these two, which rise with each temperature: they are the same
-        everywhere where they are at both ends of what varies.
+        Strengths are prepared for these two, and each rises with every temperature. They are
+        therefore constant if they agree at both ends of the ranges.
         """
         warm = {a.path: a.ends for a in self.plan.numeric if self._is_temperature(a)}
         found = []
@@ -108,7 +108,7 @@ class Designs:
 
     @property
     def apart_count(self) -> float:
-        """Designs that must be made anew for numbers that are set apart, infinite for a range."""
+        """Return the number of designs to prepare for values set apart; infinite for a range."""
         found = 1.0
         for axis in self.plan.numeric:
             if axis.path in self.apart:
@@ -116,7 +116,7 @@ class Designs:
         return found
 
     def _moves(self, axis: Axis) -> bool:
-        """Whether a number may be moved as an array in some of the designs that texts make.
+        """Whether a number can vary as an array in some of the designs that texts make.
 
         Raises
         ------
@@ -128,14 +128,14 @@ class Designs:
         found = [self._moves_in(axis, self.plan.texts(int(variant))) for variant in tried]
         moves = all(one.moves for one in found)
         if moves and len(tried) == count and not any(one.read for one in found):
-            remedy = "vary another, or check that the part it belongs to is used"
+            remedy = "vary another, or check that the design uses the part it belongs to"
             raise InputError(
-                Diagnostic("no model reads this number of this design", remedy, path=axis.path)
+                Diagnostic("no model of this design reads this number", remedy, path=axis.path)
             )
         return moves
 
     def _moves_in(self, axis: Axis, texts: Mapping[str, str]) -> _Moved:
-        """Whether the `_telling` values of a number as an array are those set in the design."""
+        """Whether an array of the `_telling` values gives the results of setting each value."""
         alone: dict[float, Many] = {}
         for value, needed in _telling(axis):
             if len(alone) >= 2 and not needed:
@@ -147,7 +147,7 @@ class Designs:
         if not alone:
             return _Moved(False, True)
         try:
-            base = self.made(texts)  # as its rows are evaluated; "worst" there heeds no position
+            base = self.made(texts)  # evaluated like its rows; "worst" ignores position there
         except InputError:
             base = self.made({**texts, axis.path: next(iter(alone))})
         together = evaluate_many(base, {axis.path: np.array(list(alone))}, len(alone))
@@ -159,7 +159,7 @@ class Designs:
         return _Moved(moves, axis.path in together.read)
 
     def alike(self, points: Points) -> Iterator[tuple[Array, int, dict[str, float]]]:
-        """Numbers of points of one prepared design, its combination of texts, what is set apart."""
+        """Yield points by prepared design: places, combination of texts, values set apart."""
         paths = [axis.path for axis in self.plan.numeric]
         apart = [k for k, path in enumerate(paths) if path in self.apart]
         if not apart and self.plan.variants == 1:
@@ -177,7 +177,7 @@ class Designs:
     def groups(
         self, points: Points
     ) -> Iterator[tuple[Array, PreparedDesign | str, dict[str, Array]]]:
-        """Points of one prepared design, with the arrays that vary; why, where there is none."""
+        """Yield points by prepared design, with the arrays that vary; a reason if it is invalid."""
         paths = [axis.path for axis in self.plan.numeric]
         for every, variant, fixed in self.alike(points):
             subject = self._prepared(variant, fixed)
@@ -191,7 +191,7 @@ class Designs:
                 yield places, subject, varied
 
     def _prepared(self, variant: int, fixed: dict[str, float]) -> PreparedDesign | str:
-        """A prepared design, or why there is none; the last few are kept."""
+        """Return a prepared design, or the reason why it is invalid; the last few are cached."""
         key = (variant, *fixed.values())
         if key not in self._subjects:
             if len(self._subjects) >= KEPT:
@@ -204,10 +204,10 @@ class Designs:
 
 
 def _telling(axis: Axis) -> Iterator[tuple[float, bool]]:
-    """Values to try in a design, and whether each must be tried or two in all are enough.
+    """Yield values to check in a design, and whether each is mandatory or any two are enough.
 
-    All of a short list, and zero wherever it is taken, must: a design may be another there (no
-    speed, no angle), whatever it is on either side.
+    All values of a short list are mandatory, and so is zero: the design may change in kind there
+    (no speed, no angle).
     """
     assert axis.values is not None
     low, high = axis.values[[0, -1]]
@@ -226,6 +226,6 @@ def _telling(axis: Axis) -> Iterator[tuple[float, bool]]:
 
 
 def first_fault(error: InputError) -> str:
-    """The first fault in words."""
+    """Return the first fault as text."""
     fault = error.diagnostics[0]
     return fault.message if fault.path is None else f"{fault.path}: {fault.message}"

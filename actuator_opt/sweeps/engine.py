@@ -1,4 +1,4 @@
-"""What the screen of a sweep computes with: NumPy, or JAX where it is installed."""
+"""Array library of a sweep's screen: NumPy, or JAX where installed."""
 
 from __future__ import annotations
 
@@ -14,41 +14,41 @@ Engine: TypeAlias = Literal["numpy", "jax"]
 ENGINES: tuple[Engine, ...] = get_args(Engine)
 
 Scores: TypeAlias = Callable[[Array, Array], Array]
-"""Objective that numbers (axes, n) promise, (n,), to be below another; infinite where ruled out."""
+"""Estimated objective (n,) of numbers (axes, n) below a bound; infinite where ruled out."""
 
 LEAST = 1024
-"""Designs of the smallest call of a compiled function; larger ones double, each compiled once."""
+"""Smallest batch of a compiled function; larger batches double, each compiled once."""
 
 
 def usable_engine(name: str, *, reduced: bool) -> Engine:
-    """The engine of this name, or NumPy where it is not installed.
+    """Return the named engine, or NumPy where it is not installed.
 
     Raises
     ------
     UsageError
-        there is none of this name, or every row is asked for, which the models make with NumPy
+        an unknown name, or a full sweep, which always uses NumPy
     """
     if name not in ENGINES:
         raise UsageError(Diagnostic(f"--engine {name}: unknown", f"use {' or '.join(ENGINES)}"))
     if name != "numpy" and not reduced:
-        message = f"--engine {name} screens designs for their best alone"
-        raise UsageError(Diagnostic(message, "add --reduce best:K, or leave it out"))
+        message = f"--engine {name} only speeds up sweeps that keep the best designs"
+        raise UsageError(Diagnostic(message, "add --reduce best:K, or omit --engine"))
     return "jax" if name == "jax" and array_library("jax") is not np else "numpy"
 
 
 def array_library(engine: Engine) -> Any:
-    """The arrays of an engine; NumPy's where it is not installed."""
+    """Return the array module of an engine; NumPy where it is not installed."""
     if engine == "jax":
         try:
             import jax.numpy as found
-        except (ImportError, RuntimeError):  # not there, or parts that do not fit together
+        except (ImportError, RuntimeError):  # not installed, or incompatible versions
             return np
         return found
     return np
 
 
 def fused(scores: Scores) -> Scores:
-    """A function of JAX arrays as one of NumPy arrays, compiled for JAX's device in doubles."""
+    """Wrap a function of JAX arrays for NumPy arrays, compiled in double precision."""
     import jax
 
     compiled = jax.jit(scores)

@@ -1,4 +1,4 @@
-"""The rows of a kept sweep, with the margin of every limit and the section of every design."""
+"""Rows of a stored sweep, with the margin of every limit and the section of every design."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ from .chunk import Study, key_head
 from .plan import Plan, Points
 
 BEST = 100
-"""Best feasible designs that are never thinned out."""
+"""Number of best feasible designs that thinning always keeps."""
 
 VARIANTS = 1_000_000
-"""Combinations of texts, at most: a choice, far above what a sweep of texts has."""
+"""Maximum number of text combinations (a choice, far above what sweeps use)."""
 
 
 @dataclass(frozen=True)
 class Group:
-    """Rows of one prepared design: their numbers, and their sections."""
+    """Rows that share one prepared design, and their sections."""
 
     places: Array
     shapes: Shapes
@@ -43,9 +43,9 @@ class Group:
 
 @dataclass(frozen=True)
 class Explored:
-    """Rows (rows, columns) of a study in SI, in the order of what varies.
+    """Rows (rows, columns) of a study in SI, in the order of the axes.
 
-    `variant` is the number of each row's texts; `margins` is (limits, rows).
+    `variant` numbers the texts of each row; `margins` is (limits, rows).
     """
 
     kept: StoredRows
@@ -59,22 +59,22 @@ class Explored:
     best: Array
     """Objective, to be minimised."""
     most: int
-    """Rows beyond which a study is thinned."""
+    """Number of rows above which a study is thinned."""
     origin: str = "Study"
-    """What the rows are of, in words."""
+    """Where the rows come from."""
     shown: tuple[str, ...] = ()
-    """Metrics shown at first, across and up, where not the usual."""
+    """Initial metrics of the x and y axis, where not the default."""
     damaged: int = 0
-    """Rows left out because they are damaged."""
+    """Damaged rows, which are left out."""
 
     @property
     def kind(self) -> str:
-        """What it is called."""
+        """Return the name of this kind of data."""
         return "designs" if self.shown else "sweep"
 
     @property
     def failed(self) -> int:
-        """Designs without an answer, which have no numbers."""
+        """Return the number of failed designs, which have no results."""
         return sum(self.kept.failures.values())
 
     @property
@@ -90,19 +90,19 @@ def explored(
     most: int = 5000,
     plugins: tuple[Plugin, ...] = (),
 ) -> Explored:
-    """Read a sweep back, at most so many rows of it.
+    """Read a stored sweep, thinned to a maximum number of rows.
 
     Parameters
     ----------
     path : database of sweeps
     study : its number, or its hash; default: the newest
-    most : rows; of more, every n-th by their keys, and the best feasible ones
+    most : rows; larger studies keep every n-th row by key, and the best feasible ones
     plugins : the user's metrics and constraints, as in the sweep
 
     Raises
     ------
     InputError
-        no such file or study, rows of other models, of other materials or own metrics
+        no such file or study, or rows of other models, materials or custom metrics
     """
     with reading(path, VERSION) as reader:
         kept = reader.study(reader.number(study) if isinstance(study, str) else study)
@@ -136,12 +136,12 @@ def explored(
 
 
 def _none_whole(kept: StoredRows, path: Path) -> InputError:
-    """Why a study has no numbers."""
+    """Explain why a study has no results."""
     if not kept.failures:
         message = f"study {kept.number}: its rows are damaged"
         return InputError(Diagnostic(message, "run its sweep again with --store", str(path)))
     message = f"study {kept.number}: every design failed: {next(iter(kept.failures))}"
-    return InputError(Diagnostic(message, "vary something else", str(path)))
+    return InputError(Diagnostic(message, "vary other values", str(path)))
 
 
 def explored_designs(
@@ -152,12 +152,12 @@ def explored_designs(
     origin: str,
     shown: tuple[str, ...] = (),
 ) -> Explored:
-    """Designs that differ in numbers, as if a sweep had kept them.
+    """Return designs that differ in numbers, as if read from a stored sweep.
 
     Parameters
     ----------
-    design : the one they are made of; nothing in it is left to an optimiser
-    points : of each the numbers that are its own, by PATH (SI)
+    design : common design, without free variables
+    points : numbers of each design, by PATH (SI)
     plugins : the user's metrics and constraints
     origin, shown : as `Explored`
     """
@@ -190,10 +190,10 @@ def explored_designs(
 def _evaluated(
     study: Study, variant: Array, numbers: Array
 ) -> tuple[tuple[Limit, ...], Array, tuple[Group, ...]]:
-    """Limits, the margin of each in every row, and sections.
+    """Return the limits, the margin of each in every row, and the sections.
 
-    Sections of rows that differ in more than the models may move at once, temperatures say, share
-    one prepared design where that has their dimensions.
+    Rows that need separate prepared designs, for temperatures say, share the sections of one of
+    them if it has their dimensions.
     """
     paths = [axis.path for axis in study.plan.numeric]
     limits: dict[str, Limit] = {}
@@ -223,7 +223,7 @@ def _evaluated(
 
 
 def _hidden(study: Study) -> tuple[str, ...]:
-    """Parts whose own numbers vary, which their outline does not follow."""
+    """Return the parts whose outline does not follow their varied numbers."""
     moved = any(axis.path.startswith("rod.fitting.") for axis in study.plan.axes)
     return ("rod.fitting",) if moved else ()
 
@@ -239,10 +239,10 @@ def _variants(kept: StoredRows, path: Path) -> tuple[dict[str, str], ...]:
 
 
 def _study(kept: StoredRows, plugins: tuple[Plugin, ...], path: Path, ends: Array) -> Study:
-    """The study that made the rows, of the design that the database keeps.
+    """Return the study that made the rows, from the design stored in the database.
 
-    Its plan takes the texts, and numbers in the order of the columns, each between the `ends` it
-    has in some rows; it visits no points.
+    Its plan has the texts, and the numbers in column order, each between its `ends` in the rows. It
+    visits no points.
     """
     own = with_own(plugins)
     try:
@@ -265,7 +265,7 @@ def _study(kept: StoredRows, plugins: tuple[Plugin, ...], path: Path, ends: Arra
 
 
 def _another(path: Path) -> InputError:
-    message = "its rows rest on other materials, or on metrics of your own"
+    message = "its rows come from other materials, or from custom metrics"
     remedy = "add --plugin FILE.py as in the sweep, or run the sweep again"
     return InputError(Diagnostic(message, remedy, str(path)))
 
@@ -273,7 +273,7 @@ def _another(path: Path) -> InputError:
 def _thinned(
     reader: Reader, kept: StoredRows, study: Study, good: int, most: int
 ) -> tuple[list[bytes], Array, int]:
-    """Rows spread evenly over the study, and its best; and how many are whole."""
+    """Return rows spread evenly over the study, its best rows, and the number of valid rows."""
     step = -(-good // most)
     keys: list[bytes] = []
     numbers: list[Array] = []
@@ -316,7 +316,7 @@ def _texts_of(
     variants: tuple[dict[str, str], ...],
     path: Path,
 ) -> Array:
-    """The number of the texts that each row is of, which its key tells."""
+    """Return the number of each row's texts, found through its key."""
     data = np.ascontiguousarray(numbers[:, : len(study.order)], dtype="<f8")
     heads = [key_head(texts) for texts in variants]
     found = np.empty(len(keys), dtype=np.int64)
@@ -330,6 +330,6 @@ def _texts_of(
                 found[row] = last = number
                 break
         else:
-            message = "holds rows of texts that it does not name"
+            message = "holds rows whose texts are not in its list"
             raise InputError(Diagnostic(message, "run the sweep again with --store", str(path)))
     return found

@@ -17,27 +17,27 @@ from .chunk import Study
 from .plan import Plan, Points
 
 FINEST = 161
-"""Nodes drawn along an axis (a choice: one per mm of paper); of more, an even choice."""
+"""Maximum number of nodes per axis (a choice: one per mm of paper); finer grids are thinned."""
 
 FAR = 2.0
-"""Margin beyond which it does not matter how far it is (a choice: +-200 %)."""
+"""Margins are clipped here (a choice: +-200 %)."""
 
 NOTHING = -1.0
-"""Margin of a wall of no thickness."""
+"""Margin assigned to a wall of negative thickness."""
 
 STEPS = 12
-"""Most rounds of the search for a zero on an edge of the grid."""
+"""Maximum iterations of the search for zero on an edge of the grid."""
 
 CLOSE = 1e-9
-"""Margin that counts as zero."""
+"""Margin treated as zero."""
 
 
 @dataclass(frozen=True)
 class Boundary:
-    """Where one limit of a study (`number` of its `binding`) is just met, in SI.
+    """Zero line of one limit of a study (`number` of its `binding`), in SI.
 
-    `lines` are (n, 2) points of zero margin; `missed` the areas where it is not met, each a list
-    of rings.
+    `lines` are (n, 2) points of zero margin; `missed` the areas where the limit is missed, each a
+    list of rings.
     """
 
     number: int
@@ -49,10 +49,10 @@ class Boundary:
 class Field:
     """Nodes of a grid (first axis, second axis), in SI.
 
-    `rows` are those of the sweep, (nodes, nodes, columns), NaN where a design failed; `margins`
-    are (limits, nodes, nodes), NaN where there is none; `failed` are nodes without a design, for a
-    reason of its own or a wall of less than nothing. Margins of limits that some nodes just meet
-    have `room`, (limits,): what still counts as met. `thinned`: the sweep had more nodes.
+    `rows` are those of the sweep, (nodes, nodes, columns), NaN where a design failed. `margins` are
+    (limits, nodes, nodes), NaN without a value. `failed` marks nodes without a design, whether for
+    a fault or for a negative wall. `room`, (limits,), is the tolerance within which a limit counts
+    as met. `thinned`: the sweep had more nodes.
     """
 
     study: Study
@@ -65,12 +65,12 @@ class Field:
     thinned: bool
 
     def metric(self, name: str) -> Array:
-        """A metric at the nodes, (nodes, nodes)."""
+        """Return a metric at the nodes, (nodes, nodes)."""
         found: Array = self.rows[:, :, self.study.place(name)]
         return found
 
     def boundaries(self) -> Iterator[Boundary]:
-        """The lines of every limit that some nodes meet and others miss."""
+        """Yield the lines of every limit that is met at some nodes and missed at others."""
         from contourpy import FillType, LineType, contour_generator
 
         for number, margins in enumerate(self.margins):
@@ -97,9 +97,10 @@ class Field:
             )
 
     def _on_zero(self, number: int, table: Array, curves: Sequence[Array]) -> list[Array]:
-        """Curves whose points between a met and a missed node are moved to zero margin.
+        """Return curves with their points moved to zero margin.
 
-        They move along that edge; they stay where each design must be made anew.
+        Points move along the edge between a met and a missed node. They stay where each design
+        needs a new preparation.
         """
         if self.study.designs.apart or not curves:
             return list(curves)
@@ -119,7 +120,7 @@ class Field:
     def _edge(
         self, table: Array, point: Array
     ) -> tuple[list[float], list[float], list[float]] | None:
-        """Ends and margins of the edge of the grid that a point lies on, where it crosses zero."""
+        """Return ends and margins of the grid edge under a point, if its margin changes sign."""
         nodes = (self.xs, self.ys)
         places = []
         for axis, value in zip(nodes, point, strict=True):
@@ -136,7 +137,7 @@ class Field:
         return [self.xs[i], self.ys[j]], [self.xs[k], self.ys[m]], ends
 
     def _zeros(self, number: int, low: Array, high: Array, ends: Array) -> Array:
-        """Points of zero margin between ends of either sign, by the Illinois method."""
+        """Return points of zero margin between ends of opposite sign, by the Illinois method."""
         a, b = np.zeros(len(low)), np.ones(len(low))
         f, g = ends[:, 0].copy(), ends[:, 1].copy()
         t, going = np.where(f == 0, 0.0, 1.0), (f != 0) & (g != 0)
@@ -158,7 +159,7 @@ class Field:
 
 
 def margins_at(study: Study, numbers: Array) -> Array:
-    """The margin of every limit, (limits, n), where the plan's numbers are (axes, n)."""
+    """Return the margin of every limit, (limits, n), at numbers (axes, n) of the plan."""
     count = numbers.shape[1]
     found = np.full((len(study.binding), count), np.nan)
     for places, subject, varied in study.designs.groups(
@@ -170,31 +171,31 @@ def margins_at(study: Study, numbers: Array) -> Array:
 
 
 def require_grid(plan: Plan) -> None:
-    """Refuse a sweep that is no grid of two numbers.
+    """Reject a sweep that is not a grid of two numbers.
 
     Raises
     ------
     UsageError
-        another method, other than two axes, names on one, or a single value
+        another method, not two axes, names on an axis, or a single value
     """
     for axis in plan.named:
-        message = f"a contour needs numbers, {axis.path} takes names"
+        message = f"a contour needs numbers, but {axis.path} takes names"
         raise UsageError(Diagnostic(message, "set it with --set, and vary two numbers"))
     if len(plan.axes) != 2:
         message = f"a contour needs exactly two --vary, not {len(plan.axes)}"
         raise UsageError(Diagnostic(message, "set the others with --set"))
     if plan.method != "grid":
         message = f"a contour needs a grid, not --method {plan.method}"
-        raise UsageError(Diagnostic(message, "leave out --method and write PATH=A..B:N"))
+        raise UsageError(Diagnostic(message, "omit --method and write PATH=A..B:N"))
     for axis in plan.axes:
         if axis.size < 2:
             raise UsageError(
-                Diagnostic(f"a contour needs two values or more of {axis.path}", "add values")
+                Diagnostic(f"a contour needs at least two values of {axis.path}", "add values")
             )
 
 
 def _cut_away(study: Study, margins: Array) -> Array:
-    """Nodes where a wall or room is less than nothing; other limits have no margin there."""
+    """Return the nodes with a negative wall or clearance; other limits have no margin there."""
     shapes = np.array([one.origin == "geometry" for one in study.binding])
     gone: Array = (margins[shapes] < NOTHING).any(axis=0)
     for number in np.flatnonzero(~shapes):
@@ -203,7 +204,7 @@ def _cut_away(study: Study, margins: Array) -> Array:
 
 
 def field(study: Study) -> Field:
-    """The grid of a sweep of two numbers, evaluated again, of at most `FINEST` nodes an axis."""
+    """Evaluate again the grid of a sweep of two numbers, at most `FINEST` nodes per axis."""
     require_grid(study.plan)
     values = [axis.numbers() for axis in study.plan.axes]
     wide = len(values[1])
@@ -219,11 +220,11 @@ def field(study: Study) -> Field:
         failed[k, list(one.rows.failures)] = True
     mesh = np.stack([part.ravel() for part in np.meshgrid(xs, ys, indexing="ij")])
     margins = margins_at(study, mesh).reshape(-1, len(xs), len(ys))
-    just = np.abs(margins) <= TOLERANCE  # met, as in every verdict
+    just = np.abs(margins) <= TOLERANCE  # within tolerance: met, as in every verdict
     room = np.where(just.any(axis=(1, 2)), TOLERANCE, 0.0)
     margins += room[:, None, None]
     gone = _cut_away(study, margins)
-    margins[:, failed & ~gone] = np.nan  # a wall below nothing keeps the margins of its shape
+    margins[:, failed & ~gone] = np.nan  # a negative wall keeps the margins of its shape
     failed |= gone
     rows = np.stack([one.rows.numbers for one in chunks])
     thinned = any(len(one) > FINEST for one in values)

@@ -1,4 +1,4 @@
-"""Chunks of a sweep as its database has them."""
+"""Chunks of a sweep in its database."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from .chunk import Study
 
 
 class Lacking(NamedTuple):
-    """What the database lacks of a chunk: keys, and their numbers; None where it lacks all."""
+    """Keys and point numbers of the rows that the database lacks; None where it lacks all."""
 
     first: int
     keys: list[bytes]
     some: Array | None
     damaged: int
-    """Rows that it has, but damaged."""
+    """Rows that the database holds damaged."""
 
 
 def lacking(base: Database, study: Study, first: int, count: int) -> Lacking:
-    """The keys of a chunk whose rows are missing or damaged."""
+    """Return the keys of a chunk whose rows are missing or damaged."""
     keys = study.keys(first, count)
     missing, damaged = base.missing(keys)
     some = None if len(missing) == len(keys) else np.array(missing, dtype=np.intp)
@@ -30,7 +30,7 @@ def lacking(base: Database, study: Study, first: int, count: int) -> Lacking:
 
 
 def kept(base: Database, study: Study, first: int, count: int) -> tuple[Rows, int]:
-    """Rows of a chunk that stand, NaN where they do not, and how many those are."""
+    """Return the stored rows of a chunk, NaN where missing, and their number."""
     keys = study.keys(first, count)
     points = study.plan.points(first, count)
     numbers = np.full((len(keys), len(study.columns)), np.nan)

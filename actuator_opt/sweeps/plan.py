@@ -1,7 +1,7 @@
 """The points of a sweep: full factorial, Sobol or Latin hypercube, any part of them by number.
 
-Nothing is held but the axes: point k of n is found from k, so that a sweep of any size takes the
-same memory, may start anywhere and comes out alike in any number of processes.
+Only the axes are stored; each point is computed from its number. A sweep of any size takes the same
+memory, can start anywhere and gives the same points in any number of processes.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ from .axes import Axis
 Method = Literal["grid", "sobol", "lhs"]
 METHODS = get_args(Method)
 MOST = 2**30
-"""Most points of the sampled methods: those of a Sobol sequence of 30 bits."""
+"""Maximum points of the sampled methods: those of a Sobol sequence of 30 bits."""
 
 MOST_GRID = 10**12
-"""Most points of a grid (a choice: some days of work, where the best alone are kept)."""
+"""Maximum points of a grid (a choice: some days of work when only the best are kept)."""
 
 BITS = 30
-"""Of a coordinate of a Sobol point."""
+"""Bits of a Sobol coordinate."""
 
 DIGITS = 12
-"""Binary digits of the numbers of Sobol points in a table."""
+"""Low bits of the Sobol number that a table covers."""
 
 ROUNDS = 6
 """Rounds of the permutation of a Latin hypercube."""
@@ -39,13 +39,13 @@ ROUNDS = 6
 
 @dataclass(frozen=True)
 class Points:
-    """Some points: number of the combination of texts each belongs to, and numbers (axes, n)."""
+    """Points of a sweep: number of the text combination of each, and numbers (axes, n)."""
 
     variant: Array
     numbers: Array
 
     def some(self, places: Array) -> Points:
-        """Those at some places."""
+        """Return the points at some places."""
         return Points(self.variant[places], self.numbers[:, places])
 
 
@@ -53,7 +53,7 @@ class Points:
 class Plan:
     """Axes with the points to visit.
 
-    `named` axes make another design for each of their texts, the others vary numbers.
+    Each text of a `named` axis makes another design; the other axes vary numbers.
     """
 
     axes: tuple[Axis, ...]
@@ -63,21 +63,21 @@ class Plan:
 
     @property
     def named(self) -> tuple[Axis, ...]:
-        """Axes of texts."""
+        """Return the axes of texts."""
         return tuple(axis for axis in self.axes if axis.values is None)
 
     @property
     def numeric(self) -> tuple[Axis, ...]:
-        """Axes of numbers."""
+        """Return the axes of numbers."""
         return tuple(axis for axis in self.axes if axis.values is not None)
 
     @property
     def variants(self) -> int:
-        """Combinations of texts."""
+        """Return the number of text combinations."""
         return math.prod(axis.size for axis in self.named)
 
     def texts(self, variant: int) -> dict[str, str]:
-        """The texts of one combination, by PATH."""
+        """Return the texts of one combination, by PATH."""
         found = {}
         for axis in reversed(self.named):
             variant, at = divmod(variant, axis.size)
@@ -85,7 +85,7 @@ class Plan:
         return dict(reversed(found.items()))
 
     def points(self, first: int, count: int) -> Points:
-        """Points `first` to `first + count`, less what lies beyond the last."""
+        """Return points `first` to `first + count`, up to the last one."""
         index = np.arange(first, min(first + count, self.count), dtype=np.int64)
         places = self._grid(index) if self.method == "grid" else self._sampled(index)
         variant = np.zeros(len(index), dtype=np.int64)
@@ -100,7 +100,7 @@ class Plan:
         return Points(variant, numbers)
 
     def _grid(self, index: Array) -> list[Array]:
-        """Of every axis the number of the value, or the value of a range; the last runs fastest."""
+        """Return the value or its number on every axis; the last axis runs fastest."""
         sizes = tuple(axis.size for axis in self.axes)
         places = np.unravel_index(index, sizes)
         return [
@@ -123,11 +123,11 @@ class Plan:
 
 
 def plan(axes: Sequence[Axis], *, method: Method, count: int | None, seed: int = 0) -> Plan:
-    """The points of a sweep.
+    """Return the points of a sweep.
 
     Parameters
     ----------
-    axes : what to vary
+    axes : what varies
     method : full factorial, Sobol or Latin hypercube
     count : points of the sampled methods
     seed : of the sampled methods
@@ -144,10 +144,16 @@ def plan(axes: Sequence[Axis], *, method: Method, count: int | None, seed: int =
     paths = [axis.path for axis in axes]
     for path in paths:
         if paths.count(path) > 1:
-            raise UsageError(Diagnostic(f"--vary {path}: given twice", "join its values in one"))
+            raise UsageError(
+                Diagnostic(f"--vary {path}: given twice", "join its values in one --vary")
+            )
     if method == "grid":
         if count is not None:
-            raise UsageError(Diagnostic("-n: a grid has its steps", "write PATH=A..B:N"))
+            raise UsageError(
+                Diagnostic(
+                    "-n: a grid takes its number of points from its steps", "write PATH=A..B:N"
+                )
+            )
         for axis in axes:
             if axis.range and axis.count is None:
                 message = f"--vary {axis.path}: the range has no steps"
@@ -158,16 +164,16 @@ def plan(axes: Sequence[Axis], *, method: Method, count: int | None, seed: int =
             raise UsageError(Diagnostic(message, "take fewer steps, or --method sobol -n N"))
         return Plan(tuple(axes), method, points, seed)
     if count is None or not 1 <= count <= MOST:
-        message = f"--method {method}: no number of points" if count is None else f"-n {count}"
+        message = f"--method {method}: number of points missing" if count is None else f"-n {count}"
         raise UsageError(Diagnostic(message, f"add -n N, 1 to {MOST}"))
     return Plan(tuple(axes), method, count, seed)
 
 
 def _sobol(index: Array, dimension: int, count: int, seed: int) -> Array:
-    """Scrambled Sobol points (dimension, n) of some numbers [Sobol1967] [Owen1998].
+    """Return scrambled Sobol points (dimension, n) by number [Sobol1967] [Owen1998].
 
-    A point is the exclusive or of one number for each digit of the Gray code of its own number k,
-    k ^ k/2, and of the first point; the lower `DIGITS` come from a table.
+    A point is the exclusive or of the first point and one number per digit of the Gray code of its
+    index k, k ^ k/2. The lower `DIGITS` digits come from a table.
     """
     table, digits = _sobol_parts(dimension, max(count - 1, 1).bit_length(), seed)
     low, high = index & (len(table) - 1), index >> DIGITS
@@ -182,7 +188,7 @@ def _sobol(index: Array, dimension: int, count: int, seed: int) -> Array:
 
 @lru_cache(maxsize=4)
 def _sobol_parts(dimension: int, bits: int, seed: int) -> tuple[Array, Array]:
-    """The first points, and the numbers of the digits of the Gray code from `DIGITS` - 1 on."""
+    """Return the first points, and the numbers of the Gray code digits from `DIGITS` - 1 on."""
     from scipy.stats import qmc
 
     engine = qmc.Sobol(dimension, scramble=True, bits=BITS, rng=np.random.default_rng(seed))
@@ -190,17 +196,17 @@ def _sobol_parts(dimension: int, bits: int, seed: int) -> tuple[Array, Array]:
     digits = [table[-1] ^ table[0]]
     for number in range(DIGITS, bits):
         engine.fast_forward(2 ** (number + 1) - 1 - engine.num_generated)
-        with warnings.catch_warnings():  # it asks for powers of two in every part
+        with warnings.catch_warnings():  # SciPy wants powers of two in every call
             warnings.simplefilter("ignore", UserWarning)
             digits.append((engine.random(1)[0] * 2.0**BITS).astype(np.int64) ^ table[0])
     return table, np.array(digits)
 
 
 def _latin(index: Array, dimension: int, count: int, seed: int) -> Array:
-    """A Latin hypercube [McKay1979]: of every axis each of n equal parts once.
+    """Return a Latin hypercube [McKay1979]: each of n equal parts of every axis once.
 
-    The part of point k is a permutation of k that needs no table: a Feistel network over the next
-    power of four, walked on while it leaves the range [Black2002].
+    The part of point k is a permutation of k that needs no table. A Feistel network over the next
+    power of four repeats until the result is in range [Black2002].
     """
     found = np.empty((dimension, len(index)))
     for axis in range(dimension):
@@ -214,7 +220,7 @@ def _latin(index: Array, dimension: int, count: int, seed: int) -> Array:
 
 
 def _permuted(index: Array, count: int, keys: Array) -> Array:
-    """Numbers below `count` (at most 2^32) in another order."""
+    """Permute numbers below `count` (at most 2^32)."""
     half = max(math.ceil(math.log2(max(count, 2)) / 2), 1)
     mask, shift = np.uint32(2**half - 1), np.uint32(half)
     place = _rounds(index, keys, mask, shift)
@@ -237,7 +243,7 @@ def _rounds(place: Array, keys: Array, mask: np.uint32, shift: np.uint32) -> Arr
 
 
 def _mixed_half(x: Array) -> Array:
-    """A mix of 32 bits (the finaliser of MurmurHash3 [Appleby2011])."""
+    """Mix 32 bits (the finaliser of MurmurHash3 [Appleby2011])."""
     x = x ^ (x >> np.uint32(16))
     x *= np.uint32(0x85EBCA6B)
     x ^= x >> np.uint32(13)
@@ -247,7 +253,7 @@ def _mixed_half(x: Array) -> Array:
 
 
 def _mixed(x: Array) -> Array:
-    """A mix of 64 bits (the finaliser of SplitMix64 [Steele2014])."""
+    """Mix 64 bits (the finaliser of SplitMix64 [Steele2014])."""
     x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
     mixed: Array = x ^ (x >> np.uint64(31))

@@ -1,4 +1,4 @@
-"""A sweep: chunks of its points evaluated, kept, reduced, in one process or many."""
+"""Run a sweep: evaluate, store and reduce its chunks, in one process or many."""
 
 from __future__ import annotations
 
@@ -33,35 +33,35 @@ from .sample import Sample
 from .swept import Swept
 
 CHUNK = 4096
-"""Points of a chunk: one transaction, one message between processes."""
+"""Points of a chunk: one transaction and one message between processes."""
 
 REDUCED = 65_536
-"""Points of a chunk of which the best alone are kept."""
+"""Points of a chunk when only the best are kept."""
 
 LOOKS = 16
-"""Places of a sweep without a feasible design that are looked at to say why."""
+"""Points examined to explain a sweep without a feasible design."""
 
 ANEW = 8
-"""Points of a chunk of designs that are made anew one by one, some with tables of oil films."""
+"""Points of a chunk when each needs a new design, some with tables of oil films."""
 
 ALONE = 0.5
-"""Seconds of work up to which other processes are not worth their start."""
+"""Seconds of work up to which starting more processes does not pay."""
 
 
 MASKS = hasattr(signal, "pthread_sigmask")
-"""Whether the system can keep a signal waiting."""
+"""Whether the system can delay a signal."""
 
 
 class Task(NamedTuple):
-    """Points to compute: those of a chunk, or some of them."""
+    """Points to compute: a whole chunk, or some of it."""
 
     first: int
     size: int
     some: Array | None = None
     limit: float | None = None
-    """Objective that a design must be below, where the best alone are asked for."""
+    """Objective that a design must improve on, when only the best are kept."""
     keep: int = 0
-    """How many of the best, then."""
+    """Number of best designs to keep."""
 
 
 def sweep(
@@ -79,12 +79,12 @@ def sweep(
     Parameters
     ----------
     study : the design and the points
-    store : database to take rows from and put them into
+    store : database to read rows from and write them to
     keep : best feasible designs to keep
     workers : processes; default: one per core
-    scheduler : address of a Dask scheduler to work on instead
+    scheduler : address of a Dask scheduler, used instead of local processes
     each : called with every chunk, in order
-    watch : metrics whose Pareto lines are kept, of every design
+    watch : metrics whose Pareto lines are kept, over all designs
 
     Raises
     ------
@@ -119,19 +119,19 @@ def sweep(
 
 
 def _chunk_size(study: Study) -> int:
-    """Points of a chunk: fewer where most of them are designs to be made anew, which takes long."""
+    """Return the points of a chunk: fewer when most need a new design, which takes long."""
     if study.designs.apart_count > KEPT:
         return ANEW
     return CHUNK if study.full else REDUCED
 
 
 def _explain(found: Swept) -> None:
-    """Count what some designs miss, where none is feasible and few were evaluated."""
+    """Count the missed limits of a sample, when no design is feasible and few were evaluated."""
     count, part = found.study.plan.count, CHUNK // LOOKS
     found.missed = {}
     every = range(0, count, part)
     spread = np.linspace(0, count - part, LOOKS).astype(int).tolist()
-    for first in spread if len(every) > LOOKS else every:  # none is looked at twice
+    for first in spread if len(every) > LOOKS else every:  # no point is examined twice
         found.count_missed(found.study.chunk(first, part))
 
 
@@ -143,14 +143,14 @@ def swept_again(
     each: Callable[[Chunk], None] | None = None,
     watch: Sequence[str] = (),
 ) -> Swept:
-    """A sweep out of its database, in which every row must stand: nothing is computed or written.
+    """Read a whole sweep from its database; nothing is computed or written.
 
     Parameters as `sweep`.
 
     Raises
     ------
     InputError
-        no such file, one of other models, or one that lacks the sweep or a row of it
+        no such file, other models, or a sweep that is missing or incomplete
     """
     began = time.perf_counter()
     found = Swept(study, study.plan.count, sample=Sample(tuple(watch)))
@@ -161,8 +161,8 @@ def swept_again(
         for first in range(0, study.plan.count, size):
             rows, missing = kept(base, study, first, size)
             if missing:
-                message = f"study {number} lacks rows of this sweep, or holds them damaged"
-                remedy = "run the sweep again with --store: it computes them"
+                message = f"study {number} lacks rows of this sweep, or holds damaged ones"
+                remedy = "run the sweep again with --store to compute them"
                 raise refused(store, message, remedy)
             chunk = study.judged(first, rows, 0)
             found.add(chunk, keep)
@@ -176,13 +176,13 @@ def swept_again(
 def _computed(
     study: Study, chunks: int, workers: int | None, scheduler: str | None, tasks: Iterable[Task]
 ) -> Iterator[Chunk]:
-    """What tasks come to, in their order."""
+    """Yield the chunks of tasks, in order."""
     if scheduler is not None:
         yield from on_cluster(scheduler, study, _chunk, tasks)
         return
     rest = iter(tasks)
-    count = workers or (1 if "jax" in sys.modules else os.cpu_count() or 1)  # its threads bar forks
-    count = min(count, chunks)  # each is started at once, whether it has work or not
+    count = workers or (1 if "jax" in sys.modules else os.cpu_count() or 1)  # no forks with threads
+    count = min(count, chunks)  # all workers start at once, even without work
     if workers is None or count == 1:
         yield from _here(study, chunks, rest, patient=count == 1)
     first = next(rest, None)
@@ -192,19 +192,19 @@ def _computed(
         waiting: deque[Future[Chunk]] = deque()
         try:
             for task in chain([first], rest):
-                with _without_interrupts():  # processes begin here
+                with _without_interrupts():  # processes start here
                     waiting.append(pool.submit(_work, task))
                 if len(waiting) > 2 * count:
                     yield waiting.popleft().result()
             while waiting:
                 yield waiting.popleft().result()
-        except BaseException:  # of what waits nothing is begun any more
+        except BaseException:  # pending tasks never start
             pool.shutdown(cancel_futures=True)
             raise
 
 
 def _here(study: Study, chunks: int, tasks: Iterator[Task], *, patient: bool) -> Iterator[Chunk]:
-    """Chunks of this process: all of them, or until the rest is worth the start of others."""
+    """Yield chunks of this process: all, or until other processes pay for the rest."""
     for done, task in enumerate(tasks, start=1):
         began = time.perf_counter()
         chunk = _chunk(study, task)
@@ -215,11 +215,11 @@ def _here(study: Study, chunks: int, tasks: Iterator[Task], *, patient: bool) ->
 
 
 _STUDY: list[Study] = []
-"""What a process of the pool works on."""
+"""The study that a pool process works on."""
 
 
 def _begin(study: Study) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that waits
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # only the main process handles Ctrl-C
     if MASKS:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     threading.Thread(target=_end_with_parent, daemon=True).start()
@@ -227,11 +227,11 @@ def _begin(study: Study) -> None:
 
 
 def _end_with_parent() -> None:
-    """End this process once its parent has ended, for whatever reason.
+    """End this process when its parent ends, for whatever reason.
 
-    Waits for the end of a pipe that the parent alone holds open, which needs no signal of the
-    system's own. Where processes are forks, a later one holds the pipes of those before it: they
-    end one after the other, the last one first.
+    Waits for the end of a pipe that only the parent keeps open, which works without system signals.
+    A forked process also inherits the pipes of those before it: they end one after the other, the
+    last one first.
     """
     parent = multiprocessing.parent_process()
     if parent is not None:
@@ -241,7 +241,7 @@ def _end_with_parent() -> None:
 
 @contextmanager
 def _without_interrupts() -> Iterator[None]:
-    """Keep Ctrl-C waiting: a process that is just beginning would take it for its own."""
+    """Delay Ctrl-C, so that a starting process does not receive it."""
     if not MASKS:
         yield
         return
@@ -268,7 +268,7 @@ def _stored(
     computed: Callable[[Iterable[Task]], Iterator[Chunk]],
     path: Path,
 ) -> Iterator[Chunk]:
-    """Chunks of rows that the database has, and of new ones that are put into it."""
+    """Yield chunks from stored rows, and store the rows newly computed."""
     with opened(
         path,
         study=study.hash,
@@ -278,7 +278,7 @@ def _stored(
         version=VERSION,
         texts=[(axis.path, text) for axis in study.plan.named for text in axis.texts],
     ) as base:
-        asked: deque[Lacking] = deque()  # of keys alone: rows that stand are read in turn
+        asked: deque[Lacking] = deque()  # checks keys only; the rows are read later
 
         def tasks() -> Iterator[Task]:
             for first in starts:

@@ -1,4 +1,4 @@
-"""Rows of a sweep to draw: bounded in number, thinned evenly, with exact Pareto lines."""
+"""Rows of a sweep for drawing: a bounded, evenly thinned number, with exact Pareto lines."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from ..base.numeric import Array
 from .chunk import Chunk, Study
 
 MOST = 4096
-"""Rows kept of the feasible designs, and of the others (a choice: more cannot be told apart in
-print); beyond it every second is let go, again and again."""
+"""Rows kept of the feasible designs, and of the others (a choice: print resolves no more). Beyond
+it every second row is dropped, repeatedly."""
 
 LONGEST = 65_536
-"""Points kept of a Pareto line (a choice: 1 MB each)."""
+"""Points kept per Pareto line (a choice: 1 MB each)."""
 
 LESS_IS_BETTER = -1
 MORE_IS_BETTER = 1
 
 
 def better(study: Study, metric: str) -> int:
-    """Which way a metric is better: by the objective, its limits, else its worst value.
+    """Return which way a metric is better: by the objective, its limits, else its worst value.
 
-    1 for more, -1 for less, 0 where both ways are limited.
+    1 for more, -1 for less, 0 with limits on both sides.
     """
     goal = study.goal
     if metric in goal.weights:
@@ -37,9 +37,10 @@ def better(study: Study, metric: str) -> int:
 
 
 def front(first: Array, second: Array) -> Array:
-    """Numbers of the points that no other betters, less being better, along `first`.
+    """Return the numbers of the non-dominated points, along `first`; less is better.
 
-    A point goes where another is no worse in both and better in one; of equals the first stays.
+    A point is dominated by another that is no worse in both values and better in one. Of equal
+    points the first stays.
     """
     order = np.lexsort((second, first))
     known = order[np.isfinite(first[order]) & np.isfinite(second[order])]
@@ -51,7 +52,7 @@ def front(first: Array, second: Array) -> Array:
 
 @dataclass
 class Pool:
-    """Every k-th of some rows, at most `MOST`."""
+    """Every k-th row of a stream, at most `MOST` in all."""
 
     seen: int = 0
     step: int = 1
@@ -59,7 +60,7 @@ class Pool:
     rows: Array = field(default_factory=lambda: np.empty((0, 0)))
 
     def add(self, variants: Array, rows: Array) -> None:
-        """Rows with the combinations of names they belong to."""
+        """Add rows with their combinations of names."""
         at = np.arange((-self.seen) % self.step, len(rows), self.step)
         self.seen += len(rows)
         if not len(at):
@@ -71,16 +72,16 @@ class Pool:
             self.variants, self.rows = self.variants[::2], self.rows[::2]
 
     def thinned(self, most: int) -> tuple[Array, Array, int]:
-        """Variants and rows of an even choice of at most so many, and every which it is."""
+        """Return variants and rows, thinned evenly to at most so many, and the step."""
         step = max(1, -(-len(self.rows) // most))
         return self.variants[::step], self.rows[::step], self.step * step
 
 
 @dataclass
 class Sample:
-    """Rows of a sweep as it runs: the feasible and the others; designs that failed have none.
+    """Feasible and other rows, collected as a sweep runs; failed designs are left out.
 
-    `watch` are metrics; the Pareto line of each pair of them is kept of every feasible design.
+    `watch` are metrics; every pair has a Pareto line over all feasible designs.
     """
 
     watch: tuple[str, ...] = ()
@@ -89,7 +90,7 @@ class Sample:
     _fronts: dict[tuple[str, str], Array] = field(default_factory=dict, repr=False)
 
     def add(self, study: Study, chunk: Chunk) -> None:
-        """Take of a chunk what is drawn."""
+        """Collect the rows of a chunk that are drawn."""
         rows = chunk.rows.numbers
         answered = np.ones(len(rows), dtype=bool)
         answered[list(chunk.rows.failures)] = False
@@ -108,9 +109,9 @@ class Sample:
                 self._fronts[pair] = _extended(study, pair, self._fronts.get(pair), good)
 
     def front(self, study: Study, pair: tuple[str, str]) -> tuple[Array, bool]:
-        """Values (2, n) of the Pareto line of two metrics (SI), and whether it is of every design.
+        """Return the Pareto line (2, n) of two metrics (SI), and whether it covers every design.
 
-        Empty where nothing says which way one of them is better.
+        Empty where the better direction of a metric is unknown.
         """
         for one in (pair, pair[::-1]):
             if one in self._fronts:
@@ -123,7 +124,7 @@ class Sample:
 
 
 def _extended(study: Study, pair: tuple[str, str], known: Array | None, rows: Array) -> Array:
-    """A Pareto line with more designs."""
+    """Return a Pareto line extended by more designs."""
     ways = [better(study, name) for name in pair]
     if 0 in ways:
         return np.empty((2, 0))

@@ -1,7 +1,7 @@
-"""What a variant must have to be among the best, by closed expressions: most variants end here.
+"""Screen of a sweep: rules out most designs early, by closed expressions.
 
-The models are called once with symbols; objective and limits that come out as expressions of what
-varies are compiled. What passes is evaluated in full, so that a screen changes no answer.
+The models run once with symbols. Objective and limits that become closed expressions of the varied
+numbers are compiled. Designs that pass are evaluated in full, so a screen never changes the result.
 """
 
 from __future__ import annotations
@@ -26,25 +26,25 @@ from ..optimisation.certificate.trace import Claim, trace
 from .engine import Engine, Scores, array_library, fused
 
 ROOM = 2 * TOLERANCE
-"""Margin below which a variant is out: beyond the rounding of another order of operations."""
+"""Margin below which a design is ruled out, beyond the rounding of reordered operations."""
 
 CLOSE = 1e-9
-"""Relative room of the objective, for the same reason."""
+"""Relative tolerance of the objective, for the same reason."""
 
 TRIED = 512
-"""Points that tell which limits rule out most."""
+"""Points that show which limits rule out most designs."""
 
 
 @dataclass(frozen=True)
 class Limits:
-    """Compiled values of some limits, with their bounds and senses (1 for a least value)."""
+    """Compiled values of some limits, with their bounds and senses (1 for a lower bound)."""
 
     compiled: Any
     bounds: Array
     signs: Array
 
     def missed(self, numbers: Array) -> Iterator[Array]:
-        """For each limit in turn whether it is missed, (n,) or one for all."""
+        """Yield for each limit whether it is missed, (n,) or one for all."""
         with np.errstate(all="ignore"):
             for value, bound, sign in zip(
                 self.compiled(numbers), self.bounds, self.signs, strict=True
@@ -54,10 +54,10 @@ class Limits:
 
 @dataclass(frozen=True)
 class Screen:
-    """Compiled objective and limits of variants that differ in numbers (axes, n).
+    """Compiled objective and limits of designs that differ in numbers (axes, n).
 
-    `stages` are limits one after the other: later ones see only what passes those before. They
-    are compiled for arrays of `library`.
+    `stages` are limits in sequence: each stage checks only what passed those before. They are
+    compiled for arrays of `library`.
     """
 
     objective: Any
@@ -65,9 +65,9 @@ class Screen:
     library: Any = np
 
     def scores(self, numbers: Array, limit: Array) -> Array:
-        """What designs promise as objective, (n,): infinite where they miss a limit or `limit`.
+        """Return the estimated objective, (n,): infinite where a limit or `limit` is missed.
 
-        Minus infinity where that has no finite value.
+        Minus infinity where the estimate is not finite.
         """
         found = self.promised(numbers, limit) + np.zeros(numbers.shape[1])
         for stage in self.stages:
@@ -79,7 +79,7 @@ class Screen:
         return found
 
     def promised(self, numbers: Array, limit: Array) -> Array:
-        """The objective, (n,) or one for all: infinite where it is above `limit`."""
+        """Return the objective, (n,) or one for all: infinite where it is above `limit`."""
         arrays = self.library
         with np.errstate(all="ignore"):
             found, *others = self.objective(numbers)
@@ -89,7 +89,7 @@ class Screen:
         return arrays.where(found > roomy(limit), np.inf, found)
 
     def scores_at_once(self, numbers: Array, limit: Array) -> Array:
-        """As `scores`, with every limit of every design: arithmetic alone, for a compiler."""
+        """Return `scores` with every limit of every design: plain arithmetic, for a compiler."""
         found = self.promised(numbers, limit)
         for stage in self.stages:
             for missed in stage.missed(numbers):
@@ -98,16 +98,17 @@ class Screen:
 
 
 def roomy(objective: Array) -> Array:
-    """An objective with room for rounding, above which designs are worse."""
+    """Return an objective plus a rounding tolerance; designs above it are worse."""
     return objective + CLOSE * abs(objective)
 
 
 def screen(
     design: Design, paths: Sequence[str], ends: Array, engine: Engine = "numpy"
 ) -> Scores | None:
-    """What tells early how good designs are whose numbers at `paths` vary between `ends` (axes, 2).
+    """Return a screen for designs whose numbers at `paths` vary between `ends` (axes, 2).
 
-    None where the objective is no closed expression of them, or a number is none that may move.
+    None if the objective is not a closed expression of them, or if a number cannot vary as an
+    array.
     """
     variables = {
         path: Variable(lower=float(low), upper=float(high), start=float((low + high) / 2))
@@ -153,7 +154,7 @@ def _limits(claims: Sequence[Claim], own: Mapping[Symbol, str], library: Any = n
 
 
 def _telling(limits: Limits, tried: Array) -> list[int]:
-    """Numbers of few limits that together rule out every point that any of them does."""
+    """Return a few limits that together rule out every point that any limit does."""
     missed = np.stack([np.broadcast_to(one, tried.shape[1]) for one in limits.missed(tried)])
     found = []
     while missed.any():
@@ -163,7 +164,7 @@ def _telling(limits: Limits, tried: Array) -> list[int]:
 
 
 def _closed(value: Any, own: dict[Symbol, str]) -> bool:
-    """Whether a traced value depends on nothing but what varies."""
+    """Whether a traced value depends only on the varied numbers."""
     if not isinstance(value, Symbol):
         return True
     return all(node in own for node in needed([value]) if node.op == "variable")

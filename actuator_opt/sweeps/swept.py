@@ -1,4 +1,4 @@
-"""What a sweep came to."""
+"""Results of a sweep."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .sample import Sample
 
 @dataclass(frozen=True, order=True)
 class Best:
-    """One of the best designs: its objective (to be minimised), its point, its row."""
+    """One of the best designs: its objective (to be minimised), point and row."""
 
     objective: float
     number: int
@@ -23,43 +23,43 @@ class Best:
 
     @property
     def margin(self) -> float:
-        """The least margin of all limits."""
+        """Return the least margin of all limits."""
         return self.row[-3]
 
 
 @dataclass
 class Swept:
-    """What a sweep came to."""
+    """Results of a sweep."""
 
     study: Study
     requested: int
     computed: int = 0
     reused: int = 0
     damaged: int = 0
-    """Rows computed again because those in the database were damaged."""
+    """Rows computed again because the database holds them damaged."""
     failed: int = 0
     feasible: int | None = 0
-    """None where the best alone are asked for: then most are never evaluated."""
+    """None when only the best are kept, as most designs are then never evaluated."""
     screened: int = 0
-    """Variants that closed expressions or better ones of their chunk rule out, where so."""
+    """Designs ruled out by the screen or by better ones of their chunk, in reduced sweeps."""
     best: list[Best] = field(default_factory=list)
     failures: dict[str, int] = field(default_factory=dict)
-    """How often each reason made a design fail."""
+    """Failed designs by reason."""
     missed: dict[str, int] = field(default_factory=dict)
-    """How often each limit was the one missed most."""
+    """Infeasible designs by the limit missed most."""
     seconds: float = 0.0
     sample: Sample = field(default_factory=Sample)
-    """Rows to draw."""
+    """Rows for drawing."""
 
     def metrics(self, best: Best) -> dict[str, float | None]:
-        """The metrics of one of the best designs (SI); None where there is none."""
+        """Return the metrics of one of the best designs (SI); None without a value."""
         values = dict(zip([c.name for c in self.study.columns], best.row, strict=True))
         return {
             name: None if np.isnan(values[name]) else values[name] for name in self.study.metrics
         }
 
     def values(self, best: Best) -> dict[str, float | str]:
-        """The varied values of one of the best designs, by PATH (SI), which its row begins with."""
+        """Return the varied values of one of the best designs, by PATH (SI)."""
         study = self.study
         if study.plan.named:
             return study.values(best.number)
@@ -68,11 +68,11 @@ class Swept:
         return {path: found[path] for path in paths}
 
     def limit(self, keep: int) -> float:
-        """Objective that one more of the best must be below."""
+        """Return the objective that another design must improve on to join the best."""
         return self.best[-1].objective if len(self.best) >= keep else np.inf
 
     def to_dict(self) -> dict[str, Any]:
-        """The JSON form (CONTRACT): counts, and the best designs in SI."""
+        """Return the JSON form (CONTRACT): counts, and the best designs in SI."""
         return {
             "name": self.study.design.name,
             "version": VERSION,
@@ -94,7 +94,7 @@ class Swept:
         }
 
     def count_missed(self, chunk: Chunk) -> None:
-        """Count the limits that the designs of a chunk miss most."""
+        """Count the limit that each design of a chunk misses most."""
         worst = chunk.rows.numbers[~chunk.feasible, -2]
         for number, times in zip(
             *np.unique(worst[np.isfinite(worst)], return_counts=True), strict=True
@@ -103,7 +103,7 @@ class Swept:
             self.missed[name] = self.missed.get(name, 0) + int(times)
 
     def add(self, chunk: Chunk, keep: int) -> None:
-        """Count a chunk."""
+        """Add a chunk to the counts."""
         self.computed += chunk.computed
         self.damaged += chunk.damaged
         self.reused += max(len(chunk.rows.numbers) - chunk.computed, 0)

@@ -1,4 +1,4 @@
-"""What scatter does to a design: yield, sensitivity indices, tornado, robust optima."""
+"""Yield, sensitivity indices, tornado and robust optima of a design with uncertain inputs."""
 
 from .inputs import Input
 from .result import Uncertainty

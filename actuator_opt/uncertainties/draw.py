@@ -1,4 +1,4 @@
-"""Distributions as quantile functions: a share of the probability in, a value out."""
+"""Distributions as quantile functions: from cumulative probability to value."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ _TAIL = erfc(REACH / sqrt(2)) / 2
 
 @dataclass(frozen=True, slots=True)
 class Distribution:
-    """A distribution of a value, SI.
+    """Distribution of an input, SI.
 
     Parameters
     ----------
     shape : normal, lognormal, uniform, loguniform, triangular or fixed
-    centre : mean of a normal, median of a lognormal, tip of a triangular one
+    centre : mean (normal), median (lognormal) or mode (triangular)
     low, high : least and largest value
-    deviation : standard deviation of a normal; of the logarithm, of a lognormal
+    deviation : standard deviation of the value (normal) or of its logarithm (lognormal)
     """
 
     shape: str
@@ -35,9 +35,9 @@ class Distribution:
     deviation: float = 0.0
 
     def at(self, share: Vector) -> Vector:
-        """The values below which shares of the probability lie.
+        """Return the quantiles at the given cumulative probabilities.
 
-        Normal and lognormal distributions end at 5 standard deviations.
+        Normal and lognormal distributions are truncated at 5 standard deviations.
 
         Examples
         --------
@@ -68,7 +68,7 @@ class Distribution:
 
 
 def normal_quantile(share: Vector) -> Vector:
-    """The standard normal value below which shares of the probability lie [Wichura1988].
+    """Return quantiles of the standard normal distribution [Wichura1988].
 
     Examples
     --------
@@ -83,13 +83,13 @@ def normal_quantile(share: Vector) -> Vector:
 def about(
     shape: str, stated: Mapping[str, Any], value: float, within: tuple[float, float]
 ) -> Distribution:
-    """The distribution that an entry states about a value of the design.
+    """Return the distribution that an entry of the design file states around a nominal value.
 
     Parameters
     ----------
-    shape, stated : as the design file has them, SI
-    value : of the design
-    within : bounds that draws never leave: what lies beyond is drawn at the bound
+    shape, stated : as in the design file, SI
+    value : nominal value
+    within : valid range; draws outside it are set to the bound
     """
     low, high = limits(shape, stated, value)
     if shape == "normal":

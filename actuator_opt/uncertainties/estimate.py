@@ -1,6 +1,6 @@
-"""Estimates with bounds: probabilities from counts, variance-based indices from replicates.
+"""Estimates with confidence bounds: probabilities and variance-based sensitivity indices.
 
-Functions of points of the unit cube; what they mean is the caller's.
+All functions work on points of the unit cube; the caller gives them meaning.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from ..base.progress import tell
 from ..optimisation.problem import Vector
 
 LEVEL = 0.95
-"""Confidence of all bounds."""
+"""Confidence level of all bounds."""
 
 Outputs = Callable[[Vector], Vector]
 """Outputs (k, n) at points (d, n) of the unit cube."""
@@ -22,19 +22,19 @@ Outputs = Callable[[Vector], Vector]
 
 @dataclass(frozen=True, slots=True)
 class Rate:
-    """A probability with its 95 % bounds."""
+    """Probability with its 95 % bounds."""
 
     value: float
     lower: float
     upper: float
 
     def to_dict(self) -> dict[str, float]:
-        """The JSON form."""
+        """Return the JSON form."""
         return {"value": self.value, "lower": self.lower, "upper": self.upper}
 
 
 def exact(hits: int, count: int) -> Rate:
-    """The probability behind `hits` of `count` independent draws, exact bounds [Clopper1934].
+    """Return the probability from `hits` in `count` independent draws, exact bounds [Clopper1934].
 
     >>> bounds = exact(0, 100)
     >>> round(bounds.lower, 4), round(bounds.upper, 4)
@@ -46,11 +46,11 @@ def exact(hits: int, count: int) -> Rate:
 
 
 SUMMED = 2000
-"""Most draws whose binomial probabilities are summed: without SciPy, which is slow to load."""
+"""Largest number of draws for which bounds are summed directly; SciPy is slow to load."""
 
 
 def _least(hits: int, count: int) -> float:
-    """The probability at which `hits` or more of `count` draws come up in 2.5 % of all samples."""
+    """Return the probability for which `hits` or more of `count` draws have a 2.5 % chance."""
     tail = (1 - LEVEL) / 2
     if count > SUMMED:
         from scipy.special import betaincinv
@@ -60,7 +60,7 @@ def _least(hits: int, count: int) -> float:
     ways = np.concatenate([[0.0], np.cumsum(np.log((count - number + 1) / number))])[hits:]
     number = np.arange(hits, count + 1)
     low, high = 0.0, 1.0
-    for _ in range(60):  # halves the bracket to the precision of a float
+    for _ in range(60):  # halves the bracket down to floating-point precision
         middle = (low + high) / 2
         share = np.exp(ways + number * np.log(middle) + (count - number) * np.log1p(-middle)).sum()
         low, high = (low, middle) if share > tail else (middle, high)
@@ -68,11 +68,11 @@ def _least(hits: int, count: int) -> float:
 
 
 def replicated(hits: Vector, each: int) -> Rate:
-    """The probability behind hits of independent replicates of `each` quasi-random points.
+    """Return the probability from hits in independent replicates of `each` quasi-random points.
 
-    Student's t over the replicates [Owen2013]; where fewer than one miss or hit per replicate was
-    seen, their spread says nothing and the bounds are those of as many independent draws, which is
-    wider than what such points scatter by.
+    Bounds use Student's t over the replicates [Owen2013]. With fewer than one miss or one hit per
+    replicate, their scatter carries no information. The bounds are then those of independent draws,
+    which are wider.
     """
     total, replicates = int(hits.sum()), len(hits)
     pooled = exact(total, each * replicates)
@@ -83,19 +83,19 @@ def replicated(hits: Vector, each: int) -> Rate:
 
 
 def half_width(values: Vector) -> float:
-    """Half the 95 % interval of the mean of independent replicates, by Student's t."""
+    """Return half the 95 % interval of the mean of independent replicates, by Student's t."""
     return _student(len(values)) * float(np.std(values, ddof=1))
 
 
 def _student(count: int) -> float:
-    """Half the 95 % interval of a mean, over the standard deviation of the values."""
+    """Return half the 95 % interval of a mean, divided by the standard deviation of the values."""
     from scipy.special import stdtrit
 
     return float(stdtrit(count - 1, (1 + LEVEL) / 2)) / float(np.sqrt(count))
 
 
 def quasi(dimension: int, power: int, seed: tuple[int, ...]) -> Vector:
-    """2^power scrambled Sobol points (dimension, n) [Sobol1967] [Owen2013]."""
+    """Return 2^power scrambled Sobol points (dimension, n) [Sobol1967] [Owen2013]."""
     from scipy.stats import qmc
 
     generator = np.random.default_rng(seed)
@@ -105,14 +105,14 @@ def quasi(dimension: int, power: int, seed: tuple[int, ...]) -> Vector:
 
 @dataclass(frozen=True, slots=True)
 class Indices:
-    """Variance-based sensitivity indices of outputs (k) by inputs (d), with half widths.
+    """Variance-based sensitivity indices of k outputs to d inputs, with half widths.
 
     Parameters
     ----------
     first, total : (d, k); NaN where an output does not vary
     first_half, total_half : half of their 95 % intervals
     variance : (k,)
-    dropped : share of the rows without a number somewhere
+    dropped : share of the rows in which some output has no value
     """
 
     first: Vector
@@ -124,23 +124,23 @@ class Indices:
 
 
 TOGETHER = 2048
-"""Points of several columns that are evaluated in one call."""
+"""Points evaluated in one call; several columns share a call."""
 REPLICATES = 8
-"""Independent randomisations behind an interval of an index."""
+"""Independent randomisations behind each index interval."""
 
 
 def indices(outputs: Outputs, dimension: int, *, rows: int, seed: int) -> Indices:
-    """First-order and total indices of every output.
+    """Return the first-order and total indices of every output.
 
-    First order by V_i = E[f(B) (f(AB_i) - f(A))] / V [Saltelli2010], total by
-    E[(f(A) - f(AB_i))^2] / 2V [Jansen1999]; A and B are halves of one scrambled Sobol sequence in
-    2d dimensions, AB_i is A with column i of B. Bounds come from `REPLICATES` randomisations.
+    First order by V_i = E[f(B) (f(AB_i) - f(A))] / V [Saltelli2010], total by E[(f(A) - f(AB_i))^2]
+    / 2V [Jansen1999]. A and B are halves of one scrambled Sobol sequence in 2d dimensions; AB_i is
+    A with column i of B. Bounds come from `REPLICATES` randomisations.
 
     Parameters
     ----------
     outputs : (k, n) at points (d, n)
     dimension : d
-    rows : points of all replicates together; (d + 2) evaluations each
+    rows : total points over all replicates; (d + 2) evaluations each
     seed : of the randomisations
     """
     power = max(3, round(np.log2(max(rows, 1) / REPLICATES)))
@@ -170,7 +170,7 @@ def indices(outputs: Outputs, dimension: int, *, rows: int, seed: int) -> Indice
 
 
 def _one(outputs: Outputs, points: Vector, dimension: int, replicate: int) -> tuple[Vector, int]:
-    """V_i, V_Ti (2 d of them) and V (2 d + 1, k) of one randomisation; rows left out."""
+    """Return V_i, V_Ti (2 d) and V (2 d + 1, k) of one randomisation, and the rows dropped."""
     first, second = points[:dimension], points[dimension:]
     a, b = outputs(first), outputs(second)
     mixed: list[Vector] = []

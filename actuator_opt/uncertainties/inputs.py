@@ -1,10 +1,10 @@
-"""What scatters in a design: what its file states, what tests measured, libraries, practice.
+"""Uncertain inputs of a design, collected from its file, tests, libraries and common practice.
 
-In this order: an entry of ``uncertainty``; bounds of ``measured`` (95 %, normal); the scatter that
-a library states of a property (a coefficient of variation is normal, a tolerance uniform and a
-factor uniform in the logarithm, since of bounds nothing more is known [JCGM100]); ISO 286 and
-practice for diameters, walls, angles and air. What an evaluation already takes at its worst is not
-drawn again: strengths stand at their allowables, tolerances of glands at their ends.
+Sources in order of precedence: an entry of ``uncertainty``; bounds of ``measured`` (95 %, normal);
+the scatter that a library states for a property; ISO 286 and common practice for diameters, walls,
+angles and air. A coefficient of variation is normal, a tolerance uniform and a factor uniform in
+the logarithm, since bounds say no more [JCGM100]. Values already evaluated at their worst are not
+drawn again: strengths stay at their allowables, gland tolerances at their limits.
 """
 
 from __future__ import annotations
@@ -28,26 +28,26 @@ from ..models.elastomer import MODULUS_LAWS
 from .draw import Distribution, about
 
 GUARANTEED = ("limit", "minimum", "maximum", "A", "B", "S")
-"""Bases of values that are bounds already."""
+"""Bases of values that are already lower bounds."""
 OWN = ("friction_coefficient", "breakaway_ratio", "stribeck_speed")
-"""Numbers of a seal that a design may state instead of its compound's."""
+"""Seal properties a design may state instead of using the compound's."""
 NORMAL_95 = 1.959964
 _ANYTHING = (-np.inf, np.inf)
 
 
 @dataclass(frozen=True, slots=True)
 class Input:
-    """A number that scatters.
+    """An uncertain input.
 
     Parameters
     ----------
     path : PATH
     quantity : its quantity
-    value : of the design, SI
-    distribution : of its draws
+    value : nominal value of the design, SI
+    distribution : distribution of its draws
     origin : design, measured, library or practice
-    why : where its scatter comes from
-    confidence : of that source
+    why : source of its scatter
+    confidence : confidence in that source
     """
 
     path: str
@@ -59,7 +59,7 @@ class Input:
     confidence: str = ""
 
     def to_dict(self) -> dict[str, Any]:
-        """The JSON form, SI."""
+        """Return the JSON form, SI."""
         ends = self.distribution.at(np.array([0.05, 0.5, 0.95])).tolist()
         return {
             "path": self.path, "unit": self.quantity.si_unit, "value": self.value,
@@ -72,12 +72,12 @@ class Input:
 
 
 def inputs(subject: PreparedDesign) -> tuple[Input, ...]:
-    """Every number of a design that scatters, by PATH.
+    """Return every uncertain input of a design, by PATH.
 
     Raises
     ------
     InputError
-        an entry of ``uncertainty`` on what no model reads, or that leaves the valid range
+        an entry of ``uncertainty`` that no model reads, or that leaves the valid range
     """
     read = read_by_models(subject)
     found = {one.path: one for one in (*_library(subject), *_practice(subject))}
@@ -85,13 +85,13 @@ def inputs(subject: PreparedDesign) -> tuple[Input, ...]:
     kept = {path: one for path, one in found.items() if path in read}
     for path, entry in subject.design.uncertainty.items():
         if path not in read and subject.design.choices:
-            continue  # another choice reads it
+            continue  # read for another option of a choice
         kept[path] = _stated(subject, path, entry.model_dump(), path in read)
     return tuple(one for _, one in sorted(kept.items()) if one.distribution.shape != "fixed")
 
 
 def read_by_models(subject: PreparedDesign) -> set[str]:
-    """PATHs that the models read, the factor on a modulus by hardness among them."""
+    """Return the PATHs that the models read, including the factor on a modulus from hardness."""
     factors = {f"materials.{name}.{_FACTOR}": np.ones(2) for name in _compounds(subject)}
     values = subject.values(factors)
     compute(subject, values)
@@ -106,7 +106,7 @@ def _stated(subject: PreparedDesign, path: str, entry: dict[str, Any], is_read: 
     at = f"uncertainty.{path}.distribution"
     value = subject.numbers.get(path, 1.0 if path.endswith(_FACTOR) else None)
     if value is None or not is_read:
-        message = "no model reads this for this design, so it cannot scatter"
+        message = "no model of this design reads this value, so its uncertainty has no effect"
         raise InputError(Diagnostic(message, "remove the entry", path=at))
     message, remedy = misfit(entry["distribution"], entry, value, quantity)
     if message:
@@ -133,7 +133,7 @@ def _measured(subject: PreparedDesign) -> Iterator[Input]:
 
 
 def _library(subject: PreparedDesign) -> Iterator[Input]:
-    """Scatter that libraries state of properties, and of seals that state their own."""
+    """Yield the scatter that libraries state for properties, and seals for their own."""
     for name, material in subject.materials.items():
         for key, entry in material.properties.items():
             if "strength" not in key and entry.basis not in GUARANTEED:
@@ -163,7 +163,7 @@ def _property(subject: PreparedDesign, path: str, entry: Property, name: str) ->
 
 
 def _shape(spread: Spread, value: float) -> tuple[str, dict[str, float]]:
-    """A library's scatter as a distribution about a value."""
+    """Return a library's scatter as a distribution shape with its parameters."""
     if spread.kind == "cv":
         return "normal", {"cv": spread.size}
     if spread.kind == "tolerance":
@@ -179,7 +179,7 @@ def _compounds(subject: PreparedDesign) -> list[str]:
 
 
 def _moduli(subject: PreparedDesign) -> Iterator[Input]:
-    """Modulus over that of the law a ring uses: between the laws of the registry, in logarithms."""
+    """Yield the factor on each compound's modulus; it spans the hardness laws, log-uniformly."""
     laws: dict[str, set[str]] = {}
     for place in ("piston", "rod"):
         for element in getattr(subject.design.seals, place).elements().values():
@@ -195,7 +195,7 @@ def _moduli(subject: PreparedDesign) -> Iterator[Input]:
         stated = {"lower": min(ratios), "upper": max(ratios)}
         drawn = about("loguniform", stated, 1.0, _ANYTHING)
         cited = " and ".join(law.reference for law in MODULUS_LAWS.values())
-        why = f"the laws from hardness to modulus differ: {cited}"
+        why = f"the laws for modulus from hardness differ: {cited}"
         quantity = quantity_of(path, subject.design)
         value = subject.numbers.get(path, 1.0)
         yield Input(path, quantity, value, drawn, "library", why, "verified")
@@ -205,7 +205,7 @@ def _moduli(subject: PreparedDesign) -> Iterator[Input]:
 
 
 def _practice(subject: PreparedDesign) -> Iterator[Input]:
-    """Diameters, walls, angles and air, where nobody says more."""
+    """Yield diameters, walls, angles and air, where no better source exists."""
     table: Mapping[str, str] = tables()["scatter_of_dimensions"]
     origin = f"{citation(table['source'])}"
     classes = {
@@ -234,7 +234,7 @@ def _practice(subject: PreparedDesign) -> Iterator[Input]:
         quantity = quantity_of(path, subject.design)
         try:
             drawn = about(shape, stated, value, (quantity.lower, quantity.upper))
-        except ValueFault:  # beyond the table of ISO 286
+        except ValueFault:  # outside the table of ISO 286
             continue
         said = f"{stated['tolerance']}, " if "tolerance" in stated else ""
         why = f"{said}{origin}"

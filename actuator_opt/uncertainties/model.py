@@ -1,4 +1,4 @@
-"""A design as a function of its draws: margins of its limits, and metrics beside them."""
+"""Margins and metrics of a design as a function of its uncertain inputs."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from ..optimisation.problem import Vector
 from .inputs import Input
 
 CHUNK = 2048
-"""Draws evaluated at a time: memory does not grow with their number."""
+"""Draws evaluated at a time; this bounds the memory."""
 TOLERANCE = 1e-6
-"""A margin of at least -TOLERANCE is met, as in an evaluation."""
+"""A limit is met at a margin of -TOLERANCE or more, as in an evaluation."""
 
 
 @dataclass(frozen=True, slots=True)
 class Drawn:
-    """Values (d, n) of the inputs, margins (m, n) of the limits, metrics (k, n)."""
+    """Input values (d, n), limit margins (m, n) and metrics (k, n) of a set of draws."""
 
     values: Vector
     margins: Vector
@@ -32,18 +32,18 @@ class Drawn:
 
     @property
     def met(self) -> Vector:
-        """Which limits hold (m, n); one without a number does not."""
+        """Return which limits are met (m, n); a limit without a value is not."""
         return np.asarray(self.margins >= -TOLERANCE)
 
 
 class Model:
-    """A subject whose inputs scatter.
+    """A prepared design with uncertain inputs.
 
     Parameters
     ----------
     subject : the design
-    inputs : what scatters
-    metrics : metrics asked for beside the margins
+    inputs : uncertain inputs
+    metrics : metrics to evaluate beside the margins
     """
 
     def __init__(
@@ -61,22 +61,22 @@ class Model:
             and (limit.origin != "check" or nominal.computed.metrics.get(limit.metric))
         )
         self.own = np.array([limit.origin != "check" for limit in self.limits], dtype=bool)
-        """Which limits are requirements of the design, forces of its load cases included."""
+        """Which limits are requirements of the design, including forces of its load cases."""
         _require_metrics(self.metrics, nominal.computed)
         self._wanted = {limit.metric for limit in self.limits} | set(self.metrics)
 
     @property
     def nominal(self) -> Drawn:
-        """The design as it stands."""
+        """Return the nominal design."""
         return self.where(np.array([[one.value] for one in self.inputs]).reshape(-1, 1))
 
     def at(self, shares: Vector) -> Drawn:
-        """Where shares (d, n) of the probability of every input lie below its value."""
+        """Return the design at the given quantiles (d, n) of its inputs."""
         drawn = [one.distribution.at(row) for one, row in zip(self.inputs, shares, strict=True)]
         return self.where(np.array(drawn).reshape(len(self.inputs), shares.shape[1]))
 
     def outputs(self, shares: Vector) -> Vector:
-        """Margins of the limits, the least margin of the design's own, metrics: (m + 1 + k, n)."""
+        """Return margins, the least margin of the requirements, and metrics: (m + 1 + k, n)."""
         parts = [
             self.flat(self.at(shares[:, first : first + CHUNK]))
             for first in range(0, shares.shape[1], CHUNK)
@@ -84,7 +84,7 @@ class Model:
         return np.concatenate(parts, axis=1)
 
     def flat(self, found: Drawn) -> Vector:
-        """Margins, their least and metrics, stacked; infinite margins without a number."""
+        """Stack margins, their least and metrics; a margin without a value is infinite."""
         margins = np.where(np.abs(found.margins) < 1e9, found.margins, np.nan)
         with np.errstate(all="ignore"):
             least = np.min(found.margins[self.own], axis=0, initial=np.inf)
@@ -92,7 +92,7 @@ class Model:
 
     @np.errstate(all="ignore")
     def where(self, values: Vector) -> Drawn:
-        """The design where its inputs have these values (d, n), SI."""
+        """Return the design at the given input values (d, n), SI."""
         count = values.shape[1]
         varied = {one.path: row for one, row in zip(self.inputs, values, strict=True)}
         numbers = self.subject.values(varied)
@@ -104,7 +104,7 @@ class Model:
 
 
 def _rows(arrays: Sequence[Vector], count: int) -> Vector:
-    """Arrays (n,) or (1,) as (len, n)."""
+    """Stack arrays (n,) or (1,) as (len, n)."""
     found = np.empty((len(arrays), count))
     for row, array in zip(found, arrays, strict=True):
         row[:] = array
@@ -112,7 +112,7 @@ def _rows(arrays: Sequence[Vector], count: int) -> Vector:
 
 
 def _margin(limit: Limit, computed: MetricArrays, numbers: Values, count: int) -> Vector:
-    """The least margin of a limit over cases and places (n,); NaN where one has no number."""
+    """Return the least margin of a limit over cases and places (n,); NaN where one has no value."""
     least = np.full(count, np.inf)
     seen = False
     for row in rows_of(limit, computed, numbers):
@@ -123,16 +123,16 @@ def _margin(limit: Limit, computed: MetricArrays, numbers: Values, count: int) -
 def _require_metrics(metrics: Sequence[str], computed: MetricArrays) -> None:
     for name in metrics:
         if not computed.metrics.get(name):
-            why = computed.why.get(name, "no such metric of this design")
-            remedy = "choose a metric that `actuator-opt evaluate` shows a value for"
-            raise InputError(Diagnostic(f"{name} cannot be followed: {why}", remedy))
+            why = computed.why.get(name, "this design has no such metric")
+            remedy = "choose a metric that `actuator-opt evaluate` lists with a value"
+            raise InputError(Diagnostic(f"{name} cannot be evaluated: {why}", remedy))
 
 
 def without_basis(subject: PreparedDesign, inputs: Sequence[Input]) -> PreparedDesign:
-    """The subject without the basis knock-down of strengths that are drawn.
+    """Return the design without the basis knock-down of strengths that are drawn.
 
-    A knock-down from a mean to an allowable is there for the scatter: who draws the strength has
-    it already. Knock-downs of temperature, moisture and process stay.
+    The knock-down from mean to allowable accounts for scatter; drawing the strength covers it
+    already. Knock-downs for temperature, moisture and process stay.
     """
     drawn = {one.path for one in inputs}
     factors = dict(subject.factors)

@@ -1,4 +1,4 @@
-"""What a yield means, and what it leaves out, in sentences."""
+"""Notes on what a yield covers and what it leaves out."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .inputs import Input
 
 
 def notes(subject: PreparedDesign, found: Sequence[Input]) -> tuple[str, ...]:
-    """What to know of the draws of a design."""
+    """Return the notes on the draws of a design."""
     return tuple(_notes(subject, found))
 
 
@@ -18,30 +18,36 @@ def _notes(subject: PreparedDesign, found: Sequence[Input]) -> Iterator[str]:
     drawn = {one.path for one in found}
     strengths = sorted(path for path in drawn if "strength" in path)
     if not found:
-        yield "nothing scatters: the yield is whether the design as it stands meets everything"
+        yield (
+            "no input is uncertain: the yield is 100 % if the nominal design meets all "
+            "requirements, else 0"
+        )
     yield (
-        "strengths stand at their allowables (knocked down for temperature, moisture, basis and "
-        "process) and are not drawn again: the yield is that of actuators whose material is no "
-        "stronger than that"
+        "strengths are not drawn: they stay at their allowables, with all knock-downs, so the "
+        "yield is conservative for material strength"
         if not strengths
-        else f"drawn without the knock-down of their basis, which is there for the same scatter: "
-        f"{', '.join(strengths)}; all other strengths stand at their allowables"
+        else (
+            "drawn without their basis knock-down, which covers the same scatter: "
+            f"{', '.join(strengths)}; all other strengths stay at their allowables"
+        )
     )
     yield (
-        "squeeze, fill and extrusion gap are judged at the worst of the tolerances of ring and "
-        "gland, which are therefore not drawn"
+        "squeeze, gland fill and extrusion gap are checked at the worst tolerances of ring and "
+        "gland, so these tolerances are not drawn"
     )
     for path in sorted(drawn):
         place, _, last = path.rpartition(".")
         twice = {"section": "section_tolerance", "squeeze": "tolerance"}.get(last)
         if twice and place.startswith("seals.") and subject.numbers.get(f"{place}.{twice}", 0.0):
-            yield f"{path} is drawn, and {place}.{twice} is taken at its worst too: set it to 0"
-    yield "all draws are independent of each other, those of one material too"
+            yield f"{path} is drawn, and {place}.{twice} is applied at its worst too: set it to 0"
+    yield "all inputs are drawn independently, even properties of the same material"
     practice = [one.path for one in found if one.origin == "practice"]
     if practice:
         yield (
-            f"scatter by practice, not by a source that was checked: {', '.join(practice)}; state "
-            "your own under uncertainty"
+            f"scatter from common practice, not from a verified source: {', '.join(practice)}; "
+            "state your own under uncertainty"
         )
     if films_asked(subject.design):
-        yield "oil films follow what scatters to the first order, within their tables"
+        yield (
+            "oil films follow the uncertain inputs to first order, within the range of their tables"
+        )

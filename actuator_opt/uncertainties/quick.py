@@ -1,4 +1,4 @@
-"""A quick estimate of a yield, for results that are not about scatter."""
+"""Quick yield estimate for results that are not uncertainty studies."""
 
 from __future__ import annotations
 
@@ -11,30 +11,30 @@ from .model import Model
 from .study import draw
 
 DRAWS = 500
-"""Draws of the estimate: its bounds lie within 4.5 % of the yield, and it costs a few per cent of a
-search."""
+"""Draws of the estimate. Its bounds lie within 4.5 % of the yield, for a few per cent of a search's
+time."""
 
 
 def quick_yield(subject: PreparedDesign, evaluation: Evaluation, *, seed: int = 0) -> YieldEstimate:
-    """The yield of a design from `DRAWS` independent draws: the first of those of `uncertainty`.
+    """Estimate the yield of a design from `DRAWS` independent draws: the first of `uncertainty`.
 
     Parameters
     ----------
     subject : the prepared design
-    evaluation : of it
+    evaluation : evaluation of that design
     seed : the same seed gives the same draws
 
     Returns
     -------
-    the estimate; without a value, and with the reason, where a requirement is missed anyway, where
-    draws are slow or where the block ``uncertainty`` does not fit the design
+    the estimate; without a value, but with the reason, where the nominal design already misses a
+    requirement, where draws are slow or where the block ``uncertainty`` is invalid
     """
     if not evaluation.met:
         return YieldEstimate(why="the design itself misses a requirement")
     if not {row.metric for row in evaluation.requirements} <= set(subject.quantities):
-        return YieldEstimate(why="the functions of its own metrics were not given")
+        return YieldEstimate(why="the functions of its custom metrics are missing")
     if films_asked(subject.design):
-        return YieldEstimate(why="the oil films of its seals are slow to solve")
+        return YieldEstimate(why="solving the oil films of its seals takes too long")
     try:
         model = Model(subject, inputs(subject))
         tally = draw(model, DRAWS, seed)

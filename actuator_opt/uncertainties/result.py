@@ -1,4 +1,4 @@
-"""What scatter does to a design, as data."""
+"""Results of an uncertainty study."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from .inputs import Input
 
 @dataclass(frozen=True, slots=True)
 class LimitYield:
-    """How often one limit holds.
+    """Probability of meeting one limit.
 
     Parameters
     ----------
     name, metric, sense, limit : of the limit, SI
-    required : whether it is a requirement of the design; else it is a line of the check list
-    margin : of the design as it stands; None where it has no number
-    rate : probability that it holds
-    margins : at 1, 5, 50, 95 and 99 % of the draws; None where a draw there has no number
+    required : whether it is a requirement; otherwise it belongs to the check list
+    margin : margin of the nominal design; None without a value
+    rate : probability of meeting it
+    margins : at 1, 5, 50, 95 and 99 % of the draws; None where that draw has no value
     """
 
     name: str
@@ -37,7 +37,7 @@ class LimitYield:
     margins: tuple[float | None, ...]
 
     def to_dict(self) -> dict[str, Any]:
-        """The JSON form."""
+        """Return the JSON form."""
         names = ("p1", "p5", "p50", "p95", "p99")
         return {
             "name": self.name, "metric": self.metric, "sense": self.sense, "limit": self.limit,
@@ -48,9 +48,9 @@ class LimitYield:
 
 @dataclass(frozen=True, slots=True)
 class Index:
-    """Share of the variance of an output that an input is behind: alone, and with all others.
+    """Share of an output's variance due to one input: alone (first), with interactions (total).
 
-    `first` and `total` with half of their 95 % intervals; None where the output does not vary.
+    `first` and `total` come with half of their 95 % intervals; None where the output is constant.
     """
 
     path: str
@@ -61,7 +61,7 @@ class Index:
     total_half: float | None
 
     def to_dict(self) -> dict[str, Any]:
-        """The JSON form."""
+        """Return the JSON form."""
 
         def bounds(value: float | None, half: float | None) -> dict[str, float] | None:
             if value is None or half is None:
@@ -78,7 +78,7 @@ class Index:
 
 @dataclass(frozen=True, slots=True)
 class Swing:
-    """An output where one input stands at its 5 % and 95 % point, all others at their value."""
+    """Output with one input at its 5 % and 95 % quantile, all others nominal."""
 
     path: str
     output: str
@@ -87,13 +87,13 @@ class Swing:
 
     @property
     def size(self) -> float:
-        """Distance between both ends; infinite where one has no number."""
+        """Return the distance between both ends; infinite where one has no value."""
         if self.at_5 is None or self.at_95 is None:
             return float("inf")
         return abs(self.at_95 - self.at_5)
 
     def to_dict(self) -> dict[str, Any]:
-        """The JSON form."""
+        """Return the JSON form."""
         return {
             "parameter": self.path, "output": self.output, "p5": self.at_5, "p95": self.at_95,
         }  # fmt: skip
@@ -101,34 +101,34 @@ class Swing:
 
 @dataclass(frozen=True, slots=True)
 class Kept:
-    """Draws that were kept: values of the inputs (d, n), margins of the limits (m, n)."""
+    """Stored draws: input values (d, n) and limit margins (m, n)."""
 
     values: Vector
     margins: Vector
 
 
 LEAST = "least margin"
-"""The output that is the least margin of the requirements."""
+"""Name of the output that is the least margin of the requirements."""
 
 
 @dataclass(frozen=True)
 class Uncertainty:
-    """Yield, indices and tornado of a design whose numbers scatter.
+    """Yield, sensitivity indices and tornado of a design with uncertain inputs.
 
     Parameters
     ----------
     name, version, spec_hash : of the design
-    inputs : what scatters
-    count, method, seed : how it was drawn
-    rate : probability that all requirements hold
-    rate_checks : the same with the check list
+    inputs : uncertain inputs
+    count, method, seed : of the draws
+    rate : probability of meeting all requirements
+    rate_checks : the same, check list included
     limits : each requirement, then each check
-    nominal : outputs of the design as it stands, by name: margins by the name of the limit
+    nominal : outputs of the nominal design, by name; a margin has the name of its limit
     units : metrics among the outputs, with their SI unit
     indices, swings : by input and output
-    index_rows, dropped : rows behind the indices, and the share of them without a number
-    kept : draws for tables and figures
-    notes : what the yield means here
+    index_rows, dropped : rows behind the indices, and the share of them without a value
+    kept : draws stored for tables and figures
+    notes : what the yield covers
     """
 
     name: str
@@ -153,21 +153,21 @@ class Uncertainty:
 
     @property
     def required(self) -> tuple[LimitYield, ...]:
-        """The requirements, the one that fails most first."""
+        """Return the requirements, the most likely to fail first."""
         return tuple(sorted((x for x in self.limits if x.required), key=_worst))
 
     @property
     def checks(self) -> tuple[LimitYield, ...]:
-        """The check list, the line that fails most first."""
+        """Return the check list, the most likely to fail first."""
         return tuple(sorted((x for x in self.limits if not x.required), key=_worst))
 
     @property
     def met(self) -> bool:
-        """Whether every requirement holds as the design stands."""
+        """Whether the nominal design meets every requirement."""
         return all(x.margin is not None and x.margin >= -1e-6 for x in self.required)
 
     def of_output(self, output: str) -> tuple[list[Index], list[Swing]]:
-        """Indices and swings of one output, the largest first."""
+        """Return indices and swings of one output, the largest first."""
         found = [one for one in self.indices if one.output == output]
         swings = [one for one in self.swings if one.output == output]
         found.sort(key=lambda one: (-(one.total or 0.0), one.path))
@@ -175,7 +175,7 @@ class Uncertainty:
         return found, swings
 
     def to_dict(self) -> dict[str, Any]:
-        """The `uncertainty --json` object (SI)."""
+        """Return the `uncertainty --json` object (SI)."""
         return {
             "name": self.name,
             "version": self.version,
@@ -201,7 +201,7 @@ class Uncertainty:
         }
 
     def __str__(self) -> str:
-        """Yield and requirements as a table."""
+        """Return yield and requirements as a table."""
         rows = [["requirement", "margin", "holds", "lower", "upper"]]
         for one in self.required:
             margin = "-" if one.margin is None else f"{100 * one.margin:.2f} %"
@@ -209,8 +209,8 @@ class Uncertainty:
             rows.append([one.name, margin, *(f"{100 * x:.2f} %" for x in bounds)])
         rate = self.rate
         words = (
-            f"yield {100 * rate.value:.2f} % ({100 * rate.lower:.2f} to {100 * rate.upper:.2f} %) "
-            f"of {self.count} draws"
+            f"yield {100 * rate.value:.2f} % ({100 * rate.lower:.2f} to {100 * rate.upper:.2f} "
+            f"%) of {self.count} draws"
         )
         return "\n".join([words, "", aligned(rows, right=(1, 2, 3, 4))])
 
@@ -221,5 +221,5 @@ def _worst(one: LimitYield) -> tuple[float, float, str]:
 
 
 def number(value: float) -> float | None:
-    """A number, or None where there is none."""
+    """Return a float, or None for a value that is not finite."""
     return float(value) if isfinite(value) else None

@@ -1,9 +1,9 @@
-"""Robust optima: limits met at a stated probability, by a sequence of ordinary optima.
+"""Robust optima: meet all limits with a stated probability.
 
-At each optimum the margins of all limits are drawn; each limit then keeps a reserve, the distance
-from its margin at the design to its own quantile, and the design is optimised again with these
-reserves, until they come to rest. How likely a single limit may fail follows from how often any
-fails. An independent sample tells what the last design does.
+The design is optimised repeatedly. At each optimum the margins of all limits are drawn. Each limit
+then requires a reserve: the distance from its nominal margin to its quantile. The design is
+optimised again with these reserves until they settle. The failure probability allowed for one limit
+follows from how often any limit fails. An independent sample then verifies the last design.
 """
 
 from __future__ import annotations
@@ -29,27 +29,27 @@ from .study import draw
 
 Held: TypeAlias = npt.NDArray[Any]
 Search = Callable[[PreparedDesign, bool], Optimisation]
-"""An ordinary optimum of a subject; with prices or without."""
+"""Search for an ordinary optimum of a design; the flag asks for prices."""
 
 LEAST, MOST = 0.5, 0.9999
-"""Probabilities that may be asked for."""
+"""Range of probabilities a user may request."""
 ROUNDS = 12
-"""Most optima on the way."""
+"""Maximum number of optimisation rounds."""
 REFUSALS = 3
-"""How often reserves that no design keeps are asked anew, as the nearest design needs them."""
+"""How often infeasible reserves are reduced to those of the nearest design."""
 STILL = 2e-3
-"""Relative change of the objective that counts as rest."""
+"""Relative change of the objective that counts as settled."""
 FAR = 1.0
-"""Margin of the draw that counts beyond which a limit needs no reserve: it is far from active, and
-one that is measured there, of a life say, may ask for more than any other design has."""
+"""Drawn margin above which a limit needs no reserve, as it is far from active. Its reserve, of a
+life say, could exceed what any other design can meet."""
 AIM, ROOM = 0.85, 0.15
-"""Share of the failures allowed that is aimed at, and how far from it is near enough: what is
-asked for then lies outside the bounds of the last sample."""
+"""Target share of the allowed failures, and the tolerance on it. The requested yield then lies
+outside the bounds of the last sample."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Seen:
-    """What draws at a design tell: all covered limits hold, reserves at a level of failure."""
+    """Draws at one design: how often all covered limits are met, and the reserves they imply."""
 
     model: Model
     covered: Held
@@ -58,11 +58,11 @@ class _Seen:
 
     @property
     def rate(self) -> float:
-        """Share of the draws at which every covered limit holds."""
+        """Return the share of draws that meet every covered limit."""
         return float((self.margins[self.covered] >= -TOLERANCE).all(axis=0).mean())
 
     def reserves(self, level: float) -> dict[str, float]:
-        """Margin to keep by the name of the limit, so that it alone fails with this probability."""
+        """Return the reserve by limit for which each limit alone fails with this probability."""
         found = {}
         for row in np.flatnonzero(self.covered):
             drawn = np.where(np.isnan(self.margins[row]), -np.inf, self.margins[row])
@@ -76,13 +76,13 @@ class _Seen:
 def robust(
     subject: PreparedDesign, target: float, search: Search, *, seed: int = 0
 ) -> Optimisation:
-    """The best design whose limits all hold with a stated probability.
+    """Return the best design that meets all limits with a stated probability.
 
     Parameters
     ----------
     subject : the prepared design
     target : probability, 0.5 to 0.9999
-    search : an ordinary optimum
+    search : search for an ordinary optimum
     seed : of the draws; the same seed gives the same design
 
     Raises
@@ -103,14 +103,14 @@ def robust(
 
 
 def require(target: float) -> None:
-    """Refuse a probability that is none, or that no sample of ours can show."""
+    """Reject a probability outside the range that the samples can verify."""
     if not LEAST <= target <= MOST:
-        message = f"a yield of {target:g} cannot be asked for"
+        message = f"a yield of {target:g} is outside the valid range"
         raise UsageError(Diagnostic(message, f"write {LEAST:g} to {MOST:g}, e.g. 0.99"))
 
 
 def _without_choices(subject: PreparedDesign, plain: Optimisation) -> PreparedDesign:
-    """The subject with the choices that its plain optimum made, and what scatters with them."""
+    """Return the design with the choices of its ordinary optimum fixed, and inputs to match."""
     if not subject.design.choices:
         return subject
     design = plain.design.model_copy(update={"choices": {}})
@@ -127,18 +127,18 @@ def _prepared(design: Design, subject: PreparedDesign) -> PreparedDesign:
 
 
 class _Level:
-    """Probability with which a single limit may fail, steered by how often any fails."""
+    """Allowed failure probability of one limit, adjusted by how often any limit fails."""
 
     def __init__(self, aim: float) -> None:
         self.aim = self.value = aim
         self.last: tuple[float, float] | None = None
 
     def near(self, missed: float) -> bool:
-        """Whether as many fail as are aimed at; fewer where a single limit may not fail more."""
+        """Whether the failures are near the target, or below it with the level at its maximum."""
         return abs(missed - self.aim) <= ROOM * self.aim or (missed < self.aim == self.value)
 
     def follow(self, missed: float) -> None:
-        """Take the level at which the failures aimed at are expected: a secant in logarithms."""
+        """Set the level expected to give the target failure rate: a secant step in logarithms."""
         missed = max(missed, 1e-3 * self.aim)
         steep = 1.0
         if self.last is not None and self.last[0] != self.value:
@@ -182,7 +182,7 @@ class _Way:
         return _Seen(model, held, nominal, tally.kept.margins)
 
     def walk(self) -> None:
-        """Optimise with the reserves of the design before, until nothing changes any more."""
+        """Optimise with the reserves of the previous design until they settle."""
         level = self.level
         self.converged = self.seen.rate >= 1 - level.aim
         asked = self.reserves if self.converged else self.seen.reserves(level.value)
@@ -210,10 +210,10 @@ class _Way:
             asked = seen.reserves(level.value)
 
     def _nearer(self, near: _Seen, level: float) -> dict[str, float]:
-        """Reserves of the design that misses those asked for by least.
+        """Return the reserves available at the least infeasible design.
 
-        Where enough of its draws hold all the same, one limit fails more and others less than
-        the level: what it has is then enough.
+        Its draws may still meet the target when one limit fails more and others less than the
+        level. Then its own reserves are enough.
         """
         asked = near.reserves(level)
         if near.rate < self.target:
@@ -222,7 +222,7 @@ class _Way:
         return {name: max(min(kept, margins[name]), 0.0) for name, kept in asked.items()}
 
     def _keep(self, found: Optimisation, seen: _Seen, reserves: dict[str, float]) -> None:
-        """Remember the best design: enough yield before little of the objective."""
+        """Keep the better design: yield counts before the objective."""
         sign = -1.0 if found.design.objective.maximise is not None else 1.0
 
         def rank(one: Optimisation, at: _Seen) -> tuple[float, float]:
@@ -234,10 +234,12 @@ class _Way:
             self.found, self.seen, self.reserves = found, seen, reserves
 
     def result(self) -> Optimisation:
-        """The last design with prices, held against an independent sample."""
+        """Return the last design with prices, verified with an independent sample."""
         found, reserves, seen = self._last()
         if self.plain.choices is not None:
-            words = f"{self.plain.choices.sentence}; all of it without the reserves of the yield"
+            words = (
+                f"{self.plain.choices.sentence}; all choices were compared without yield reserves"
+            )
             found = replace(found, choices=replace(self.plain.choices, sentence=words))
         count = round(float(np.clip(200 / self.allowed, 10_000, 400_000)))
         rate = _covered_rate(seen.model, self.covered, count, self.seed)
@@ -260,14 +262,14 @@ class _Way:
             found = replace(found, certificate=self._proven(found.certificate))
         if made.reached and not self.refused:
             return replace(found, robust=made)
-        sentence = f"{_none(found)} meets every requirement with the reserves of the yield"
+        sentence = f"{_none(found)} all requirements with the reserves for this yield"
         if not self.refused:
-            sentence = f"the yield found is below the {_percent(self.target)} asked for"
-        remedy = f"{found.remedy or 'relax a requirement'}, or ask for a lower yield"
+            sentence = f"the yield is below the requested {_percent(self.target)}"
+        remedy = f"{found.remedy or 'relax a requirement'}, or request a lower yield"
         return replace(found, robust=made, sentence=sentence, remedy=remedy)
 
     def _last(self) -> tuple[Optimisation, dict[str, float], _Seen]:
-        """The design to show with its reserves: the best kept, else the nearest there is."""
+        """Return the final design with its reserves: the best feasible, else the nearest one."""
         if self.seen.rate >= self.target:
             self.refused = {}
         reserves = self.refused or self.reserves
@@ -282,16 +284,16 @@ class _Way:
         return found, reserves, seen
 
     def _proven(self, certificate: Certificate) -> Certificate:
-        """A certificate with what it does not speak of."""
+        """Return a certificate that states what it does not cover."""
         if certificate.lower_bound is None:
             return certificate
-        words = "that bound is of the limits themselves, without the reserves of the yield"
+        words = "the bound is for the limits themselves, without yield reserves"
         if self.plain.choices is not None:
-            words += ", and of the choices made"
+            words += ", and for the chosen options only"
         return replace(certificate, sentence=f"{certificate.sentence}; {words}")
 
     def _wanting(self) -> str:
-        """Limits whose reserve is furthest beyond what the last design with reserves has."""
+        """Name the limits whose required reserve most exceeds the margin of the last design."""
         margins = dict(zip(self.names, self.seen.nominal, strict=True))
         lacks = sorted((margins[x] - kept, x) for x, kept in self.refused.items())
         told = [f"{x} {100 * self.refused[x]:.2g} %" for lack, x in lacks[:3] if lack < 0]
@@ -304,44 +306,44 @@ class _Way:
         )
         shown = f"{_percent(made.rate)} ({_percent(made.lower)} to {_percent(made.upper)})"
         cost = (
-            f"{quantity.label} {after} instead of {before} without reserves, where "
-            f"{_percent(made.nominal_rate)} hold"
+            f"{quantity.label} is {after}, against {before} without reserves at a yield of "
+            f"{_percent(made.nominal_rate)}"
         )
         rest = ""
         if self.plain.choices is not None:
-            rest = "; the choices are those of the optimum without reserves: try others by --set"
+            rest = "; choices come from the optimum without reserves: try others with --set"
         if made.left_out:
-            rest += f"; not covered: {', '.join(made.left_out)}, missed anyway"
+            rest += f"; not covered, as missed anyway: {', '.join(made.left_out)}"
         if self.refused:
             return (
-                f"{_none(found)} keeps the reserves with which all limits hold with "
-                f"{_percent(self.target)}: {self._wanting()}. At the design shown they hold "
-                f"in {shown} of {made.samples} independent draws; without reserves "
-                f"{quantity.label} is {before}, and {_percent(made.nominal_rate)} hold{rest}. What "
-                "would be enough is told for these reserves, which grow with what a limit allows: "
-                "ask again with it"
+                f"{_none(found)} the reserves needed for a yield of {_percent(self.target)}: "
+                f"{self._wanting()}. The design shown meets all limits in {shown} of "
+                f"{made.samples} independent draws; without reserves {quantity.label} is "
+                f"{before} at a yield of {_percent(made.nominal_rate)}{rest}. The changes "
+                "suggested assume these reserves, which grow when a limit is relaxed: apply "
+                "them and optimise again"
             )
         if not made.reached:
             return (
-                f"the reserves did not settle in {len(made.rounds) - 1} rounds: all limits hold in "
-                f"{shown} of {made.samples} independent draws, not {_percent(self.target)}; "
-                f"{cost}{rest}"
+                f"the reserves did not settle in {len(made.rounds) - 1} rounds: all limits are "
+                f"met in {shown} of {made.samples} independent draws, not "
+                f"{_percent(self.target)}; {cost}{rest}"
             )
         how = "" if self.converged else ", though the reserves did not settle"
         return (
-            f"all limits hold in {shown} of {made.samples} independent draws, asked "
-            f"{_percent(self.target)}{how}; {cost}{rest}"
+            f"all limits are met in {shown} of {made.samples} independent draws, "
+            f"{_percent(self.target)} requested{how}; {cost}{rest}"
         )
 
 
 def _none(found: Optimisation) -> str:
-    """What was looked for and not found."""
+    """Return the start of a sentence that no design meets something."""
     sizes = "" if found.rounding is None else f" of {found.rounding.name}"
-    return f"no design{sizes} was found that"
+    return f"no design{sizes} meets"
 
 
 def _solved(found: Optimisation) -> bool:
-    """Whether an optimum keeps all its limits with their reserves, in the sizes asked for."""
+    """Whether an optimum meets all limits with their reserves, in the requested sizes."""
     infeasible = found.status == "infeasible" or found.status.startswith("limit_inf")
     usable = found.status != "undefined" and not found.status.startswith("interrupted")
     made = found.rounding is None or found.rounding.met
@@ -349,7 +351,7 @@ def _solved(found: Optimisation) -> bool:
 
 
 def _covered_rate(model: Model, covered: Held, count: int, seed: int) -> Rate:
-    """How often all covered limits hold, in a sample of its own."""
+    """Return how often all covered limits are met, in an independent sample."""
     model.own = covered
     return draw(model, count, seed, stream=1).rates()[-2]
 

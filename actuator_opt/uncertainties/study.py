@@ -1,4 +1,4 @@
-"""Draw a design's scatter: yield with bounds, indices, tornado."""
+"""Draw the uncertain inputs of a design: yield with bounds, indices, tornado."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from .notes import notes
 from .result import LEAST, Index, Kept, LimitYield, Swing, Uncertainty, number
 
 COUNT = 10_000
-"""Draws of the yield."""
+"""Draws for the yield."""
 ROWS = 1024
-"""Rows behind the indices, (inputs + 2) evaluations each."""
+"""Rows for the indices; each takes (inputs + 2) evaluations."""
 BLOCKS = 16
 """Randomisations of quasi-random draws."""
 MOST_KEPT = 16_384
-"""Draws kept for quantiles, figures and tables; any share of independent draws is fair."""
+"""Draws stored for quantiles, figures and tables; any subset of independent draws is unbiased."""
 ENDS = (0.05, 0.95)
 POINTS = (0.01, 0.05, 0.5, 0.95, 0.99)
 
@@ -40,21 +40,21 @@ def uncertainty(
     rows: int = ROWS,
     metrics: Sequence[str] = (),
 ) -> Uncertainty:
-    """What scatter does to a design.
+    """Run an uncertainty study of a design.
 
     Parameters
     ----------
     subject : the prepared design
-    count : draws of the yield
+    count : draws for the yield
     seed : the same seed gives the same draws
-    quasi_random : whether to draw scrambled Sobol points in `BLOCKS` randomisations
-    rows : rows behind the indices; 0 for none
-    metrics : followed beside the margins; default: those of the objective
+    quasi_random : draw scrambled Sobol points in `BLOCKS` randomisations
+    rows : rows for the indices; 0 for none
+    metrics : evaluated beside the margins; default: those of the objective
 
     Raises
     ------
     InputError
-        an entry of ``uncertainty`` that does not fit, or a metric that the design does not have
+        an invalid entry of ``uncertainty``, or a metric that the design does not have
     """
     began = time.perf_counter()
     found = inputs(subject)
@@ -71,7 +71,9 @@ def uncertainty(
         spec_hash=spec_hash(subject),
         inputs=found,
         count=tally.each * blocks,
-        method=f"scrambled Sobol points, {blocks} times" if quasi_random else "independent draws",
+        method=(f"scrambled Sobol points, {blocks} randomisations")
+        if quasi_random
+        else "independent draws",
         seed=seed,
         rate=rates[-2],
         rate_checks=rates[-1],
@@ -90,14 +92,14 @@ def uncertainty(
 
 @dataclass(frozen=True, slots=True)
 class Tally:
-    """Hits (m + 2, blocks): of every limit, of all requirements, of all limits; draws kept."""
+    """Hits (m + 2, blocks) of every limit, of all requirements and of all limits; stored draws."""
 
     hits: Vector
     each: int
     kept: Kept
 
     def rates(self) -> list[Rate]:
-        """The probabilities behind the rows."""
+        """Return the probability of each row of hits."""
         if self.hits.shape[1] == 1:
             return [exact(int(row[0]), self.each) for row in self.hits]
         return [replicated(row, self.each) for row in self.hits]
@@ -111,15 +113,15 @@ def draw(
     stream: int = 0,
     keep: int = MOST_KEPT,
 ) -> Tally:
-    """Draw the inputs and count what holds.
+    """Draw the inputs and count how often each limit is met.
 
     Parameters
     ----------
-    model : what is drawn
+    model : design with its uncertain inputs
     count : draws
     seed, stream : two streams of one seed are independent
     blocks : randomisations of quasi-random points; 1 for independent draws
-    keep : draws to keep at most
+    keep : maximum number of draws to store
     """
     size, limits = len(model.inputs), len(model.limits)
     each = count if blocks == 1 else 1 << max(0, int(np.ceil(np.log2(count / blocks))))
@@ -143,7 +145,7 @@ def draw(
 
 
 def _points(size: int, count: int, seed: tuple[int, ...], scrambled: bool) -> Iterator[Vector]:
-    """Points of the unit cube in chunks: independent ones, or scrambled Sobol points."""
+    """Yield points of the unit cube in chunks: independent, or scrambled Sobol points."""
     if scrambled and size:
         yield from chunks(quasi(size, count.bit_length() - 1, seed))
         return
@@ -153,7 +155,7 @@ def _points(size: int, count: int, seed: tuple[int, ...], scrambled: bool) -> It
 
 
 def chunks(points: Vector) -> Iterator[Vector]:
-    """Points (d, n) a chunk at a time."""
+    """Yield points (d, n) in chunks."""
     for first in range(0, points.shape[1], CHUNK):
         yield points[:, first : first + CHUNK]
 
@@ -180,7 +182,7 @@ def _limits(model: Model, rates: list[Rate], kept: Kept, nominal: Vector) -> tup
 
 
 def quantiles(drawn: Vector) -> Vector:
-    """Margins at `POINTS`; a draw without a number counts as the least."""
+    """Return the margins at `POINTS`; a draw without a value counts as the least."""
     ordered = np.where(np.isnan(drawn), -np.inf, drawn)
     return np.quantile(ordered, POINTS, method="inverted_cdf")
 
@@ -201,7 +203,7 @@ def _indices(
 
 
 def _swings(model: Model, outputs: Sequence[str]) -> tuple[Swing, ...]:
-    """Every output at both ends of every input, all others at their value."""
+    """Return every output at both ends of every input, all others nominal."""
     if not model.inputs:
         return ()
     values = np.repeat(np.array([[one.value] for one in model.inputs]), 2 * len(model.inputs), 1)

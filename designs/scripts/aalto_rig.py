@@ -11,7 +11,6 @@ designs/scenarios, beside closed forms, the linear model and the statements of t
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import cache
@@ -28,15 +27,19 @@ from actuator_opt.api import simulate
 from actuator_opt.base.tables import aligned
 from actuator_opt.models.fluid import ATMOSPHERIC_PRESSURE
 from actuator_opt.models.one_way_valve import one_way_flow
-from actuator_opt.pages.simulation_axes import names as named_above
-from actuator_opt.pages.simulation_comparison import comparison
 from actuator_opt.pages.simulation_comparison_figures import comparison_figure
-from actuator_opt.rendering.axes import Axes
-from actuator_opt.rendering.blocks import Column, Drawing, Notes, Table
+from actuator_opt.rendering.axes import Axes, names as named_above
+from actuator_opt.rendering.blocks import Drawing, Notes, Pair, Table
 from actuator_opt.rendering.ink import BLUE, GREY, RED, WHITE, Ink, text_width
-from actuator_opt.rendering.script_pages import rounded, study_sheets, write_study
+from actuator_opt.rendering.script_pages import (
+    Sheets,
+    grid_table,
+    rounded,
+    run_script,
+    study_report,
+)
 from actuator_opt.rendering.text import NARROW, fixed, number
-from actuator_opt.replicas.aalto_dynamic import Bench, End
+from actuator_opt.replicas.aalto_models import Bench, End
 from actuator_opt.simulation import Simulation
 from actuator_opt.simulation.harmonic import harmonic_fit
 from actuator_opt.simulation.result import HarmonicLoad
@@ -314,8 +317,7 @@ def laid_over(quick: bool) -> Data:
     bench = Bench(ao.read(DESIGN).design)
     strokes = np.linspace(ALONG[0], ALONG[-1], 40)
     static = np.ravel(bench.motion.springs.stiffness(strokes))[: strokes.size]
-    both = comparison(runs, "20 Hz, our reducing valve")
-    return comparison_figure(both, 58.0, static=(strokes, static)).data()
+    return comparison_figure(runs, 58.0, static=(strokes, static)).data()
 
 
 def along(runs: Sequence[Simulation]) -> Simulation:
@@ -1006,76 +1008,78 @@ def grids(study: Data) -> dict[str, list[list[str]]]:
     return {name: make(study) for name, make in zip(TITLES, makers, strict=True)}
 
 
-def page(study: Data) -> tuple[bytes, list[bytes]]:
-    """The report as PDF and as images of its sheets: the same numbers give the same bytes."""
-    said, tables = remarks(study), {}
-    for name, (heads, *rows) in grids(study).items():
-        words = {"middle": 3, "peak": 1}.get(name, 0)
-        columns = [
-            Column(head, "left" if k < words else "right", "auto" if k < words else 1)
-            for k, head in enumerate(heads)
-        ]
+WORDS = {"middle": 3, "peak": 1}
+"""First columns of words, by table."""
+
+
+def tables(study: Data) -> dict[str, Table]:
+    """Every table of numbers with its remark, by its name."""
+    made, said = {}, remarks(study)
+    for name, grid in grids(study).items():
+        words, count = WORDS.get(name, 0), len(grid[0])
+        widths: dict[int, float | str] = dict.fromkeys(range(words, count), 1)
         if name == "middle":
-            for k, _ in enumerate(heads[3:-5], 3):
-                columns[k]["width"] = 1.7
-        tables[name] = Table(TITLES[name], columns, rows, note=said[name])
-    heads, *rows = statements(study)
-    columns = [Column(heads[0], "left", 0.75), Column(heads[1], "left", 1.15), Column(heads[2])]
+            widths |= dict.fromkeys(range(words, count - 5), 1.7)
+        made[name] = grid_table(TITLES[name], grid, said[name], words=range(words), widths=widths)
+    return made
+
+
+def page(study: Data) -> Sheets:
+    """The report as PDF and as images of its sheets: the same numbers give the same bytes."""
+    of = tables(study)
     overlay = {
         "kind": "figure",
         "ink": study["drawing"],
         "title": "20 Hz, our reducing valve, every throttle",
+        "note": (
+            "0, 50 and 75 % lie on one another, with the needle as stated. Here the phase counts"
+            " from the position: 0° a spring, 90° a damper."
+        ),
     }
-    overlay["note"] = (
-        "0, 50 and 75 % lie on one another, with the needle as stated. Here the phase counts from"
-        " the position: 0° a spring, 90° a damper."
+    moving = "Moving, throttle 0 %, our reducing valve; thin: retracting; grey: constant pressure"
+    tones = "Mid-stroke, extending, throttle 0 %; thin: 75 %, needle read back"
+    return study_report(
+        __file__,
+        study,
+        title="The Aalto rig in the time domain",
+        heading="The rig of the Aalto thesis in the time domain",
+        lead=lead(study),
+        blocks=[
+            grid_table(
+                "What the thesis says, and what ours does",
+                statements(study),
+                words=range(3),
+                widths={0: 0.75, 1: 1.15},
+            ),
+            Notes("What stays open", OPEN),
+            Drawing("Full throttle: pressure of the rod chamber", ratchet_drawing(study)),
+            of["ratchet"],
+            Drawing("Closed ports along the stroke", closed_drawing(study)),
+            of["closed"],
+            Drawing(moving, stroke_drawing(study)),
+            Drawing(tones, tone_drawing(study)),
+            overlay,
+            of["middle"],
+            Drawing("Slip of the seals: velocity behind the load cell", slip_drawing(study)),
+            Pair([[of["peak"]], [of["slip"]]]),
+        ],
+        whole=True,
     )
-    sides = [[tables["peak"]], [tables["slip"]]]
-    blocks = [
-        Table("What the thesis says, and what ours does", columns, rows),
-        Notes("What stays open", OPEN),
-        Drawing("Full throttle: pressure of the rod chamber", ratchet_drawing(study)),
-        tables["ratchet"],
-        Drawing("Closed ports along the stroke", closed_drawing(study)),
-        tables["closed"],
-        Drawing(
-            "Moving, throttle 0 %, our reducing valve; thin: retracting; grey: constant pressure",
-            stroke_drawing(study),
-        ),
-        Drawing(
-            "Mid-stroke, extending, throttle 0 %; thin: 75 %, needle read back", tone_drawing(study)
-        ),
-        overlay,
-        tables["middle"],
-        Drawing("Slip of the seals: velocity behind the load cell", slip_drawing(study)),
-        {"kind": "pair", "title": "", "sides": sides, "note": ""},
-    ]
-    shown = {
-        "version": study["version"],
-        "lead": lead(study),
-        "blocks": blocks,
-    }
-    return study_sheets(Path(__file__), study, shown)
 
 
-def write(study: Data, folder: Path) -> int:
-    """Write aalto_rig.pdf and the PNG of its first sheet; how many sheets there are."""
-    return write_study(page(study), folder, "aalto_rig")
+def printed(study: Data) -> str:
+    """The tables, and the statements of the thesis judged."""
+    lines = []
+    for name, rows in grids(study).items():
+        lines += [TITLES[name], aligned(rows, right=range(1, len(rows[0]))), ""]
+    judged = [f"{verdict}: {words}: {ours}" for words, ours, verdict in statements(study)[1:]]
+    return "\n".join([*lines, *judged])
 
 
 def main() -> None:
     """Print the tables; write the report where a folder is named."""
-    parser = argparse.ArgumentParser(description="the rig of the Aalto thesis in the time domain")
-    parser.add_argument("--out", type=Path, help="folder for the report")
-    parser.add_argument("--quick", action="store_true", help="few places")
-    given = parser.parse_args()
-    study = compute(quick=given.quick)
-    for name, rows in grids(study).items():
-        print(TITLES[name], aligned(rows, right=range(1, len(rows[0]))), "", sep="\n")
-    for words, ours, verdict in statements(study)[1:]:
-        print(f"{verdict}: {words}: {ours}")
-    if given.out is not None:
-        print(write(study, given.out), "sheets")
+    description = "the rig of the Aalto thesis in the time domain"
+    run_script(__file__, description, compute, printed, page, quick="few places")
 
 
 if __name__ == "__main__":

@@ -12,7 +12,6 @@ extra: the course asks the variations of the other two.
 
 from __future__ import annotations
 
-import argparse
 from dataclasses import dataclass
 from math import isfinite, pi, sqrt
 from pathlib import Path
@@ -24,10 +23,15 @@ import actuator_opt as ao
 from actuator_opt.api import read_scenario, simulate
 from actuator_opt.base.tables import aligned
 from actuator_opt.models.tuning import ziegler_nichols
-from actuator_opt.pages.simulation_comparison import comparison
 from actuator_opt.pages.simulation_comparison_figures import LEAST, comparison_figure
-from actuator_opt.rendering.blocks import Block, Column, Drawing, Notes, Table
-from actuator_opt.rendering.script_pages import rounded, study_sheets, write_study
+from actuator_opt.rendering.blocks import Block, Drawing, Notes, Table
+from actuator_opt.rendering.script_pages import (
+    Sheets,
+    grid_table,
+    rounded,
+    run_script,
+    study_report,
+)
 from actuator_opt.rendering.text import fixed, number
 from actuator_opt.simulation import Simulation
 from actuator_opt.simulation.sensitivity import sensitivities
@@ -479,31 +483,6 @@ def sentences(data: Data) -> list[str]:
     return said
 
 
-def page(study: Study) -> tuple[bytes, list[bytes]]:
-    """The report as PDF and as images of its sheets: the same numbers give the same bytes."""
-    data = numbers(study)
-    blocks: list[Block] = []
-    for key, loop in LOOPS.items():
-        runs = [(name, study.runs[key][name]) for name in SHOWN]
-        blocks.append(Drawing(loop.title, comparison_figure(comparison(runs, loop.title), LEAST)))
-        grid = loop_rows(loop, all_rows(data["loops"][key]), data["loops"][key]["linear"])
-        blocks.append(_table("", grid, note=_NOTE if key == "position" else ""))
-        if key == "position":  # what of the other tables has room on its sheet
-            blocks.append(_table(_RAISED, raised_rows(data)))
-            blocks.append(_table(_HINTS, pulse_rows(data)))
-    for name, rows in data["sensitive"].items():
-        blocks.append(
-            _table(f"What matters most to {SENSITIVE[name][0]}", sensitive_rows(name, rows))
-        )
-    blocks.append(Notes("Hard to specify", HARD))
-    shown = {
-        "version": data["version"],
-        "lead": sentences(data),
-        "blocks": blocks,
-    }
-    return study_sheets(Path(__file__), data, shown)
-
-
 _RAISED = "Ultimate gain: of the linear loop, and by raising it until the loop swings"
 _HINTS = "The test case without a loop, with the slides' hints"
 _NOTE = (
@@ -524,36 +503,55 @@ HARD = (
 )
 
 
-def _table(title: str, grid: list[list[str]], note: str = "") -> Block:
-    heads, *rows = grid
-    columns = [Column(heads[0], "left", 1.0), *(Column(head, "right") for head in heads[1:])]
-    return Table(title, columns, rows, note=note)
+def page(study: Study) -> Sheets:
+    """The report as PDF and as images of its sheets: the same numbers give the same bytes."""
+    data = numbers(study)
+    blocks: list[Block] = []
+    for key, loop in LOOPS.items():
+        runs = [(name, study.runs[key][name]) for name in SHOWN]
+        blocks.append(Drawing(loop.title, comparison_figure(runs, LEAST)))
+        grid = loop_rows(loop, all_rows(data["loops"][key]), data["loops"][key]["linear"])
+        blocks.append(_table("", grid, _NOTE if key == "position" else ""))
+        if key == "position":  # what of the other tables has room on its sheet
+            blocks.append(_table(_RAISED, raised_rows(data)))
+            blocks.append(_table(_HINTS, pulse_rows(data)))
+    blocks += [
+        _table(f"What matters most to {SENSITIVE[name][0]}", sensitive_rows(name, rows))
+        for name, rows in data["sensitive"].items()
+    ]
+    return study_report(
+        __file__,
+        data,
+        title="Course servos",
+        heading="The servos of the course MEC-E5005, tuned by Ziegler and Nichols",
+        lead=sentences(data),
+        blocks=[*blocks, Notes("Hard to specify", HARD)],
+    )
 
 
-def write(study: Study, folder: Path) -> int:
-    """Write course_servo.pdf and the PNG of its first sheet; how many sheets there are."""
-    return write_study(page(study), folder, "course_servo")
+def _table(title: str, grid: list[list[str]], note: str = "") -> Table:
+    return grid_table(title, grid, note, words=[0], widths={0: 1.0})
+
+
+def printed(study: Study) -> str:
+    """The tables, and what they say."""
+    data, lines = numbers(study), []
+    for key, loop in LOOPS.items():
+        found = data["loops"][key]
+        grid = loop_rows(loop, all_rows(found), found["linear"])
+        lines += [loop.title, aligned(grid, right=range(1, 10)), ""]
+    lines += [aligned(raised_rows(data), right=(1, 2, 4, 5, 6)), ""]
+    lines += [aligned(pulse_rows(data), right=range(1, 9)), ""]
+    for name, rows in data["sensitive"].items():
+        lines += [SENSITIVE[name][0], aligned(sensitive_rows(name, rows), right=(1, 2)), ""]
+    return "\n".join([*lines, "\n\n".join(sentences(data))])
 
 
 def main() -> None:
     """Print the tables; write the report where a folder is named."""
-    parser = argparse.ArgumentParser(description="the course's servos, tuned")
-    parser.add_argument("--out", type=Path, help="folder for the report")
-    parser.add_argument("--quick", action="store_true", help="fewer cases, no sensitivities")
-    given = parser.parse_args()
-    study = compute(quick=given.quick)
-    data = numbers(study)
-    for key, loop in LOOPS.items():
-        found = data["loops"][key]
-        grid = loop_rows(loop, all_rows(found), found["linear"])
-        print(loop.title, aligned(grid, right=range(1, 10)), "", sep="\n")
-    print(aligned(raised_rows(data), right=(1, 2, 4, 5, 6)), "", sep="\n")
-    print(aligned(pulse_rows(data), right=range(1, 9)), "", sep="\n")
-    for name, rows in data["sensitive"].items():
-        print(SENSITIVE[name][0], aligned(sensitive_rows(name, rows), right=(1, 2)), "", sep="\n")
-    print(*sentences(data), sep="\n\n")
-    if given.out is not None:
-        print(write(study, given.out), "sheets")
+    description = "the course's servos, tuned"
+    quick = "fewer cases, no sensitivities"
+    run_script(__file__, description, compute, printed, page, quick=quick)
 
 
 if __name__ == "__main__":

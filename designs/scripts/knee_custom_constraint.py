@@ -13,8 +13,6 @@ the knee takes with no limit to the least that any knee takes.
 
 from __future__ import annotations
 
-import argparse
-from collections.abc import Sequence
 from math import ceil, floor, pi
 from pathlib import Path
 from typing import Any
@@ -25,9 +23,15 @@ import actuator_opt as ao
 from actuator_opt.base.numeric import sqrt
 from actuator_opt.base.tables import aligned
 from actuator_opt.rendering.axes import Axes
-from actuator_opt.rendering.blocks import Column, Drawing, Table
+from actuator_opt.rendering.blocks import Drawing
 from actuator_opt.rendering.ink import BLUE, RED, WHITE, Ink
-from actuator_opt.rendering.script_pages import rounded, study_sheets, write_study
+from actuator_opt.rendering.script_pages import (
+    Sheets,
+    grid_table,
+    rounded,
+    run_script,
+    study_report,
+)
 from actuator_opt.rendering.text import fixed, number
 
 Data = dict[str, Any]
@@ -268,44 +272,40 @@ def drawing(study: Data) -> Ink:
     return ink
 
 
-def page(study: Data) -> tuple[bytes, list[bytes]]:
+SLOPE = "g per mm: mean slope from the row above."
+
+
+def page(study: Data) -> Sheets:
     """The report as PDF and as images of its sheets: the same numbers give the same bytes."""
-    blocks = [Drawing("What the width costs", drawing(study))]
-    for title, (heads, *rows), note in (
-        ("Over the width", width_rows(study), "g per mm: mean slope from the row above."),
-        ("Before and after", change_rows(study), binds(study)),
-    ):
-        columns = [Column(head, "right", "auto") for head in heads]
-        if title == "Before and after":
-            columns[0] |= {"align": "left", "width": 1}
-        blocks.append(Table(title, columns, rows, note=note))
-    shown = {"version": study["version"], "lead": lead(study), "blocks": blocks}
-    return study_sheets(Path(__file__), study, shown)
+    return study_report(
+        __file__,
+        study,
+        title="What the room in the joint costs",
+        heading="A rule of one's own: the room in the joint, and what a millimetre costs",
+        lead=lead(study),
+        blocks=[
+            Drawing("What the width costs", drawing(study)),
+            grid_table("Over the width", width_rows(study), SLOPE),
+            grid_table(
+                "Before and after", change_rows(study), binds(study), words=[0], widths={0: 1}
+            ),
+        ],
+    )
 
 
-def write(study: Data, folder: Path) -> int:
-    """Write knee_custom_constraint.pdf and the PNG of its first sheet; how many sheets."""
-    return write_study(page(study), folder, "knee_custom_constraint")
-
-
-def show(rows: Sequence[Sequence[str]]) -> None:
-    """Print a table."""
-    print(aligned(rows, right=range(1, len(rows[0]))), "", sep="\n")
+def printed(study: Data) -> str:
+    """The tables, and what they say."""
+    tables = [
+        aligned(rows, right=range(1, len(rows[0])))
+        for rows in (width_rows(study), change_rows(study))
+    ]
+    return "\n".join([tables[0], "", SLOPE, "", tables[1], "", *lead(study), binds(study)])
 
 
 def main() -> None:
     """Print the tables; write the report where a folder is named."""
-    parser = argparse.ArgumentParser(description="what the room in the joint costs in grams")
-    parser.add_argument("--out", type=Path, help="folder for the report")
-    parser.add_argument("--quick", action="store_true", help="few widths")
-    given = parser.parse_args()
-    study = compute(quick=given.quick)
-    show(width_rows(study))
-    print("g per mm: mean slope from the row above.\n")
-    show(change_rows(study))
-    print(*lead(study), binds(study), sep="\n")
-    if given.out is not None:
-        print(write(study, given.out), "sheets")
+    description = "what the room in the joint costs in grams"
+    run_script(__file__, description, compute, printed, page, quick="few widths")
 
 
 if __name__ == "__main__":

@@ -12,7 +12,6 @@ what other single changes give in bandwidth at the same mass.
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Iterable
 from itertools import pairwise
 from math import ceil, floor, pi, sqrt
@@ -25,9 +24,15 @@ import actuator_opt as ao
 from actuator_opt.base.tables import aligned
 from actuator_opt.metrics import METRICS
 from actuator_opt.rendering.axes import Axes
-from actuator_opt.rendering.blocks import Column, Drawing, Table
+from actuator_opt.rendering.blocks import Drawing
 from actuator_opt.rendering.ink import BLUE, GREY, RED, WHITE, Ink
-from actuator_opt.rendering.script_pages import rounded, study_sheets, write_study
+from actuator_opt.rendering.script_pages import (
+    Sheets,
+    grid_table,
+    rounded,
+    run_script,
+    study_report,
+)
 from actuator_opt.rendering.text import fixed, number
 
 DESIGN = Path(__file__).resolve().parents[1] / "servo_knee.yaml"
@@ -413,49 +418,55 @@ def remarks(study: Data) -> Data:
     }
 
 
-def page(study: Data) -> tuple[bytes, list[bytes]]:
+WIDTHS: dict[int, float | str] = dict.fromkeys(range(1, 20), "12.6mm")
+"""Columns of the tables."""
+
+
+def page(study: Data) -> Sheets:
     """The report as PDF and as images of its sheets: the same numbers give the same bytes."""
     said, found = remarks(study), study["series"]
-    grids = {name: series_rows(name, found[name]) for name in ASKED} | {
-        "changes": change_rows(study)
-    }
-    blocks = [Drawing("What it weighs", drawing(study))]
-    for name, (heads, *rows) in grids.items():
-        columns = [Column(head, "right", "12.6mm") for head in heads]
-        columns[-1] |= {"align": "left", "width": 1}
-        if name == "changes":
-            columns[0] |= {"align": "left", "width": "auto"}
-        else:
-            columns[0]["width"], columns[6]["width"] = "16mm", "14.4mm"
-        blocks.append(Table(TITLES[name], columns, rows, note=said[name]))
-    shown = {
-        "version": study["version"],
-        "lead": [sentence(name, found[name]) for name in ASKED],
-        "blocks": blocks,
-    }
-    return study_sheets(Path(__file__), study, shown)
+    return study_report(
+        __file__,
+        study,
+        title="What each hertz costs",
+        heading="The knee, quicker and stiffer: what each hertz costs in grams",
+        lead=[sentence(name, found[name]) for name in ASKED],
+        blocks=[
+            Drawing("What it weighs", drawing(study)),
+            *(
+                grid_table(
+                    TITLES[name],
+                    series_rows(name, found[name]),
+                    said[name],
+                    words=[-1],
+                    widths=WIDTHS | {0: "16mm", 6: "14.4mm", -1: 1},
+                )
+                for name in ASKED
+            ),
+            grid_table(
+                TITLES["changes"],
+                change_rows(study),
+                said["changes"],
+                words=[0, -1],
+                widths=WIDTHS | {0: "auto", -1: 1},
+            ),
+        ],
+    )
 
 
-def write(study: Data, folder: Path) -> int:
-    """Write knee_dynamics.pdf and the PNG of its first sheet; how many sheets there are."""
-    return write_study(page(study), folder, "knee_dynamics")
+def printed(study: Data) -> str:
+    """The tables, and what they say."""
+    lines = []
+    for metric, found in study["series"].items():
+        rows = series_rows(metric, found)
+        lines += [aligned(rows, right=range(len(rows[0]) - 1)), "", sentence(metric, found), ""]
+    return "\n".join([*lines, aligned(change_rows(study), right=range(1, 7))])
 
 
 def main() -> None:
     """Print the tables; write the report where a folder is named."""
-    parser = argparse.ArgumentParser(description="what each hertz of the knee costs in grams")
-    parser.add_argument("--out", type=Path, help="folder for the report")
-    parser.add_argument("--quick", action="store_true", help="few points, no multipliers")
-    given = parser.parse_args()
-    study = compute(quick=given.quick)
-    for metric, found in study["series"].items():
-        rows = series_rows(metric, found)
-        print(
-            aligned(rows, right=range(len(rows[0]) - 1)), "", sentence(metric, found), "", sep="\n"
-        )
-    print(aligned(change_rows(study), right=range(1, 7)))
-    if given.out is not None:
-        print(write(study, given.out), "sheets")
+    description = "what each hertz of the knee costs in grams"
+    run_script(__file__, description, compute, printed, page, quick="few points, no multipliers")
 
 
 if __name__ == "__main__":

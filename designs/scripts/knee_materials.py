@@ -11,7 +11,6 @@ table, a figure and a discussion of what decides.
 
 from __future__ import annotations
 
-import argparse
 from functools import cache
 from math import ceil, floor, inf
 from pathlib import Path
@@ -24,7 +23,7 @@ import actuator_opt as ao
 from actuator_opt.base.tables import aligned
 from actuator_opt.rendering.axes import Axes
 from actuator_opt.rendering.ink import GREY, RED, Ink, spread_within
-from actuator_opt.rendering.script_pages import rounded, study_sheets, write_study
+from actuator_opt.rendering.script_pages import Sheets, rounded, run_script, study_sheets
 from actuator_opt.rendering.text import fixed, trimmed
 
 DESIGNS = Path(__file__).resolve().parents[1]
@@ -427,16 +426,11 @@ def _names(ink: Ink, axes: Axes, ends: dict[str, float]) -> None:
         ink.text(right + 10.4, y, LABELS[key], size=6.5)
 
 
-def page(study: Data) -> tuple[bytes, list[bytes]]:
+def page(study: Data) -> Sheets:
     """The report as PDF and as images of its sheets: the same numbers give the same bytes."""
     found = rounded(study)
     shown = {**found, "labels": LABELS, "figure": figure(found).data()}
-    return study_sheets(Path(__file__), found, shown)
-
-
-def write(study: Data, folder: Path) -> int:
-    """Write knee_materials.pdf and the PNG of its first sheet; how many sheets there are."""
-    return write_study(page(study), folder, "knee_materials")
+    return study_sheets(__file__, found, shown)
 
 
 def table(study: Data) -> str:
@@ -460,13 +454,7 @@ def table(study: Data) -> str:
 
 def main() -> None:
     """Print the masses; with ``--out`` write the report."""
-    parser = argparse.ArgumentParser(description="what a wall of each material costs in grams")
-    parser.add_argument("--out", type=Path, help="folder to write knee_materials.pdf into")
-    folder = parser.parse_args().out
-    study = compute()
-    print(table(study))
-    if folder is not None:
-        print(write(study, folder), "sheets")
+    run_script(__file__, "what a wall of each material costs in grams", compute, table, page)
 
 
 if __name__ == "__main__":

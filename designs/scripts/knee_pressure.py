@@ -13,7 +13,6 @@ those that the pressure asks for. What binds where says why the minimum lies whe
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Callable, Sequence
 from functools import cache
 from itertools import pairwise
@@ -31,9 +30,15 @@ from actuator_opt.models.extrusion import gap_limit
 from actuator_opt.models.lines import line_pressure_drop, line_volume
 from actuator_opt.models.mass import oil_mass, tube_mass
 from actuator_opt.rendering.axes import AREAS, Axes
-from actuator_opt.rendering.blocks import Column, Drawing, Table
+from actuator_opt.rendering.blocks import Drawing
 from actuator_opt.rendering.ink import BLACK, BLUE, GREY, RED, WHITE, Ink, spread_within
-from actuator_opt.rendering.script_pages import rounded, study_sheets, write_study
+from actuator_opt.rendering.script_pages import (
+    Sheets,
+    grid_table,
+    rounded,
+    run_script,
+    study_report,
+)
 from actuator_opt.rendering.text import fixed, number
 
 Data = dict[str, Any]
@@ -700,52 +705,50 @@ def _strip(axes: Axes, y: float, name: str, binds: list[tuple[float, bool]]) -> 
         ink.circle(axes.x(x), y, 0.75, fill=paint, stroke=BLUE if here else GREY, pen=0.15)
 
 
-WIDTHS = (14.5, 13, 14, 12, 11, 14, 12.5, 12, 12, 17, 17, 15.5, 20)
-"""Columns of the first table, mm."""
+WIDTHS = {
+    k: f"{width}mm"
+    for k, width in enumerate((14.5, 13, 14, 12, 11, 14, 12.5, 12, 12, 17, 17, 15.5, 20))
+}
+"""Columns of the first table."""
 
 
-def page(study: Data) -> tuple[bytes, list[bytes]]:
+def page(study: Data) -> Sheets:
     """The report as PDF and as images of its sheets: the same numbers give the same bytes."""
     said = remarks(study)
     strips = "Under the curves: where a limit binds (filled). Those alike at all: under the tables."
-    blocks = [Drawing("What the robot carries for its knee", drawing(study), strips)]
-    grids = (
-        ("Pressure by pressure", mass_rows(study), said["mass"]),
-        ("How the requirements stand", need_rows(study), said["need"]),
-        ("Taken for granted", assumed_rows(), ""),
+    return study_report(
+        __file__,
+        study,
+        title="Where the knee is lightest",
+        heading="The knee from 60 to 350 bar: where it is lightest with all it carries",
+        lead=lead(study),
+        blocks=[
+            Drawing("What the robot carries for its knee", drawing(study), strips),
+            grid_table("Pressure by pressure", mass_rows(study), said["mass"], widths=WIDTHS),
+            grid_table(
+                "How the requirements stand",
+                need_rows(study),
+                said["need"],
+                words=[-1],
+                widths={-1: 1},
+            ),
+            grid_table("Taken for granted", assumed_rows(), words=[0, -1], widths={-1: 1}),
+        ],
     )
-    for title, (heads, *rows), note in grids:
-        columns = [Column(head, "right", "auto") for head in heads]
-        if title != "Pressure by pressure":
-            columns[-1] |= {"align": "left", "width": 1}
-        else:
-            columns = [
-                Column(head, "right", f"{wide}mm") for head, wide in zip(heads, WIDTHS, strict=True)
-            ]
-        if title == "Taken for granted":
-            columns[0]["align"] = "left"
-        blocks.append(Table(title, columns, rows, note=note))
-    shown = {"version": study["version"], "lead": lead(study), "blocks": blocks}
-    return study_sheets(Path(__file__), study, shown)
 
 
-def write(study: Data, folder: Path) -> int:
-    """Write knee_pressure.pdf and the PNG of its first sheet; how many sheets there are."""
-    return write_study(page(study), folder, "knee_pressure")
+def printed(study: Data) -> str:
+    """The tables, and what they say."""
+    lines = []
+    for rows in (mass_rows(study), need_rows(study), assumed_rows()):
+        lines += [aligned(rows, right=range(len(rows[0]) - 1)), ""]
+    return "\n".join([*lines, *lead(study)])
 
 
 def main() -> None:
     """Print the tables; write the report where a folder is named."""
-    parser = argparse.ArgumentParser(description="at which supply pressure the knee is lightest")
-    parser.add_argument("--out", type=Path, help="folder for the report")
-    parser.add_argument("--quick", action="store_true", help="few pressures, one length")
-    given = parser.parse_args()
-    study = compute(quick=given.quick)
-    for rows in (mass_rows(study), need_rows(study), assumed_rows()):
-        print(aligned(rows, right=range(len(rows[0]) - 1)), "", sep="\n")
-    print(*lead(study), sep="\n")
-    if given.out is not None:
-        print(write(study, given.out), "sheets")
+    description = "at which supply pressure the knee is lightest"
+    run_script(__file__, description, compute, printed, page, quick="few pressures, one length")
 
 
 if __name__ == "__main__":

@@ -12,7 +12,6 @@ and are checked by solving again; closed forms stand beside the models.
 
 from __future__ import annotations
 
-import argparse
 from functools import cache
 from math import ceil, floor, inf, pi
 from pathlib import Path
@@ -26,9 +25,15 @@ from actuator_opt.models.contact_profile import o_ring_mean
 from actuator_opt.models.elastomer import modulus_gent
 from actuator_opt.models.seals import LAWS
 from actuator_opt.rendering.axes import Axes
-from actuator_opt.rendering.blocks import Column, Drawing, Table
+from actuator_opt.rendering.blocks import Drawing
 from actuator_opt.rendering.ink import BLUE, GREY, RED, WHITE, Ink
-from actuator_opt.rendering.script_pages import rounded, study_sheets, write_study
+from actuator_opt.rendering.script_pages import (
+    Sheets,
+    grid_table,
+    rounded,
+    run_script,
+    study_report,
+)
 from actuator_opt.rendering.text import fixed, number
 
 DESIGN = Path(__file__).resolve().parents[1] / "knee.yaml"
@@ -591,52 +596,47 @@ def remarks(study: Data) -> Data:
     }
 
 
-def page(study: Data) -> tuple[bytes, list[bytes]]:
+def page(study: Data) -> Sheets:
     """The report as PDF and as images of its sheets: the same numbers give the same bytes."""
     said = remarks(study)
-    grids = {
-        "series": series_rows(study),
-        "choices": choice_rows(study),
-        "prices": price_rows(study),
-    }
-    blocks = [Drawing("What it weighs", drawing(study))]
-    for name, (heads, *rows) in grids.items():
-        if name == "series":
-            columns = [Column(head, "right", "12.2mm") for head in heads]
-            columns[0] |= {"align": "left", "width": 1}
-            for k, wide in ((1, "13mm"), (7, "16mm"), (8, "16mm"), (9, "15.5mm"), (11, "14mm")):
-                columns[k]["width"] = wide
-        else:
-            columns = [Column(head, "right", "auto") for head in heads]
-            columns[0]["align"] = columns[1]["align"] = "left"
-            if name == "choices":
-                columns[-1] |= {"align": "left", "width": 1}
-        blocks.append(Table(TITLES[name], columns, rows, note=said[name]))
-    shown = {
-        "version": study["version"],
-        "lead": lead(study),
-        "blocks": blocks,
-    }
-    return study_sheets(Path(__file__), study, shown)
+    wide = dict.fromkeys(range(16), "12.2mm") | {
+        0: 1, 1: "13mm", 7: "16mm", 8: "16mm", 9: "15.5mm", 11: "14mm",
+    }  # fmt: skip
+    return study_report(
+        __file__,
+        study,
+        title="What the seals cost",
+        heading="The knee's seals: what friction, leakage and squeeze cost in grams",
+        lead=lead(study),
+        blocks=[
+            Drawing("What it weighs", drawing(study)),
+            grid_table(
+                TITLES["series"], series_rows(study), said["series"], words=[0], widths=wide
+            ),
+            grid_table(
+                TITLES["choices"],
+                choice_rows(study),
+                said["choices"],
+                words=[0, 1, -1],
+                widths={-1: 1},
+            ),
+            grid_table(TITLES["prices"], price_rows(study), said["prices"], words=[0, 1]),
+        ],
+    )
 
 
-def write(study: Data, folder: Path) -> int:
-    """Write knee_seals.pdf and the PNG of its first sheet; how many sheets there are."""
-    return write_study(page(study), folder, "knee_seals")
+def printed(study: Data) -> str:
+    """The tables, and what they say."""
+    lines = []
+    for rows in (series_rows(study), choice_rows(study), price_rows(study)):
+        lines += [aligned(rows, right=range(1, len(rows[0]) - 1)), ""]
+    return "\n".join([*lines, *lead(study)])
 
 
 def main() -> None:
     """Print the tables; write the report where a folder is named."""
-    parser = argparse.ArgumentParser(description="what the seals of the knee cost in grams")
-    parser.add_argument("--out", type=Path, help="folder for the report")
-    parser.add_argument("--quick", action="store_true", help="few points, one priced design")
-    given = parser.parse_args()
-    study = compute(quick=given.quick)
-    for rows in (series_rows(study), choice_rows(study), price_rows(study)):
-        print(aligned(rows, right=range(1, len(rows[0]) - 1)), "", sep="\n")
-    print(*lead(study), sep="\n")
-    if given.out is not None:
-        print(write(study, given.out), "sheets")
+    description = "what the seals of the knee cost in grams"
+    run_script(__file__, description, compute, printed, page, quick="few points, one priced design")
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
-"""Expressions traced from models: derivatives and straight-line code of them.
+"""Expressions traced from models: derivatives, and generated code.
 
-A `Symbol` is an array-API value like any other, so a model called with symbols returns the
-expression of its formula. The expression becomes plain Python (`code`), its exact derivatives
-(`derivative`), or the input of another engine.
+A `Symbol` is an array-API value, so a model called with symbols returns the expression of its
+formula. The expression becomes plain Python (`code`), its exact derivatives (`derivative`), or
+the input of another engine.
 """
 
 from .code import function, vectorised

@@ -11,7 +11,7 @@ ANY: Final[Bounds] = (-math.inf, math.inf)
 
 
 def bounds_of(value: Any) -> Bounds:
-    """Bounds of a symbol or a number; a number that is none has no bounds."""
+    """Bounds of a symbol or a number; NaN has no bounds."""
     if hasattr(value, "bounds"):
         found: Bounds = value.bounds
         return found
@@ -47,12 +47,12 @@ def bounds(op: str, args: tuple[Any, ...]) -> Bounds:
 
 
 def _of_function(op: str, args: tuple[Any, ...]) -> Bounds:
-    """Bounds of a function of one number, and of a power by a number."""
+    """Bounds of a function of one variable, or of a power with a constant exponent."""
     if op in _RISING:
         domain, function = _RISING[op]
         low, high = bounds_of(args[0])
         low, high = at_end(function, max(low, domain)), at_end(function, max(high, domain))
-        if op == "sqrt":  # the one that rounds alike everywhere
+        if op == "sqrt":  # rounds alike on every system
             return low, high
         low, high = _wider(low, high)
         return max(low, at_end(function, domain)), min(high, at_end(function, math.inf))
@@ -72,13 +72,13 @@ _RISING: Final[dict[str, tuple[float, Callable[[float], float]]]] = {
     "log1p": (-1.0, math.log1p),
     "tanh": (-math.inf, math.tanh),
 }
-"""Rising functions, with the least argument they have."""
+"""Increasing functions, with the lower end of their domain."""
 
 
 def at_end(function: Callable[[float], float], value: float) -> float:
-    """A function at an end of its range: without an end where it has none there.
+    """A function at an end of its range; infinite where it has no value there.
 
-    A logarithm falls without end towards the edge of its domain, a negative power rises.
+    Towards the edge of the domain a logarithm tends to -infinity, a negative power to +infinity.
     """
     try:
         return function(value)
@@ -89,12 +89,12 @@ def at_end(function: Callable[[float], float], value: float) -> float:
 
 
 def _wider(low: float, high: float) -> Bounds:
-    """Bounds with room for the rounding of functions, which differs from library to library."""
+    """Bounds widened by the rounding errors of functions, which differ between libraries."""
     return low - ROUNDING * abs(low), high + ROUNDING * abs(high)
 
 
 ROUNDING = 1e-14
-"""Relative room for what a function rounds."""
+"""Relative allowance for the rounding error of a function."""
 
 
 def _of_wave(op: str, low: float, high: float) -> Bounds:
@@ -106,7 +106,7 @@ def _of_wave(op: str, low: float, high: float) -> Bounds:
     room = ROUNDING * (1 + max(abs(low), abs(high)))
 
     def passes(place: float) -> bool:
-        """Whether a place lies in the interval, a whole number of turns away."""
+        """Whether the interval contains a place, plus a whole number of turns."""
         turn = 2 * math.pi
         return math.ceil((low - place) / turn - room) <= math.floor((high - place) / turn + room)
 
@@ -134,7 +134,7 @@ def _of_choice(condition: Any, yes: Any, no: Any) -> Bounds:
         less, more = condition.args
         if _same(less, no) and _same(more, yes):  # the larger of both
             return max(a, c), max(b, d)
-        if _same(less, yes) and _same(more, no):  # the smaller
+        if _same(less, yes) and _same(more, no):  # the smaller of both
             return min(a, c), min(b, d)
     return min(a, c), max(b, d)
 

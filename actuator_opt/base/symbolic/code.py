@@ -1,4 +1,4 @@
-"""Straight-line code of expressions: plain Python for one point, NumPy for many."""
+"""Generated code of expressions: plain Python for one point, NumPy for many."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .expression import Symbol
 from .order import needed
 
 DEEPEST = 12
-"""Operations in one another in a line of code; deeper ones get a line of their own."""
+"""Deepest nesting of operations in a line of code; deeper operations get their own line."""
 
 _OPERATORS = {"add": "+", "sub": "-", "mul": "*", "div": "/", "lt": "<", "le": "<="}
 _LOGIC = {"and": ("and", "&"), "or": ("or", "|")}
@@ -21,14 +21,14 @@ _LOGIC = {"and": ("and", "&"), "or": ("or", "|")}
 def function(
     name: str, arguments: str, unpack: Mapping[str, str], outputs: Sequence[Any]
 ) -> Callable[..., Any]:
-    """A Python function of floats that returns the values of some outputs as a list.
+    """A Python function of floats that returns the outputs as a list.
 
     Parameters
     ----------
-    name : of the function
-    arguments : of its definition, ``"t, y, m"``
-    unpack : names of variables and flags, with the code that gives each: ``{"x": "y[0]"}``; a key
-        of several names, ``"a, b"``, unpacks them at once
+    name : name of the function
+    arguments : arguments of the function, ``"t, y, m"``
+    unpack : code of every variable and flag by name: ``{"x": "y[0]"}``; a key of several names,
+        ``"a, b"``, unpacks them together
     outputs : expressions
     """
     scope: dict[str, Any] = {f"_{key}": getattr(math, key) for key in _MATH}
@@ -43,10 +43,10 @@ def vectorised(
     known: Mapping[Symbol, str] | None = None,
     library: Any = np,
 ) -> Callable[..., Any]:
-    """As `function`, of arrays; both branches of every choice are computed.
+    """As `function`, for arrays; both branches of every choice are computed.
 
-    `known` expressions are not computed but taken from the code given for them; `library` is NumPy
-    or one that names its functions alike.
+    `known` gives code for expressions that are not to be computed again; `library` is NumPy or a
+    library with the same function names.
     """
     scope: dict[str, Any] = {f"_{key}": getattr(library, _NUMPY.get(key, key)) for key in _MATH}
     scope["_where"], scope["_not"] = library.where, library.logical_not
@@ -79,7 +79,7 @@ def _compiled(
     ]
     lines += _lines(nodes, outputs, known, many)
     source = f"def {name}({arguments}):\n" + "\n".join(lines)
-    exec(compile(source, f"<{name}>", "exec"), scope)  # our own text: operations and numbers
+    exec(compile(source, f"<{name}>", "exec"), scope)  # generated text only: operations and numbers
     found: Callable[..., Any] = scope[name]
     return found
 
@@ -87,7 +87,7 @@ def _compiled(
 def _lines(
     nodes: Sequence[Symbol], outputs: Sequence[Any], known: Mapping[Symbol, str], many: bool
 ) -> list[str]:
-    """A line for every node that is needed twice or stands deep, then the return."""
+    """A line for every node that is used twice or nested deeply, then the return."""
     uses: dict[int, int] = {}
     for node in nodes:
         for operand in node.operands:
@@ -109,7 +109,7 @@ def _lines(
         if plain or (uses[node.index] == 1 and deep < DEEPEST):
             text[node.index], depth[node.index] = code, 0 if plain else deep
         else:
-            lines.append(f" _{node.index} = {code}")  # no variable is called so
+            lines.append(f" _{node.index} = {code}")  # no variable has such a name
             text[node.index], depth[node.index] = f"_{node.index}", 0
     lines.append(f" return [{', '.join(said(out) for out in outputs)}]")
     return lines
@@ -122,7 +122,7 @@ def _literal(value: Any) -> str:
         return "_nan"
     if math.isinf(value):
         return "_inf" if value > 0 else "(-_inf)"
-    number = repr(float(value))  # NumPy's own say so in their text
+    number = repr(float(value))  # the text of NumPy numbers includes their type
     return number if value >= 0 else f"({number})"
 
 

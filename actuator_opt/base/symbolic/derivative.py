@@ -1,4 +1,4 @@
-"""Exact derivatives of expressions, in expressions."""
+"""Exact derivatives of expressions, as expressions."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ xp = Namespace
 
 
 Slopes: TypeAlias = dict[int, Any]
-"""Derivatives that are not zero, by the number of their variable."""
+"""Nonzero derivatives by the number of their variable."""
 
 
 def jacobian(outputs: Sequence[Any], variables: Sequence[Symbol]) -> list[list[Any]]:
-    """Derivatives of outputs (rows) by variables (columns); 0.0 where there is none.
+    """Derivatives of outputs (rows) by variables (columns); 0.0 where independent.
 
-    A choice has the derivative of the branch taken; flags have none, a looked-up function has the
-    one it was given, and a root at zero, where its slope has no end, counts as level.
+    A choice has the derivative of the selected branch; flags have none; a tabulated function has
+    its given slope; a root has zero slope at zero, where its true slope is infinite.
     """
     known: dict[int, Slopes] = {one.index: {k: 1.0} for k, one in enumerate(variables)}
     for node in needed(outputs):
@@ -55,7 +55,7 @@ def _scaled(factor: Any) -> Callable[..., Any]:
 
 
 def _steep(value: Any) -> Any:
-    """A root's value in its slope: endless at zero, so that the slope there is none."""
+    """Value of a root for its slope formula: infinite at zero, so that the slope there is zero."""
     return choose(less(0.0, value), value, math.inf)
 
 

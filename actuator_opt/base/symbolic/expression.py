@@ -1,8 +1,8 @@
-"""Symbols: values that record what is done with them.
+"""Symbols: values that record the operations on them.
 
-Equal operations on equal operands are one node; operations on numbers are done at once. Every node
-knows bounds of its value (a square is not below zero, a limited signal keeps its limits): they
-decide comparisons, so that the guards of a model cost nothing where they cannot act.
+Equal operations on equal operands share a node; operations on numbers are evaluated at once.
+Every node has bounds of its value (a square is not negative, a limited signal keeps its limits).
+The bounds decide comparisons, so the guards of a model cost nothing where they cannot act.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import Any, Final, TypeAlias
 from .bounds import ANY, Bounds, bounds, bounds_of
 
 Expression: TypeAlias = Any
-"""A symbol, or the number it is known to be."""
+"""A symbol, or its numeric value if known."""
 
 _FUNCTIONS: dict[str, Callable[[float], float]] = {
     "sqrt": math.sqrt,
@@ -29,28 +29,28 @@ _FUNCTIONS: dict[str, Callable[[float], float]] = {
     "sin": math.sin,
     "cos": math.cos,
 }
-"""Functions of one number."""
+"""Functions of one variable."""
 
 
 @dataclass(slots=True)
 class Graph:
-    """The nodes of one tracing, in the order they were made: operands come before results."""
+    """Nodes of one trace in creation order: operands precede results."""
 
     nodes: list[Symbol] = field(default_factory=list)
     known: dict[tuple[Any, ...], Symbol] = field(default_factory=dict)
     tables: list[Callable[..., Any]] = field(default_factory=list)
-    """Functions of time that are looked up, not traced: measured inputs."""
+    """Tabulated functions of time, such as measured inputs."""
     slopes: dict[int, int] = field(default_factory=dict)
-    """Number of the function that is the slope of another."""
+    """Index of a tabulated function whose slope this function is."""
 
     def variable(self, name: str, limits: Bounds = ANY) -> Symbol:
-        """A free number, as `name` in the code, between its limits."""
+        """A free number, `name` in the code, with its limits."""
         found = self.node("variable", (name,))
         found.bounds = limits
         return found
 
     def flag(self, name: str) -> Symbol:
-        """A free truth value that does not change between two restarts of an integration."""
+        """A free truth value; it changes only at restarts of an integration."""
         return self.node("flag", (name,))
 
     def table(
@@ -59,7 +59,7 @@ class Graph:
         time: Symbol,
         slope: Callable[..., Any] | None = None,
     ) -> Symbol:
-        """A looked-up function of time, with its slope; both work on floats and NumPy arrays."""
+        """A tabulated function of time with its slope; both accept floats and NumPy arrays."""
         number = len(self.tables)
         self.tables.append(function)
         if slope is not None:
@@ -68,12 +68,12 @@ class Graph:
         return self.node("table", (number, time))
 
     def slope(self, number: int, time: Symbol) -> Any:
-        """The slope of a looked-up function; zero where none was given."""
+        """Slope of a tabulated function; zero if none was given."""
         known = self.slopes.get(number)
         return 0.0 if known is None else self.node("table", (known, time))
 
     def node(self, op: str, args: tuple[Any, ...]) -> Symbol:
-        """The node of an operation; the same one for the same operands."""
+        """Node of an operation; equal operands give the same node."""
         key = (op, *(("#", a.index) if isinstance(a, Symbol) else a for a in args))
         found = self.known.get(key)
         if found is None:
@@ -84,9 +84,9 @@ class Graph:
 
 
 class Symbol:
-    """A node of a graph that behaves as a number of the array-API standard."""
+    """A node of a graph that behaves like a number of the array-API standard."""
 
-    __array_ufunc__ = None  # NumPy numbers leave operations to us
+    __array_ufunc__ = None  # NumPy numbers defer operations to this class
     __slots__ = ("args", "bounds", "graph", "index", "op", "operands")
     dtype: Final = "float64"
     shape: Final = ()
@@ -110,7 +110,7 @@ class Symbol:
         return id(self)
 
     def __bool__(self) -> bool:
-        raise TypeError("a symbol has no truth value: use where")
+        raise TypeError("a symbol has no truth value: use `where`")
 
     def __add__(self, other: Any) -> Any:
         return add(self, other)
@@ -175,12 +175,12 @@ class Symbol:
 
 
 def _number(value: Any) -> Any:
-    """Numbers as plain Python numbers, symbols as they are."""
+    """Numbers as plain Python numbers; symbols unchanged."""
     if isinstance(value, (Symbol, bool)) or type(value) is float:
         return value
-    if isinstance(value, (int, float)):  # of NumPy as well
+    if isinstance(value, (int, float)):  # includes NumPy
         return float(value)
-    plain = value.item()  # of NumPy
+    plain = value.item()  # NumPy numbers
     return plain if isinstance(plain, (bool, Symbol)) else float(plain)
 
 
@@ -189,7 +189,7 @@ def _graph(*values: Any) -> Graph:
 
 
 def _ordered(first: Any, second: Any) -> tuple[Any, Any]:
-    """Operands of a commutative operation in one order: numbers first, then by age."""
+    """Operands of a commutative operation in a fixed order: numbers first, then by age."""
     if isinstance(second, Symbol) and (
         not isinstance(first, Symbol) or first.index <= second.index
     ):
@@ -228,7 +228,7 @@ def subtract(first: Any, second: Any) -> Any:
 
 
 def multiply(first: Any, second: Any) -> Any:
-    """Product; nothing times a symbol is nothing."""
+    """Product; zero times a symbol is zero."""
     a, b = _ordered(_number(first), _number(second))
     if not isinstance(b, Symbol):
         return a * b
@@ -263,7 +263,7 @@ def divide(first: Any, second: Any) -> Any:
 
 
 def power(base: Any, exponent: Any) -> Any:
-    """Power; an exponent that is a symbol needs a positive base."""
+    """Power; a symbolic exponent needs a positive base."""
     base, exponent = _number(base), _number(exponent)
     if isinstance(exponent, Symbol):
         return Namespace.exp(exponent * Namespace.log(base))
@@ -283,7 +283,7 @@ def power(base: Any, exponent: Any) -> Any:
 
 
 def negative(value: Any) -> Any:
-    """Minus a value."""
+    """Negative of a value."""
     value = _number(value)
     if not isinstance(value, Symbol):
         return -value
@@ -343,14 +343,14 @@ def either(first: Any, second: Any) -> Any:
 
 
 def opposite(value: Any) -> Any:
-    """Not a value."""
+    """Negation of a truth value."""
     if not isinstance(value, Symbol):
         return not value
     return value.args[0] if value.op == "not" else value.graph.node("not", (value,))
 
 
 def choose(condition: Any, yes: Any, no: Any) -> Any:
-    """Yes where the condition holds, else no."""
+    """`yes` where the condition holds, else `no`."""
     condition, yes, no = _number(condition), _number(yes), _number(no)
     if not isinstance(condition, Symbol):
         return yes if condition else no
@@ -360,7 +360,7 @@ def choose(condition: Any, yes: Any, no: Any) -> Any:
 
 
 def apply(name: str, value: Any) -> Any:
-    """A function of one number."""
+    """A function of one variable."""
     value = _number(value)
     if not isinstance(value, Symbol):
         return _FUNCTIONS[name](value)
@@ -368,7 +368,7 @@ def apply(name: str, value: Any) -> Any:
 
 
 def atan2(first: Any, second: Any) -> Any:
-    """Angle of a point."""
+    """Polar angle of a point."""
     first, second = _number(first), _number(second)
     if not isinstance(first, Symbol) and not isinstance(second, Symbol):
         return math.atan2(first, second)
@@ -385,4 +385,4 @@ Namespace = SimpleNamespace(
     atan2=atan2,
     **{name: partial(apply, name) for name in _FUNCTIONS},
 )
-"""What of the array-API standard the models use."""
+"""Array-API namespace of symbols: the functions that models use."""

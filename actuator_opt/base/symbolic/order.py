@@ -1,4 +1,4 @@
-"""Which nodes some outputs need, and which of them are truth values."""
+"""Nodes that outputs need, and which of them are truth values."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ _BOOLEAN = {"lt", "le", "and", "or", "not", "flag"}
 
 
 def is_boolean(symbol: Symbol) -> bool:
-    """Whether a symbol stands for a truth value."""
+    """Whether a symbol is a truth value."""
     return symbol.op in _BOOLEAN
 
 
 def needed(outputs: Sequence[Any], known: Iterable[Symbol] = ()) -> list[Symbol]:
-    """The nodes that some outputs need, operands before results; of `known` ones nothing more."""
+    """Nodes that the outputs need, operands first; operands of `known` nodes are left out."""
     seen: set[int] = {one.index for one in known}
     found: list[Symbol] = []
     stack = [out for out in outputs if isinstance(out, Symbol)]

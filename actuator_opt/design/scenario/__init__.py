@@ -1,4 +1,4 @@
-"""Scenarios: what happens to a design over time."""
+"""Scenarios: events on a design over time."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""What a scenario may choose around the design: supply, friction of the seals, ends, control law.
+"""Components around the design in a scenario: supply, seal friction, port ends, control law.
 
-Each entry states its words and keys here; `simulation.parts` states its equations. A kind without
+Each entry declares its name and keys here and its equations in `simulation.parts`. A kind without
 equations fails at import (`kinds.per_kind`).
 """
 
@@ -13,14 +13,14 @@ from ...base.kinds import kinds
 
 @dataclass(frozen=True, slots=True)
 class SupplyType:
-    """What feeds the valve.
+    """Type of supply of the valve.
 
     Attributes
     ----------
-    name, help : its word in a scenario, and what it means
-    needed, unread : keys it cannot do without, and keys it does not read
-    pumps : whether a pump delivers into a volume, whose pressure is a state
-    words : for a report
+    name, help : name in a scenario, and its meaning
+    needed, unread : required keys, and keys without effect
+    pumps : whether a pump delivers into a volume with its pressure as a state
+    words : text for a report
     """
 
     name: str
@@ -33,13 +33,13 @@ class SupplyType:
 
 @dataclass(frozen=True, slots=True)
 class SealFriction:
-    """How the seals resist over time.
+    """Friction model of the seals over time.
 
     Attributes
     ----------
-    name, help : its word in a scenario, and what it means
-    unread : keys of `friction` it does not read
-    words : for a report
+    name, help : name in a scenario, and its meaning
+    unread : keys of `friction` without effect
+    words : text for a report
     """
 
     name: str
@@ -50,15 +50,15 @@ class SealFriction:
 
 @dataclass(frozen=True, slots=True)
 class PortEnd:
-    """What the ports of the cylinder lead to.
+    """End of the cylinder's ports.
 
     Attributes
     ----------
-    name, help : its word in a scenario, and what it means
-    words : for a report; None where the supply's words say it
-    shut : whether no oil passes the end
-    holds : whether the end keeps its pressure
-    at_cylinder : whether it stands at the cylinder, before a throttle
+    name, help : name in a scenario, and its meaning
+    words : text for a report; None if the text of the supply suffices
+    shut : whether the end is closed
+    holds : whether the end has constant pressure
+    at_cylinder : whether the end is at the cylinder, before a throttle
     """
 
     name: str
@@ -71,12 +71,12 @@ class PortEnd:
 
 @dataclass(frozen=True, slots=True)
 class ControlLaw:
-    """What the controller does with the error.
+    """Control law: response of the controller to the error.
 
     Attributes
     ----------
-    name, help : its word in a scenario, and what it means
-    integral, derivative : the parts it has beside the proportional one
+    name, help : name in a scenario, and its meaning
+    integral, derivative : whether the law has these terms besides the proportional term
     """
 
     name: str
@@ -86,7 +86,7 @@ class ControlLaw:
 
     @property
     def parts(self) -> tuple[str, ...]:
-        """Names of the parts beside the proportional one."""
+        """Names of the terms besides the proportional term."""
         both = {"integral": self.integral, "derivative": self.derivative}
         return tuple(name for name, has in both.items() if has)
 
@@ -95,7 +95,7 @@ SUPPLIES = kinds(
     "supply",
     SupplyType(
         "constant",
-        "the design's supply pressure, whatever flows",
+        "supply pressure of the design at any flow",
         needed=(),
         unread=("volume", "flow", "pump", "relief", "gain", "time_constant", "accumulator"),
         pumps=False,
@@ -103,7 +103,7 @@ SUPPLIES = kinds(
     ),
     SupplyType(
         "fixed_pump",
-        "a pump of constant flow with a relief valve",
+        "constant-flow pump with a relief valve",
         needed=("volume", "relief"),
         unread=("gain", "time_constant"),
         pumps=True,
@@ -111,29 +111,29 @@ SUPPLIES = kinds(
     ),
     SupplyType(
         "controlled_pump",
-        "a pump that follows the pressure with a lag",
+        "pressure-controlled pump with a first-order lag",
         needed=("volume", "flow", "gain", "time_constant"),
         unread=("pump",),
         pumps=True,
         words="controlled pump",
     ),
 )
-"""Every supply by its word."""
+"""Every supply by name."""
 
 FRICTIONS = kinds(
     "friction of the seals",
     SealFriction(
-        "lugre", "bristles that stick, slide and creep", unread=(), words="LuGre friction"
+        "lugre", "bristle model with sticking, sliding and creep", unread=(), words="LuGre friction"
     ),
     SealFriction(
         "stribeck",
-        "a curve over the speed, smooth through zero",
+        "friction curve over speed, smooth through zero",
         unread=("bristle_travel", "bristle_damping"),
         words="Stribeck friction",
     ),
     SealFriction(
         "none",
-        "not at all",
+        "no friction",
         unread=(
             "coulomb",
             "static",
@@ -145,13 +145,13 @@ FRICTIONS = kinds(
         words="no dry friction",
     ),
 )
-"""Every friction of the seals by its word."""
+"""Every friction model of the seals by name."""
 
 ENDS = kinds(
     "end",
     PortEnd(
         "valve",
-        "the valve, driven by signal or control",
+        "valve, driven by signal or control",
         words=None,
         shut=False,
         holds=False,
@@ -159,7 +159,7 @@ ENDS = kinds(
     ),
     PortEnd(
         "closed",
-        "lines shut at their far end",
+        "lines closed at their far end",
         words="ports closed",
         shut=True,
         holds=False,
@@ -167,7 +167,7 @@ ENDS = kinds(
     ),
     PortEnd(
         "blocked",
-        "shut at the cylinder, before a throttle",
+        "closed at the cylinder, before a throttle",
         words="ports blocked",
         shut=True,
         holds=False,
@@ -175,7 +175,7 @@ ENDS = kinds(
     ),
     PortEnd(
         "constant_pressure",
-        "ports that hold their pressure",
+        "ports at constant pressure",
         words="ports at constant pressure",
         shut=False,
         holds=True,
@@ -183,19 +183,19 @@ ENDS = kinds(
     ),
     PortEnd(
         "reducing_valve",
-        "the design's",
+        "reducing valves of the design",
         words="ports at reducing valves",
         shut=False,
         holds=False,
         at_cylinder=False,
     ),
 )
-"""Every end of the lines by its word."""
+"""Every end of the lines by name."""
 
 LAWS = kinds(
     "law",
-    ControlLaw("p", "in proportion", integral=False, derivative=False),
-    ControlLaw("pi", "and its integral", integral=True, derivative=False),
-    ControlLaw("pid", "and its rate", integral=True, derivative=True),
+    ControlLaw("p", "proportional", integral=False, derivative=False),
+    ControlLaw("pi", "proportional and integral", integral=True, derivative=False),
+    ControlLaw("pid", "proportional, integral and derivative", integral=True, derivative=True),
 )
-"""Every law of the controller by its word."""
+"""Every control law by name."""

@@ -1,4 +1,4 @@
-"""Faults of what moves the valve, and of what a scenario asks of the response."""
+"""Faults of the valve drive, and of results that a scenario requires from the response."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ REFERENCES: Mapping[str, str] = {
     "shaft_speed": "shaft_speed_gain",
     "shaft_angle": "shaft_angle_gain",
 }
-"""Every loop by its reference, with the gain it has."""
+"""Every loop by its reference, with its gain."""
 STEP_RESULTS = ("rise_time", "settling_time", "overshoot", "steady_state_ratio")
-"""Results that are read from the answer to one step."""
+"""Results derived from the response to a single step."""
 
 
 def stated(view: View, *loc: str) -> bool:
-    """Whether the file states something here: no empty list."""
+    """Whether the file states this value; empty lists do not count."""
     return child_at(view.tree, loc) not in (None, [], ())
 
 
 def given(view: View) -> list[str]:
-    """References the control states."""
+    """References that the control states."""
     return [name for name in REFERENCES if stated(view, "control", name)]
 
 
 def drives(view: View) -> Iterator[Fault]:
-    """One of signal and control drives the valve, which then ends the lines."""
+    """Either signal or control drives the valve, which must end the lines."""
     driven = [name for name in ("signal", "control") if stated(view, name)]
     if len(driven) == 2:
         message = "a signal beside control: both would drive the valve"
@@ -43,16 +43,16 @@ def drives(view: View) -> Iterator[Fault]:
     if ends == "valve" or ends not in entries(Scenario)["ends"].choices:
         return
     if driven:
-        message = f"{ends}: the {driven[0]} would drive a valve that leads nowhere"
-        yield Fault(("ends",), message, f'write "valve", or leave {driven[0]} out')
+        message = f"{ends}: the {driven[0]} would drive a valve that is not connected"
+        yield Fault(("ends",), message, f'write "valve", or remove {driven[0]}')
     supply = SUPPLIES.get(view.text("supply", "type") or "")
     if supply is not None and supply.pumps:
-        message = f"{ends}: the pump of supply would feed nothing"
-        yield Fault(("ends",), message, 'write "valve", or leave supply out')
+        message = f"{ends}: the pump of the supply is not connected"
+        yield Fault(("ends",), message, 'write "valve", or remove supply')
 
 
 def reference(view: View) -> Iterator[Fault]:
-    """Exactly one reference, of something that there is."""
+    """Exactly one reference, of an existing motion."""
     if not isinstance(child_at(view.tree, ("control",)), dict):
         return
     found = given(view)
@@ -66,14 +66,14 @@ def reference(view: View) -> Iterator[Fault]:
         return
     if view.has("motor"):
         message = "a motor has no rod to move"
-        remedy = "write shaft_speed or shaft_angle, or leave motor out"
+        remedy = "write shaft_speed or shaft_angle, or remove motor"
     else:
         message, remedy = "there is no shaft", "add motor, or write position or speed"
     yield Fault(("control", found[0]), message, remedy, at_key=True)
 
 
 def tuning(view: View) -> Iterator[Fault]:
-    """Gain and times are stated where the tuning says so; nothing is stated that nobody reads."""
+    """The gain and times that the tuning needs are stated, and no others."""
     found, law, way = given(view), view.text("control", "law"), view.text("control", "tuning")
     if not isinstance(child_at(view.tree, ("control",)), dict):
         return
@@ -86,10 +86,10 @@ def tuning(view: View) -> Iterator[Fault]:
         if not view.has("control", gain):
             continue
         if loop is not None and name != loop:
-            message = f"gain of a {name} loop, the reference is a {loop}"
+            message = f"gain of a {name} loop, but the reference is a {loop}"
             yield Fault(("control", gain), message, f"write {REFERENCES[loop]}", at_key=True)
         elif way != "stated":
-            message = f"stated, and tuning ({way}) finds it"
+            message = f"stated, but determined by tuning ({way})"
             remedy = 'remove it, or write "tuning: stated"'
             yield Fault(("control", gain), message, remedy, at_key=True)
     times = [f"{part}_time" for part in own.parts]
@@ -98,12 +98,12 @@ def tuning(view: View) -> Iterator[Fault]:
         if not view.has("control", key):
             what = "tuning stated" if key not in times else f"a stated {law} law"
             how = how_to_add(key, known[key])
-            yield Fault(("control", key), f"missing: {what} needs it", how)
+            yield Fault(("control", key), f"missing: required by {what}", how)
     yield from _unread(view, own, way)
 
 
 def _unread(view: View, law: ControlLaw, way: str) -> Iterator[Fault]:
-    """Keys that neither law nor tuning reads."""
+    """Keys without effect under this control law and tuning."""
     for part in ("integral", "derivative"):
         if part not in law.parts:
             keys = [f"{part}_time", f"{part}_factor"]
@@ -118,7 +118,7 @@ def _unread(view: View, law: ControlLaw, way: str) -> Iterator[Fault]:
 
 
 def step_results(view: View) -> Iterator[Fault]:
-    """What is read from the answer to a step needs a reference that makes one."""
+    """Results of a step response need a stepping reference."""
     asked = [name for name in STEP_RESULTS if view.has("requirements", name)]
     found = given(view)
     if not asked or len(found) > 1:
@@ -135,7 +135,7 @@ def step_results(view: View) -> Iterator[Fault]:
     where = f"control.{found[0]}" if found else "control with a reference"
     for name in asked:
         message = "no reference that steps"
-        remedy = f'give {where} a part of "shape: step" and no sine or record, or leave this out'
+        remedy = f'give {where} a part of "shape: step" and no sine or record, or remove this'
         yield Fault(("requirements", name), message, remedy, at_key=True)
 
 

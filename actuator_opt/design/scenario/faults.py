@@ -1,4 +1,4 @@
-"""Faults that only show when two values of a scenario are read together, or scenario and design."""
+"""Contradictions between values of a scenario, or between scenario and design."""
 
 from __future__ import annotations
 
@@ -22,26 +22,26 @@ _area = quantities.INPUTS["orifice_area"].text
 
 
 def supply(view: View) -> Iterator[Fault]:
-    """A supply states what its type needs, and nothing that it does not read."""
+    """A supply has the keys that its type needs, and no others."""
     kind = view.text("supply", "type")
     own = SUPPLIES.get(kind or "")
-    if own is None:  # itself a fault, reported where it stands
+    if own is None:  # a separate fault, reported at its place
         return
     known = entries(Supply)
     for key in own.needed:
         if not view.has("supply", key):
-            message = f"missing: a {kind} needs it"
+            message = f"missing: required by a {kind}"
             yield Fault(("supply", key), message, how_to_add(key, known[key]))
     flow, pump = view.has("supply", "flow"), view.has("supply", "pump")
     if kind == "fixed_pump" and not flow and not pump:
         remedy = f'{how_to_add("flow", known["flow"])}, or a block "pump:"'
-        yield Fault(("supply", "flow"), f"missing: a {kind} needs it, or pump", remedy)
+        yield Fault(("supply", "flow"), f"missing: a {kind} needs this or pump", remedy)
     if kind == "fixed_pump" and flow and pump:
-        message = "pump beside flow: both say what is delivered"
+        message = "pump beside flow: both define the delivery"
         yield Fault(("supply", "pump"), message, "keep one of them", at_key=True)
     given, passed = (view.number("supply", *one) for one in (("flow",), ("relief", "rated_flow")))
     if kind == "fixed_pump" and given is not None and passed is not None and passed < given:
-        message = f"{_flow(passed)}: less than the pump gives ({_flow(given)})"
+        message = f"{_flow(passed)}: less than the pump delivers ({_flow(given)})"
         yield Fault(("supply", "relief", "rated_flow"), message, f"write {_flow(given)} or more")
     where = "on a constant supply" if kind == "constant" else f"on a {kind}"
     remedy = "remove it, or write another type" if kind == "constant" else "remove the line"
@@ -49,7 +49,7 @@ def supply(view: View) -> Iterator[Fault]:
 
 
 def cushion(view: View) -> Iterator[Fault]:
-    """A cushion closes the way of the oil."""
+    """A cushion reduces the flow area of the oil."""
     loc = ("stops", "cushion")
     opened, closed = view.number(*loc, "open_area"), view.number(*loc, "end_area")
     if opened is not None and closed is not None and closed >= opened:
@@ -57,11 +57,11 @@ def cushion(view: View) -> Iterator[Fault]:
         yield Fault((*loc, "end_area"), message, f"write less than {_area(opened)}")
     elif closed == 0:
         message = f"{_area(closed)}: the piston would never reach its stop"
-        yield Fault((*loc, "end_area"), message, "write the area of the gap that is left")
+        yield Fault((*loc, "end_area"), message, "write the area of the remaining gap")
 
 
 def load_cylinder(view: View) -> Iterator[Fault]:
-    """A load cylinder has an area, and its supply drives it."""
+    """A load cylinder has an area and a pressure difference."""
     loc = ("load", "cylinder")
     bore, rod = view.number(*loc, "bore"), view.number(*loc, "rod_diameter")
     if bore is not None and rod is not None and rod >= bore:
@@ -75,7 +75,7 @@ def load_cylinder(view: View) -> Iterator[Fault]:
 
 
 def friction(view: View) -> Iterator[Fault]:
-    """The curve is stated from its Coulomb friction on; its breakaway is not below that."""
+    """A friction curve starts with Coulomb friction; breakaway is not below it."""
     model = view.text("friction", "model")
     own = FRICTIONS.get(model or "")
     if own is not None:
@@ -86,13 +86,13 @@ def friction(view: View) -> Iterator[Fault]:
     if not view.has("friction", "coulomb"):
         for key in ("static", "stribeck_speed", "viscous"):
             if view.has("friction", key):
-                message = f"missing: {key} needs it"
+                message = f"missing: required with {key}"
                 how = how_to_add("coulomb", known["coulomb"])
                 yield Fault(("friction", "coulomb"), message, how)
                 break
     if view.has("friction", "static") and not view.has("friction", "stribeck_speed"):
         remedy = 'add e.g. "stribeck_speed: 5 mm/s"'
-        yield Fault(("friction", "stribeck_speed"), "missing: static needs it", remedy)
+        yield Fault(("friction", "stribeck_speed"), "missing: required with static", remedy)
     low, high = view.number("friction", "coulomb"), view.number("friction", "static")
     if low is not None and high is not None and high < low:
         message = f"{_force(high)}: below coulomb ({_force(low)})"
@@ -100,30 +100,32 @@ def friction(view: View) -> Iterator[Fault]:
 
 
 def motor(view: View) -> Iterator[Fault]:
-    """With a motor in the cylinder's place nothing of a cylinder is stated."""
+    """With a motor in place of the cylinder, no cylinder data are stated."""
     if not view.has("motor"):
         return
-    where = "where a motor stands in the cylinder's place"
+    where = "with a motor in place of the cylinder"
     if view.has("held_ports"):
-        message = "held_ports beside motor: nothing flows to the motor"
+        message = "held_ports beside motor: no oil flows to the motor"
         yield Fault(("held_ports",), message, "keep one of them", at_key=True)
     yield from without_effect(view, (), ("stops", "friction"), where)
     yield from without_effect(view, ("initial",), ("position", "speed"), where)
-    yield from without_effect(view, ("load",), entries(Load), where, "its load stands under motor")
+    yield from without_effect(
+        view, ("load",), entries(Load), where, "the load of the motor is under motor"
+    )
     yield from without_effect(view, ("control",), ["speed_feedback"], where)
 
 
 def held_ports(view: View) -> Iterator[Fault]:
-    """With its ports held the valve moves nothing."""
-    if not view.has("held_ports") or view.has("motor"):  # both is a fault of its own
+    """With held ports the valve moves no load."""
+    if not view.has("held_ports") or view.has("motor"):  # stating both is a separate fault
         return
-    where, idle = "where the ports are held", ("control", "stops", "friction", "initial")
-    yield from without_effect(view, (), idle, where, "remove it, or leave held_ports out")
+    where, idle = "with held ports", ("control", "stops", "friction", "initial")
+    yield from without_effect(view, (), idle, where, "remove it, or remove held_ports")
     yield from without_effect(view, ("load",), entries(Load), where)
     ends = view.text("ends")
     if ends != "valve" and ends in entries(Scenario)["ends"].choices:
-        remedy = 'write "valve", or leave held_ports out'
-        yield Fault(("ends",), f"{ends}: held_ports are those of the valve", remedy)
+        remedy = 'write "valve", or remove held_ports'
+        yield Fault(("ends",), f"{ends}: held_ports apply to the valve", remedy)
 
 
 CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
@@ -139,14 +141,14 @@ CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
 
 
 def cross_field(tree: Any) -> Iterator[Fault]:
-    """Every fault between values of a scenario's tree in SI."""
+    """All contradictions between values of a scenario's tree in SI."""
     view = View(tree, Scenario)
     for check in CHECKS:
         yield from check(view)
 
 
 def design_faults(scenario: Scenario, design: Design) -> Iterator[Fault]:
-    """Every fault of a scenario that shows beside its design, at the scenario's places."""
+    """All contradictions between scenario and design, at the scenario's places."""
     yield from _parts_there_are(scenario, design)
     stroke = design.cylinder.stroke
     begin = scenario.initial.position
@@ -162,7 +164,7 @@ def design_faults(scenario: Scenario, design: Design) -> Iterator[Fault]:
 
 
 def _parts_there_are(scenario: Scenario, design: Design) -> Iterator[Fault]:
-    """What the scenario moves or leads to stands in the design."""
+    """Components that the scenario uses exist in the design."""
     needs_valve = {
         ("signal",): bool(scenario.signal),
         ("control",): scenario.control is not None,
@@ -173,11 +175,11 @@ def _parts_there_are(scenario: Scenario, design: Design) -> Iterator[Fault]:
     }
     missing = [loc for loc, needed in needs_valve.items() if needed]
     if design.valve is None and missing:
-        remedy = f"add valve to the design, or leave {'.'.join(missing[0])} out"
+        remedy = f"add valve to the design, or remove {'.'.join(missing[0])}"
         yield Fault(missing[0], "the design has no valve", remedy, at_key=True)
     if scenario.ends == "reducing_valve" and design.ports.reducing_valve is None:
         remedy = "add ports.reducing_valve to the design, or write another end"
-        yield Fault(("ends",), "reducing_valve: the design describes none", remedy)
+        yield Fault(("ends",), "reducing_valve: missing in the design", remedy)
     if scenario.load.torque and getattr(design, "linkage", None) is None:
         remedy = "add linkage to the design, or write load.force"
         yield Fault(("load", "torque"), "the design has no linkage", remedy, at_key=True)

@@ -1,4 +1,4 @@
-"""Kinds of values that only a scenario has: names of files and columns, a place to begin at."""
+"""Values that only a scenario has: names of files and columns, initial position."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ..kinds import Position, PositionKind, Text, ValueFault
 
 
 class Label(Text):
-    """A text with an example of its own."""
+    """A text with its own example."""
 
     def __init__(self, help: str, example: str, longest: int = 200) -> None:
         super().__init__(help, longest)
@@ -17,13 +17,13 @@ class Label(Text):
 
 
 class FileName(Label):
-    """Name of a file, from the scenario's folder on."""
+    """Name of a file, relative to the scenario's folder."""
 
     def __init__(self, help: str, example: str) -> None:
         super().__init__(help, example, 300)
 
     def validate(self, value: Any) -> str:
-        """The name itself."""
+        """The name of the file."""
         text = super().validate(value)
         if text.strip() == "-":
             raise ValueFault(f'"{shown(text)}" is not a file', f"write e.g. {self.example}")
@@ -45,5 +45,5 @@ class StartPosition(PositionKind):
                 raise ValueFault(fault.message, remedy) from None
             raise
         if found == "worst":
-            raise ValueFault('"worst": is no place to begin at', remedy)
+            raise ValueFault('"worst": not an initial position', remedy)
         return found

@@ -1,4 +1,4 @@
-"""A Scenario: what happens to a design over time, in SI, as typed sections."""
+"""The Scenario: events on a design over time, in SI, as typed sections."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from . import signals, words
 from .kinds import FileName, Label, StartPosition
 
 SAMPLES = 2000
-"""Samples of a run whose file states no sample time."""
+"""Default number of samples of a run."""
 MOST_SAMPLES = 2_000_000
-"""Largest number of samples of a run."""
+"""Most samples of a run."""
 FEWEST_SAMPLES = 10
-"""Least number of samples of a run, and of each period of a sine in it."""
+"""Fewest samples of a run, and of each sine period in it."""
 
 Parts = Annotated[tuple[signals.Signal, ...], Field(max_length=100)]
 
 
 class Initial(Section):
-    """How it begins: at rest unless a speed is stated, the pressures as the load is held."""
+    """Initial state: at rest unless a speed is stated; default pressures hold the load."""
 
     position: Annotated[Position | None, StartPosition()] = None
     """Default: mid-stroke."""
@@ -34,10 +34,10 @@ class Initial(Section):
 
 
 class Machine(Section):
-    """A pump or motor by the Wilson model."""
+    """A pump or motor, Wilson model."""
 
     displacement: Annotated[float, Of("displacement", "displacement per revolution")]
-    setting: Annotated[float, Of("displacement_setting", "share of it that is set")] = 1.0
+    setting: Annotated[float, Of("displacement_setting", "displacement setting")] = 1.0
     slip: Annotated[float, Of("slip_coefficient", "C_s, laminar slip")]
     coulomb: Annotated[float, Of("coulomb_coefficient", "C_f, friction in proportion to pressure")]
     viscous: Annotated[float, Of("viscous_coefficient", "C_v, friction in proportion to speed")]
@@ -53,9 +53,11 @@ class PumpMachine(Machine):
 class Relief(Section):
     """A relief valve."""
 
-    pressure: Annotated[float, Of("pressure_drop", "where it begins to open, over the tank")]
-    override: Annotated[float, Of("pressure_drop", "pressure above that at the rated flow")] = 10e5
-    rated_flow: Annotated[float, Of("rated_flow", "flow at which it is fully open")]
+    pressure: Annotated[float, Of("pressure_drop", "cracking pressure above tank")]
+    override: Annotated[
+        float, Of("pressure_drop", "pressure rise above cracking at the rated flow")
+    ] = 10e5
+    rated_flow: Annotated[float, Of("rated_flow", "flow with fully open valve")]
 
 
 class SupplyAccumulator(Section):
@@ -73,42 +75,46 @@ class SupplyLine(Section):
 
 
 class Supply(Section):
-    """What feeds the valve; the design's supply pressure is the set pressure."""
+    """The supply of the valve; its set pressure is the supply pressure of the design."""
 
     type: words.Supply = "constant"
     volume: Annotated[float | None, Of("oil_volume", "oil volume of the supply line")] = None
-    flow: Annotated[float | None, Of("rated_flow", "flow of a fixed pump, or largest one")] = None
+    flow: Annotated[
+        float | None, Of("rated_flow", "flow of a fixed pump, or largest flow of a controlled pump")
+    ] = None
     pump: PumpMachine | None = None
-    """In place of `flow`: a Wilson pump."""
+    """Wilson pump, in place of `flow`."""
     relief: Relief | None = None
-    gain: Annotated[float | None, Of("pump_gain", "of a controlled pump")] = None
-    time_constant: Annotated[float | None, Of("time_constant", "of a controlled pump")] = None
+    gain: Annotated[float | None, Of("pump_gain", "controller gain of a controlled pump")] = None
+    time_constant: Annotated[float | None, Of("time_constant", "lag of a controlled pump")] = None
     accumulator: SupplyAccumulator | None = None
     line: SupplyLine | None = None
 
 
 class Cushion(Section):
-    """A spear that closes the way of the oil before a stop."""
+    """A spear that throttles the oil before a stop."""
 
     ends: words.CushionEnd = "both"
-    length: Annotated[float, Of("part_length", "travel over which it works")]
-    open_area: Annotated[float, Of("orifice_area", "area as the spear enters")]
-    end_area: Annotated[float, Of("orifice_area", "area left at the stop")]
-    exponent: Annotated[float, Of("stribeck_exponent", "power of the area over the travel")] = 1.0
+    length: Annotated[float, Of("part_length", "length of the cushioned travel")]
+    open_area: Annotated[float, Of("orifice_area", "flow area when the spear enters")]
+    end_area: Annotated[float, Of("orifice_area", "remaining flow area at the stop")]
+    exponent: Annotated[float, Of("stribeck_exponent", "exponent of the area over the travel")] = (
+        1.0
+    )
 
 
 class Stops(Section):
-    """The ends of the stroke; their stiffness follows from the design's stop_travel."""
+    """Stops at the ends of the stroke; their stiffness follows from the design's stop_travel."""
 
     damping: Annotated[float, Of("damping_factor", "damping over sqrt(K m)")] = 0.5
     cushion: Cushion | None = None
 
 
 class Friction(Section):
-    """Friction of the seals: as the design states it, or stated here."""
+    """Friction of the seals, from the design or stated here."""
 
     model: words.Friction = "lugre"
-    coulomb: Annotated[float | None, Of("coulomb_force", "F_C; default: of the design")] = None
+    coulomb: Annotated[float | None, Of("coulomb_force", "F_C; default: from the design")] = None
     static: Annotated[float | None, Of("static_force", "F_S; default: F_C")] = None
     stribeck_speed: Annotated[float | None, Of("stribeck_speed", "v_s")] = None
     exponent: Annotated[float, Of("stribeck_exponent", "delta")] = 2.0
@@ -118,68 +124,71 @@ class Friction(Section):
     ] = None
     bristle_damping: Annotated[
         float | None,
-        Of("bristle_damping", "sigma_1; default: sqrt(sigma_0 m), faded to be passive"),
+        Of(
+            "bristle_damping",
+            "sigma_1; default: sqrt(sigma_0 m), reduced with speed to stay passive",
+        ),
     ] = None
 
 
 class Motor(Section):
-    """A hydraulic motor in the cylinder's place, between two pipes."""
+    """A hydraulic motor in place of the cylinder, between two pipes."""
 
     machine: Machine
-    inertia: Annotated[float, Of("inertia", "of motor and load")]
+    inertia: Annotated[float, Of("inertia", "inertia of motor and load")]
     pipe_volume: Annotated[float, Of("oil_volume", "oil volume of each pipe")]
-    damping: Annotated[float, Of("shaft_damping", "of the load")] = 0.0
+    damping: Annotated[float, Of("shaft_damping", "damping of the load")] = 0.0
     torque: Annotated[tuple[signals.Torque, ...], Field(max_length=100)] = ()
 
 
 class HeldPorts(Section):
-    """The valve alone, on a bench that holds its ports."""
+    """The valve alone, on a test bench with held port pressures."""
 
     pressure_a: Annotated[float, Of("pressure", "gauge pressure at port A")]
     pressure_b: Annotated[float, Of("pressure", "gauge pressure at port B")]
 
 
 class Drive(Section):
-    """What moves the rod from outside: a stiff machine behind a spring, as a load cylinder is."""
+    """An external drive of the rod: a rigid machine behind a spring, such as a load cylinder."""
 
     position: Annotated[tuple[signals.Position, ...], Field(min_length=1, max_length=100)]
-    stiffness: Annotated[float, Of("load_stiffness", "between the machine and the load")]
-    damping: Annotated[float, Of("load_damping", "between the machine and the load")] = 0.0
+    stiffness: Annotated[float, Of("load_stiffness", "spring between machine and load")]
+    damping: Annotated[float, Of("load_damping", "damper between machine and load")] = 0.0
 
 
 class LoadCylinder(Section):
-    """A cylinder with a rod on both sides that pushes and pulls the rod, on a valve of its own.
+    """A double-rod load cylinder with its own valve, coupled to the rod.
 
-    It stands at mid-stroke when the run begins; the oil is the design's.
+    It starts at mid-stroke; the oil is that of the design.
     """
 
     bore: Annotated[float, Of("bore", "inner diameter")]
-    rod_diameter: Annotated[float, Of("rod_diameter", "of both rods")]
+    rod_diameter: Annotated[float, Of("rod_diameter", "diameter of both rods")]
     stroke: Annotated[float, Of("stroke", "travel of its piston")]
-    dead_volume: Annotated[float, Of("volume", "of each chamber with its line")] = 0.0
+    dead_volume: Annotated[float, Of("volume", "oil volume of each chamber with its line")] = 0.0
     supply_pressure: Annotated[float, Of("working_pressure", "gauge")]
     return_pressure: Annotated[float, Of("pressure", "gauge")] = 0.0
     valve: Valve
     signal: Annotated[tuple[signals.Signal, ...], Field(max_length=100)] = ()
     force: Annotated[
-        float, Of("force_value", "mean force on the rod outwards that it starts with")
+        float, Of("force_value", "initial mean force on the rod, positive outwards")
     ] = 0.0
 
 
 class Load(Section):
-    """What the rod moves; the mass is the design's load.mass."""
+    """The load of the rod; its mass is load.mass of the design."""
 
     force: Annotated[tuple[signals.Force, ...], Field(max_length=100)] = ()
     torque: Annotated[tuple[signals.Torque, ...], Field(max_length=100)] = ()
-    """On the joint of the design's linkage."""
-    stiffness: Annotated[float, Of("load_stiffness", "of a spring to ground")] = 0.0
-    damping: Annotated[float, Of("load_damping", "of a damper to ground")] = 0.0
+    """Torque on the joint of the design's linkage."""
+    stiffness: Annotated[float, Of("load_stiffness", "stiffness of a spring to ground")] = 0.0
+    damping: Annotated[float, Of("load_damping", "damping to ground")] = 0.0
     drive: Drive | None = None
     cylinder: LoadCylinder | None = None
 
 
 class Control(Section):
-    """A continuous controller of the valve's signal; one of the four references closes the loop."""
+    """A continuous controller of the valve signal; one of four references closes the loop."""
 
     position: Annotated[tuple[signals.Position, ...], Field(max_length=100)] = ()
     speed: Annotated[tuple[signals.Speed, ...], Field(max_length=100)] = ()
@@ -188,50 +197,55 @@ class Control(Section):
     law: words.Law = "p"
     tuning: words.Tuning = "margins"
     margin: Annotated[
-        float | None, Of("margin", "gain margin that tuning by margins keeps; default: 2, pi: 3")
+        float | None, Of("margin", "gain margin of tuning by margins; default: 2, pi: 3")
     ] = None
-    position_gain: Annotated[float | None, Of("position_gain", "of a position loop")] = None
-    speed_gain: Annotated[float | None, Of("speed_gain", "of a speed loop")] = None
-    shaft_speed_gain: Annotated[float | None, Of("shaft_speed_gain", "of a shaft's speed")] = None
-    shaft_angle_gain: Annotated[float | None, Of("shaft_angle_gain", "of a shaft's angle")] = None
-    gain_factor: Annotated[float, Of("part_factor", "on the gain, tuned or stated")] = 1.0
-    integral_factor: Annotated[float, Of("part_factor", "on the integral part")] = 1.0
-    derivative_factor: Annotated[float, Of("part_factor", "on the derivative part")] = 1.0
+    position_gain: Annotated[float | None, Of("position_gain", "gain of a position loop")] = None
+    speed_gain: Annotated[float | None, Of("speed_gain", "gain of a speed loop")] = None
+    shaft_speed_gain: Annotated[
+        float | None, Of("shaft_speed_gain", "gain of a shaft-speed loop")
+    ] = None
+    shaft_angle_gain: Annotated[
+        float | None, Of("shaft_angle_gain", "gain of a shaft-angle loop")
+    ] = None
+    gain_factor: Annotated[float, Of("part_factor", "factor on the gain, tuned or stated")] = 1.0
+    integral_factor: Annotated[float, Of("part_factor", "factor on the integral part")] = 1.0
+    derivative_factor: Annotated[float, Of("part_factor", "factor on the derivative part")] = 1.0
     integral_time: Annotated[float | None, Of("time_constant", "T_i")] = None
     derivative_time: Annotated[float | None, Of("time_constant", "T_d")] = None
-    filter_time: Annotated[float, Of("time_constant", "T_f of the rate")] = 1e-3
-    speed_feedback: Annotated[float, Of("speed_gain", "taken off the signal: inner speed loop")] = (
-        0.0
-    )
+    filter_time: Annotated[float, Of("time_constant", "filter time T_f of the derivative")] = 1e-3
+    speed_feedback: Annotated[
+        float, Of("speed_gain", "gain of an inner speed loop, subtracted from the signal")
+    ] = 0.0
     pressure_feedback: Annotated[
-        float, Of("pressure_gain", "on the changes of the load pressure, taken off the signal")
+        float,
+        Of("pressure_gain", "gain on changes of the load pressure, subtracted from the signal"),
     ] = 0.0
     pressure_time: Annotated[
-        float, Of("time_constant", "of the high-pass that passes the changes only")
+        float, Of("time_constant", "time constant of the high-pass filter for pressure changes")
     ] = 0.05
-    rate_limit: Annotated[float | None, Of("signal_rate", "of the signal")] = None
+    rate_limit: Annotated[float | None, Of("signal_rate", "rate limit of the signal")] = None
 
 
 class Analysis(Section):
-    """How the signals are read."""
+    """Evaluation of the signals."""
 
     window_cycles: Annotated[
-        float, Of("cycles_per_window", "cycles of a sine in a window of the dynamic stiffness")
+        float, Of("cycles_per_window", "sine cycles per window of the dynamic stiffness")
     ] = 5.0
 
 
 class Scenario(Section):
-    """What happens to a design over time."""
+    """Events on a design over time."""
 
     name: Annotated[str, Label("title of the scenario", "step response")]
     notes: Annotated[str, Text("free text for the report", 20000, multiline=True)] = ""
     design: Annotated[str, FileName("the design file, beside the scenario", "knee.yaml")]
     set: dict[str, str] = {}  # noqa: RUF012 (pydantic copies it)
-    """Values of the design that are other here, by PATH."""
+    """Changed values of the design, by PATH."""
     duration: Annotated[float, Of("duration", "simulated time")]
-    sample_time: Annotated[float | None, Of("sample_time", "of signals; default: 2000 samples")] = (
-        None
-    )
+    sample_time: Annotated[
+        float | None, Of("sample_time", "sample time of the signals; default: 2000 samples")
+    ] = None
     initial: Initial = Initial()
     supply: Supply = Supply()
     ends: words.Ends = None

@@ -1,4 +1,4 @@
-"""Scenario files: read with the same care as designs, and together with the design they name."""
+"""Scenario files: read like designs, and together with the design they name."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ from .model import Scenario
 
 @dataclass(frozen=True, slots=True)
 class LoadedScenario:
-    """A scenario, where it was read, and what it changes in its design."""
+    """A scenario, its source, and its changes to the design."""
 
     scenario: Scenario
     source: Source
     folder: Path
-    """Where the files it names lie: that of its own file."""
+    """Folder of the named files: that of the scenario file."""
     changes: tuple[Override, ...] = ()
-    """Values of the design that are other here, those of the command line last."""
+    """Changed values of the design; those of the command line come last."""
 
     @property
     def design_file(self) -> Path:
-        """The design it names."""
+        """The design file that the scenario names."""
         return self.folder / self.scenario.design
 
     def diagnostic(self, path: str, message: str, remedy: str = "") -> Diagnostic:
@@ -48,18 +48,18 @@ class LoadedScenario:
 def read_scenario(
     source: str | Path, *, overrides: Iterable[tuple[str, str]] = ()
 ) -> LoadedScenario:
-    """Read a scenario file, or the text of one; its design stays unread.
+    """Read a scenario file, or its text; the design is not read.
 
     Parameters
     ----------
     source : path, ``"-"`` for standard input, or a text of several lines
-    overrides : (PATH, value) pairs that replace values before anything is checked; a bare number
-        is SI. A PATH that only a design has goes to the design, as one under ``set`` does
+    overrides : (PATH, value) pairs that replace values before all checks; a bare number is SI.
+        PATHs that exist only in a design change the design, like those under ``set``
 
     Raises
     ------
     InputError
-        with every fault, in the order of the file's lines
+        with all faults, in line order
     """
     text, file = opened(source, "scenario")
     document = parse(text, file, "scenario")
@@ -84,7 +84,7 @@ def _made(tree: dict[str, Any]) -> tuple[Scenario | None, Sequence[Fault]]:
 
 
 def _of_design(path: str, tree: Any) -> bool:
-    """Whether a PATH names a value of the design and none of the scenario."""
+    """Whether a PATH names a value of the design and not of the scenario."""
     head = re.split(r"[.\[]", path.strip(), maxsplit=1)[0]
     if head not in entries(Scenario):
         return head in entries(Design)
@@ -105,7 +105,7 @@ def read_design_of(
     materials: Materials | None = None,
     metrics: Mapping[str, Quantity] | None = None,
 ) -> LoadedDesign:
-    """Read the design a scenario names, with the values the scenario changes in it.
+    """Read the design that a scenario names, with the scenario's changes.
 
     Parameters
     ----------
@@ -116,8 +116,8 @@ def read_design_of(
     Raises
     ------
     InputError
-        with every fault of the design, those of changed values at their place in the scenario;
-        else with those that show when both are read together
+        with all faults of the design, those of changed values at their place in the scenario;
+        otherwise with all contradictions between the two
     """
     path = loaded.design_file
     try:
@@ -131,7 +131,7 @@ def read_design_of(
 
 
 def _at_its_name(fault: Diagnostic, loaded: LoadedScenario) -> Diagnostic:
-    """A fault of a design file as a whole stands where the scenario names the file."""
+    """Move a fault of a whole design file to the line of the scenario that names it."""
     path = str(loaded.design_file)
     if fault.file != path or fault.line is not None:
         return fault

@@ -1,4 +1,4 @@
-"""The files that a scenario's signals name, and where they hold no samples."""
+"""Files that a scenario's signals name, and their gaps."""
 
 from __future__ import annotations
 
@@ -16,25 +16,25 @@ from .signal_faults import part_lists
 from .signals import SignalSegment
 
 WIDE: Final = 1.5
-"""Steps of an evenly sampled record from which on samples are missing between two (a choice)."""
+"""Step that counts as a gap in an evenly sampled record, over the normal step (a choice)."""
 REGULAR: Final = 0.9
-"""Share of its steps that are alike in an evenly sampled record, at least (a choice)."""
+"""Least share of equal steps in an evenly sampled record (a choice)."""
 ROUNDED: Final = 1e-9
-"""Rounding of times, relative."""
+"""Relative tolerance of times."""
 
 
 class Gap(NamedTuple):
-    """A stretch without samples."""
+    """An interval without samples."""
 
     first: float
-    """Where its first sample would stand [s]."""
+    """Time of its first missing sample [s]."""
     last: float
     size: int
-    """Samples."""
+    """Number of missing samples."""
 
 
 def recorded_parts(scenario: Scenario) -> Iterator[tuple[str, SignalSegment, str]]:
-    """PATH, part and dimension of its values, of every part that is a record."""
+    """PATH, part and dimension of the values of every recorded part."""
     for loc, section in part_lists().items():
         kind = entries(section)["value"].kind
         assert isinstance(kind, Of)
@@ -44,7 +44,7 @@ def recorded_parts(scenario: Scenario) -> Iterator[tuple[str, SignalSegment, str
 
 
 def recorded_notes(scenario: Scenario, records: Records) -> Iterator[str]:
-    """Where a recorded signal is none: before its samples, after them and between them."""
+    """Times at which a recorded signal has no data: before, after and between its samples."""
     least = ROUNDED * scenario.duration
     for path, part, _ in recorded_parts(scenario):
         found = sampled(part, records)
@@ -57,7 +57,7 @@ def recorded_notes(scenario: Scenario, records: Records) -> Iterator[str]:
         if last < scenario.duration - least:
             yield (
                 f"{name} ends at {last:.4g} s, the scenario at {scenario.duration:.4g} s: its "
-                "last value is held"
+                "last value is kept"
             )
         time, values = records[part.file or "", part.column or ""]
         absent = [
@@ -66,11 +66,11 @@ def recorded_notes(scenario: Scenario, records: Records) -> Iterator[str]:
             if first < one.first < min(last, scenario.duration) and one.last > 0
         ]
         if absent:
-            yield f"{name}: {gap_words(absent)}, a straight line between those beside them"
+            yield f"{name}: {gap_words(absent)}, interpolated linearly"
 
 
 def gaps(time: Array, values: Array) -> list[Gap]:
-    """Stretches of a channel without samples: NaN, and lines that an even clock leaves out."""
+    """Intervals of a channel without samples: NaN, and missing steps of an even time base."""
     absent = np.concatenate(([False], ~np.isfinite(values), [False])).astype(np.int8)
     turns = np.flatnonzero(np.diff(absent))
     found = [
@@ -89,7 +89,7 @@ def gaps(time: Array, values: Array) -> list[Gap]:
 
 
 def gap_words(found: list[Gap]) -> str:
-    """How many samples are missing, and where: the one stretch, or the first and the last.
+    """Number of missing samples and where: the only gap, or the first and the last.
 
     >>> gap_words([Gap(0.2, 0.2, 1)])
     '1 sample is missing at 0.2 s'

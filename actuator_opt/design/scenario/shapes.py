@@ -1,6 +1,6 @@
-"""The shapes that parts of a signal may have: words, keys, course over time, words for a report.
+"""Shapes of signal parts: names, keys, time courses, report texts.
 
-A new shape is an entry of `SHAPES` with its functions here; nothing else names a shape.
+A new shape is an entry of `SHAPES` with its functions here; a shape is named nowhere else.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from ...base.kinds import kinds
 from ...base.numeric import Array, where
 
 Records = Mapping[tuple[str, str], tuple[Array, Array]]
-"""Time [s] and values [SI] of every column of a file that a part names; NaN where missing."""
+"""Time [s] and values [SI] of every file column that a part names; NaN where missing."""
 
 
 class SignalPart(Protocol):
-    """What a shape reads of a part (`signals.Part`); times [s], frequency [Hz], phase [rad]."""
+    """Attributes of a part that shapes read: times [s], frequency [Hz], phase [rad]."""
 
     start: float
     end: float | None
@@ -33,38 +33,38 @@ class SignalPart(Protocol):
 
 
 class Clock(Protocol):
-    """The time of a system of equations, and what of a signal depends on it."""
+    """Time of a system of equations, and time-dependent terms of a signal."""
 
     @property
     def time(self) -> Any:
         """The time [s], an expression."""
 
     def after(self, instant: float) -> Any:
-        """True from an instant on; the integrator restarts there."""
+        """True after `time`; the integrator restarts there."""
 
     def sine(self, angle: Any) -> Any:
         """Sine of an expression [rad]."""
 
     def samples(self, time: Array, values: Array) -> Any:
-        """Straight lines between samples, constant outside."""
+        """Linear interpolation between samples, constant outside."""
 
 
 @dataclass(frozen=True, slots=True)
 class SignalShape:
-    """A shape of a part of a signal.
+    """Shape of a signal part.
 
     Attributes
     ----------
-    name, help : its word in a scenario, and what it means
-    needed, read : keys it cannot do without, and others it reads
-    instead : the shape that a key without effect may mean
-    course : its value over the time of a clock, an expression
-    initial : its value as the time begins
-    lasts : whether its value stays once reached
-    moves_on : whether it changes gradually, so that a following error can be read
-    settles : whether it comes to rest, so that the answer to a step beside it can be read
-    changes_after : whether it changes after an instant [s]
-    words : how a report says it, with texts of height and times
+    name, help : name in a scenario, and its meaning
+    needed, read : required keys, and optional keys
+    instead : shape to suggest for a key without effect
+    course : expression of the value over the time of a clock
+    initial : value at time zero
+    lasts : whether the final value is kept
+    moves_on : whether it changes gradually, so that a following error is defined
+    settles : whether it comes to rest, so that the response to a superposed step is defined
+    changes_after : whether it changes after a time [s]
+    words : text for a report, from texts of height and times
     """
 
     name: str
@@ -82,12 +82,12 @@ class SignalShape:
 
 
 def height(part: SignalPart) -> float:
-    """Height of a part, or amplitude of a sine; zero where none is stated."""
+    """Height of a part, or amplitude of a sine; zero if not stated."""
     return getattr(part, "value", None) or 0.0
 
 
 def sampled(part: SignalPart, records: Records) -> tuple[Array, Array] | None:
-    """Time [s] and values of a recorded part, missing samples left out; None without record."""
+    """Time [s] and values of a recorded part without missing samples; None without a record."""
     known = records.get((part.file or "", part.column or ""))
     if known is None:
         return None
@@ -105,7 +105,7 @@ def _end(part: SignalPart) -> float:
 
 
 def _turns_at(*names: str) -> Callable[[SignalPart, float, Records], bool]:
-    """Whether one of some instants of a part comes after a moment."""
+    """Whether any of these times of a part comes after a given time."""
 
     def after(part: SignalPart, moment: float, records: Records) -> bool:
         instants = (_end(part) if name == "end" else part.start for name in names)
@@ -180,7 +180,7 @@ SHAPES = kinds(
     "shape",
     SignalShape(
         "constant",
-        "value all the time",
+        "constant value",
         ("value",),
         (),
         instead={"end": "pulse", "start": "step"},
@@ -208,7 +208,7 @@ SHAPES = kinds(
     ),
     SignalShape(
         "ramp",
-        "from nothing at start to value at end",
+        "from zero at start to value at end",
         ("value", "end"),
         ("start",),
         instead={},
@@ -269,4 +269,4 @@ SHAPES = kinds(
         words=lambda part, value, seconds: f"record {part.file}, {part.column}",
     ),
 )
-"""Every shape by its word."""
+"""Every shape by name."""

@@ -1,4 +1,4 @@
-"""Faults of signals over time, and of the time in which they run."""
+"""Faults of signals over time, and of the simulated time."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .shapes import SHAPES
 from .signals import SignalSegment
 
 _SLACK = 1e-9
-"""Rounding of times, relative."""
+"""Relative tolerance of times."""
 _time = quantities.SCENARIOS["instant"].text
 _short = quantities.SCENARIOS["sample_time"].text
 _hertz = quantities.INPUTS["frequency"].text
@@ -27,7 +27,7 @@ _hertz = quantities.INPUTS["frequency"].text
 def part_lists(
     section: type[Section] = Scenario, loc: tuple[str, ...] = ()
 ) -> Mapping[tuple[str, ...], type[Section]]:
-    """Where a scenario has signals, and what the parts of each are.
+    """Places of the signals in a scenario, with the section type of their parts.
 
     >>> [".".join(loc) for loc in part_lists()][:3]
     ['motor.torque', 'load.force', 'load.torque']
@@ -53,13 +53,13 @@ def _parts(view: View) -> Iterator[tuple[Loc, str, type[Section]]]:
 
 
 def shapes(view: View) -> Iterator[Fault]:
-    """Each part states what its shape needs, and nothing that it does not read."""
+    """Each part has the keys that its shape needs, and no others."""
     for loc, shape, section in _parts(view):
         own, known = SHAPES[shape], entries(section)
         for key in own.needed:
             if not view.has(*loc, key):
                 how = how_to_add(key, known[key])
-                yield Fault((*loc, key), f"missing: a {shape} needs it", how)
+                yield Fault((*loc, key), f"missing: required by a {shape}", how)
         for key in known:
             if key == "shape" or key in own.needed or key in own.read:
                 continue
@@ -69,7 +69,7 @@ def shapes(view: View) -> Iterator[Fault]:
 
 
 def order(view: View) -> Iterator[Fault]:
-    """Each part ends after it starts, and starts before the scenario ends."""
+    """Each part ends after its start, and starts before the scenario ends."""
     duration = view.number("duration")
     for loc, shape, _ in _parts(view):
         start, end = view.number(*loc, "start"), view.number(*loc, "end")
@@ -86,7 +86,7 @@ def order(view: View) -> Iterator[Fault]:
 
 
 def sampling(view: View) -> Iterator[Fault]:
-    """Samples are neither too few nor too many, for the run and for each of its sines."""
+    """The number of samples is reasonable for the run and for each of its sines."""
     duration, stated = view.number("duration"), view.number("sample_time")
     if duration is None or (stated is None and view.has("sample_time")):
         return
@@ -109,7 +109,7 @@ def sampling(view: View) -> Iterator[Fault]:
 
 
 def _sines(view: View, duration: float, sample: float, stated: bool) -> Iterator[Fault]:
-    """Sines that a sample time does not show; the fastest one if there are several."""
+    """Sines that the sample time cannot resolve; only the fastest of several."""
     waves: list[tuple[float, Loc]] = []
     for loc, shape, _ in _parts(view):
         frequency = view.number(*loc, "frequency")
@@ -124,7 +124,7 @@ def _sines(view: View, duration: float, sample: float, stated: bool) -> Iterator
     if needed < duration / MOST_SAMPLES * (1 - _SLACK):
         message = (
             f"{_hertz(frequency)} over {_time(duration)}: "
-            f"needs more than {MOST_SAMPLES / 1e6:g} million samples"
+            f"would need more than {MOST_SAMPLES / 1e6:g} million samples"
         )
         yield Fault(loc, message, "lower it, or shorten duration")
         return
@@ -137,7 +137,7 @@ def _sines(view: View, duration: float, sample: float, stated: bool) -> Iterator
 
 
 def _rounded(value: float, way: Callable[[float], int]) -> float:
-    """A time with three digits, rounded up or down."""
+    """A time rounded up or down to three digits."""
     step = 10.0 ** (math.floor(math.log10(value)) - 2)
     return way(value / step * (1 + (_SLACK if way is math.floor else -_SLACK))) * step
 

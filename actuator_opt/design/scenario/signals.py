@@ -1,4 +1,4 @@
-"""Signals over time: lists of parts that add up."""
+"""Signals over time: lists of parts that are added."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from .kinds import FileName, Label
 
 
 class SignalSegment(Section):
-    """A part of a signal; the parts of a list add up."""
+    """A part of a signal; the parts of a list are added."""
 
     shape: words.Shape
-    start: Annotated[float, Of("instant", "when it begins; of a record: when its zero is")] = 0.0
-    end: Annotated[float | None, Of("instant", "when it ends")] = None
+    start: Annotated[float, Of("instant", "start time; for a record: time of its zero")] = 0.0
+    end: Annotated[float | None, Of("instant", "end time")] = None
     frequency: Annotated[float | None, Of("frequency", "frequency of a sine")] = None
     phase: Annotated[float, Of("phase", "phase of a sine at its start")] = 0.0
     file: Annotated[
@@ -26,7 +26,7 @@ class SignalSegment(Section):
 
 
 class Signal(SignalSegment):
-    """A part of the valve's signal."""
+    """A part of the valve signal."""
 
     value: Annotated[float | None, Of("signal_value", "height, or amplitude of a sine")] = None
 
@@ -44,13 +44,13 @@ class Speed(SignalSegment):
 
 
 class Force(SignalSegment):
-    """A part of the load's force, positive against extension."""
+    """A part of the load force, positive against extension."""
 
     value: Annotated[float | None, Of("force_value", "height, or amplitude of a sine")] = None
 
 
 class Torque(SignalSegment):
-    """A part of a load's torque on a shaft or joint."""
+    """A part of the load torque on a shaft or joint."""
 
     value: Annotated[float | None, Of("torque_value", "height, or amplitude of a sine")] = None
 

@@ -1,4 +1,4 @@
-"""The start file of `init --scenario`: a step under load around a design, commented."""
+"""The start file of `init --scenario`: a commented step under load for a design."""
 
 from __future__ import annotations
 
@@ -7,36 +7,36 @@ from ..model import Design
 from ..writer import scalar
 
 STEP = 0.1
-"""Step over the stroke (a choice: large enough to see, small enough to stay off the stops)."""
+"""Step over the stroke (a choice: clearly visible, yet away from the stops)."""
 LOAD = 0.3
-"""Load over the least force that a load case asks (a choice)."""
+"""Load over the smallest force of the load cases (a choice)."""
 _HEAD = """\
-# What happens to a design over time. Every physical value carries its unit.
+# Events on a design over time. Every physical value has a unit.
 #
 #   actuator-opt check FILE                    all faults of this file and its design
 #   actuator-opt simulate FILE --report        figures, results, balance of energy
 #   actuator-opt simulate FILE --csv out.csv   every signal over time
 name: @NAME@
 design: @DESIGN@
-# set:                         # values of the design that are other here, by PATH
+# set:                         # changed values of the design, by PATH
 #   load.mass: 30 kg
 
 duration: 1 s
 sample_time: 1 ms
 
-initial:                       # at rest; the pressures hold the load unless stated
+initial:                       # at rest; default pressures hold the load
   position: 50 %               # of the stroke
 
 load:
-  force:                       # against extension; parts add up: constant, step, ramp, pulse,
+  force:                       # against extension; sum of parts: constant, step, ramp, pulse,
     - shape: constant          # sine, record (a column of a CSV file)
       value: @FORCE@
 """
 _DRIVEN = """\
 
-control:                       # in its place, "signal:" drives the valve with volts
-  law: p                       # p, pi, pid; a gain is the design's, stated here, or tuned
-  position:                    # counted from the start; or speed
+control:                       # or "signal:", which drives the valve with a voltage
+  law: p                       # p, pi, pid; gain from the design, stated or tuned
+  position:                    # relative to the initial position; or speed
     - shape: step
       value: @STEP@
       start: 0.1 s
@@ -50,12 +50,12 @@ requirements:                  # also settling_time, hold_drift, cavitation_marg
     max: 2 %
 """
 _SHAKEN = """\
-    - shape: sine              # what shakes it
+    - shape: sine              # excitation
       value: @SWING@
       frequency: 20 Hz
 
-# The design has no valve: its ports stay closed, or at constant_pressure.
-# With a block "valve" in the design a signal or a controller drives it here.
+# The design has no valve: its ports are closed, or at constant_pressure.
+# If the design has a block "valve", a signal or a controller drives it here.
 ends: closed
 
 requirements:
@@ -65,18 +65,18 @@ requirements:
 
 
 def scenario_text(design: Design, path: str, name: str = "step under load") -> str:
-    """A start file around a design.
+    """A start file for a design.
 
     Parameters
     ----------
-    design : whose stroke and load cases it takes
-    path : of its file, as the scenario names it
+    design : design that gives stroke and load cases
+    path : design file, as the scenario names it
     name : title of the scenario
 
     Raises
     ------
     ValueFault
-        a name that cannot stand in a file
+        an invalid name
     """
     title = Text().validate(name)
     asked = [abs(case.force) for case in design.load_cases if case.force]
@@ -94,5 +94,5 @@ def scenario_text(design: Design, path: str, name: str = "step under load") -> s
 
 
 def _round(value: float) -> str:
-    """Two digits, without a power of ten."""
+    """Two significant digits, without an exponent."""
     return f"{float(f'{value:.2g}'):.12g}"

@@ -1,4 +1,4 @@
-"""The words a scenario may choose from: one type each, with what every word means."""
+"""Choices of a scenario: one type each, with the meaning of every word."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ from ..kinds import Choice, choice_of
 from .components import ENDS, FRICTIONS, LAWS, SUPPLIES
 from .shapes import SHAPES
 
-Shape: TypeAlias = Annotated[str, choice_of("course of this part of the signal", SHAPES)]
-Law: TypeAlias = Annotated[str, choice_of("what the controller does with the error", LAWS)]
+Shape: TypeAlias = Annotated[str, choice_of("shape of this part of the signal", SHAPES)]
+Law: TypeAlias = Annotated[str, choice_of("control law", LAWS)]
 Tuning: TypeAlias = Annotated[
     Literal["margins", "ziegler_nichols", "stated"],
     Choice(
-        "where gain and times come from if they are not stated; margins: from the ultimate point "
+        "tuning of gain and times; margins: from the ultimate point "
         "of the linear model with a gain margin, direction and place of least gain; "
-        "ziegler_nichols: by their table from the same point; stated: all are stated"
+        "ziegler_nichols: by their table from the same point; stated: all values are stated"
     ),
 ]
-Friction: TypeAlias = Annotated[str, choice_of("how the seals resist", FRICTIONS)]
-Supply: TypeAlias = Annotated[str, choice_of("what feeds the valve", SUPPLIES)]
+Friction: TypeAlias = Annotated[str, choice_of("friction model of the seals", FRICTIONS)]
+Supply: TypeAlias = Annotated[str, choice_of("type of supply", SUPPLIES)]
 Ends: TypeAlias = Annotated[
     str | None,
     choice_of(
-        "what the ports lead to (default: the valve of the design, else its ports.end)", ENDS
+        "connection of the ports (default:  the valve of the design, else its ports.end)", ENDS
     ),
 ]
 CushionEnd: TypeAlias = Annotated[
     Literal["both", "cap", "rod"],
-    Choice("which ends have it; both: both; cap: where the rod is in; rod: where it is out"),
+    Choice("cushioned ends; both: both ends; cap: end of retraction; rod: end of extension"),
 ]

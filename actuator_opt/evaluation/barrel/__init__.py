@@ -1,4 +1,4 @@
-"""The barrel in an evaluation: its wall by the tube model that suits, and the axial force in it."""
+"""The barrel in an evaluation: its wall by the suitable tube model, and its axial force."""
 
 from .choice import LAMINATES, compute, kind
 from .load_path import Swelling

@@ -1,6 +1,6 @@
-"""How a laminated wall answers unit pressure, unit axial force and unit warming.
+"""Response of a laminated wall to unit pressure, unit axial force and unit temperature change.
 
-The exact layered tube, or the thin laminate as its fast form; both give stresses at their faces.
+From the exact layered tube, or the fast thin laminate; both give stresses at the layer faces.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from ..geometry import Geometry
 from ..plies import Layer
 
 PRESSURE, FORCE, WARMTH = range(3)
-"""Unit loads of an `WallSolution`."""
+"""Unit loads of a `WallSolution`."""
 
 
 @dataclass(frozen=True, slots=True)
 class WallSolution:
-    """How the wall answers unit loads: ply stresses (faces, layers, loads, designs) and stiffness.
+    """Response to unit loads: ply stresses (faces, layers, loads, designs) and stiffness.
 
-    `walls` are the layers' stiffness in tube axes, as `rod.layered_section` takes them.
+    `walls` are the layer stiffnesses in tube axes, as input of `rod.layered_section`.
     """
 
     stress: Stress
@@ -61,7 +61,7 @@ def exact_answer(layers: Sequence[Layer], g: Geometry) -> WallSolution:
 
 
 def thin_answer(layers: Sequence[Layer], g: Geometry) -> WallSolution:
-    """The membrane at mid-radius for stresses, at the bore for growth."""
+    """The membrane: stresses at mid-radius, growth at the bore."""
     reduced, turned, loads = [], [], []
     for layer in layers:
         c = layer.constants

@@ -1,7 +1,7 @@
-"""The barrel in an evaluation: the one place that chooses between the tube models.
+"""The barrel in an evaluation: the only place that selects a tube model.
 
-Isotropic (Lamé), exact layered tube (the default of every laminate), thin laminate (fast), or the
-paper's own; everything after it works with a `Wall`.
+Isotropic (Lamé), exact layered tube (default of all laminates), thin laminate (fast), or the
+formula of the paper; all later code works with a `Wall`.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from . import laminate, metal
 from .wall import Wall
 
 LAMINATES = ("layered", "thin_laminate")
-"""The wall models of plies."""
+"""Wall models for plies."""
 
 
 def kind(design: Design, materials: Mapping[str, Material]) -> str:
-    """Which wall model a design uses: isotropic, as_published, layered or thin_laminate."""
+    """Wall model of a design: isotropic, as_published, layered or thin_laminate."""
     if design.barrel.model != "auto":
         return design.barrel.model
     first = materials[design.barrel.layup[0].material]

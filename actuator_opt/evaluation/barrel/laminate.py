@@ -1,7 +1,7 @@
-"""The laminated barrel: exact layered tube by default, thin laminate where asked for.
+"""The laminated barrel: exact layered tube by default, or thin laminate.
 
-Stresses of unit pressure, unit axial force and unit warming are superposed to every load path;
-cure stresses and the clamp of tie rods stand as residual stresses that do not grow with the load.
+Stresses of unit pressure, unit axial force and unit temperature change are superposed for every
+load path; cure stresses and tie-rod preload are residual stresses, independent of the load.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from .wall import Cycle, Wall
 def compute(
     v: Values, design: Design, stock: MaterialValues, g: Geometry, state: LoadState, *, exact: bool
 ) -> Wall:
-    """The wall of several layers, or of plies."""
+    """Wall of several layers, or of plies."""
     missing: list[str] = []
     states = plies.climates(v, design)
     layers = plies.layers(v, stock, design.barrel.layup, "barrel.layup", states, missing)
@@ -69,7 +69,7 @@ def compute(
     )
     unknown = [layer.name for layer in layers if layer.expansions is None]
     if unknown:
-        wall.why_no_mismatch = f"{unknown[0]} states no thermal expansion"
+        wall.why_no_mismatch = f"{unknown[0]} has no thermal expansion"
         states = tuple(Climate(state.name, 0.0, cold=state.cold) for state in states)
     else:
         wall.expansion = (answer.axial[WARMTH], answer.warm_hoop)
@@ -84,7 +84,7 @@ def compute(
 
 @dataclass(frozen=True, slots=True)
 class _Rest:
-    """What holds the wall without pressure: cooling from the cure, tie rods, autofrettage."""
+    """Residual stresses without pressure: cure cool-down, tie rods, autofrettage."""
 
     answer: WallSolution
     states: Sequence[Climate]
@@ -92,22 +92,22 @@ class _Rest:
     autofrettage: Autofrettage | None
 
     def cured(self) -> bool:
-        """Whether any state is away from the stress-free temperature."""
+        """Whether any state differs from the stress-free temperature."""
         return any(bool(np.any(real(state.change))) for state in self.states)
 
     def alone(self) -> _Rest:
-        """Cooling from the cure only, before anything else is done to the wall."""
+        """Residual stress from cooling after cure only, before machining and assembly."""
         return replace(self, path=replace(self.path, clamp=None), autofrettage=None)
 
     def of(self, rows: list[int]) -> Stress | None:
-        """Residual stress of some layers, (faces, layers, climates, 1, designs)."""
+        """Residual stress of these layers, (faces, layers, climates, 1, designs)."""
         clamped = self.path.clamp is not None
         if not clamped and self.autofrettage is None and not self.cured():
             return None
         change = np.stack([np.atleast_1d(state.change) for state in self.states])
         parts = []
         for k, part in enumerate(self.answer.stress):
-            some = part[:, rows]  # in two steps: a list beside an integer would move the axes
+            some = part[:, rows]  # in two steps: a list and an integer together would move the axes
             own = some[:, :, WARMTH, None] * change
             if clamped:
                 own = own + some[:, :, FORCE, None] * self.path.held
@@ -120,7 +120,7 @@ class _Rest:
 def _autofrettage(
     v: Values, design: Design, layers: Sequence[Layer], g: Geometry
 ) -> Autofrettage | None:
-    """One overpressure of the open barrel at assembly temperature, before it is machined."""
+    """A single overpressure of the open barrel at assembly temperature, before machining."""
     if design.barrel.autofrettage_pressure is None or not layers[0].yields:
         return None
     if not all(layer.balanced for layer in layers):
@@ -140,7 +140,7 @@ def _autofrettage(
 
 
 def _load(answer: WallSolution, rows: list[int], axial: Array) -> Stress:
-    """Stress per pressure of some layers under every load path, (faces, layers, 1, paths, designs).
+    """Stress per pressure of these layers for every load path, (faces, layers, 1, paths, designs).
 
     `axial` is the axial force per pressure, (paths, designs).
     """
@@ -152,7 +152,7 @@ def _load(answer: WallSolution, rows: list[int], axial: Array) -> Stress:
 
 
 def _by_climate(values: Sequence[Array]) -> Array:
-    """A strength of one layer, one value per climate, on the axes of its stresses."""
+    """A strength of a layer, one value per climate, on the axes of its stresses."""
     rows = np.stack(np.broadcast_arrays(*[np.atleast_1d(value) for value in values]))
     return rows[None, None, :, None]
 
@@ -188,9 +188,9 @@ def _strengths(
 def _rows(
     states: Sequence[Climate], paths: tuple[str, ...], values: Array
 ) -> Iterator[tuple[str, Array]]:
-    """Climate and load path by name, with their (designs,) of values (climates, paths, designs).
+    """Climate and load path by name, with (designs,) of values (climates, paths, designs).
 
-    Each is a smooth limit of its own: an optimum may well stand where two of them meet.
+    Each is a separate smooth limit: an optimum may lie where two of them intersect.
     """
     for t in range(values.shape[0]):
         for p, place in enumerate(paths):
@@ -206,10 +206,10 @@ def _metal(
     paths: tuple[str, ...],
     wall: Wall,
 ) -> None:
-    """Yield pressure of a metal layer, and its stress while pressure comes and goes.
+    """Yield pressure of a metal layer, and its stress under pulsating pressure.
 
-    The pulse runs from the residual stress to that of supply pressure; its mean is the larger
-    equivalent stress of its ends less half the range, and never below zero (no credit).
+    The pulse goes from the residual stress to the stress at supply pressure. Its mean is the larger
+    equivalent stress at its ends minus half the range, and not below zero (no credit).
     """
     strength = _by_climate(layer.yields)
     used = yielding.yield_utilisation(stress=load, yield_strength=strength, residual=residual)
@@ -229,7 +229,7 @@ def _metal(
 
 
 def _cooling(layers: Sequence[Layer], rest: _Rest, wall: Wall, *, exact: bool) -> None:
-    """Liner yield over its stress after cooling from the cure, and its pull on the plies."""
+    """Liner yield over stress after cool-down from cure, and tension of the liner on the plies."""
     liners = [i for i, layer in enumerate(layers) if layer.yields]
     if not liners or len(liners) == len(layers):
         wall.why_no_mismatch = "the wall has no liner under plies"
@@ -267,14 +267,14 @@ def _ladder(
     *,
     exact: bool,
 ) -> None:
-    """Burst of every climate and load path, and the first ply where the liner yields before it."""
+    """Burst of every climate and load path, and first-ply failure after liner yield."""
     if wall.missing:
         return
     if all(layer.isotropic for layer in layers):
         wall.missing.append("burst of a wall of several metals is not modelled")
         return
     if not all(layer.balanced for layer in layers):
-        wall.missing.append("burst of a wall with single plies is not modelled: wind pairs")
+        wall.missing.append("burst of a wall with single plies is not modelled: use balanced pairs")
         return
     given = {
         "layers": [layer.as_wall() for layer in layers],
@@ -295,4 +295,4 @@ def _ladder(
         wall.burst_pressure[place] = pressure
     if any(layer.isotropic for layer in layers):
         for place, pressure in _rows(states, paths, every(ladder.first_ply_pressure)):
-            wall.first_ply_pressure[f"first ply with the liner yielding, {place}"] = pressure
+            wall.first_ply_pressure[f"first ply with yielding liner, {place}"] = pressure

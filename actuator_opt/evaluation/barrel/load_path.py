@@ -1,8 +1,7 @@
-"""The axial force in the barrel's wall: from the mount, the direction of load, stop and tie rods.
+"""Axial force in the barrel wall: from mount, load direction, stop and tie rods.
 
-Never open or closed by assumption. Tie rods clamp the barrel with their preload and take their
-share of what tears the ends apart; without a stated preload it is what keeps the joint closed at
-proof pressure.
+The ends are never assumed open or closed. Tie rods clamp the barrel with their preload and carry
+their share of the separating force. The default preload keeps the joint closed at proof pressure.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ LARGEST = "largest axial load"
 
 @dataclass(frozen=True, slots=True)
 class Swelling:
-    """How the wall answers pressure and axial force, far from its ends, (designs,).
+    """Response of the wall to pressure and axial force, far from its ends, (designs,).
 
     `growth` and `shortening` are bore growth [m/Pa] and axial strain [1/Pa] per pressure at no
     axial force, `stretch` the axial strain per axial force [1/N]; growth per axial force is
@@ -43,11 +42,11 @@ class Swelling:
 
 @dataclass(frozen=True, slots=True)
 class LoadPath:
-    """Axial force in the wall.
+    """Axial forces in the wall.
 
-    `per_pressure` by name (designs,) [m^2]; `held` without pressure [N]; `cases` at the chambers'
-    pressures (cases, designs) [N], `held` included; `share` is the barrel's part of a force that
-    tears the ends apart.
+    `per_pressure` by name (designs,) [m^2]; `held` without pressure [N]; `cases` at the chamber
+    pressures (cases, designs) [N], including `held`; `share` is the barrel's share of a separating
+    force.
     """
 
     per_pressure: dict[str, Array]
@@ -58,7 +57,7 @@ class LoadPath:
 
 
 def largest_area(design: Design, g: Geometry) -> Array:
-    """Area on which supply pressure tears the ends apart at worst: end stop or mount."""
+    """Largest area on which supply pressure separates the ends: end stop or mount."""
     if design.cylinder.end_stop == "internal":
         return g.area_a
     return g.area_b if design.cylinder.mount.startswith("cap") else g.area_a
@@ -72,7 +71,7 @@ def derive(
     state: LoadState,
     swelling: Swelling,
 ) -> LoadPath:
-    """The load path of a design, once the wall's own stiffness is known."""
+    """The load paths of a design with known wall stiffness."""
     if design.cylinder.mount.startswith("cap"):
         cases = barrel_ends.axial_force_cap_mounted(
             rod_side_pressure=state.moving_b, rod_side_area=g.area_b, stop_force=0.0
@@ -90,7 +89,7 @@ def derive(
 
 
 def clamp_stiffness(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> Array:
-    """Axial stiffness of what clamps the barrel between both ends."""
+    """Axial stiffness of the parts that clamp the barrel between both ends."""
     joint = joint_of(design)
     assert joint is not None
     assert joint.stiffness is not None
@@ -109,7 +108,7 @@ def _clamped(
 ) -> LoadPath:
     """A barrel between tie rods: two springs in parallel with preload.
 
-    `worst` is the area on which pressure tears the ends apart, by the name of its load path.
+    `worst` is the separating area of the pressure, by name of the load path.
     """
     springs = {
         "barrel_stiffness": 1 / (swelling.stretch * g.barrel_length),

@@ -1,4 +1,4 @@
-"""The isotropic barrel: Lamé's thick cylinder, and the paper's own growth where it is asked for."""
+"""The isotropic barrel: Lamé's thick cylinder, or the bore growth of the paper."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def compute(
     *,
     as_published: bool,
 ) -> Wall:
-    """The wall of one isotropic layer."""
+    """Wall of a single isotropic layer."""
     name = design.barrel.layup[0].material
     modulus = stock.get(name, "youngs_modulus", "youngs_modulus_2")
     ratio = stock.get(name, "poissons_ratio", "poissons_ratio_12")
@@ -79,7 +79,7 @@ def _strengths(
     strength = stock.allowable(name, "yield_strength", "strength_1_tension")
     ultimate = stock.allowable(name, "ultimate_strength", "strength_1_tension")
     if strength is None:
-        wall.missing.append(f"{name} states no yield or fibre strength")
+        wall.missing.append(f"{name} has no yield or fibre strength")
         return
     for place, axial in path.per_pressure.items():
         used = _used(axial, path, size, strength)
@@ -103,7 +103,7 @@ def _used(
     *,
     clamped: bool = True,
 ) -> Array:
-    """1/yield pressure at the bore; with preload the way to yield does not start at zero."""
+    """1/yield pressure at the bore; with preload the stress at zero pressure is not zero."""
     hoop, radial, along = barrel.bore_stresses(pressure=1.0, axial_force=axial, **size)
     none = 0.0 * hoop
     residual = None

@@ -1,4 +1,4 @@
-"""What the barrel's wall does, whatever model found it."""
+"""Results of a barrel wall, for every wall model."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from ...models.autofrettage import Autofrettage
 from .load_path import LoadPath, Swelling
 
 SEAL_STEP = 0.5
-"""Share of the far-field growth that acts at a pressure step, `barrel.pressure_step_factor(0)`."""
+"""Share of the far-field growth at a pressure step, `barrel.pressure_step_factor(0)`."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cycle:
-    """Equivalent stress of a metal under pressure, per pressure pulse [Pa]: range, and its mean."""
+    """Equivalent stress of a metal per pressure pulse [Pa]: range and mean."""
 
     material: str
     span: Array
@@ -25,13 +25,13 @@ class Cycle:
 class Wall:
     """The wall of a design. Pressures by place (part, mode, load path), Pa, (designs,).
 
-    `cycles` are the stresses of metals while pressure comes and goes, by place; `ply_fatigue` the
+    `cycles` are the stresses of metals under pulsating pressure, by place; `ply_fatigue` is the
     fatigue strength of fibres over their stress amplitude.
 
-    `growth` is at supply pressure, the worse of the cases' own axial force and none, `case_growth`
-    at the pressures of the cases; `missing` the strengths nobody states; `axial_line_stiffness` is
-    E t of the wall along the axis, N/m; `mismatch` yield over the liner's stress and `bond`
-    strength over its pull on the plies, after cooling from the cure.
+    `growth` is at supply pressure, the larger value with and without the axial force of the cases;
+    `case_growth` at the pressures of the cases; `missing` are unknown strengths;
+    `axial_line_stiffness` is the axial E t of the wall, N/m; `mismatch` is yield over liner stress,
+    `bond` strength over liner tension on the plies, both after cool-down from cure.
     """
 
     swelling: Swelling
@@ -52,5 +52,5 @@ class Wall:
     cycles: dict[str, Cycle] = field(default_factory=dict)
     ply_fatigue: dict[str, Array] = field(default_factory=dict)
     autofrettage: Autofrettage | None = None
-    why_no_mismatch: str = "the wall is of one material"
+    why_no_mismatch: str = "the wall has a single material"
     missing: list[str] = field(default_factory=list)

@@ -1,1 +1,1 @@
-"""A lower bound on the objective of every design: traced, relaxed, branched and bounded."""
+"""Lower bound on the objective of every design: trace, relax, branch and bound."""

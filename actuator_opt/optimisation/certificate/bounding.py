@@ -1,8 +1,8 @@
 """The convex problem of one box: the least objective of its relaxation.
 
-A linear programme: the convex side of every curve is a set of tangents, added where the solution
-misses the curve [Kelley1960] and good in every box; the other side is the chord over the box. The
-bound is computed from the multipliers alone, so that it holds whatever the solver's tolerances
+A linear programme. The convex side of every curve is a set of tangents, valid in every box and
+added where the solution misses the curve [Kelley1960]. The other side is the chord over the box.
+The bound is computed from the multipliers alone, so it holds whatever the solver's tolerances
 [Neumaier2004].
 """
 
@@ -22,31 +22,31 @@ from .shapes import FAR
 from .signomial import Form
 
 WIDEST = 40.0
-"""Widest range of an argument that gets a chord; beyond it the chord says nothing."""
+"""Widest argument range that gets a chord; a wider chord carries no information."""
 
 ROUNDS = 3
-"""Most rounds of tangents in one box; the next boxes begin with them."""
+"""Maximum rounds of tangents in one box; the following boxes reuse the tangents."""
 
 FIRST = (0.0,)
-"""Places of the first tangents, over half of a range."""
+"""Places of the first tangents, as shares of half the range."""
 
 ENOUGH = 2e-5
-"""Gain of the bound by a round of tangents below which there is no other."""
+"""Gain of the bound below which no further round of tangents follows."""
 
 MISSED = (1e-5, 1e-3)
-"""Least and largest distance from a curve at which a tangent is added."""
+"""Limits of the distance from a curve at which a tangent is added."""
 
 FINE = 0.01
-"""That distance over the gap that is left."""
+"""The same distance, relative to the remaining gap."""
 
 PROVEN = 1e-6
-"""Least value of a ray that proves that nothing is left: above rounding."""
+"""Least value of a ray that proves a box empty, above rounding."""
 
 NEAR = 0.05
-"""Share of a range within which a point shows that an end of it cannot be cut."""
+"""A point this close to an end of a range, as a share of it, shows that the end cannot be cut."""
 
 MOST = 3
-"""Lines per curve beyond which those that do not touch are forgotten."""
+"""Lines per curve above which those that do not touch are deleted."""
 
 
 class Bound(NamedTuple):
@@ -56,13 +56,13 @@ class Bound(NamedTuple):
     atoms: Vector
     directions: Vector
     excess: Vector
-    """By how much every curve is missed on the side of its chord."""
+    """Distance of every curve from the solution, on the side of its chord."""
     price: Vector
     """Multiplier of every chord."""
     torn: Vector
-    """By how much every product is missed, times its price."""
+    """Error of every product times its price."""
     slopes: Vector
-    """Of every column: what the value gains at least as the column leaves its better end."""
+    """For every column, the least rise of the objective as the column leaves its better end."""
 
 
 class Bounding:
@@ -78,7 +78,7 @@ class Bounding:
         own = layout.plain < 0
         self.columns = layout.atoms + int(own.sum())
         self.column = np.where(own, layout.atoms + np.cumsum(own) - 1, layout.plain)
-        """Column of every out and direction: that of the atom it is, or its own."""
+        """Column of every output and direction: that of its atom, or its own."""
         self.out = self.column[:curves].astype(np.int32)
         self.ways = self.column[curves:]
         self.ratio = self.ways[layout.direction].astype(np.int32)
@@ -106,11 +106,11 @@ class Bounding:
         self.missed = MISSED[1]
 
     def refine(self, gap: float) -> None:
-        """Add tangents as close as a gap of the objective's logarithm needs."""
+        """Refine the tangents to the accuracy that a gap of the objective's logarithm needs."""
         self.missed = float(np.clip(FINE * gap, *MISSED))
 
     def _definitions(self) -> tuple[Any, Vector, Vector]:
-        """Outs and directions by their atoms; rows at least zero."""
+        """Outputs and directions in terms of their atoms; rows at least zero."""
         layout = self.layout
         new = np.flatnonzero(layout.plain < 0)
         kept = np.concatenate([new, np.arange(len(layout.plain), len(layout.levels))])
@@ -127,7 +127,7 @@ class Bounding:
         return matrix, level, high
 
     def _solver(self) -> Any:
-        """The programme without bounds and chords, which follow the box."""
+        """The programme without bounds and chords, which depend on the box."""
         solver: Any = highspy.Highs()  # type: ignore[no-untyped-call]
         m = self.matrix
         for name, value in _OPTIONS.items():
@@ -141,7 +141,7 @@ class Bounding:
         return solver
 
     def solve(self, box: Box) -> Bound | None:
-        """The bound of a box; None where the relaxation has no point."""
+        """The bound of a box; None if the relaxation has no solution."""
         lower, upper = self.enter(box)
         found = self._least(self.cost, lower, upper, rounds=ROUNDS)
         if found is None:
@@ -159,9 +159,9 @@ class Bounding:
         )
 
     def trimmed(self, box: Box, bound: Bound, best: float) -> Box:
-        """The part of a box where its bound lets a design be as good as the best known one.
+        """The part of a box that may hold a design as good as the best known one.
 
-        A range whose multiplier is d is no longer than what is left to the best over d.
+        A range with multiplier d is at most as long as the remaining gap divided by d.
         """
         lower, upper = self._ends(box)
         left = max(best - bound.value, 0.0) + ROOM
@@ -178,14 +178,14 @@ class Bounding:
         )
 
     def enter(self, box: Box) -> tuple[Vector, Vector]:
-        """Make a box the one that is looked at; the ranges of its columns."""
+        """Load a box into the programme; returns the ranges of its columns."""
         self._purge()
         ends = self._columns(box)
         self._chords(box)
         return ends
 
     def _purge(self) -> None:
-        """Forget tangents that no longer touch, once there are too many."""
+        """Delete tangents that no longer touch, once there are too many."""
         first, count = len(self.low) + self.moving, len(self.lines.low)
         if count < MOST * self.moving:
             return
@@ -203,9 +203,10 @@ class Bounding:
     def extent(
         self, direction: int, ends: tuple[Vector, Vector], seen: Seen
     ) -> tuple[float, float] | None:
-        """Least and largest value of a direction in the box looked at; None of none.
+        """Least and largest value of a direction in the loaded box; None if the box is empty.
 
-        An end of the range that a point seen so far comes near to is kept; points are added.
+        An end of the range that a known point nearly reaches is not recomputed; new points are
+        stored.
         """
         way = self.ways[direction]
         reach = [float(end[way]) for end in ends]
@@ -225,7 +226,7 @@ class Bounding:
     def _least(
         self, cost: Vector, lower: Vector, upper: Vector, *, rounds: int
     ) -> tuple[float, Vector, Vector, Vector] | None:
-        """Least of a linear function: the value that is proven, its slopes, point, multipliers."""
+        """Minimise a linear function: proven value, slopes, point, multipliers."""
         index = np.arange(self.columns, dtype=np.int32)
         self.solver.changeColsCost(self.columns, index, cost)
         last = -np.inf
@@ -242,7 +243,7 @@ class Bounding:
         return *self._safe(cost, dual, lower, upper), x, dual
 
     def _empty(self, lower: Vector, upper: Vector) -> bool:
-        """Whether multipliers prove that no point meets all lines."""
+        """Whether multipliers prove that no point satisfies all lines."""
         if self.solver.getModelStatus() != highspy.HighsModelStatus.kInfeasible:
             return False
         _, known, ray = self.solver.getDualRay()
@@ -261,7 +262,7 @@ class Bounding:
         return lower, upper
 
     def _columns(self, box: Box) -> tuple[Vector, Vector]:
-        """Put the ranges of a box."""
+        """Load the ranges of a box."""
         lower, upper = self._ends(box)
         index = np.arange(self.columns, dtype=np.int32)
         self.solver.changeColsBounds(self.columns, index, lower, upper)
@@ -269,7 +270,7 @@ class Bounding:
         return lower, upper
 
     def _planes(self, lower: Vector, upper: Vector) -> None:
-        """Put the planes of the products over the ranges of the columns."""
+        """Load the planes of the products over the ranges of the columns."""
         products, first = self.products, self.products.first
         planes, low, high = products.planes(lower, upper)
         self.matrix.data[len(self.matrix.data) - planes.size :] = planes.ravel()
@@ -285,7 +286,7 @@ class Bounding:
         self.solver.changeRowsBounds(products.rows, index, low, high)
 
     def _chords(self, box: Box) -> None:
-        """Put the chords over a box in place of those of the last one."""
+        """Replace the chords by those over this box."""
         layout, lines = self.layout, self.lines
         first, count = len(self.low), layout.curves
         low, high = layout.arguments(box.low, box.high)
@@ -319,13 +320,13 @@ class Bounding:
         return found
 
     def _missed(self, x: Vector) -> Vector:
-        """By how much every curve is missed, positive on the side of its tangents."""
+        """Distance of every curve from a point, positive on the side of its tangents."""
         mixed = self.layout.mixed
         off = mixed.value(self._argument(x)) - x[self.out]
         return np.where(mixed.convex == 0, -np.abs(off), mixed.convex * off)
 
     def lay(self, box: Box) -> None:
-        """Tangents of every curve over a box, to begin with."""
+        """Place the first tangents of every curve over a box."""
         low, high = self.layout.arguments(box.low, box.high)
         middle, reach = (low + high) / 2, np.minimum((high - low) / 2, 0.5 * WIDEST)
         some = np.flatnonzero(self.layout.mixed.convex)
@@ -337,14 +338,14 @@ class Bounding:
         self.lines = self.lines.joined(more)
 
     def _tangents(self, x: Vector) -> bool:
-        """Add tangents where the point lies on their side of a curve; whether there are any."""
+        """Add tangents where the point violates a curve; whether any were added."""
         some = np.flatnonzero(self._missed(x) > self.missed)
         if len(some):
             self._append(self._touching(self._argument(x), some))
         return len(some) > 0
 
     def _touching(self, t: Vector, some: Any) -> Lines:
-        """Tangents of some curves at arguments of all."""
+        """Tangents of some curves, from the arguments of all."""
         layout = self.layout
         slope = layout.mixed.slope(t)
         mixed = layout.mixed
@@ -361,7 +362,7 @@ class Bounding:
     def _safe(
         self, cost: Vector, dual: Vector, lower: Vector, upper: Vector
     ) -> tuple[float, Vector]:
-        """Least value that the multipliers prove, by rows and bounds, and its slopes."""
+        """Least value that the multipliers prove from rows and bounds, and its slopes."""
         count, lines = len(self.low), self.lines
         dual = dual[: count + len(lines.low)]
         low, high = (
@@ -383,7 +384,7 @@ _OPTIONS = {
     "output_flag": False,
     "presolve": "off",
     "simplex_strategy": 0,
-    "simplex_dual_edge_weight_strategy": 1,  # Devex: weights cost nothing after a change of rows
+    "simplex_dual_edge_weight_strategy": 1,  # Devex: no update after a change of rows
     "primal_feasibility_tolerance": 1e-7,
     "dual_feasibility_tolerance": 1e-9,
     "threads": 1,

@@ -1,4 +1,4 @@
-"""A part of the design space: ranges of atoms and of log ratios, and what follows from them."""
+"""A part of the design space: ranges of atoms and of log ratios, and their implications."""
 
 from __future__ import annotations
 
@@ -13,34 +13,34 @@ from .shapes import FAR, Mixed, Table, Tables
 from .signomial import Form, Powers
 
 ROUNDS = 20
-"""Most passes of the propagation in a part of the space."""
+"""Maximum passes of the propagation in one box."""
 
 GAIN = 0.01
-"""Share of the summed ranges that a pass must cut for another one to be worth it."""
+"""Share of the summed ranges that a pass must cut to justify another."""
 
 ROOM = 1e-9
-"""Room given to every range for rounding (of logarithms, so relative)."""
+"""Tolerance on every range for rounding (of logarithms, so relative)."""
 
 CROSSED = 1e-8
-"""By how much the ends of a range must cross for nothing to be left."""
+"""Overlap of crossed range ends that proves a box empty."""
 
 
 def _lone(form: Form) -> int:
-    """The atom that a form is by itself; -1 of others."""
+    """The atom that a form consists of; -1 for other forms."""
     lone = form.constant == 0 and len(form.powers) == 1 and form.powers[0][1] == 1.0
     return form.powers[0][0] if lone else -1
 
 
 class Gone(Exception):
-    """Nothing is left of a part of the space."""
+    """A part of the design space is empty."""
 
 
 class Layout:
-    """A relaxation as arrays: every distinct direction in the space of logarithms once.
+    """A relaxation as arrays; each distinct direction in logarithmic space appears once.
 
-    A direction is a log ratio, such as log(t/r): all curves of powers of one ratio share it. Its
-    largest power is 1, so that its range is no longer than those of its atoms together.
-    Forms are, in order: outs of curves, directions, rows (each >= 0).
+    A direction is a log ratio, such as log(t/r), shared by all curves of powers of that ratio. Its
+    largest power is 1, so its range is no longer than those of its atoms together. Forms come in
+    this order: outputs of curves, directions, rows (each >= 0).
     """
 
     def __init__(self, relaxation: Relaxation) -> None:
@@ -85,7 +85,7 @@ class Layout:
 
     @cached_property
     def _linked(self) -> tuple[Tables, np.ndarray, Vector]:
-        """Tables of the links, the numbers of their curves, and the ratios' levels."""
+        """Tables of the links, the numbers of their curves, and the levels of the ratios."""
         number = np.array([self._of_curve[id(link.curve)] for link in self.links])
         kinds = [link.curve.kind for link in self.links]
         tables = Tables([kind for kind in kinds if isinstance(kind, Table)])
@@ -103,7 +103,7 @@ class Layout:
 
     @cached_property
     def parts(self) -> tuple[slice, slice, slice]:
-        """Forms of outs, of directions and of rows."""
+        """Forms of outputs, of directions and of rows."""
         first, second = self.curves, self.curves + self.directions
         return slice(0, first), slice(first, second), slice(second, len(self.levels))
 
@@ -116,7 +116,7 @@ class Layout:
         return np.minimum(*ends), np.maximum(*ends)
 
     def reach(self, lower: Vector, upper: Vector) -> tuple[Vector, Vector, Vector, Vector]:
-        """Ranges of all forms, and of their entries."""
+        """Ranges of all forms, and of their terms."""
         ends = self.power * lower[self.atom], self.power * upper[self.atom]
         least, most = np.minimum(*ends), np.maximum(*ends)
         count = len(self.levels)
@@ -136,7 +136,7 @@ class Box:
 
     @classmethod
     def whole(cls, layout: Layout) -> Box:
-        """Everything that the bounds of the traced values leave."""
+        """The box given by the bounds of the traced values."""
         found = layout.relaxation
         none = np.zeros(layout.directions)
         lower, upper = (np.clip(ends, -FAR, FAR) for ends in (found.lower, found.upper))
@@ -162,12 +162,12 @@ class Box:
         return replace(self, low=lows, high=highs)
 
     def tightened(self, layout: Layout) -> Box:
-        """What all rows and curves leave of it.
+        """The box cut by all rows and curves.
 
         Raises
         ------
         Gone
-            nothing
+            the box is empty
         """
         work = _Work(layout, self)
         size = work.size()
@@ -181,7 +181,7 @@ class Box:
 
 
 class _Work:
-    """Ranges while they are cut."""
+    """Ranges while they are being cut."""
 
     def __init__(self, layout: Layout, box: Box) -> None:
         self.layout = layout
@@ -189,7 +189,7 @@ class _Work:
         self.low, self.high = box.low.copy(), box.high.copy()
 
     def size(self) -> float:
-        """All ranges together."""
+        """Sum of all ranges."""
         return float((self.upper - self.lower).sum() + (self.high - self.low).sum())
 
     def round(self) -> None:
@@ -219,7 +219,7 @@ class _Work:
         self._raise(self.lower, self.upper, lower, upper)
 
     def _back(self, low: Vector, high: Vector) -> None:
-        """What the outs of curves say about the directions."""
+        """Cut the directions through the outputs of curves."""
         layout = self.layout
         inner = layout.mixed.within(low, high)
         ends = [(end - layout.constant) / layout.factor for end in inner]

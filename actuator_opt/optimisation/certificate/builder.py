@@ -1,4 +1,4 @@
-"""Traced values as monomials of atoms, with the curves that tie the atoms."""
+"""Traced values as monomials of atoms, with curves that relate the atoms."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ from .shapes import FAR, Kind, Mixed, Table
 from .signomial import Form, Signomial
 
 WIDEST = 20.0
-"""Widest range of a logarithm that is sampled."""
+"""Widest logarithmic range that is sampled."""
 
 LARGEST = 8
-"""Most terms of a sum that is kept expanded, so that its terms may cancel."""
+"""Maximum terms of a sum that stays expanded, so that terms can cancel."""
 
 _MONOMIAL = ("variable", "mul", "div", "neg", "sqrt", "pow")
 """Operations that keep a monomial a monomial."""
 
 
 class Builder:
-    """Relaxes traced values one by one; equal values are one atom."""
+    """Relaxes traced values one by one; equal values share an atom."""
 
     def __init__(self) -> None:
         self.found = Relaxation()
@@ -42,7 +42,7 @@ class Builder:
         Raises
         ------
         Unknown
-            its sign is open, or a model under it has no relaxation
+            its sign is not known, or one of its models has no relaxation
         """
         if not isinstance(value, Symbol):
             number = float(value)
@@ -60,14 +60,14 @@ class Builder:
         return known
 
     def _either(self, node: Symbol) -> tuple[float, Form]:
-        """Sampled where that says more than its parts, else by its parts."""
+        """The sampled form if it is tighter than the parts, else the parts."""
         if node.op not in _MONOMIAL or self._repeats(node):
             with suppress(Unknown):
                 return self._sampled(node)
         return self._made(node)
 
     def _repeats(self, node: Symbol) -> bool:
-        """Whether both factors of a product depend on one value, other than as its powers."""
+        """Whether both factors of a product depend on one value, other than as powers of it."""
         if node.op not in ("mul", "div"):
             return False
         lead, (first, second) = self._leads.of(node), node.args
@@ -99,12 +99,12 @@ class Builder:
         low, high = node.bounds
         if not low > 0:
             raise Unknown(f"{node.args[0]} may be zero or negative")
-        form = self.found.atom(low, high, lambda y: math.nan)  # the design's own
+        form = self.found.atom(low, high, lambda y: math.nan)  # an atom of the design itself
         self.variables[node.args[0]] = form
         return 1.0, form
 
     def _sampled(self, node: Symbol) -> tuple[float, Form]:
-        """A function of one other value, as sampled."""
+        """The sampled form of a function of one other value."""
         lead = self._leads.of(node)
         if lead is node:
             raise Unknown("it depends on several values")
@@ -113,20 +113,20 @@ class Builder:
             raise Unknown("its argument is negative")
         t = np.linspace(*self.found.reach(argument), SAMPLES)
         if not 0 < t[-1] - t[0] < WIDEST:
-            raise Unknown("its argument is fixed, or has no end")
+            raise Unknown("its argument is fixed or unbounded")
         values = function([node], lead)(t)[0]
         with np.errstate(all="ignore"):
             logs = np.log(np.abs(values))
         if not np.isfinite(logs).all():
-            raise Unknown("it has no value everywhere")
+            raise Unknown("it is not defined everywhere")
         table = Table.of(t, logs, CAUTION)
         if (values[0] > 0) != (values[-1] > 0) or values.min() * values.max() <= 0:
-            raise Unknown("its sign is open")
+            raise Unknown("its sign is not known")
         least, most = float(logs.min()) - table.room, float(logs.max()) + table.room
         return math.copysign(1.0, values[0]), self._curve(table, argument, least, most)
 
     def expanded(self, value: Any) -> Signomial | None:
-        """A value as a sum of monomials; None where that has too many terms."""
+        """A value as a sum of monomials; None if it has too many terms."""
         if not isinstance(value, Symbol):
             return Signomial.number(value) if math.isfinite(value) else None
         if value.index not in self._sums:
@@ -166,7 +166,7 @@ class Builder:
             return None
 
     def _of_sum(self, node: Symbol) -> tuple[float, Form]:
-        """A sum: its terms, expanded where some cancel or signs differ."""
+        """A sum as its terms, expanded where some cancel or signs differ."""
         low, high = node.bounds
         parts = self._cancelled(node) or self._terms(node)
         known = parts.single
@@ -184,7 +184,7 @@ class Builder:
             return 1.0, self._difference(plus, minus, low, high)
         if high < 0:
             return -1.0, self._difference(minus, plus, -high, -low)
-        raise Unknown("the sign of a difference is open")
+        raise Unknown("the sign of a difference is not known")
 
     def _least(self, plus: Sequence[Form], minus: Sequence[Form]) -> float:
         """Lower bound of a difference of sums, by its expanded terms."""
@@ -192,7 +192,7 @@ class Builder:
         return least - sum(math.exp(min(self.found.reach(one)[1], 700.0)) for one in minus)
 
     def _cancelled(self, node: Symbol) -> Signomial | None:
-        """A sum expanded, where that lets terms of its operands cancel."""
+        """An expanded sum, if terms of its operands cancel."""
         parts = [self.expanded(one) for one in (node, *node.args)]
         if None in parts:
             return None
@@ -200,17 +200,17 @@ class Builder:
         return parts[0] if whole < (1 - 1e-9) * sum(sizes) else None
 
     def _terms(self, node: Symbol) -> Signomial:
-        """A sum by its operands, each an atom; those whose sign is open are opened up."""
+        """A sum by its operands, each an atom; operands of unknown sign are expanded."""
         first, second = (self.opened(one) for one in node.args)
         return first.plus(second, -1.0 if node.op == "sub" else 1.0)
 
     def opened(self, value: Any) -> Signomial:
-        """A value as a sum of monomials, whatever its sign; of as few as can be.
+        """A value of any sign as a sum of as few monomials as possible.
 
         Raises
         ------
         Unknown
-            a model under it has no relaxation
+            one of its models has no relaxation
         """
         try:
             return Signomial.monomial(*self.form(value))
@@ -235,12 +235,12 @@ class Builder:
             raise
 
     def at_least(self, value: Any, bound: Any) -> None:
-        """State that a value is no less than another, or a number.
+        """Add the constraint that a value is at least another value or a number.
 
         Raises
         ------
         Unknown
-            a model under them has no relaxation
+            one of their models has no relaxation
         """
         plus, minus = self.opened(value).plus(self.opened(bound), -1.0).sides()
         if minus and not plus:
@@ -271,11 +271,11 @@ class Builder:
             return self.form(taken)
         kind = extreme(node)
         if kind is None:
-            raise Unknown("it depends on a condition that is open")
+            raise Unknown("it depends on a condition that is not decided")
         (s, a), (t, b) = self.form(node.args[1]), self.form(node.args[2])
         low, high = node.bounds
         if s != t:
-            raise Unknown("the sign of a choice is open")
+            raise Unknown("the sign of a choice is not known")
         ends = (low, high) if s > 0 else (-high, -low)
         larger = (kind == "max") == (s > 0)
         pick = max if larger else min
@@ -301,22 +301,22 @@ class Builder:
     def _logarithm(
         self, graph: object, argument: Any, low: float, high: float
     ) -> tuple[float, Form]:
-        """Ln x > 0 is affine in the atoms; its own logarithm is a curve of it."""
+        """The form of ln x > 0: affine in the atoms; its own logarithm is a curve of it."""
         parts = self.expanded(argument)
-        if parts is not None:  # a ratio as 1.2 + t/r is above one whatever t and r
+        if parts is not None:  # a ratio such as 1.2 + t/r exceeds one for all t and r
             plus, minus = parts.sides()
             least = self._least(plus, minus)
             low = max(low, math.log(least)) if least > 0 else low
         _, form = self.form(argument)
         if low <= 0 <= high:
-            raise Unknown("the sign of a logarithm is open")
+            raise Unknown("the sign of a logarithm is not known")
         sign = 1.0 if low > 0 else -1.0
         inner = form if sign > 0 else Form(0.0) - form
         ends = (low, high) if sign > 0 else (-high, -low)
         return sign, self._curve("log", inner, math.log(ends[0]), math.log(ends[1]))
 
     def _exponential(self, argument: Any, low: float, high: float) -> Form:
-        """e^x: its logarithm is x, a curve of the logarithm of x."""
+        """The form of e^x: its logarithm is x, a curve of the logarithm of x."""
         sign, form = self.form(argument)
         if sign > 0:
             return self._curve("exp", form, math.log(low) if low > 0 else -FAR, math.log(high))
@@ -325,7 +325,7 @@ class Builder:
         return out
 
     def _curve(self, kind: Kind, argument: Form, low: float, high: float) -> Form:
-        """A new atom that is a function of a monomial's logarithm; ends are logarithms."""
+        """A new atom as a function of a monomial's logarithm; ends are logarithms."""
         one = Mixed([kind])
         out = self.found.atom(
             math.exp(low),

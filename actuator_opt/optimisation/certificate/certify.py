@@ -1,4 +1,4 @@
-"""How far a design is from the best possible: a lower bound on the objective, and its gap."""
+"""Distance of a design from the best possible: a lower bound on the objective, and the gap."""
 
 from __future__ import annotations
 
@@ -34,16 +34,16 @@ BOXES = 200
 """Boxes to solve: about three seconds, and the same bound on every machine."""
 
 AIM = 0.049
-"""Gap that a search with a wide first gap is content with: it looks for lighter designs only."""
+"""Gap at which a search with a wide first gap stops; it only looks for lighter designs."""
 
 WIDE = 0.1
-"""First gap from which that is so."""
+"""First gap above which a search stops there."""
 
 EASY = 20
-"""Boxes after which such a search shows that the gap can be closed further."""
+"""Boxes such a search solves to show that the gap can be closed further."""
 
 SECONDS = 30.0
-"""Time for the search on a machine that is far slower than most."""
+"""Time limit of the search, for very slow machines."""
 
 
 @dataclass(frozen=True)
@@ -56,10 +56,10 @@ class Relaxed:
     covered: tuple[Claim, ...]
     dropped: dict[str, str]
     unknowns: dict[str, Callable[[ModelRun], float]]
-    """What the further unknowns are in an evaluated design, by name."""
+    """Values of the further unknowns in an evaluated design, by name."""
 
     def atoms(self, actuator: ActuatorProblem, x: Vector) -> Vector:
-        """Every atom at a design."""
+        """The value of every atom at a design."""
         point = {path: np.array([value]) for path, value in zip(actuator.paths, x, strict=True)}
         with np.errstate(all="ignore"):
             there = compute(actuator.subject, actuator.subject.values(point))
@@ -78,7 +78,7 @@ def relax(traced: Traced, best: float) -> Relaxed:
     Raises
     ------
     Empty, Gone
-        there is none
+        no such design exists
     """
     for claim in traced.claims:
         narrow(claim.value, _ends(claim))
@@ -115,7 +115,7 @@ def relax(traced: Traced, best: float) -> Relaxed:
 
 
 def _largest(builder: Builder, values: Sequence[Any]) -> Form:
-    """Logarithm of the largest of some values, which every one of them bounds from below."""
+    """Logarithm of the largest of some values, bounded from below by each of them."""
     forms = list(dict.fromkeys(builder.form(value)[1] for value in values))
     if len(forms) == 1:
         return forms[0]
@@ -153,15 +153,15 @@ def certify(
     Raises
     ------
     Unknown
-        the design misses a limit, or a model that all stands on has no relaxation
+        the design misses a limit, or an essential model has no relaxation
     """
     until = time.perf_counter() + seconds
     try:
         relaxed, search = _search(trace(actuator, x), objective, until, most)
     except (Empty, Gone):
-        raise Unknown("the design found misses a limit") from None
+        raise Unknown("the design misses a limit") from None
     if not _meets(search.layout, relaxed.atoms(actuator, x)):
-        raise Unknown("the design found misses a limit")
+        raise Unknown("the design misses a limit")
     if search.first() < math.log(objective) + math.log1p(-WIDE):
         coarse, bound = _coarse(actuator, x, objective * (1 - AIM), until, most, report)
         if bound.boxes > EASY:
@@ -172,7 +172,7 @@ def certify(
 def _coarse(
     actuator: ActuatorProblem, x: Vector, aim: float, until: float, most: float, report: Report
 ) -> tuple[Relaxed | None, Found]:
-    """The search for designs no heavier than an aim; no relaxation where there is none at once."""
+    """Search for designs no heavier than an aim; no relaxation if that is ruled out at once."""
     try:
         relaxed, search = _search(trace(actuator, x), aim, until, most)
     except (Empty, Gone):
@@ -181,7 +181,7 @@ def _coarse(
 
 
 def _search(traced: Traced, most: float, until: float, boxes: float) -> tuple[Relaxed, BoxSearch]:
-    """The search for designs whose objective is no more than `most`."""
+    """A search for designs whose objective is at most `most`."""
     relaxed = relax(traced, most)
     layout = Layout(relaxed.relaxation)
     bounding = Bounding(layout, relaxed.objective)
@@ -191,7 +191,7 @@ def _search(traced: Traced, most: float, until: float, boxes: float) -> tuple[Re
 
 
 def _meets(layout: Layout, y: Vector) -> bool:
-    """Whether a design meets ranges and rows of its relaxation."""
+    """Whether a design satisfies the ranges and rows of its relaxation."""
     box = Box.whole(layout)
     _, high, _, _ = layout.reach(y, y)
     rows = layout.parts[2]
@@ -200,5 +200,5 @@ def _meets(layout: Layout, y: Vector) -> bool:
 
 
 def _log(value: float) -> float:
-    """Logarithm; of what is not above zero, that of zero."""
+    """Logarithm; values at or below zero give that of the zero substitute."""
     return math.log(value) if value > 0 else -math.inf

@@ -1,4 +1,4 @@
-"""Envelopes of models that are no closed expression: unknowns that exact values always meet."""
+"""Envelopes of models without a closed expression: unknowns that contain the exact values."""
 
 from __future__ import annotations
 
@@ -34,22 +34,22 @@ from ...models.trial_motion import Chamber, least_energy_motion, trial_motion_st
 from .relaxation import Unknown
 
 LEAST_DECAY = 1e-3
-"""Least decay of the displacement through a part of a layer, so that no power is zero."""
+"""Least decay of the displacement through part of a layer, so that no power is zero."""
 
 PARTS = 4
-"""Parts of a layer of known stiffness in the bound on its growth; any number holds."""
+"""Parts of a layer of known stiffness in the bound on its growth; any number is valid."""
 
 CONTRACTION = 0.2
-"""Contraction of a wall over its axial strain in the bound on its stiffness; any number holds."""
+"""Contraction of a wall over its axial strain in the bound on its stiffness; any value is valid."""
 
 
 class EnvelopeProblem(Protocol):
-    """Where envelopes leave their unknowns and what is known of them."""
+    """Collects the unknowns of envelopes and their known relations."""
 
     facts: list[tuple[Any, Any]]
 
     def unknown(self, name: str, exact: Callable[[ModelRun], float]) -> Symbol:
-        """A further unknown, above zero."""
+        """Add a positive unknown."""
 
 
 class Envelopes:
@@ -66,26 +66,27 @@ class Envelopes:
         self.problem, self.subject, self.there = problem, subject, there
         self.decays, self.case = decays, case
         self.bearable: Array | None = None
-        """Pressure that no laminated wall bears before its first damage; None where unknown."""
+        """Upper bound on the pressure of any laminated wall before first damage; None if
+        unknown."""
 
     def implicit(self) -> Implicit:
-        """The models to evaluate with."""
+        """The models for the evaluation."""
         return Implicit(
             wall=self.laminate if layered(self.subject) else compute,
             critical_load=self.column(self._mode()),
         )
 
     def number(self, value: Array) -> float:
-        """A value of an evaluated design in this load case."""
+        """The value of an evaluated design in this load case."""
         rows = np.atleast_2d(np.asarray(value, dtype=float))
         return float(rows[min(self.case, len(rows) - 1), 0])
 
     def unknown(self, name: str, exact: Callable[[ModelRun], Array]) -> Symbol:
-        """An unknown of this load case."""
+        """Add an unknown of this load case."""
         return self.problem.unknown(f"{name}_{self.case}", lambda done: self.number(exact(done)))
 
     def _mode(self) -> TrialMode | None:
-        """The shape in which the evaluated design buckles between its pins."""
+        """The buckling shape of the evaluated design between its pins."""
         if self.subject.design.cylinder.mount != "cap_clevis":
             return None
         lengths = beam.lengths(self.there.geometry, self.there.state)
@@ -104,7 +105,7 @@ class Envelopes:
         )
 
     def column(self, mode: TrialMode | None) -> Callable[..., Array]:
-        """Critical load, unknown below that of one shape sheared as the stiffer segment is."""
+        """Critical load: an unknown, at most that of one shape with the stiffer segment's shear."""
 
         def critical(design: Design, wall: Wall, rod: Rod, lengths: tuple[Array, Array]) -> Array:
             if mode is None:
@@ -129,8 +130,8 @@ class Envelopes:
     ) -> Wall:
         """A laminated wall: growth and axial stiffness unknown between their bounds.
 
-        Its swelling is that of a wall that is held: growth without axial strain, stretch without
-        radial motion. Of its strength stands only `bearable`.
+        Its swelling is that of a held wall: growth without axial strain, stretch without radial
+        motion. Its strength is only `bearable`.
 
         Raises
         ------
@@ -138,10 +139,10 @@ class Envelopes:
             the wall has single plies, or is a membrane
         """
         if kind(design, stock.materials) != "layered":
-            raise Unknown("a wall as a membrane has no envelope")
+            raise Unknown("a membrane wall has no envelope")
         layers = plies.layers(v, stock, design.barrel.layup, "barrel.layup", (), [])
         if not all(layer.balanced for layer in layers):
-            raise Unknown("a wall of single plies, which twists, has no envelope")
+            raise Unknown("a wall of unbalanced single plies, which twists, has no envelope")
         walls = [solid_rotated(stiffness=layer.solid, angle=layer.angle) for layer in layers]
         thicknesses = [layer.thickness for layer in layers]
         self.bearable = _bearable(v, design, stock, g)
@@ -171,8 +172,8 @@ class Envelopes:
             thin_ratio=(g.outer_radius - g.inner_radius) / g.inner_radius,
             layered=len(layers) > 1,
             axial_line_stiffness=stiffness / (math.pi * (g.inner_radius + g.outer_radius)),
-            why_no_mismatch="the relaxation leaves it out",
-            missing=["the relaxation leaves it out"],
+            why_no_mismatch="not covered by the relaxation",
+            missing=["not covered by the relaxation"],
         )
 
     def _elastic(
@@ -205,7 +206,7 @@ class Envelopes:
         return growth, held, stiffness
 
     def stiffness(self, springs: Springs, share: float) -> Array:
-        """Stiffness of both chambers from above at a share of the stroke."""
+        """Upper bound on the stiffness of both chambers at a share of the stroke."""
         cap = self.subject.design.cylinder.mount.startswith("cap")
         pulling: Chamber = "b" if cap else "a"
         there = self._gives(self.there.springs, share, pulling)
@@ -217,7 +218,7 @@ class Envelopes:
 
     @staticmethod
     def _gives(springs: Springs, share: float, pulling: Chamber) -> dict[str, Array]:
-        """What gives way in both chambers at a share of the stroke."""
+        """Compliances of both chambers at a share of the stroke."""
         g = springs.geometry
         kept = [cause for cause in springs.chambers if cause not in ("barrel", "stretch")]
         x = share * g.stroke
@@ -235,7 +236,7 @@ class Envelopes:
 
     @staticmethod
     def joint(done: Statics, out: MetricArrays) -> None:
-        """The joint of caps and head where its factor itself is not convex."""
+        """Treat the joint of caps and head where its factor is not convex."""
         held = done.held
         if held is None or held.joint.envelope is None:
             return
@@ -271,32 +272,32 @@ class Envelopes:
 
 
 def refuse(design: Design) -> None:
-    """Refuse what has no envelope yet.
+    """Reject designs with models that have no envelope yet.
 
     Raises
     ------
     Unknown
-        with what it is
+        names the model
     """
     elements = [*design.seals.piston.elements().values(), *design.seals.rod.elements().values()]
     for there, what in (
         (bool(design.rod.layup), "a rod of layers"),
         (design.linkage is not None, "a linkage"),
-        (any(one.friction_law.film for one in elements), "a seal on its oil film"),
+        (any(one.friction_law.film for one in elements), "a seal with an oil film"),
     ):
         if there:
             raise Unknown(f"{what} has no envelope yet")
 
 
 def layered(subject: PreparedDesign) -> bool:
-    """Whether the wall of a design is of layers."""
+    """Whether the wall of a design is layered."""
     return kind(subject.design, subject.materials) in LAMINATES
 
 
 def decays(
     subject: PreparedDesign, v: Values, there: ModelRun, free: Container[str]
 ) -> list[list[float]]:
-    """How the displacement falls through the parts of each layer of an evaluated design.
+    """Decay of the displacement through the parts of each layer of an evaluated design.
 
     A layer whose angle is one of the PATHs `free` is one part.
     """
@@ -321,7 +322,7 @@ def decays(
 
 
 def _held_growth(swelling: Swelling) -> Array:
-    """Bore growth per pressure of a wall that is held axially."""
+    """Bore growth per pressure of an axially held wall."""
     pulled = swelling.growth_by_force / swelling.stretch
     return swelling.growth - pulled * swelling.shortening
 
@@ -333,10 +334,10 @@ def _contracting(wall: Sequence[Array], contraction: float) -> Array:
 
 
 def _bearable(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> Array | None:
-    """Pressure that no laminated wall bears before its first damage.
+    """Upper bound on the pressure of any laminated wall before first damage.
 
-    None where it is not proven: another criterion, autofrettage, strengths not stated, or a ply
-    stiffer through the wall than around it.
+    None if not proven: another criterion, autofrettage, strengths not stated, or a ply stiffer
+    through the wall than around it.
     """
     if design.barrel.criterion != "max_stress" or design.barrel.autofrettage_pressure is not None:
         return None
@@ -353,10 +354,10 @@ def _bearable(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> 
 
 
 def _hoop(layer: plies.Layer) -> Array:
-    """Largest hoop stress of a ply in its best climate, and no less than along its fibres.
+    """Largest hoop stress of a ply in its best climate, at least that along its fibres.
 
-    What axial strain and warmth alone stress a ply around the hoop stays far below that, as the
-    balance of the wall asks (`tube_bounds.greatest_pressure`).
+    Axial strain and temperature alone stress a ply in the hoop direction far less, by the
+    equilibrium of the wall (`tube_bounds.greatest_pressure`).
     """
     strengths = layer.strengths
     along = _largest([one.tension_1 for one in strengths])
@@ -370,7 +371,7 @@ def _hoop(layer: plies.Layer) -> Array:
 
 
 def _largest(values: Sequence[Array]) -> float:
-    """The largest of some numbers, and what one that varies is never above."""
+    """The largest of some numbers; a variable one counts with its upper bound."""
     return max(bounds_of(one)[1] for value in values for one in np.ravel(value))
 
 

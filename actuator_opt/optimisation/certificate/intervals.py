@@ -1,8 +1,8 @@
-"""Bounds of every traced value that hold for all designs which meet the limits.
+"""Bounds of every traced value that hold for all designs that meet the limits.
 
 Interval constraint propagation, forwards from operands to results and backwards from limits to
-variables [Benhamou1999]. A choice between a value and no value (NaN) takes the value: a design
-without one meets no requirement.
+variables [Benhamou1999]. A choice between a value and no value (NaN) takes the value, because a
+design without a value meets no requirement.
 """
 
 from __future__ import annotations
@@ -16,20 +16,20 @@ from ...base.symbolic.bounds import Bounds, at_end, bounds, bounds_of
 from .signomial import ROUNDING, Form, Signomial
 
 ROUNDS = 30
-"""Most passes over all values."""
+"""Maximum passes over all values."""
 
 WORTH = 1e-3
-"""Relative gain of a bound below which another pass is not worth it."""
+"""Relative gain of a bound below which another pass does not pay."""
 
 LARGEST = 80
-"""Most terms of a sum that is expanded."""
+"""Maximum terms of a sum that is expanded."""
 
 SLACK = 1e-9
-"""Relative room given to every bound for rounding."""
+"""Relative tolerance on every bound for rounding."""
 
 
 class Empty(Exception):
-    """No design meets the limits: some value has no room left."""
+    """No design meets the limits: the range of some value is empty."""
 
 
 def tighten(nodes: Sequence[Symbol], facts: Sequence[tuple[Any, Any]] = ()) -> None:
@@ -43,7 +43,7 @@ def tighten(nodes: Sequence[Symbol], facts: Sequence[tuple[Any, Any]] = ()) -> N
     Raises
     ------
     Empty
-        some value has no room left
+        the range of some value is empty
     """
     sums = cancelling(nodes)
     for _ in range(ROUNDS):
@@ -63,7 +63,7 @@ def tighten(nodes: Sequence[Symbol], facts: Sequence[tuple[Any, Any]] = ()) -> N
 
 
 def cancelling(nodes: Sequence[Symbol]) -> dict[Symbol, Signomial]:
-    """Sums whose terms cancel in part when expanded, which plain bounds do not see."""
+    """Sums whose terms partly cancel when expanded, which plain bounds miss."""
     known: dict[int, Signomial | None] = {}
 
     def expanded(value: Any) -> Signomial | None:
@@ -127,12 +127,12 @@ def _of_terms(parts: Signomial, nodes: Sequence[Symbol]) -> Bounds:
 
 
 def narrow(value: Any, found: Bounds) -> bool:
-    """Cut a value's bounds; whether that gained much.
+    """Narrow a value's bounds; whether the gain was large.
 
     Raises
     ------
     Empty
-        nothing is left
+        the range is empty
     """
     low, high = found
     if not isinstance(value, Symbol):
@@ -151,7 +151,7 @@ def _much(old: float, new: float) -> bool:
 
 
 def decided(condition: Any) -> bool | None:
-    """Whether a condition holds for all designs, for none, or (None) for some."""
+    """Whether a condition is true for all designs, for none, or (None) undecided."""
     if not isinstance(condition, Symbol):
         return bool(condition)
     args = condition.args
@@ -171,7 +171,7 @@ def decided(condition: Any) -> bool | None:
 
 
 def branch(node: Symbol) -> Any:
-    """The value that a choice takes for all designs with a value; None where it is open."""
+    """The branch that a choice takes for all designs with a value; None if undecided."""
     condition, yes, no = node.args
     if _nothing(yes):
         return no
@@ -193,7 +193,7 @@ def extreme(node: Symbol) -> str | None:
 
 
 def same(first: Any, second: Any) -> bool:
-    """Whether two values are one: the same symbol, or equal numbers."""
+    """Whether two values are identical: the same symbol, or equal numbers."""
     if first is second:
         return True
     return isinstance(first, float) and isinstance(second, float) and first == second
@@ -216,7 +216,7 @@ def _forward(node: Symbol) -> Bounds:
 
 
 def _difference(node: Symbol) -> Bounds:
-    """Bounds of a difference; of two squares also as (a - b)(a + b), where a - b is traced."""
+    """Bounds of a difference; for squares also as (a - b)(a + b), if a - b is traced."""
     low, high = bounds("sub", node.args)
     first, second = (_root_of(one) for one in node.args)
     if first is not None and second is not None:
@@ -229,7 +229,7 @@ def _difference(node: Symbol) -> Bounds:
 
 
 def _root_of(value: Any) -> Symbol | None:
-    """X of x * x."""
+    """The x of x * x."""
     if isinstance(value, Symbol) and value.op == "mul" and value.args[0] is value.args[1]:
         root: Symbol = value.args[0]
         return root
@@ -237,7 +237,7 @@ def _root_of(value: Any) -> Symbol | None:
 
 
 def _backward(node: Symbol) -> bool:
-    """What a value's bounds say about its operands."""
+    """Narrow the operands of a value by its bounds."""
     rule = _BACKWARDS.get(node.op)
     return False if rule is None else rule(node)
 
@@ -253,7 +253,7 @@ def _sub(node: Symbol) -> bool:
 
 
 def _rounded(op: str, first: Any, second: Any) -> Bounds:
-    """Bounds of a sum or difference, with room for the rounding of its operands."""
+    """Bounds of a sum or difference, with a tolerance for the rounding of its operands."""
     low, high = bounds(op, (first, second))
     sizes = [abs(end) for end in (*bounds_of(first), *bounds_of(second)) if math.isfinite(end)]
     room = ROUNDING * max(sizes, default=0.0)
@@ -326,7 +326,7 @@ def _where(node: Symbol) -> bool:
 
 
 def _holds(condition: Any, *, held: bool) -> bool:
-    """A comparison that is known to hold, or not to, limits what it compares."""
+    """Narrow both sides of a comparison that is known to be true or false."""
     if not isinstance(condition, Symbol):
         return False
     if condition.op == "not":

@@ -19,11 +19,11 @@ class Lines(NamedTuple):
     high: Vector
 
     def joined(self, more: Lines) -> Lines:
-        """These and others after them."""
+        """These lines followed by others."""
         return Lines(*(np.concatenate(pair) for pair in zip(self, more, strict=True)))
 
     def put(self, solver: Any) -> None:
-        """Add them to a programme as rows."""
+        """Add the lines to a programme as rows."""
         count = len(self.low)
         indices = np.stack([self.ratio, self.out], axis=1).ravel().astype(np.int32)
         data = np.stack([self.coefficient, np.ones(count)], axis=1).ravel()
@@ -32,12 +32,12 @@ class Lines(NamedTuple):
 
 
 class Seen:
-    """Least and largest value of every direction of some points of the relaxation."""
+    """Least and largest value of every direction over known points of the relaxation."""
 
     def __init__(self, directions: Vector) -> None:
         self.ends = directions.copy(), directions.copy()
 
     def add(self, directions: Vector) -> None:
-        """Count one more point."""
+        """Include another point."""
         np.minimum(self.ends[0], directions, out=self.ends[0])
         np.maximum(self.ends[1], directions, out=self.ends[1])

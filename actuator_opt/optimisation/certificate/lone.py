@@ -1,4 +1,4 @@
-"""Traced values that depend on one other value alone: sampled, with room between the samples."""
+"""Sampled tables of traced values that depend on a single other value."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from ...base.symbolic import Symbol, vectorised
 from ..problem import Vector
 
 SAMPLES = 1001
-"""Samples over the range of what a value depends on."""
+"""Number of samples over the range of the argument."""
 
 CAUTION = 1.5
-"""Largest second derivative over that of the samples."""
+"""Safety factor on the second derivative of the samples."""
 
 _LOGIC = ("lt", "le", "and", "or", "not")
 
 
 class Leads:
-    """For each value the one through which it depends on all variables: its lead, or itself."""
+    """The lead of each value: the one value through which it depends on all variables."""
 
     def __init__(self) -> None:
         self._known: dict[int, Symbol] = {}
@@ -33,7 +33,7 @@ class Leads:
 
 
 def function(nodes: Sequence[Symbol], lead: Symbol) -> Callable[[Vector], Vector]:
-    """Values (nodes, n) of nodes with one lead, from its logarithms (n,)."""
+    """A function for values (nodes, n) of nodes with one lead, from its logarithms (n,)."""
     code = vectorised("lone", "value", {}, nodes, known={lead: "value"})
 
     def values(t: Vector) -> Vector:
@@ -45,13 +45,13 @@ def function(nodes: Sequence[Symbol], lead: Symbol) -> Callable[[Vector], Vector
 
 
 def samples(lead: Symbol) -> Vector:
-    """Logarithms over the range of a positive value."""
+    """Sampled logarithms over the range of a positive value."""
     low, high = np.log(lead.bounds)
     return np.linspace(low, high, SAMPLES)
 
 
 def ranges(nodes: Sequence[Symbol]) -> dict[Symbol, tuple[float, float]]:
-    """Ranges of all values with a positive lead, where they are finite."""
+    """Ranges of all values with a positive lead, if finite."""
     leads = Leads()
     groups: dict[Symbol, list[Symbol]] = {}
     for node in nodes:

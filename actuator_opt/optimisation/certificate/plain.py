@@ -1,6 +1,6 @@
-"""Sums in plain numbers beside their logarithms: what is linear stays linear.
+"""Sums in plain numbers beside their logarithms, so that linear relations stay linear.
 
-A sum that must be large is loose in logarithms where its terms range widely, and exact in plain
+A lower bound on a sum is loose in logarithms where its terms range widely, but exact in plain
 numbers. There a monomial is tied to its widest factor and the rest by the planes of their product
 [McCormick1976]: mass and stiffness of a layer both follow its thickness.
 """
@@ -14,11 +14,11 @@ from .shapes import Table
 from .signomial import Form, Powers
 
 WIDE = 0.3
-"""Least range of the ratio of a sum's parts that is stated in plain numbers too."""
+"""Least range of the ratio of a sum's parts for which plain numbers are added."""
 
 
 class _Plain:
-    """Plain atoms of a relaxation whose ranges are known."""
+    """Plain atoms of a relaxation with known ranges."""
 
     def __init__(self, found: Relaxation) -> None:
         self.found = found
@@ -34,7 +34,7 @@ class _Plain:
         return high - low
 
     def atom(self, powers: Powers) -> int:
-        """The plain atom of a monomial, over its largest value."""
+        """The plain atom of a monomial, relative to its largest value."""
         if powers not in self.known:
             found, form = self.found, Form(0.0, powers)
             low, high = found.reach(form)
@@ -49,14 +49,14 @@ class _Plain:
         return self.known[powers]
 
     def term(self, form: Form, scale: float) -> Form:
-        """A monomial over e^scale, linear in its plain atom."""
+        """A monomial divided by e^scale, linear in its plain atom."""
         if not form.powers:
             return Form(math.exp(form.constant - scale))
         number = self.atom(form.powers)
         return Form(0.0, ((number, math.exp(form.constant + self.tops[number] - scale)),))
 
     def _tie(self, form: Form, number: int) -> None:
-        """Tie a plain atom to those of its factors, or of what it is a function of."""
+        """Tie a plain atom to those of its factors, or to its argument."""
         lone = [i for i, power in form.powers if power == 1.0]
         if not lone:
             return
@@ -75,7 +75,7 @@ class _Plain:
 
 
 def straighten(found: Relaxation) -> None:
-    """State the wide sums of a relaxation in plain numbers too."""
+    """Add plain numbers for the wide sums of a relaxation."""
     plain = _Plain(found)
     for whole, part, rest in list(found.splits):
         if plain.width(part - rest) < WIDE:

@@ -15,7 +15,7 @@ from .relaxation import Product
 class Products:
     """Rows -inf or low <= w + a x + b y <= high or inf of products w = k x y, from row `first` on.
 
-    Two planes lie below and two above, through the corners of the ranges of both factors.
+    Two planes lie below and two above, through the corners of both factors' ranges.
     """
 
     def __init__(self, products: Sequence[Product], first: int, columns: int) -> None:
@@ -30,7 +30,7 @@ class Products:
         self.matrix = sp.csr_matrix((ones, self.columns.ravel(), starts), shape=shape)
 
     def planes(self, lower: Vector, upper: Vector) -> tuple[Vector, Vector, Vector]:
-        """Coefficients (rows, 3) and ends of the rows over ranges of all columns.
+        """Coefficients (rows, 3) and ends of the rows, for ranges of all columns.
 
         w >= k (x_l y + y_l x - x_l y_l), w >= k (x_u y + y_u x - x_u y_u),
         w <= k (x_u y + y_l x - x_u y_l), w <= k (x_l y + y_u x - x_l y_u).
@@ -47,7 +47,7 @@ class Products:
         return planes.reshape(-1, 3), low.ravel(), high.ravel()
 
     def torn(self, x: Vector, dual: Vector) -> Vector:
-        """By how much every product is missed at a point, times its multipliers."""
+        """Error of every product at a point, times its multipliers."""
         first, second, out = self.atoms.T
         price = np.abs(dual[self.first : self.first + self.rows]).reshape(-1, 4).sum(axis=1)
         found: Vector = np.abs(x[out] - self.level * x[first] * x[second]) * price

@@ -1,9 +1,9 @@
-"""A problem in logarithms: linear rows, and curves of one argument.
+"""A problem in logarithms: linear rows, and curves with one argument.
 
-Every traced value of known sign is a monomial of atoms; a sum s = p + q makes a new atom with
-log s - log q = softplus(log p - log q), a curve of the log ratio of its terms. Convex on one side,
-it is relaxed by its chord on the other: the shorter the range of the ratio, the tighter. This is
-the log-log convex relaxation of a signomial programme [Maranas1997], built for every sum alike.
+Every traced value of known sign is a monomial of atoms. A sum s = p + q makes a new atom with log s
+- log q = softplus(log p - log q), a curve of the log ratio of its terms. The curve is convex on one
+side and is relaxed by its chord on the other; a shorter range of the ratio gives a tighter chord.
+This is the log-log convex relaxation of a signomial programme [Maranas1997], applied to every sum.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from .signomial import Form
 
 
 class Unknown(Exception):
-    """A value whose sign is open, or whose model has no relaxation: its reason."""
+    """A value of unknown sign, or without a relaxation of its model; carries the reason."""
 
 
 class Curve(NamedTuple):
@@ -30,7 +30,7 @@ class Curve(NamedTuple):
 
 
 class Link(NamedTuple):
-    """Two plain atoms of one argument: out = e^level f(argument), base = argument's own.
+    """Two plain atoms of one argument: out = e^level f(argument), base is the argument itself.
 
     `curve` is the table of log f by the logarithm of the argument.
     """
@@ -51,7 +51,7 @@ class Product(NamedTuple):
 
 
 Maker: TypeAlias = Callable[[Sequence[float]], float]
-"""Logarithm of an atom from those made before."""
+"""Logarithm of an atom from earlier atoms."""
 
 
 class ConstraintRow(NamedTuple):
@@ -65,7 +65,7 @@ class ConstraintRow(NamedTuple):
 class Relaxation:
     """Atoms with their bounds (logarithms), linear rows and curves.
 
-    `makers` tell the logarithm of every atom at a design, from those before it.
+    `makers` compute the logarithm of every atom at a design, from earlier ones.
     """
 
     makers: list[Maker] = field(default_factory=list)
@@ -74,13 +74,13 @@ class Relaxation:
     rows: list[ConstraintRow] = field(default_factory=list)
     curves: list[Curve] = field(default_factory=list)
     splits: list[tuple[Form, Form, Form]] = field(default_factory=list)
-    """Every sum: whole, and its two parts."""
+    """Every sum: the whole, and its two parts."""
     links: list[Link] = field(default_factory=list)
     products: list[Product] = field(default_factory=list)
     sums: dict[tuple[Form, Form], Form] = field(default_factory=dict)
 
     def atom(self, low: float, high: float, maker: Maker) -> Form:
-        """A new positive unknown between two numbers."""
+        """Add a positive unknown between two numbers."""
         self.makers.append(maker)
         self.lower.append(math.log(low) if low > 0 else -math.inf)
         self.upper.append(math.log(high) if high < math.inf else math.inf)
@@ -116,13 +116,13 @@ class Relaxation:
         return self.sums[key]
 
     def split(self, whole: Form, part: Form, rest: Form) -> None:
-        """State that whole = part + rest."""
+        """Add the constraint whole = part + rest."""
         self.curves.append(Curve("softplus", part - rest, whole - rest))
         self.splits.append((whole, part, rest))
 
 
 def log_of_sum(first: float, second: float) -> float:
-    """Logarithm of the sum of two numbers given by theirs."""
+    """Logarithm of the sum of two numbers, given by their logarithms."""
     high, low = max(first, second), min(first, second)
     return high + math.log1p(math.exp(low - high))
 

@@ -1,4 +1,4 @@
-"""Branch and bound on the log ratios of sums: the least objective that any design can have."""
+"""Branch and bound on the log ratios of sums: a lower bound on the objective of any design."""
 
 from __future__ import annotations
 
@@ -18,31 +18,31 @@ from .box import ROOM, Box, Gone, Layout
 from .lines import Seen
 
 GUARD = 1e-6
-"""Taken off the bound, relative: far above rounding in the traced values."""
+"""Relative deduction from the bound, far above rounding in the traced values."""
 
 CLOSE = 1e-4
 """Gap at which the search ends."""
 
 MIDDLE = 0.2
-"""Share of a range that the smaller part gets at least."""
+"""Least share of a range in the smaller part of a split."""
 
 WORTH = 1e-9
-"""Least excess times price that a split can gain."""
+"""Least excess times price that justifies a split."""
 
 FAR_OFF = 0.2
-"""Excess beyond which a curve is no more worth a split: its first one gains most of it."""
+"""Excess above which further splits of a curve gain little; the first one gains most."""
 
 FLOOR = 0.003
-"""Least price of a curve in the choice of a direction: several loose ones in a row have none."""
+"""Least price of a curve when choosing a direction; consecutive loose curves show none."""
 
 SQUEEZES = 2
-"""Most rounds of cutting the first box."""
+"""Maximum rounds of cutting the first box."""
 
 WAYS = 16
-"""Directions cut in a round beside the variables."""
+"""Directions cut per round, beside the variables."""
 
 GAIN = 0.1
-"""Share of their ranges that a round must cut for another one to be worth it."""
+"""Share of their ranges that a round must cut to justify another."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,15 +55,15 @@ class Found:
 
 
 class BoxSearch:
-    """A search by splitting the box of least bound where its relaxation is loosest.
+    """A search that splits the box with the least bound where its relaxation is loosest.
 
     Parameters
     ----------
     layout, bounding : the relaxation
-    best : logarithm of the objective that a design must have at most
-    variables : atoms whose directions are cut in the first box in any case
+    best : logarithm of the largest objective a design may have
+    variables : atoms whose directions are always cut in the first box
     until : time of `time.perf_counter` to stop at
-    most : boxes to solve at most
+    most : maximum number of boxes to solve
     """
 
     def __init__(
@@ -80,14 +80,14 @@ class BoxSearch:
         self.until, self.most = until, most
         self.goal = best + math.log1p(-CLOSE)
         self.least, self.boxes = math.inf, 0
-        """Least bound of the boxes that are done with; boxes solved."""
+        """Least bound of the finished boxes; number of boxes solved."""
         ways = layout.plain[layout.curves :]
         self.variables = np.flatnonzero(np.isin(ways, variables))
         self._order = itertools.count()
         self._open: list[tuple[float, int, Box, Bound]] = []
 
     def run(self, report: Callable[[float], None] | None = None) -> Found:
-        """The bound that holds when time or boxes are used up, or the gap is closed.
+        """Search until time or boxes run out or the gap closes; returns the bound.
 
         Parameters
         ----------
@@ -113,7 +113,7 @@ class BoxSearch:
         return Found(bottom + math.log1p(-GUARD), self.boxes, bottom >= self.goal)
 
     def first(self) -> float:
-        """The bound of the first box as it is; infinite where nothing is in it."""
+        """The bound of the first box; infinite if it is empty."""
         try:
             box = Box.whole(self.layout).tightened(self.layout)
         except Gone:
@@ -123,7 +123,7 @@ class BoxSearch:
         return math.inf if bound is None else bound.value
 
     def _add(self, box: Box, parent: float) -> None:
-        """Keep a box that may hold a better design."""
+        """Add a box that may hold a better design."""
         bound = self.bounding.solve(box)
         self.boxes += 1
         if bound is None:
@@ -136,14 +136,14 @@ class BoxSearch:
         heapq.heappush(self._open, (value, next(self._order), trimmed, bound))
 
     def _squeezed(self, box: Box) -> Box:
-        """The first box cut to where designs no worse than the best known one can be.
+        """The first box, cut to the designs no worse than the best known one.
 
-        Bounds by optimisation of the directions in which the relaxation is loosest, over and over.
+        Repeatedly bounds the directions in which the relaxation is loosest, by optimisation.
 
         Raises
         ------
         Gone
-            nothing is left
+            the box is empty
         """
         box = box.tightened(self.layout)
         self.bounding.lay(box)
@@ -167,7 +167,7 @@ class BoxSearch:
         return box
 
     def _gains(self, box: Box, bound: Bound) -> Vector:
-        """What a split of every direction may gain."""
+        """Possible gain of a split along every direction."""
         gains = np.minimum(bound.excess, FAR_OFF) * (bound.price + FLOOR)
         found = np.bincount(self.layout.direction, gains, self.layout.directions).astype(float)
         width = box.high - box.low
@@ -176,7 +176,7 @@ class BoxSearch:
         return found
 
     def _choice(self, box: Box, bound: Bound) -> tuple[int, float] | None:
-        """Direction and place of the split that can gain most; None where nothing is loose."""
+        """Direction and place of the split with the largest possible gain, or None."""
         gains = self._gains(box, bound)
         number = int(np.argmax(gains))
         if gains[number] <= WORTH:

@@ -1,4 +1,4 @@
-"""The functions of curves, of arrays: analytic ones, and tables of sampled ones."""
+"""Functions of curves for arrays: analytic ones, and tables of samples."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ Name: TypeAlias = Literal["softplus", "exp", "log", "tanh"]
 Function: TypeAlias = Callable[[Vector], Vector]
 
 LEAST = 1e-300
-"""Stands for zero under a logarithm."""
+"""Substitute for zero under a logarithm."""
 
 FAR = 200.0
 """Largest logarithm of an atom or a ratio; e^200 is beyond any quantity."""
 
 
 class Shape(NamedTuple):
-    """A function that rises throughout, with its slope and its inverse; convex (1) or concave."""
+    """An increasing function with its slope and its inverse; convex (1) or concave (-1)."""
 
     value: Function
     slope: Function
@@ -59,14 +59,14 @@ SHAPES: dict[Name, Shape] = {
         -1,
     ),
 }
-"""The functions of curves; of the hyperbolic tangent, the logarithm by that of its argument."""
+"""The functions of curves; the hyperbolic tangent in logarithms of argument and value."""
 
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """A smooth function by equally spaced samples; `room` holds what lies between two of them.
+    """A smooth function as equally spaced samples; `room` bounds the error between samples.
 
-    `convex` is 1, -1 or, of neither, 0.
+    `convex` is 1, -1 or 0 for neither.
     """
 
     low: float
@@ -75,11 +75,11 @@ class Table:
     room: float
     convex: int
     rising: int
-    """1, -1 or, of neither, 0."""
+    """1, -1 or 0 for neither."""
 
     @classmethod
     def of(cls, t: Vector, values: Vector, caution: float) -> Table:
-        """The table of samples at t; the second derivative is that of the samples, and more."""
+        """The table of samples at t; `caution` scales their second derivative."""
         step = float(t[1] - t[0])
         second = np.diff(values, 2)
         noise = 1e-12 * (1 + float(np.abs(values).max()))
@@ -91,7 +91,7 @@ class Table:
 
 
 class Tables:
-    """Several tables of as many samples at once, one argument each."""
+    """Several tables with equally many samples, one argument each."""
 
     def __init__(self, tables: Sequence[Table]) -> None:
         self.low = np.array([one.low for one in tables])
@@ -114,21 +114,21 @@ class Tables:
         return index, np.clip(place - index, 0.0, 1.0)
 
     def value(self, x: Vector) -> Vector:
-        """Between two samples on a straight line."""
+        """Linear interpolation between two samples."""
         index, share = self._place(x)
         first, second = self.values[self.rows, index], self.values[self.rows, index + 1]
         found: Vector = first * (1 - share) + second * share
         return found
 
     def slope(self, x: Vector) -> Vector:
-        """Of the line between two samples."""
+        """Slope of the interpolation."""
         index, _ = self._place(x)
         rise = self.values[self.rows, index + 1] - self.values[self.rows, index]
         found: Vector = rise / self.step
         return found
 
     def _inside(self, low: Vector, high: Vector, some: np.ndarray) -> tuple[Vector, np.ndarray]:
-        """Samples of some tables, and whether they lie within their ranges."""
+        """Samples of some tables, and whether they lie within the ranges."""
         t = self.low[some, None] + self.step[some, None] * np.arange(self.last + 1)
         return t, (t > low[:, None]) & (t < high[:, None])
 
@@ -158,7 +158,7 @@ class Tables:
         )
 
     def within(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
-        """Least and largest arguments of values in ranges; all of them where a table turns."""
+        """Ranges of arguments for ranges of values; the whole range if not monotonic."""
         falls = self.rising < 0
         first = np.where(falls, -high, low) - self.room
         second = np.where(falls, -low, high) + self.room
@@ -170,7 +170,7 @@ class Tables:
         return least, most
 
     def _inverse(self, wanted: Vector, below: np.ndarray, flat: float) -> Vector:
-        """Arguments of values, from the counts of samples below; of flat parts one of the ends."""
+        """Arguments of values, from the number of samples below; at flat parts one of the ends."""
         ordered, rows = self._ordered, self.rows
         index = np.clip(below - 1, 0, self.last - 1)
         first, second = ordered[rows, index], ordered[rows, index + 1]
@@ -184,7 +184,7 @@ Kind: TypeAlias = Name | Table
 
 
 class Mixed:
-    """Many curves of several kinds at once, one argument each."""
+    """Many curves of several kinds, one argument each."""
 
     def __init__(self, kinds: Sequence[Kind]) -> None:
         tables = [kind for kind in kinds if isinstance(kind, Table)]
@@ -230,7 +230,7 @@ class Mixed:
         return least, most
 
     def apart(self, low: Vector, high: Vector, slope: Vector) -> tuple[Vector, Vector]:
-        """How far functions that bend both ways leave their secants, below and above."""
+        """Distance of functions with both curvatures from their secants, below and above."""
         least, most = np.zeros_like(low), np.zeros_like(low)
         if self.tables is not None:
             some, own = self.tables.waving, self.tabled

@@ -1,4 +1,4 @@
-"""Signomials: sums of monomials with signs, and the logarithms of monomials.
+"""Signomials: sums of signed monomials, and the logarithms of monomials.
 
 A monomial is a positive number times powers of atoms (positive unknowns); its logarithm is affine
 in the atoms' logarithms. Products, quotients and powers of monomials are monomials.
@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple, TypeAlias
 
 Powers: TypeAlias = tuple[tuple[int, float], ...]
-"""Exponents by number of the atom, in order; none is 0."""
+"""Exponents by atom number, in order; a missing atom has exponent 0."""
 
 
 class Form(NamedTuple):
@@ -27,7 +27,7 @@ class Form(NamedTuple):
         return Form(self.constant - other.constant, merged(self.powers, other.powers, -1.0))
 
     def at(self, logarithms: Sequence[float]) -> float:
-        """The logarithm at given ones of the atoms."""
+        """The logarithm at given logarithms of the atoms."""
         return self.constant + sum(power * logarithms[i] for i, power in self.powers)
 
     def scaled(self, factor: float) -> Form:
@@ -46,23 +46,23 @@ def merged(first: Powers, second: Powers, factor: float) -> Powers:
 
 
 class Signomial(NamedTuple):
-    """A sum of monomials: their factors with sign, by their powers."""
+    """A sum of monomials: signed factors by powers."""
 
     terms: Mapping[Powers, float]
 
     @classmethod
     def number(cls, value: float) -> Signomial:
-        """A constant."""
+        """A constant as a signomial."""
         return cls({(): value} if value else {})
 
     @classmethod
     def monomial(cls, sign: float, form: Form) -> Signomial:
-        """A monomial with a sign."""
+        """A monomial with a sign, as a signomial."""
         return cls({form.powers: sign * math.exp(form.constant)})
 
     @property
     def single(self) -> tuple[float, Form] | None:
-        """Sign and logarithm of a lone monomial."""
+        """Sign and logarithm of a single monomial."""
         if len(self.terms) != 1:
             return None
         ((powers, factor),) = self.terms.items()
@@ -70,11 +70,11 @@ class Signomial(NamedTuple):
 
     @property
     def size(self) -> float:
-        """Sum of the terms' factors."""
+        """Sum of the absolute factors."""
         return sum(map(abs, self.terms.values()))
 
     def plus(self, other: Signomial, sign: float = 1.0) -> Signomial:
-        """Sum or difference; what cancels to rounding is gone."""
+        """Sum or difference; terms that cancel to rounding are dropped."""
         total = dict(self.terms)
         for powers, factor in other.terms.items():
             known = total.get(powers)
@@ -103,4 +103,4 @@ class Signomial(NamedTuple):
 
 
 ROUNDING = 1e-12
-"""What is left of two terms, over their sizes, that counts as nothing."""
+"""Relative remainder of two terms that counts as zero."""

@@ -1,8 +1,8 @@
-"""The problem as expressions of its variables, from the same models that evaluate a design.
+"""The problem as expressions of its variables, from the models that evaluate a design.
 
-One load case is traced at a time. What is no closed expression is an unknown here, with an envelope
-that holds for its exact value, so that limits either way stay true. What cannot be traced is
-dropped, by name.
+One load case is traced at a time. A model without a closed expression becomes an unknown with an
+envelope around its exact value, so that limits on either side stay valid. Limits that cannot be
+traced are dropped and listed by name.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from .envelopes import Envelopes, decays, layered, refuse
 from .relaxation import Unknown
 
 SOFTER = 1e-5
-"""Relative room of the stiffness: its position in closed form is the softest to some 1e-7."""
+"""Relative tolerance of the stiffness: the closed-form softest position is exact to some 1e-7."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,45 +42,45 @@ class Claim:
 class Traced:
     """Objective and limits of a design as expressions of its variables.
 
-    `dropped` tells by name of the limit why it is not traced.
+    `dropped` gives the reason for each limit that is not traced, by name.
     """
 
     graph: Graph
     variables: dict[str, Symbol]
-    """The design's, by PATH."""
+    """Variables of the design, by PATH."""
     unknowns: dict[str, tuple[Symbol, Callable[[ModelRun], float]]] = field(default_factory=dict)
-    """Further unknowns of envelopes by name, with what they are in an evaluated design."""
+    """Further unknowns of envelopes by name, with their values in an evaluated design."""
     objectives: list[Any] = field(default_factory=list)
-    """The objective is at least each of these."""
+    """The objective is at least each of these values."""
     claims: list[Claim] = field(default_factory=list)
     facts: list[tuple[Any, Any]] = field(default_factory=list)
-    """Pairs of values: the first is at least the second, by nature."""
+    """Pairs of values: the first is always at least the second."""
     dropped: dict[str, str] = field(default_factory=dict)
 
     def unknown(self, name: str, exact: Callable[[ModelRun], float]) -> Symbol:
-        """A further unknown, above zero; `exact` finds it in an evaluated design."""
+        """Add a positive unknown; `exact` returns its value in an evaluated design."""
         if name not in self.unknowns:
             self.unknowns[name] = self.graph.variable(name, (0.0, math.inf)), exact
         return self.unknowns[name][0]
 
 
 def variable(number: int) -> str:
-    """Name of a variable of the design in expressions."""
+    """Name of a design variable in expressions."""
     return f"x{number}"
 
 
 def trace(actuator: ActuatorProblem, x: Vector) -> Traced:
-    """Objective and limits of an actuator as expressions.
+    """Trace objective and limits of an actuator as expressions.
 
     Parameters
     ----------
     actuator : the problem
-    x : a design, at which envelopes are tight
+    x : the design at which envelopes are tight
 
     Raises
     ------
     Unknown
-        a model that all stands on cannot be traced
+        an essential model cannot be traced
     """
     subject, problem = actuator.subject, actuator.problem
     refuse(subject.design)
@@ -108,8 +108,8 @@ def trace(actuator: ActuatorProblem, x: Vector) -> Traced:
         try:
             with np.errstate(all="ignore"):
                 done = statics(one, values, out, envelopes.implicit())
-        except (TypeError, AttributeError):  # what symbols say to operations they do not know
-            raise Unknown("one of its models is no expression of the variables") from None
+        except (TypeError, AttributeError):  # symbols raise this for operations they do not support
+            raise Unknown("one of its models is not a closed expression of the variables") from None
         found.facts += [(part, 0.0) for part in done.mass_parts.values()]
         found.facts += _along_the_stroke(envelopes, done, out, positions)
         envelopes.joint(done, out)
@@ -130,10 +130,10 @@ def _least_proof(done: ModelRun) -> float:
 def _along_the_stroke(
     envelopes: Envelopes, done: Statics, out: MetricArrays, positions: tuple[float, ...]
 ) -> Iterator[tuple[Any, Any]]:
-    """Stiffness is no more than at some positions.
+    """Bound the stiffness from above by its values at some positions.
 
-    Facts: walls only add to the compliance of the oil, a matrix of the two chambers, so that its
-    determinant and diagonal are no less than those of the oil.
+    Walls only add to the compliance of the oil, a matrix of the two chambers. Its determinant and
+    diagonal are therefore at least those of the oil.
     """
     springs, stroke = done.springs, done.base.geometry.stroke
     if springs.topology != "per_chamber" or springs.seals is not None:
@@ -165,7 +165,7 @@ def _collect(
     *,
     first: bool,
 ) -> None:
-    """Claims and objectives of one load case."""
+    """Collect claims and objectives of one load case."""
     goal = actuator.goal
     case = values.cases[0]
     if goal.single is not None:
@@ -189,9 +189,9 @@ def _collect(
                 claimed = value / limited if varies else value
                 found.claims.append(Claim(limit, f"{limit.name} ({where})", claimed, bound))
             else:
-                found.dropped.setdefault(limit.name, "no variable changes it where it is traced")
+                found.dropped.setdefault(limit.name, "no variable affects its traced value")
         if not rows and (first or limit.case is not None):
-            found.dropped[limit.name] = "its model is no closed expression"
+            found.dropped[limit.name] = "its model is not a closed expression"
 
 
 def _applying(out: MetricArrays, metric: str, case: str) -> Iterator[tuple[str, Any]]:
@@ -203,6 +203,6 @@ def _applying(out: MetricArrays, metric: str, case: str) -> Iterator[tuple[str, 
 
 
 def _positions(there: ModelRun) -> tuple[float, ...]:
-    """Where the design is softest, as shares of the stroke, of all load cases."""
+    """Positions of least stiffness in all load cases, as shares of the stroke."""
     shares = np.ravel(there.weakest / there.geometry.stroke)
     return tuple(sorted({round(float(share), 6) for share in shares if np.isfinite(share)}))

@@ -1,7 +1,7 @@
-"""The front of several objectives: designs that are better in none without being worse in another.
+"""The Pareto front of several objectives: designs that no other design dominates.
 
-`objectives` what is wanted · `ends` the best of each objective ·
-`references` where along the front · `tracer` the designs there · `search` those found so far ·
-`line`, `plane` where more are wanted, of two objectives or more · `overlooked` searches anew ·
-`dominance` which of them count · `front` all together.
+`objectives` defines the problem · `ends` the best of each objective · `references` the levels along
+the front · `tracer` the designs there · `search` the designs so far · `line`, `plane` fill the
+front of two objectives or more · `overlooked` searches independently · `dominance` selects the
+designs that count · `front` combines all.
 """

@@ -1,4 +1,4 @@
-"""Which of many designs are on the front, how evenly they lie there, and where it bends most."""
+"""Which designs are on the front, how evenly they lie, and where the front bends most."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from ..problem import Vector
 Indices = npt.NDArray[np.intp]
 
 CLEARLY = 100.0
-"""Differences that count as equal which one must exceed to be better: no cycle dominates itself."""
+"""Multiple of `equal` that counts as clearly better, so that designs cannot dominate in a cycle."""
 
 SAME = 1e-6
-"""Distance in normalised objectives below which two designs are one."""
+"""Distance in normalised objectives below which two designs count as one."""
 
 
 def nondominated(values: Vector, equal: float = 0.0) -> npt.NDArray[np.bool_]:
@@ -22,7 +22,7 @@ def nondominated(values: Vector, equal: float = 0.0) -> npt.NDArray[np.bool_]:
     Parameters
     ----------
     values : (objectives, designs), to be minimised; of equal designs all stay
-    equal : what still counts as no worse; better is then only what is so by `CLEARLY` times that
+    equal : difference that counts as no worse; better means a gain of `CLEARLY` times that
 
     >>> nondominated(np.array([[1.0, 2.0, 3.0], [3.0, 2.0, 2.0]]))
     array([ True,  True, False])
@@ -37,7 +37,7 @@ def nondominated(values: Vector, equal: float = 0.0) -> npt.NDArray[np.bool_]:
 
 
 def distinct(units: Vector, order: Indices) -> Indices:
-    """Those of the designs (objectives, designs), in an order, that lie apart from those before.
+    """Designs (objectives, designs), in a given order, that are distinct from those before.
 
     >>> distinct(np.array([[0.0, 0.0, 1.0], [1.0, 1.0, 0.0]]), np.array([1, 0, 2]))
     array([1, 2])
@@ -50,9 +50,9 @@ def distinct(units: Vector, order: Indices) -> Indices:
 
 
 def thinned(units: Vector, first: Indices, wanted: int) -> Indices:
-    """So many of the designs (objectives, designs) that lie farthest apart, `first` among them.
+    """The requested number of designs (objectives, designs), farthest apart, including `first`.
 
-    Each next one is the design farthest from those taken [Gonzalez1985].
+    Each step adds the design farthest from those selected [Gonzalez1985].
     """
     kept = [int(k) for k in first]
     gaps = np.full(units.shape[1], np.inf)
@@ -71,7 +71,7 @@ def distances(units: Vector, one: Vector) -> Vector:
 
 
 def nearest(units: Vector) -> Vector:
-    """Distance of each design (objectives, designs) to the next one."""
+    """Distance of each design (objectives, designs) to its nearest neighbour."""
     result = np.empty(units.shape[1])
     for k in range(units.shape[1]):
         gaps = distances(units, units[:, k])
@@ -81,11 +81,11 @@ def nearest(units: Vector) -> Vector:
 
 
 def knee(units: Vector) -> tuple[int, float] | None:
-    """The design farthest from the plane through the anchors towards the ideal, and how far.
+    """The design farthest from the plane through the anchors towards the ideal, and its distance.
 
-    Units (objectives, designs) hold 0 at the best of each objective [Das1999]; where the anchors
-    span no plane that falls in every objective, one of equal sums through their middle is taken.
-    None where the front nowhere bends towards the ideal.
+    Units (objectives, designs) are 0 at the best of each objective [Das1999]. If the anchors span
+    no plane that falls in every objective, a plane of equal sums through their middle is used. None
+    if the front does not bend towards the ideal.
 
     >>> knee(np.array([[0.0, 0.25, 1.0], [1.0, 0.25, 0.0]]))
     (1, 0.35355339059327373)

@@ -1,7 +1,7 @@
-"""The ends of a front: the best design of each objective alone, and what of the others they leave.
+"""The ends of a front: the best design of each objective alone.
 
-All objectives are searched for side by side: one sweep of the box, one call of the model for a
-step of every run.
+All objectives are searched together: one sweep of the box, and one model call per step of all runs.
+Ties are resolved in favour of the other objectives.
 """
 
 from __future__ import annotations
@@ -24,22 +24,22 @@ from .objectives import Objectives
 from .tracer import Start, Tracer
 
 HOLD = 1e-10
-"""Share of its range by which an anchor's objective may rise while the others fall."""
+"""Share of its range by which an anchor's objective may worsen while the others improve."""
 
 GAINED = 1e-3
-"""Normalised gain of the others from which that is worth it."""
+"""Normalised gain of the others that justifies this."""
 
 CONFLICT = 1e-6
-"""Share of an objective's magnitude below which its range is none: nothing to trade."""
+"""Range below this share of the magnitude means that the objective does not vary."""
 
 
 ROUGH = 16
-"""Points of a run of SLSQP after which steps with the Hessian there go on."""
+"""Points of an SLSQP run after which steps with the Hessian take over."""
 
 
 @dataclass(frozen=True)
 class Effort:
-    """How hard to search: starts and samples of a sweep for each objective, and its seed."""
+    """Search effort: starts and sweep samples per objective, and the seed."""
 
     starts: int
     samples: int
@@ -48,21 +48,21 @@ class Effort:
 
 @dataclass(frozen=True)
 class Ends:
-    """The anchors (n, objectives), and all local optima (n, k) that meet everything."""
+    """The anchors (n, objectives), and all feasible local optima (n, k)."""
 
     x: Vector
     others: Vector
 
 
 class NoEnd(NamedTuple):
-    """The search for the best of one objective that ended on no optimum, and its number."""
+    """A failed search for the best of one objective, and the objective's number."""
 
     objective: int
     solution: Solution
 
 
 def ends(objectives: Objectives, checked: Evaluator, effort: Effort) -> Ends | NoEnd:
-    """The best of each objective; the search for it where that ends on no optimum."""
+    """The best design of each objective; the failed search if there is none."""
     optima = [[] for _ in range(objectives.count)] if not checked.exact else _together(
         objectives, checked, effort
     )  # fmt: skip
@@ -87,7 +87,7 @@ def ends(objectives: Objectives, checked: Evaluator, effort: Effort) -> Ends | N
 
 
 def _together(objectives: Objectives, checked: Evaluator, effort: Effort) -> list[list[Vector]]:
-    """Local optima of each objective, the best first, by runs that go side by side."""
+    """Local optima of each objective, best first, from simultaneous runs."""
     objectives = replace(objectives, evaluate=_remembering(objectives.evaluate))
     evaluators = [objectives.like(checked, k) for k in range(objectives.count)]
     swept = [sweep(one, effort.samples, effort.seed) for one in evaluators]
@@ -101,7 +101,7 @@ def _together(objectives: Objectives, checked: Evaluator, effort: Effort) -> lis
 
 
 def _remembering(evaluate: Callable[[Array], Values]) -> Callable[[Array], Values]:
-    """The same, with the last values of real points kept: every objective sweeps the same ones."""
+    """The same function with the last real points cached, as all objectives sweep the same ones."""
     last: dict[bytes, Values] = {}
 
     def remembered(points: Array) -> Values:
@@ -118,14 +118,14 @@ def _remembering(evaluate: Callable[[Array], Values]) -> Callable[[Array], Value
 
 
 def _starts(evaluator: Evaluator, swept: Sweep, wanted: int) -> list[Vector]:
-    """Coordinates of the problem's own start and of the best of the sweep that lie apart."""
+    """Coordinates of the problem's own start and of the best distinct points of the sweep."""
     own = evaluator.problem.start
     given = [] if own is None else [evaluator.space.to_z(own)]
     return given + distinct(evaluator, swept.z, max(wanted - len(given), 1))
 
 
 def _optima(ended: Sequence[Point], settled: Sequence[Point | None]) -> list[Vector]:
-    """Distinct optima, the best first; none where a run that did not settle may be better."""
+    """Distinct optima, best first; empty if an unfinished run may be better."""
     good = sorted((one for one in settled if one is not None), key=lambda one: one.objective)
     open_ = [
         p.objective for p, one in zip(ended, settled, strict=True)
@@ -137,7 +137,7 @@ def _optima(ended: Sequence[Point], settled: Sequence[Point | None]) -> list[Vec
 
 
 def normalised(objectives: Objectives, checked: Evaluator, found: Ends) -> tuple[Tracer, Vector]:
-    """The anchors (n, k), normalised by them; one anchor alone where there is nothing to trade."""
+    """The anchors (n, k) with their normalisation; a single one without a conflict."""
     x = found.x
     every = objectives.values(np.concatenate([found.others, x], axis=1))
     values, magnitude = every[:, -x.shape[1] :], np.abs(every).max(axis=1)
@@ -162,7 +162,7 @@ def normalised(objectives: Objectives, checked: Evaluator, found: Ends) -> tuple
 
 
 def _sharpened(tracer: Tracer, x: Vector, units: Vector) -> Vector:
-    """The anchors (n, k), each moved where the others gain and its own objective does not lose."""
+    """The anchors (n, k), moved where others improve without a loss of their own objective."""
     count = len(x.T)
     starts = []
     for k in range(count):

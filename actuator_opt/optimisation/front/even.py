@@ -1,7 +1,7 @@
-"""The designs of a front that are handed out: evenly spread, wide gaps closed or explained.
+"""The final designs of a front: evenly spread, with wide gaps closed or explained.
 
-Between two designs a front in one piece is at most as long as its levels there allow. Where levels
-close to each other lead to designs far apart the front jumps: nothing can lie between.
+The levels limit the length of a continuous front between two designs. If close levels lead to
+distant designs, the front jumps and no design lies between.
 """
 
 from __future__ import annotations
@@ -19,25 +19,25 @@ from .line import between
 from .search import FrontSearch
 
 WIDEST = 3.0
-"""Largest gap between neighbours, over the median one."""
+"""Largest gap between neighbours, relative to the median gap."""
 
 MOST_ROUNDS = 6
-"""Most times that designs are put into wide gaps."""
+"""Maximum rounds of adding designs in wide gaps."""
 
 PIECES = 8
-"""Most pieces that a gap is split into at a time."""
+"""Maximum number of pieces per split of a gap."""
 
 
 @dataclass(frozen=True)
 class Gap:
-    """A wide gap between neighbours of a front, in objectives over their range.
+    """A wide gap between neighbours of a front, in normalised objectives.
 
     Parameters
     ----------
     after : index of the design before it
     size : distance of its two designs
-    reach : the most that the front may measure between them, by the levels tried
-    jump : whether that is no more than a median gap: the front is in pieces here
+    reach : upper limit of the front's length between them, from the levels tried
+    jump : whether that is at most a median gap, so that the front is discontinuous here
     """
 
     after: int
@@ -47,7 +47,7 @@ class Gap:
 
 
 def chosen(search: FrontSearch, count: int) -> dominance.Indices:
-    """So many designs, farthest apart, along the first objective; all are optimal."""
+    """The requested number of designs, farthest apart, along the first objective."""
     kept = np.array([k for k in search.chosen() if search.residual(k) <= RESIDUAL], dtype=np.intp)
     units = search.units[:, kept]
     order = np.lexsort(units[::-1])
@@ -63,7 +63,7 @@ def chosen(search: FrontSearch, count: int) -> dominance.Indices:
 
 
 def wide(search: FrontSearch, kept: dominance.Indices) -> list[Gap]:
-    """The wide gaps between designs of two objectives, in their order."""
+    """The wide gaps between designs of two objectives, in order."""
     units = search.units[:, kept]
     sizes = np.sqrt((np.diff(units, axis=1) ** 2).sum(axis=0))
     reaches = np.array([float(_pieces(search, *two).sum()) for two in _pairs(kept)])
@@ -75,7 +75,7 @@ def wide(search: FrontSearch, kept: dominance.Indices) -> list[Gap]:
 
 
 def close(search: FrontSearch, count: int) -> None:
-    """Put designs of two objectives into wide gaps until there are none but jumps."""
+    """Add designs of two objectives in wide gaps until only jumps remain."""
     for number in range(MOST_ROUNDS):
         kept = chosen(search, count)
         open_ = [gap for gap in wide(search, kept) if not gap.jump]
@@ -93,7 +93,7 @@ def close(search: FrontSearch, count: int) -> None:
 
 
 def middles(search: FrontSearch, count: int) -> list[int]:
-    """A design at the middle level of each wide gap, the widest first."""
+    """Add a design at the middle level of each wide gap, widest first."""
     kept, found = chosen(search, count), []
     for gap in sorted(wide(search, kept), key=lambda one: -one.size):
         among = _among(search, kept[gap.after], kept[gap.after + 1])
@@ -104,7 +104,7 @@ def middles(search: FrontSearch, count: int) -> list[int]:
 
 
 def lost(search: FrontSearch, kept: dominance.Indices) -> int:
-    """Levels at which no design was found and that none is near: in a gap that is no jump."""
+    """Number of levels without a design in or near them, in gaps that are not jumps."""
     units = search.units[:, kept]
     if len(units) > 2:
         widest = dominance.nearest(units).max(initial=0.0)
@@ -124,7 +124,7 @@ def _pairs(kept: dominance.Indices) -> Iterator[tuple[int, int]]:
 
 
 def _among(search: FrontSearch, left: int, right: int) -> dominance.Indices:
-    """The designs at levels from those of one to those of another, in their order."""
+    """Designs at levels between two given ones, in order."""
     levels = np.array([one.level[0] for one in search.designs])
     low, high = sorted((levels[left], levels[right]))
     order = np.argsort(levels, kind="stable")
@@ -133,7 +133,7 @@ def _among(search: FrontSearch, left: int, right: int) -> dominance.Indices:
 
 
 def _pieces(search: FrontSearch, left: int, right: int) -> Vector:
-    """The most that the front may measure between neighbouring levels from one to another."""
+    """Upper limits of the front's length between neighbouring levels of a section."""
     among = _among(search, left, right)
     levels = np.array([search.designs[k].level[0] for k in among])
     return references.lengths(levels, search.units[:, among])

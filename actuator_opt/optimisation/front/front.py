@@ -1,9 +1,9 @@
-"""The front of several objectives, from its anchors: spread evenly, nothing merely local.
+"""The Pareto front from its anchors, evenly spread and checked for merely local designs.
 
-The best design of each objective alone is searched for like any optimum. Between these anchors
-designs at levels in between are found from their neighbours, in common steps; each is compared with
-every other at its own levels, so that a merely local one is seen and replaced. Full searches at
-some levels, which know nothing of the front, then tell whether a better one was overlooked.
+The best design of each objective alone is searched for like any optimum. Designs at levels between
+these anchors are found from their neighbours, in shared steps. Each is compared with all others at
+its own levels, which reveals and replaces merely local designs. Independent full searches at some
+levels then check whether a better one was overlooked.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ from .tracer import Tracer
 
 @dataclass(frozen=True)
 class Settings:
-    """How hard to search.
+    """Search effort for a front.
 
     Parameters
     ----------
-    count : designs asked for
+    count : designs requested
     starts, samples : of the search for each anchor
     checks : full searches at levels in between
     seed : of the searches
@@ -45,7 +45,7 @@ class Settings:
 
 @dataclass(frozen=True)
 class Front:
-    """A front: its designs along the first objective, and how it was found.
+    """A front: its designs along the first objective, and the search statistics.
 
     Parameters
     ----------
@@ -54,10 +54,10 @@ class Front:
     units : the same between 0 (ideal) and 1 (worst of the anchors)
     residuals : of the optimality conditions (k,)
     knee : index and depth of the design where the front bends most, or None
-    passed : values (objectives, p) of designs met on the way that others dominate
+    passed : values (objectives, p) of dominated designs met during the search
     checked, improved : full searches at levels in between, and how many found something better
-    failed : levels at which no design was found and that none is near
-    wide : gaps of two objectives that are wider than `even.WIDEST`, and why
+    failed : number of levels without a design at or near them
+    wide : gaps of two objectives wider than `even.WIDEST`, and the reason
     """
 
     x: Vector
@@ -83,7 +83,7 @@ class Front:
 
 
 def front(objectives: Objectives, settings: Settings) -> Front | NoEnd:
-    """The front of some objectives; the search for an anchor where that ends on no optimum."""
+    """Trace the front of some objectives; returns the failed search if an anchor has no optimum."""
     effort = Effort(settings.starts, settings.samples, settings.seed)
     tell("searching for the ends of the front")
     checked, warnings = objectives.checked()
@@ -99,7 +99,7 @@ def front(objectives: Objectives, settings: Settings) -> Front | NoEnd:
     for again in range(2 if settings.checks else 0):
         places = _places(search, settings)
         before = [search.designs[k] for k in places]
-        tell("searching for what was overlooked")
+        tell("searching for overlooked designs")
         more = better(tracer, before, replace(effort, seed=settings.seed + 1 + again))
         searched += len(places)
         if not more:
@@ -117,7 +117,7 @@ def front(objectives: Objectives, settings: Settings) -> Front | NoEnd:
 
 
 def _fill(search: FrontSearch, count: int) -> None:
-    """Find so many designs, evenly spread."""
+    """Find the requested number of designs, evenly spread."""
     if len(search.tracer.ideal) == 2:
         fill_line(search, count)
         even.close(search, count)
@@ -126,7 +126,7 @@ def _fill(search: FrontSearch, count: int) -> None:
 
 
 def _places(search: FrontSearch, settings: Settings) -> list[int]:
-    """Indices of designs to search anew for: evenly along the front, and one in each wide gap."""
+    """Indices of designs for independent searches: evenly spaced, and one in each wide gap."""
     inner = [k for k in search.chosen() if search.designs[k].held][1:-1]
     picked = np.linspace(0, len(inner) - 1, settings.checks + 2)[1:-1].round().astype(int)
     places = {inner[k] for k in picked.tolist()} if inner else set()
@@ -138,7 +138,7 @@ def _places(search: FrontSearch, settings: Settings) -> list[int]:
 def _finished(
     search: FrontSearch, count: int, warnings: tuple[str, ...], checked: int, improved: int
 ) -> Front:
-    """The designs handed out, with what others they dominate and how evenly they lie."""
+    """The final designs, with the designs they dominate and their spacing."""
     tracer, kept = search.tracer, even.chosen(search, count)
     units = search.units[:, kept]
     replaced = np.stack(search.passed, axis=1) if search.passed else np.empty((len(units), 0))

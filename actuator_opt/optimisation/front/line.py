@@ -13,14 +13,14 @@ from .search import FrontSearch
 from .tracer import Design, Start
 
 GROWTH = 10
-"""Most designs of a round per design known."""
+"""Maximum new designs per round, relative to the known ones."""
 
 MOST_ROUNDS = 12
-"""Most rounds: a front in one piece takes two or three."""
+"""Maximum rounds: a continuous front takes two or three."""
 
 
 def fill_line(search: FrontSearch, count: int) -> None:
-    """Designs between two anchors until there are enough, wherever the front is longest."""
+    """Add designs between two anchors, wherever the front is longest."""
     for number in range(MOST_ROUNDS):
         missing = count - len(search.chosen())
         if missing <= 0:
@@ -38,7 +38,7 @@ def fill_line(search: FrontSearch, count: int) -> None:
 
 
 def between(search: FrontSearch, places: Sequence[float] | Vector) -> list[Start]:
-    """Starts at places u between the designs known, from those next to them."""
+    """Starts at places u between the known designs, from their neighbours."""
     search.sort()
     known = [one.level[0] for one in search.designs]
     return [
@@ -48,7 +48,7 @@ def between(search: FrontSearch, places: Sequence[float] | Vector) -> list[Start
 
 
 def _between(designs: Sequence[Design], k: int, u: float, way: Vector) -> Start:
-    """A start before design k by interpolation; from the nearer one where the front jumps."""
+    """A start before design k by interpolation; from the nearer neighbour if the front jumps."""
     left, right = designs[k - 1], designs[k]
     low, high = left.level[0], right.level[0]
     near = left if u - low < high - u else right
@@ -65,13 +65,13 @@ def _between(designs: Sequence[Design], k: int, u: float, way: Vector) -> Start:
 
 
 def _jumps(left: Design, right: Design) -> bool:
-    """Whether the way between two designs is longer than that of a front in one piece."""
+    """Whether two designs are farther apart than on a continuous front."""
     wide = right.level[0] - left.level[0]
     return bool(np.linalg.norm(right.unit - left.unit) >= references.STEEPEST * wide)
 
 
 def _weights(places: Vector, u: float) -> Vector:
-    """Of values at places (k,), for their interpolation at u by the polynomial through all."""
+    """Weights for interpolating values at places (k,) at u, by the polynomial through all."""
     apart = places[:, None] - places + np.eye(len(places))
     to = u - places + np.zeros((len(places), 1))
     np.fill_diagonal(to, 1.0)

@@ -1,9 +1,9 @@
-"""Several objectives over one box and one set of margins, and the single problems made of them.
+"""Several objectives over one box and one set of margins, and their scalar problems.
 
 A point of the front solves: minimise t subject to f_i <= a_i + r_i t for every objective i, in
 normalised objectives, within the requirements [PascolettiSerafini1984]. With every r_i = 1 the
-design is the one nearest to the ideal along the line through `a` that leaves all objectives equally
-[DasDennis1998]; with some r_i = 0 those objectives are only held.
+design is the nearest to the ideal along the line through `a` that trades all objectives equally
+[DasDennis1998]. An objective with r_i = 0 is only bounded.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ LOWEST, HIGHEST = -1.0, 2.0
 
 @dataclass(frozen=True)
 class Objectives:
-    """What is wanted least of, all at once.
+    """The objectives to be minimised together.
 
     Parameters
     ----------
     names : of the objectives
-    problem : variables and constraints; its own objective is not asked for
+    problem : variables and constraints; its own objective is ignored
     evaluate : maps points (n, k) to `Values` with objectives (objectives, k), to be minimised
     """
 
@@ -48,7 +48,7 @@ class Objectives:
         return len(self.names)
 
     def picked(self) -> ParametricProblem:
-        """One of the objectives by itself; the parameter is its index."""
+        """The problem of a single objective; the parameter is its index."""
 
         def evaluate(points: Array, parameters: Array) -> Values:
             found = self.evaluate(points)
@@ -59,11 +59,11 @@ class Objectives:
         return ParametricProblem(self.problem, ["objective"], np.zeros(1), evaluate)
 
     def alone(self, index: int) -> BoxProblem:
-        """One of the objectives by itself."""
+        """The problem of one objective alone."""
         return self.picked().at(np.array([index]))
 
     def like(self, checked: Evaluator, index: int) -> Evaluator:
-        """An evaluator of one of the objectives, with gradients as those checked of `scaled`."""
+        """An evaluator of one objective, reusing the gradient check of `scaled`."""
         own, m = Evaluator(self.alone(index)), len(self.problem.constraint_names)
         rows = [
             1 + m + index,
@@ -75,7 +75,7 @@ class Objectives:
         return own
 
     def checked(self) -> tuple[Evaluator, tuple[str, ...]]:
-        """An evaluator of `scaled` whose gradients were checked, and what that gave to tell."""
+        """An evaluator of `scaled` with checked gradients, and the warnings of the check."""
         problem = self.problem
         start = (problem.lower + problem.upper) / 2 if problem.start is None else problem.start
         size = np.abs(self.values(start[:, None])[:, 0])
@@ -134,17 +134,17 @@ def _joined(constraints: Array, front: Array) -> Array:
 
 @dataclass(frozen=True)
 class Conditions:
-    """The optimality conditions of a design of the front, as those of an optimum are checked.
+    """The optimality conditions of a design of the front.
 
-    Of the problems "least of one objective, the others no worse than here" a design of the front
-    solves at least one; its residual is that of the first it solves, else the least.
+    A design of the front minimises at least one objective with the others bounded at their values
+    here. Its residual is that of the first such problem it solves, else the least.
     """
 
     objectives: Objectives
 
     @cached_property
     def _held(self) -> list[Evaluator]:
-        """Evaluators of the problems with one objective least and the others held."""
+        """Evaluators of the problems that minimise one objective with the others bounded."""
         problem, names = self.objectives.problem, self.objectives.names
         return [
             Evaluator(
@@ -168,7 +168,7 @@ class Conditions:
         return float(least)
 
     def _one(self, point: Point, index: int) -> float:
-        """That of the problem with one objective least and the others held."""
+        """The residual of minimising one objective with the others bounded."""
         assert point.jacobian is not None
         count, problem = self.objectives.count, self.objectives.problem
         inner, size = len(problem.constraint_names), len(point.z) - 1
@@ -176,7 +176,7 @@ class Conditions:
         others = [1 + inner + i for i in range(count) if i != index]
         slopes = point.jacobian[:, :size]
         order = [*range(1, 1 + inner), *others, *range(front.stop, len(point.rows))]
-        rows = np.concatenate([[1.0], point.rows[order]])  # a vanishing gradient is one of 1e-3
+        rows = np.concatenate([[1.0], point.rows[order]])  # a vanishing gradient counts as 1e-3
         rows[1 + inner : inner + count] = 0.0
         jacobian = np.concatenate([-slopes[front][index][None], slopes[order]])
         at = Point(point.z[:-1], point.x[:-1], rows, point.valid, point.violation, jacobian)

@@ -1,4 +1,4 @@
-"""Full searches at some levels, which know nothing of the front, for what was overlooked."""
+"""Independent full searches at some levels, for designs that were overlooked."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from .ends import Effort
 from .tracer import Design, Tracer
 
 OVERLOOKED = 1e-6
-"""Normalised level by which a search must do better."""
+"""Normalised level by which a search must improve."""
 
 TOLERANCE = 1e-7
-"""Relative change of level and variables at which a run ends."""
+"""Relative change of level and variables that ends a run."""
 
 ROUNDS = 24
-"""Most points of a run; where none meets every requirement by then, other steps go on."""
+"""Maximum points of a run; if no design is feasible by then, other steps take over."""
 
 
 def better(tracer: Tracer, designs: Sequence[Design], effort: Effort) -> list[Vector]:
-    """Variables (n,) of designs that are better at the levels of some on the front."""
+    """Variables (n,) of better designs at the levels of some designs on the front."""
     reached: list[list[Point]] = [[] for _ in designs]
     if tracer.exact and designs:
         reached = _reached(tracer, designs, effort)
@@ -46,7 +46,7 @@ def better(tracer: Tracer, designs: Sequence[Design], effort: Effort) -> list[Ve
 
 
 def _reached(tracer: Tracer, designs: Sequence[Design], effort: Effort) -> list[list[Point]]:
-    """Points that meet every requirement which runs led to, those of each level by themselves."""
+    """Feasible points reached by runs, separately for each level."""
     evaluators = [tracer.like(tracer.at(one.level, one.way)) for one in designs]
     parameters = np.stack([np.concatenate([one.level, one.way]) for one in designs], axis=1)
     given = tracer.parametric, evaluators, parameters
@@ -62,7 +62,7 @@ def _reached(tracer: Tracer, designs: Sequence[Design], effort: Effort) -> list[
 
 
 def _starts(tracer: Tracer, designs: Sequence[Design], effort: Effort) -> list[list[Vector]]:
-    """Coordinates for each level: the problem's own start, and the best of one sweep for all."""
+    """Coordinates for each level: the problem's own start, and the best of one shared sweep."""
     inner = Evaluator(tracer.objectives.alone(0))
     space, own = inner.space, tracer.objectives.problem.start
     cube = Halton(space.size, effort.seed, most=max(2, effort.samples)).points(0, effort.samples)

@@ -1,9 +1,8 @@
-"""Designs of three or more objectives: a lattice as far as the front goes, then its holes.
+"""Designs of three or more objectives: a lattice over the front, then its holes.
 
-The range of a front is not that of its anchors: it may bulge beyond them. So levels are tried next
-to every level that has a design at it, until the front ends. Where it does, the level leads to its
-edge, of which the objectives that still can be bettered are. What the lattice leaves wide apart,
-where the front is steep, is then filled.
+The front may bulge beyond its anchors. So the neighbours of every level with a design are tried,
+until the front ends. There the level leads to its edge: the objectives that can still improve are
+improved. Finally, wide holes where the front is steep are filled.
 """
 
 from __future__ import annotations
@@ -21,47 +20,47 @@ from .search import JUMP, FrontSearch
 from .tracer import BETTER, HELD, Design, Start
 
 Place = tuple[int, ...]
-"""Steps of a lattice from the middle, one number for each objective, of sum 0."""
+"""Lattice steps from the middle, one number per objective, of sum 0."""
 
 SURPLUS = 2.0
-"""Designs wanted over those asked for, to choose the farthest apart of."""
+"""Designs computed per design requested, so that the farthest apart can be selected."""
 
 COARSE = 4
 """Steps of the first lattice from the middle to the level of an anchor."""
 
 RESERVE = 12
-"""Most levels of a lattice per design asked for."""
+"""Maximum levels of a lattice per design requested."""
 
 GROWN = 0.05
-"""Share by which the range of an objective must change for everything to be normalised anew."""
+"""Relative change of an objective's range that triggers a new normalisation."""
 
 RESCALES = 3
-"""Most times that it is."""
+"""Maximum number of new normalisations."""
 
 PRICED = 1e-6
-"""Price of an objective, of all together 1, above which its level holds it back."""
+"""Price of an objective, of 1 in total, above which its level is active."""
 
 HOLD = 1e-9
-"""Normalised room of an objective that is held while others are bettered."""
+"""Normalised slack of a bounded objective while others improve."""
 
 ROUNDS = 12
-"""Most rounds of filling holes."""
+"""Maximum rounds of filling holes."""
 
 ELSEWHERE = 1e-3
-"""Difference of a variable above which two designs at one level are not the same."""
+"""Difference of a variable above which two designs at one level are different."""
 
 CLOSE = 2.0
-"""Distance by which a design may be behind to be tried, over that of neighbours."""
+"""Largest shortfall of a design worth trying, relative to the distance of neighbours."""
 
 CROSSINGS = 4
-"""Most times that designs are tried from their neighbours."""
+"""Maximum rounds of trying designs from their neighbours."""
 
 NEIGHBOURS = 14
-"""Designs next to one that a hole may lie between."""
+"""Neighbours of a design that are checked for a hole between."""
 
 
 def fill_plane(search: FrontSearch, count: int) -> None:
-    """Designs all over the front, more than asked for, evenly spread."""
+    """Cover the front with more designs than requested, evenly spread."""
     objectives, most = search.tracer.objectives.count, RESERVE * count + 60
     if len(search.designs) == objectives:
         steps = COARSE if objectives == 3 else COARSE // 2
@@ -85,7 +84,7 @@ def fill_plane(search: FrontSearch, count: int) -> None:
 
 
 def _nearest(search: FrontSearch, steps: int) -> list[Place]:
-    """The places of a lattice next to the designs known."""
+    """The lattice places nearest to the known designs."""
     found: set[Place] = set()
     for one in search.designs:
         exact = (one.unit - one.unit.mean()) * steps
@@ -96,7 +95,7 @@ def _nearest(search: FrontSearch, steps: int) -> list[Place]:
 
 
 def _flooded(search: FrontSearch, begun: Iterable[Place], steps: int, most: int) -> int:
-    """Try these places, and those next to every one that has a design; how many have."""
+    """Try lattice places and the neighbours of every success; returns the number of successes."""
     tried: set[Place] = set()
     waiting, held = list(begun), 0
     while waiting and len(tried) < most:
@@ -113,7 +112,7 @@ def _flooded(search: FrontSearch, begun: Iterable[Place], steps: int, most: int)
 
 
 def _beside(search: FrontSearch, level: Vector) -> Start:
-    """A start from the designs next to a level, the nearer the more."""
+    """A start from the designs next to a level, weighted by proximity."""
     away = distances(search.plane, level - level.mean())
     near = np.argsort(away, kind="stable")[: len(level)]
     shares = 1 / np.maximum(away[near], 1e-9) ** 2
@@ -124,10 +123,10 @@ def _beside(search: FrontSearch, level: Vector) -> Start:
 
 
 def _all_bettered(search: FrontSearch, found: Sequence[Design | None]) -> list[Design]:
-    """Each design, with those objectives bettered that cost the others nothing, at its own level.
+    """Improve the objectives of each design that cost the others nothing, at its own level.
 
-    An objective that its level does not hold back has no price; with the others held where they
-    are it is bettered until every objective has had one [Marler2004].
+    An objective whose level is not active has no price. With the others bounded at their values it
+    is improved, until every objective has a price [Marler2004].
     """
     done: list[Design] = []
     left = [(one, search.tracer.prices(one) > PRICED) for one in found if one is not None]
@@ -139,7 +138,7 @@ def _all_bettered(search: FrontSearch, found: Sequence[Design | None]) -> list[D
         starts = [_freed(search, one, firm) for one, firm in left]
         bettered = search.tracer.solve(starts, [one for one, _ in left])
         both = list(zip(bettered, left, strict=True))
-        if again:  # where what is held leaves no room at all, the last stage is the end
+        if again:  # without any slack, the last stage is the end
             done += [one for new, (one, _) in both if new is None]
         left = [
             (new, firm | (search.tracer.prices(new) > PRICED))
@@ -150,14 +149,14 @@ def _all_bettered(search: FrontSearch, found: Sequence[Design | None]) -> list[D
 
 
 def _freed(search: FrontSearch, one: Design, firm: npt.NDArray[np.bool_]) -> Start:
-    """A start to better the other objectives, the firm ones held where they are."""
+    """A start that improves the other objectives, with the firm ones bounded."""
     level, way = np.where(firm, one.unit + HOLD, one.level), (~firm).astype(float)
     t = float((one.unit - one.level)[~firm].max())
     return Start(level, way, search.tracer.to_t(one.point.z, t), one.hessian)
 
 
 def _renormalised(search: FrontSearch) -> bool:
-    """Whether the range of the front is another than thought, and all is normalised by it now."""
+    """Normalise again if the range of the front has changed; whether it has."""
     units = search.units[:, search.chosen()]
     low, wide = units.min(axis=1), np.ptp(units, axis=1)
     if (np.abs(low) < GROWN).all() and (np.abs(wide - 1) < GROWN).all():
@@ -167,9 +166,9 @@ def _renormalised(search: FrontSearch) -> bool:
 
 
 def _fill_holes(search: FrontSearch, count: int) -> None:
-    """Levels between neighbours that lie farthest apart, until there are enough designs."""
+    """Add levels between the neighbours farthest apart, until there are enough designs."""
     tried: set[tuple[int, int]] = set()
-    seen: list[Design] = []  # kept, for an id is that of another design once its own is gone
+    seen: list[Design] = []  # kept alive, as an id may be reused
     for number in range(ROUNDS):
         chosen = search.chosen()
         missing = int(np.ceil(SURPLUS * count)) - len(chosen)
@@ -192,7 +191,7 @@ def _key(designs: Sequence[Design], pair: tuple[int, int]) -> tuple[int, int]:
 
 
 def _apart(search: FrontSearch, chosen: Indices) -> list[tuple[int, int]]:
-    """Neighbours with no other design between them, those farthest apart first."""
+    """Neighbours without another design between them, farthest apart first."""
     units, plane = search.units[:, chosen], search.plane[:, chosen]
     found: dict[tuple[int, int], float] = {}
     for i in range(len(chosen)):
@@ -216,7 +215,7 @@ def _middle(search: FrontSearch, one: Design, other: Design) -> Start:
 
 
 def _crossed(search: FrontSearch) -> bool:
-    """Try designs from others that are nearly as good in every objective with other variables.
+    """Retry designs from nearly equal ones with different variables.
 
     Whether any was merely local.
     """
@@ -239,13 +238,13 @@ def _crossed(search: FrontSearch) -> bool:
 
 
 def _elsewhere(one: Design, new: Design) -> bool:
-    """Whether a design that is as good at the same level is another one."""
+    """Whether an equally good design at the same level differs."""
     far = np.abs(new.point.z[:-1] - one.point.z[:-1]).max() > ELSEWHERE
     return bool(far and new.point.objective < one.point.objective + BETTER)
 
 
 def _doubtful(search: FrontSearch, chosen: Indices) -> list[tuple[int, int]]:
-    """Pairs of a design and the one that comes nearest to bettering it from another valley."""
+    """Pairs of a design and its closest competitor from another valley."""
     units = search.units[:, chosen]
     z = np.stack([search.designs[k].point.z[:-1] for k in chosen], axis=1)
     neighbours = np.array(_apart(search, chosen), dtype=np.intp).reshape(-1, 2)

@@ -1,8 +1,8 @@
-"""Where along the front a design is wanted: levels of the objectives on the plane of the anchors.
+"""Levels of the objectives at which designs are wanted, on the plane of the anchors.
 
-Two objectives have the line u -> (u, 1 - u): along it a front is never steeper than 45 degrees, so
-that its length between two places is at most twice their difference in u. More objectives have a
-lattice of the plane sum = 1, as far as lines from it meet the box of ideal and nadir.
+Two objectives use the line u -> (u, 1 - u). Along it a front is never steeper than 45 degrees, so
+its length between two places is at most twice their difference in u. More objectives use a lattice
+of the plane sum = 1, where its lines meet the box of ideal and nadir.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from ..problem import Vector
 
 STEEPEST = 2.0
-"""Longest way along a front of two objectives per unit of u."""
+"""Maximum length of a two-objective front per unit of u."""
 
 
 def on_line(places: Vector) -> Vector:
@@ -24,7 +24,7 @@ def on_line(places: Vector) -> Vector:
 
 
 def lengths(places: Vector, units: Vector) -> Vector:
-    """Way along the front between neighbours (k - 1,), a jump of it left out.
+    """Length of the front between neighbours (k - 1,), jumps excluded.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def lengths(places: Vector, units: Vector) -> Vector:
 
 
 def between(places: Vector, units: Vector, count: int) -> Vector:
-    """So many more places u, wherever the front is longest between two neighbours."""
+    """The requested number of new places u, where the front is longest between neighbours."""
     way = lengths(places, units)
     pieces = np.ones(len(way), dtype=int)
     for _ in range(count):
@@ -51,7 +51,7 @@ def between(places: Vector, units: Vector, count: int) -> Vector:
 
 
 def places(objectives: int, steps: int) -> list[tuple[int, ...]]:
-    """Places of a lattice, in steps from the middle, as far as lines from it meet the unit box.
+    """Places of a lattice, in steps from the middle, whose lines meet the unit box.
 
     >>> len(places(3, 1)), len(places(3, 2))
     (1, 7)
@@ -65,7 +65,7 @@ def places(objectives: int, steps: int) -> list[tuple[int, ...]]:
 
 
 def around(place: tuple[int, ...]) -> list[tuple[int, ...]]:
-    """The places next to one.
+    """The neighbours of a place.
 
     >>> around((0, 0))
     [(-1, 1), (1, -1)]

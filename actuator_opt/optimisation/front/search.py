@@ -1,4 +1,4 @@
-"""The designs of a front found so far: taken in, compared with each other, chosen from."""
+"""The designs of a front so far: collected, compared and selected."""
 
 from __future__ import annotations
 
@@ -15,44 +15,44 @@ from .objectives import Conditions
 from .tracer import BETTER, Design, Start, Tracer
 
 EQUAL = 1e-8
-"""Normalised objective that counts as equal: what is held while others are bettered varies so."""
+"""Normalised difference that counts as equal, as bounded objectives vary by this much."""
 
 JUMP = 5.0
-"""Step of the variables between neighbours, over the median one, that may be another valley."""
+"""Step of the variables between neighbours, over the median, that suggests another valley."""
 
 
 @dataclass
 class FrontSearch:
-    """The designs so far, and what else is known."""
+    """The designs so far, with other known feasible points."""
 
     tracer: Tracer
     designs: list[Design]
     others: Vector
-    """Variables (n, k) of more designs that meet every requirement."""
+    """Variables (n, k) of further feasible designs."""
     passed: list[Vector] = field(default_factory=list)
     """Objectives of designs that were replaced."""
     lost: list[Vector] = field(default_factory=list)
-    """Levels at which no design was found."""
+    """Levels without a design."""
     _rest: tuple[Vector, Vector] | None = None
     _residuals: dict[int, tuple[Design, float]] = field(default_factory=dict)
 
     def solve(self, starts: Sequence[Start], *, firmly: bool = True) -> int:
-        """Add the designs at the levels of some starts; how many were found.
+        """Add the designs at the levels of some starts; returns their number.
 
-        `firmly` : whether those that common steps lose are looked for within trusted radii
+        `firmly` : retry those that shared steps lose within trust regions
         """
         good = [one for one in self.found(starts, firmly=firmly) if one is not None]
         self.take(good)
         return len(good)
 
     def found(self, starts: Sequence[Start], *, firmly: bool = True) -> list[Design | None]:
-        """The designs at the levels of some starts, not taken in yet; see `solve`."""
+        """The designs at the levels of some starts, not added yet; see `solve`."""
         found = self.tracer.solve(starts, self.designs if firmly else ())
         self.lost += [s.level for s, one in zip(starts, found, strict=True) if one is None]
         return found
 
     def compared(self, starts: Sequence[Start]) -> list[Design | None]:
-        """As `found`, but for levels at which a design known is better, which are gone on from."""
+        """As `found`, but continue from a known design where it is better at the level."""
         found = self.found(starts)
         good = [k for k, one in enumerate(found) if one is not None]
         known = np.stack([one.point.x[:-1] for one in self.designs], axis=1)
@@ -64,7 +64,7 @@ class FrontSearch:
         return found
 
     def take(self, good: Sequence[Design]) -> None:
-        """Add designs, and exchange what they found."""
+        """Add designs, and exchange results between them."""
         before = [*self.designs, *good]
         self.designs = self.tracer.exchange(list(before), self.others, self.rest)
         news = [new for old, new in zip(before, self.designs, strict=True) if old is not new]
@@ -72,11 +72,11 @@ class FrontSearch:
         self._pass([o for o, new in zip(before, self.designs, strict=True) if o is not new])
 
     def _pass(self, designs: Sequence[Design]) -> None:
-        """Keep what designs that are replaced had come to."""
+        """Record the objectives of designs that are replaced."""
         self.passed += [self.tracer.values(one.unit[:, None])[:, 0] for one in designs]
 
     def rescale(self, low: Vector, wide: Vector) -> None:
-        """Normalise by another range (objectives,), in the units of now."""
+        """Normalise to another range (objectives,), in current units."""
         tracer = self.tracer
         tracer.rescale(tracer.ideal + low * tracer.width, wide * tracer.width)
         self.designs = tracer.placed(self.designs)
@@ -84,12 +84,12 @@ class FrontSearch:
 
     @property
     def plane(self) -> Vector:
-        """The designs (objectives, k) along the plane of equal sums."""
+        """The designs (objectives, k) projected on the plane of equal sums."""
         units = self.units
         return np.asarray(units - units.mean(axis=0))
 
     def sort(self) -> None:
-        """Bring the designs in the order of their levels of the first objective."""
+        """Sort the designs by their level of the first objective."""
         self.designs.sort(key=lambda one: one.level[0])
 
     @cached_property
@@ -97,7 +97,7 @@ class FrontSearch:
         return Conditions(self.tracer.objectives)
 
     def residual(self, k: int) -> float:
-        """Of the optimality conditions of a design, which exact Newton steps mend if need be."""
+        """Residual of a design's optimality conditions, improved by Newton steps if necessary."""
         one = self.designs[k]
         known = self._residuals.get(id(one))
         if known is not None and known[0] is one:
@@ -110,12 +110,12 @@ class FrontSearch:
         return found
 
     def consider(self, x: Vector) -> None:
-        """Exchange what is known with more designs (n, k) that meet every requirement."""
+        """Compare the designs with further feasible ones (n, k)."""
         self.others = np.concatenate([self.others, x], axis=1)
         self.take([])
 
     def cross(self) -> None:
-        """Try each side of a jump of the variables from the other: it may be the better valley."""
+        """Retry each side of a jump in the variables from the other side."""
         self.sort()
         z = np.stack([one.point.z[:-1] for one in self.designs], axis=1)
         steps = np.abs(np.diff(z, axis=1)).max(axis=0)
@@ -134,7 +134,7 @@ class FrontSearch:
 
     @property
     def rest(self) -> Vector:
-        """Normalised objectives of the other designs (objectives, k)."""
+        """Normalised objectives of the further designs (objectives, k)."""
         if self._rest is None or self._rest[0] is not self.others:
             self._rest = self.others, self.tracer.objectives.values(self.others)
         return self.tracer.normal(self._rest[1])
@@ -145,7 +145,7 @@ class FrontSearch:
         return np.stack([one.unit for one in self.designs], axis=1)
 
     def chosen(self) -> dominance.Indices:
-        """The designs that nothing known dominates, each once, those at all levels first."""
+        """The distinct non-dominated designs, those at all levels first."""
         order = np.array(sorted(range(len(self.designs)), key=lambda k: not self.designs[k].held))
         units = self.units
         own = dominance.distinct(units, order.astype(np.intp))

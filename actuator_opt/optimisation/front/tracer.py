@@ -1,4 +1,4 @@
-"""The designs of a front at given levels: many at once, from the designs next to them."""
+"""Designs of a front at given levels: many at once, from neighbouring designs."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ from .dominance import distances
 from .objectives import Objectives
 
 BETTER = 1e-7
-"""Normalised level by which another design must be better to be another valley."""
+"""Normalised improvement that indicates another valley."""
 
 HELD = 1e-6
-"""Normalised objective below its level that still counts as at it."""
+"""Normalised shortfall that still counts as at the level."""
 
 ROUNDS = 4
-"""Most exchanges of what was found; each goes on only where the last one gained."""
+"""Maximum exchanges of results; each follows only if the last one improved."""
 
 CURVED = 2
-"""Times that the curvature is taken anew where full steps do not settle."""
+"""How often the curvature is recomputed where full steps do not converge."""
 
 
 @dataclass(frozen=True)
 class Design:
-    """A design that is best at its levels, as far as is known.
+    """The best known design at its levels.
 
     Parameters
     ----------
@@ -51,14 +51,14 @@ class Design:
 
     @property
     def held(self) -> bool:
-        """Whether every objective is at its level: else the front has an edge or a jump here."""
+        """Whether every objective is at its level; else the front has an edge or jump here."""
         room = self.level + self.way * self.point.objective - self.unit
         return bool((room <= HELD).all())
 
 
 @dataclass(frozen=True)
 class Start:
-    """Where to look for the design at some levels: coordinates with t, and a Hessian."""
+    """Start for the design at some levels: coordinates with t, and a Hessian."""
 
     level: Vector
     way: Vector
@@ -67,11 +67,11 @@ class Start:
 
 
 class Tracer:
-    """Finds designs of a front in common steps.
+    """Finds designs of a front in shared steps.
 
     Parameters
     ----------
-    objectives : what is wanted
+    objectives : the objectives
     ideal, width : of the normalisation
     checked : an evaluator with checked gradients, see `Objectives.checked`
     """
@@ -86,7 +86,7 @@ class Tracer:
         self.exact = applicable(self.parametric, self.evaluator)
 
     def rescale(self, ideal: Vector, width: Vector) -> None:
-        """Normalise otherwise; the designs found until then are of no more use."""
+        """Change the normalisation; earlier designs become invalid."""
         self.ideal, self.width = ideal, width
         self.parametric = self.objectives.scaled(ideal, width)
         self.evaluator = self.like(self.parametric.problem)
@@ -105,11 +105,11 @@ class Tracer:
         return self.normal(self.objectives.values(x))
 
     def normal(self, values: Vector) -> Vector:
-        """Normalised ones of objectives (objectives, k)."""
+        """Normalise objectives (objectives, k)."""
         return np.asarray((values - self.ideal[:, None]) / self.width[:, None])
 
     def values(self, units: Vector) -> Vector:
-        """Objectives (objectives, k) of normalised ones."""
+        """Objectives (objectives, k) from normalised ones."""
         return units * self.width[:, None] + self.ideal[:, None]
 
     def at(self, level: Vector, way: Vector) -> BoxProblem:
@@ -117,7 +117,7 @@ class Tracer:
         return self.parametric.at(np.concatenate([level, way]))
 
     def begun(self, x: Vector) -> list[Design]:
-        """Designs of variables (n, k) at levels of their own; nothing is known of curvature."""
+        """Designs from variables (n, k) at their own levels, without curvature."""
         units = self.unit(x)
         size = self.evaluator.space.size
         return self._at_own(
@@ -128,7 +128,7 @@ class Tracer:
         )
 
     def placed(self, designs: Sequence[Design]) -> list[Design]:
-        """The designs at levels of their own, which every design of a front is best at."""
+        """The designs at their own levels, for which every design of a front is the best."""
         if not designs:
             return []
         units = self.unit(np.stack([one.point.x[:-1] for one in designs], axis=1))
@@ -140,7 +140,7 @@ class Tracer:
         return self._at_own(starts)
 
     def _at_own(self, starts: Sequence[Start]) -> list[Design]:
-        """The designs where starts are, with their gradients."""
+        """The designs at the starts, with their gradients."""
         z = np.stack([start.z for start in starts], axis=1)
         if not self.exact:
             x = self.evaluator.space.to_x(z)
@@ -149,7 +149,7 @@ class Tracer:
         return [self._design(s, p, s.hessian) for s, p in zip(starts, points, strict=True)]
 
     def prices(self, one: Design) -> Vector:
-        """What a lower level of each objective costs the others at a design (objectives,)."""
+        """Price of each objective's level at a design (objectives,)."""
         m, count = len(self.objectives.problem.constraint_names), self.objectives.count
         jacobian = self.evaluator.jacobian(one.point)
         active = kkt.active_set(self.evaluator, one.point)
@@ -162,7 +162,7 @@ class Tracer:
     def solve(self, starts: Sequence[Start], known: Sequence[Design] = ()) -> list[Design | None]:
         """The design at the levels of each start; None where none is found.
 
-        `known` are designs from which the way down is tried where the starts lead nowhere.
+        Where the starts fail, descents start from the `known` designs.
         """
         if not starts:
             return []
@@ -176,12 +176,12 @@ class Tracer:
         return [self._alone(start) for start in starts]
 
     def exchange(self, designs: list[Design], others: Vector, rest: Vector) -> list[Design]:
-        """The designs, with every one replaced that another one's variables are better for.
+        """The designs, each replaced where another one's variables are better.
 
         Parameters
         ----------
         designs : as found
-        others : variables (n, k) of more designs that meet every requirement
+        others : variables (n, k) of further feasible designs
         rest : normalised objectives of these (objectives, k)
         """
         lost: set[int] = set()
@@ -212,7 +212,7 @@ class Tracer:
         return designs
 
     def spread(self, designs: list[Design], begun: Sequence[Design]) -> list[Design]:
-        """The designs, with every one replaced that is better from one of those begun with."""
+        """The designs, each replaced where a descent from another start is better."""
         news = list(begun)
         while news:
             levels = np.stack([one.level for one in news], axis=1)
@@ -229,7 +229,7 @@ class Tracer:
         return designs
 
     def _descended(self, starts: Sequence[Start]) -> list[Design | None]:
-        """The designs that feasible starts lead down to."""
+        """The designs reached by descents from feasible starts."""
         if not self.exact:
             return [self._alone(start) for start in starts]
         return self._follow(starts)
@@ -245,7 +245,7 @@ class Tracer:
         return Descent(hessian, self.scale, rows, 1.0, radius=radius)
 
     def _follow(self, starts: Sequence[Start]) -> list[Design | None]:
-        """Full steps, and where they do not settle again with the curvature where they stood."""
+        """Full steps; where they do not converge, again with the curvature of the last point."""
         designs: list[Design | None] = [None] * len(starts)
         left, begun = list(range(len(starts))), list(starts)
         for again in range(1 + CURVED):
@@ -276,7 +276,7 @@ class Tracer:
         left: list[int],
         known: Sequence[Design],
     ) -> None:
-        """Go down from the known design that is best at the levels, within trusted radii."""
+        """Descend from the best known design at each level, within trust regions."""
         units = np.stack([one.unit for one in known], axis=1)
         begun, ways = [], []
         for k in left:
@@ -293,7 +293,7 @@ class Tracer:
                 found[k] = self._design(starts[k], point, way.hessian)
 
     def _alone(self, start: Start) -> Design | None:
-        """One design by itself, by the sturdiest means."""
+        """One design alone, by the most robust methods."""
         problem = replace(self.at(start.level, start.way), start=None)
         x = self.evaluator.space.to_x(start.z[:, None])[:, 0]
         best = solve(problem, starts=1, samples=0, more_starts=[x])
@@ -322,7 +322,7 @@ class Tracer:
         return Design(start.level, start.way, point, unit, hessian)
 
     def like(self, problem: BoxProblem) -> Evaluator:
-        """An evaluator of a problem whose gradients are taken as those checked."""
+        """An evaluator of a problem, reusing the gradient check."""
         own = Evaluator(problem)
         own.complex_works = self._checked.complex_works
         own.difference_rows = self._checked.difference_rows

@@ -1,1 +1,1 @@
-"""Re-solve many problems near a solved one: shared steps, one ladder, parallel searches."""
+"""Re-solve many problems near a solved one: shared steps, fallbacks, parallel searches."""

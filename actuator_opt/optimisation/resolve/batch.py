@@ -19,7 +19,7 @@ Steps: TypeAlias = Generator[Vector, Point, Result]
 """A solver: yields coordinates (nf,), receives the evaluated point, returns its result."""
 
 Answer: TypeAlias = Callable[[Mapping[int, Vector]], Sequence[Point]]
-"""Evaluates the point that each solver, by its number, asked for."""
+"""Evaluates the point requested by each solver, by number."""
 
 
 class Batch(Generic[Result]):

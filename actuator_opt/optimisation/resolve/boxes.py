@@ -1,8 +1,8 @@
-"""Re-optimise a problem near a known optimum of another one much like it: other bounds, materials.
+"""Re-optimise a problem from the optimum of a similar one with other bounds or materials.
 
 Quadratic steps with the Hessian of that optimum, one evaluation each, reach most optima. Where they
-do not, a restoration finds the nearest feasible point, and SLSQP goes on from it. The Hessian does
-not learn here: the ends are compared to seven digits only, and equalities are allowed.
+fail, a restoration finds the nearest feasible point and SLSQP continues from it. The Hessian is not
+updated here, as results are only compared to seven digits and equalities are allowed.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from .hessians import ScaledHessian
 from .steps import PATIENCE, SETTLED, restoring_steps
 
 STEPS = 14
-"""Most steps with the Hessian of the other optimum."""
+"""Maximum steps with the Hessian of the other optimum."""
 
 MOST_STEPS = 100
-"""Most evaluations of SLSQP where these do not settle."""
+"""Maximum evaluations of SLSQP if these steps do not converge."""
 
 DOUBTFUL = 0.01
-"""Violation left up to which shortest steps may have overlooked a feasible point."""
+"""Remaining violation up to which the shortest steps may have overlooked a feasible point."""
 
 
 class Criteria(NamedTuple):
-    """Convergence criteria: length of the last step, violation, residual."""
+    """Convergence criteria: step, violation, residual."""
 
     step: float
     violation: float
@@ -40,16 +40,16 @@ class Criteria(NamedTuple):
 
 
 EXACT = Criteria(SETTLED, 1e-11, RESIDUAL)
-"""For what is kept: the objective is first order in the violation, second in the others."""
+"""For final results: the objective is first order in the violation, second in the others."""
 
 ROUGH = Criteria(1e-4, 1e-7, 1e-3)
-"""For what is compared: to seven digits."""
+"""For comparisons: to seven digits."""
 
 NEAR = Criteria(0.02, 1e-3, np.inf)
-"""For what is clearly worse than what is known, by `WORSE`."""
+"""For results clearly worse than the known one, by `WORSE`."""
 
 WORSE = 0.02
-"""Relative loss of the objective that is more than what `NEAR` leaves open."""
+"""Relative loss of the objective beyond the accuracy of `NEAR`."""
 
 
 class Nearest(NamedTuple):
@@ -70,10 +70,10 @@ class BoxTask:
     Parameters
     ----------
     evaluator : of the problem
-    x : a point (n,), as near as is known
+    x : the nearest known point (n,)
     hessian : at the optimum of the other problem
     criteria : of convergence
-    hopeless : whether the other problem has no feasible point, and `x` misses least of it
+    hopeless : whether the other problem is infeasible, with `x` its least infeasible point
     above : an optimum clearly worse than this objective need not be reached
     """
 
@@ -88,7 +88,7 @@ class BoxTask:
 def resolve_boxes(tasks: Sequence[BoxTask]) -> list[Nearest]:
     """The optimum of every task; none where no feasible point is found near it.
 
-    Their problems differ in nothing but their bounds, so that one model call serves a step of all.
+    The problems differ only in their bounds, so that one model call serves a step of all.
     """
 
     def answer(wanted: Mapping[int, Vector]) -> list[Point]:
@@ -99,7 +99,7 @@ def resolve_boxes(tasks: Sequence[BoxTask]) -> list[Nearest]:
 
 
 def _finished(task: BoxTask, end: Nearest) -> Nearest:
-    """Go on by SLSQP from a point that only meets every requirement."""
+    """Continue by SLSQP from a point that is only feasible."""
     if end.optimum is None or end.followed:
         return end
     found = nlopt_wrapper.run(task.evaluator, end.optimum, "LD_SLSQP", most=MOST_STEPS).point
@@ -108,7 +108,7 @@ def _finished(task: BoxTask, end: Nearest) -> Nearest:
 
 
 def _approach(task: BoxTask) -> Steps[Nearest]:
-    """Steps with the other's Hessian, else to a feasible point."""
+    """Steps with the other problem's Hessian, else to a feasible point."""
     evaluator = task.evaluator
     start = yield evaluator.space.to_z(task.x)
     if evaluator.space.size == 0:
@@ -131,14 +131,14 @@ def fixed_hessian_steps(
     criteria: Criteria,
     above: float = np.inf,
 ) -> Steps[Point | None]:
-    """The optimum that steps with another's Hessian converge to; None where they do not.
+    """The optimum reached by steps with another problem's Hessian; None without convergence.
 
-    Steps that come near an optimum clearly worse than `above` end there.
+    Steps stop early near an optimum clearly worse than `above`.
     """
     clearly = above + WORSE * abs(above) if above < np.inf else np.inf
     space = evaluator.space
     hessian = known.seen_by(evaluator, start.x)
-    if not (np.diag(hessian) > 0).all():  # what is free here was fixed there
+    if not (np.diag(hessian) > 0).all():  # free here, but fixed in the other problem
         return None
     free = np.zeros(len(evaluator.problem.equality_names))
     last, point, least = np.inf, start, np.inf
@@ -165,14 +165,14 @@ def fixed_hessian_steps(
 def stepped(
     evaluator: Evaluator, start: Point, known: ScaledHessian, criteria: Criteria
 ) -> Point | None:
-    """`fixed_hessian_steps` of one problem alone."""
+    """`fixed_hessian_steps` of a single problem."""
     solver = fixed_hessian_steps(evaluator, start, known, criteria)
     (found,) = run_batch([solver], lambda wanted: [evaluator.point(z) for z in wanted.values()])
     return found
 
 
 def _restored(evaluator: Evaluator, start: Point, patience: int) -> Steps[Nearest]:
-    """A feasible point near another; None, and the least infeasible point, where none is found."""
+    """A feasible point near another; else None and the least infeasible point."""
     best = start
     if not evaluator.problem.equality_names:
         feasible, least = yield from restoring_steps(evaluator, start, patience)

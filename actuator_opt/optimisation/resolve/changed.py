@@ -24,7 +24,7 @@ from .steps import (
 
 
 def applicable(parametric: ParametricProblem, evaluator: Evaluator) -> bool:
-    """Whether exact gradients of every row come from one complex evaluation."""
+    """Whether one complex evaluation gives exact gradients of every row."""
     exact = evaluator.complex_works and not evaluator.difference_rows.any()
     return exact and not parametric.problem.equality_names
 
@@ -45,13 +45,13 @@ class ChangedProblems:
     parameters: Vector
 
     def chosen(self, numbers: Sequence[int]) -> ChangedProblems:
-        """Only the problems with these numbers."""
+        """The problems with these numbers only."""
         return replace(self, parameters=self.parameters[:, list(numbers)])
 
     def points(self, z: Vector, numbers: Sequence[int] | None = None) -> list[Point]:
         """Points with gradients at z (nf, k), each of the problem with this number (default: all).
 
-        One complex evaluation serves them all. Raises `LimitReached` at the evaluator's limits.
+        Uses one complex evaluation. Raises `LimitReached` at the evaluator's limits.
         """
         evaluator, own = self.evaluator, self.parameters
         evaluator.check_limits()
@@ -81,7 +81,7 @@ class ChangedProblems:
         return run_batch(solvers, answer)
 
     def step_fully(self, descents: Sequence[Descent], starts: Vector) -> list[Point | None]:
-        """The optimum of each by `full_steps` from starts (nf, K)."""
+        """The optimum of each problem by `full_steps` from starts (nf, K)."""
         return self.run(
             [full_steps(self.evaluator, *pair) for pair in zip(descents, starts.T, strict=True)]
         )
@@ -89,7 +89,7 @@ class ChangedProblems:
     def descend(
         self, descents: Sequence[Descent], starts: Vector, most: int = LONGEST
     ) -> list[Point | None]:
-        """The optimum of each by `trusted_steps` from starts (nf, K)."""
+        """The optimum of each problem by `trusted_steps` from starts (nf, K)."""
         return self.run(
             [
                 trusted_steps(self.evaluator, *pair, most)
@@ -98,7 +98,7 @@ class ChangedProblems:
         )
 
     def restore(self, start: Vector) -> list[Vector | None]:
-        """A feasible point (nf,) of each near one start (nf,); None where there is none."""
+        """A feasible point (nf,) of each problem near one start (nf,), or None."""
         count = self.parameters.shape[1]
         found = self.run([restoring_steps(self.evaluator, start) for _ in range(count)])
         return [None if one.feasible is None else one.feasible.z for one in found]
@@ -113,7 +113,7 @@ class ChangedProblems:
     def near_optimum(self, valley: Valley, starts: Vector) -> list[Point | None]:
         """Optima by full steps with the Hessian of the unchanged optimum.
 
-        None where these do not converge, or where the unchanged optimum itself is better.
+        None if these do not converge, or if the unchanged optimum itself is better.
 
         Parameters
         ----------
@@ -134,7 +134,7 @@ class ChangedProblems:
             least = np.where(met, margins[0], np.inf).tolist()
         optima = self.run([full_steps(evaluator, valley.full(), start) for start in begun])
         return [
-            None  # else another valley
+            None  # another valley, then
             if optimum is not None and unmoved < optimum.objective - 1e-9 * abs(optimum.objective)
             else optimum
             for optimum, unmoved in zip(optima, least, strict=True)
@@ -143,7 +143,7 @@ class ChangedProblems:
     def descend_from(
         self, valley: Valley, starts: Vector
     ) -> tuple[list[Point | None], list[Point | None]]:
-        """Optima by descents, and feasible designs on the way to those not reached.
+        """Optima by descents, and feasible designs for those not reached.
 
         Parameters
         ----------

@@ -1,8 +1,8 @@
-"""Hessians to begin with: that of another problem's optimum, or one of the free directions.
+"""Initial Hessians: from another problem's optimum, or along the free directions.
 
-Most designs of a front are held by nearly as many limits as they have variables. What the Hessian
-does along the few free directions takes a gradient to each side of each; the rest only has to be
-convex, as the rows settle it [NocedalWright2006] section 16.2.
+Most designs of a front have nearly as many active limits as variables. Along the few free
+directions, a gradient on each side gives the curvature. Elsewhere the Hessian only has to be
+convex, as the rows determine the step [NocedalWright2006] section 16.2.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from ..problem import Vector
 from .steps import Descent
 
 FIRM = 1e-6
-"""Multiplier, over the largest, above which a row is in force."""
+"""Multiplier, relative to the largest, above which a row is active."""
 
 FLATTEST = 1e-10
-"""Least curvature over the largest of the whole, above rounding; else nothing is crossed."""
+"""Least curvature relative to the largest, above rounding; below it no direction is crossed."""
 
 LEAST = 1e-6
 """Least curvature over the largest multiplier."""
@@ -35,14 +35,14 @@ class ScaledHessian:
     scale: float
 
     def seen_by(self, evaluator: Evaluator, x: Vector) -> Vector:
-        """In the coordinates of the free variables of a problem, at a point of it (n,)."""
+        """The Hessian in the free coordinates of a problem, at one of its points (n,)."""
         space = evaluator.space
         slope = space.slope(x[:, None])[:, 0]
         return np.asarray(self.hessian[np.ix_(space.free, space.free)] * np.outer(slope, slope))
 
 
 def hessian_at(evaluator: Evaluator, point: Point) -> ScaledHessian | None:
-    """The Hessian at an optimum; None where nothing is free."""
+    """The Hessian at an optimum; None if no variable is free."""
     space = evaluator.space
     if not space.size or not point.valid:
         return None
@@ -55,11 +55,11 @@ def hessian_at(evaluator: Evaluator, point: Point) -> ScaledHessian | None:
 
 
 def free_hessians(evaluator: Evaluator, descents: Sequence[Descent]) -> list[Vector]:
-    """Convex Hessian of the Lagrangian where each descent stands, from one call of the model.
+    """Convex Hessian of the Lagrangian at the point of each descent, from one model call.
 
     Parameters
     ----------
-    evaluator : of the problems, which differ in nothing that bends
+    evaluator : of the problems, which have the same curvature
     descents : with a point and its multipliers
     """
     free = [_free(evaluator, descent) for descent in descents]
@@ -85,7 +85,7 @@ def free_hessians(evaluator: Evaluator, descents: Sequence[Descent]) -> list[Vec
 
 
 def _free(evaluator: Evaluator, descent: Descent) -> Vector:
-    """Orthonormal directions (nf, d) that leave the rows in force as they are."""
+    """Orthonormal directions (nf, d) that leave the active rows unchanged."""
     size, prices = evaluator.space.size, descent.prices
     unit = np.eye(size)
     rows = np.concatenate([evaluator.jacobian(descent.known)[1 : 1 + descent.rows], unit, -unit])

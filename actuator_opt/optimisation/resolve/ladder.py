@@ -1,10 +1,9 @@
-"""Re-solve many problems near a solved one, sturdier step by step, up to a search.
+"""Re-solve many problems near a solved one, with ever more robust methods.
 
 1. Full steps from the predicted optima, all problems together.
-2. For the others a restoration and a descent. Every other local optimum known is followed too, and
-   the optimum of each problem is a start for every other: a small change may make another valley
-   the best.
-3. For what is left Newton's method and SLSQP from the points at hand, then a search with a sweep.
+2. For the rest, a restoration and a descent. Other known local optima are followed too, and the
+   optimum of each problem is a start for all others, as a small change may favour another valley.
+3. For what is left, Newton's method and SLSQP from the points at hand, then a search with a sweep.
 
 Only the last step may end without a design.
 """
@@ -33,17 +32,17 @@ RESIDUAL = 1e-6
 """Residual of the optimality conditions that a re-solved optimum must reach."""
 
 BETTER = 1e-8
-"""Share of the objective by which another design must be better to be another valley."""
+"""Relative improvement of the objective that indicates another valley."""
 
 ROUNDS = 3
-"""Most exchanges of optima; each goes on only where the last one gained."""
+"""Maximum exchanges of optima; each follows only if the last one improved."""
 
 BEYOND = 1.0
-"""How far past another valley its descents start, as a share of the way there from the best: what
-lies between the two often moves as fast as they do."""
+"""How far beyond another valley its descents start, as a share of the distance from the best: the
+ridge between the two often moves as fast as they do."""
 
 SAMPLES = 1024
-"""Points of the sweep where a feasible problem has no optimum in reach."""
+"""Points of the sweep for a feasible problem whose optimum was not reached."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +52,7 @@ class SolvedProblem:
     Parameters
     ----------
     parametric : the problem with its parameters
-    evaluator : of it, with checked gradients
+    evaluator : its evaluator, with checked gradients
     valleys : its local optima, the best first
     """
 
@@ -79,9 +78,9 @@ class Task:
 
 
 def resolve(solved: SolvedProblem, tasks: Sequence[Task]) -> list[Point | None]:
-    """The optimum of every task; None where no feasible point is found.
+    """The optimum of every task; None without a feasible point.
 
-    Where no optimum is reached, the best feasible point.
+    If no optimum is reached, the best feasible point.
     """
     optima: list[Point | None] = [None] * len(tasks)
     inside: list[Vector | None] = [None] * len(tasks)
@@ -107,13 +106,13 @@ def resolve(solved: SolvedProblem, tasks: Sequence[Task]) -> list[Point | None]:
 def resolve_batch(
     changed: ChangedProblems, valleys: Sequence[Valley], starts: Vector
 ) -> tuple[list[Point | None], list[Vector | None]]:
-    """The optimum of each changed problem, and a feasible point; None where none is in reach.
+    """The optimum of each changed problem, and a feasible point; None where not reached.
 
     Parameters
     ----------
     changed : the problems
     valleys : local optima of the solved problem, the best first
-    starts : predicted optima (nf, K) in the first valley; the others are entered from beyond
+    starts : predicted optima (nf, K) in the first valley; others are entered from beyond
     """
     first, space = valleys[0], changed.evaluator.space
     point = first.point
@@ -145,7 +144,7 @@ class _Ends:
     feasible: dict[int, Vector] = field(default_factory=dict)
 
     def descend(self, valley: Valley, starts: Mapping[int, Vector | None]) -> None:
-        """Descend from a start of each of these problems, and keep what is better."""
+        """Descend from a start of each of these problems, and keep improvements."""
         begun = {i: z for i, z in starts.items() if z is not None}
         chosen = list(begun)
         if not chosen:
@@ -158,7 +157,7 @@ class _Ends:
             self.known[i] = _better(self.known[i], stop)
 
     def elsewhere(self, valleys: Sequence[Point]) -> dict[int, Vector]:
-        """For each problem the best of the others' designs, where it is better than its own."""
+        """For each problem the best design of the others, if better than its own."""
         points = [*valleys, *(one for one in self.optima if one is not None)]
         rows = self.changed.margins_at(points)
         missed = self.changed.evaluator.violations(rows.reshape(len(rows), -1), "worst")
@@ -173,7 +172,7 @@ class _Ends:
         return better
 
     def settled(self) -> tuple[list[Point | None], list[Vector | None]]:
-        """The optima, None where a better design is known than the optimum; and those designs."""
+        """The optima, None where a better design is known; and those designs."""
         inside: list[Vector | None] = [None] * len(self.optima)
         for i, at in enumerate(self.known):
             if at is not None and at.objective < _beaten(self.optima[i]):
@@ -184,7 +183,7 @@ class _Ends:
 
 
 def _beaten(one: Point | None) -> float:
-    """Objective below which another design is really better."""
+    """Objective below which another design is clearly better."""
     return np.inf if one is None else one.objective - BETTER * abs(one.objective)
 
 
@@ -195,7 +194,7 @@ def _better(one: Point | None, other: Point | None) -> Point | None:
 
 
 def other_optima(evaluator: Evaluator, solution: Solution) -> list[Point]:
-    """Local optima of the search besides the one it chose."""
+    """Local optima of the search other than the best."""
     good = [
         one.x
         for one in solution.optima
@@ -207,7 +206,7 @@ def other_optima(evaluator: Evaluator, solution: Solution) -> list[Point]:
 
 
 def point_of(evaluator: Evaluator, solution: Solution) -> Point:
-    """The point a search ended on."""
+    """The end point of a search."""
     rows = np.concatenate([[solution.objective], solution.constraints, solution.equalities])
     return Point(evaluator.space.to_z(solution.x), solution.x, rows, True, solution.violation)
 
@@ -220,17 +219,17 @@ def search_near(
     *,
     inside: Vector | None = None,
 ) -> Point | None:
-    """The best point of a slightly changed problem, by itself; None if infeasible.
+    """The best point of a slightly changed problem, solved alone; None if infeasible.
 
-    Newton first; where the active set changes too much for it, a search from the points at hand.
+    Newton steps first; if the active set changes too much, a search from the points at hand.
 
     Parameters
     ----------
     problem : the changed problem
     evaluator, point : of the unchanged problem, and its optimum
     guess : predicted optimum (nf,)
-    inside : coordinates of a feasible point, where one is known; without it and without a feasible
-        point near the unchanged optimum there is taken to be none
+    inside : coordinates of a known feasible point; if missing, and none lies near the unchanged
+        optimum, the problem counts as infeasible
     """
     near = Evaluator(problem)
     if near.space.size != len(guess):  # the changed bound fixes a variable

@@ -1,8 +1,8 @@
-"""Runs of SLSQP from several starts side by side: one model call evaluates a step of them all.
+"""SLSQP runs from several starts in parallel: one model call evaluates a step of every run.
 
-A call costs little more for many points than for one, but NLopt asks for one point at a time. So
-every run has a thread, which waits for its point until the others have asked for theirs. What each
-run reaches, and every decision on the way, is that of the run alone.
+A call costs little more for many points than for one, but NLopt requests one point at a time. So
+each run has a thread, which waits until the others have requested theirs. The result and every
+decision of a run are the same as when it runs alone.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ from .hessians import free_hessians
 from .steps import Descent
 
 ROUNDS = 60
-"""Most points of a run computed in advance: from a start of the sweep 10 to 60 do."""
+"""Maximum points of a run computed in advance; from a sweep start 10 to 60 suffice."""
 
 FIRST = 14
-"""Most steps with the Hessian of the free directions, where none has led to an optimum yet."""
+"""Maximum steps with the Hessian of the free directions if none has reached an optimum yet."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """Runs of one problem: its evaluator, and the points with slopes that they start from."""
+    """Runs of one problem: its evaluator, and their starting points with gradients."""
 
     evaluator: Evaluator
     starts: list[Point]
@@ -45,10 +45,10 @@ Rows = Callable[[npt.NDArray[np.complex128], npt.NDArray[np.intp]], npt.NDArray[
 
 
 def precompute(evaluator: Evaluator, starts: Sequence[Point], *, seed: int, most: int) -> None:
-    """Precompute the points SLSQP visits from some starts.
+    """Precompute the points SLSQP visits from the given starts.
 
-    Ends early where the first run meets no requirement, as then the others are not made, and at
-    the evaluator's time limit.
+    Stops early if the first run is infeasible, as the others are then skipped, and at the
+    evaluator's time limit.
 
     Parameters
     ----------
@@ -72,17 +72,17 @@ def run_together(
     tolerance: float = 1e-9,
     rounds: int = ROUNDS,
 ) -> list[list[Point]]:
-    """The best points of runs of SLSQP, for each task and start.
+    """The best points of SLSQP runs, for each task and start.
 
-    The evaluators keep every point visited. Of a task whose first run meets no requirement the
-    others are ended there, as all are at the time limit of the first evaluator.
+    The evaluators store every point visited. If the first run of a task is infeasible, its others
+    stop. All stop at the time limit of the first evaluator.
 
     Parameters
     ----------
     tasks : with exact gradients
-    rows : of all of them in one call
+    rows : of all tasks in one call
     seed, most, tolerance : of the runs
-    rounds : most points of a run
+    rounds : maximum points of a run
     """
     runs: list[SlsqpRun] = []
     for number, task in enumerate(tasks):
@@ -123,7 +123,7 @@ def run_together(
 
 
 def _share(runs: Sequence[SlsqpRun], batch: Batch[None], before: set[int]) -> None:
-    """Let the other runs of a task know the optima of those that just ended, in their order."""
+    """Share new optima with the other runs of their task, in order."""
     for number in sorted(set(batch.results) - before):
         if runs[number].new:
             runs[number].known.append(runs[number].best)
@@ -150,9 +150,9 @@ class SlsqpRun:
     most: int
     tolerance: float
     hopeless: bool = False
-    """Whether it ended on a point that misses a requirement."""
+    """Whether it ended at an infeasible point."""
     new: bool = False
-    """Whether it ended on one that misses none, and is not known."""
+    """Whether it ended at a feasible point that was not known."""
     best: Point = field(init=False)
 
     def __post_init__(self) -> None:
@@ -162,7 +162,7 @@ class SlsqpRun:
         self._own = _Asking(self.evaluator, self.start, self._asked, self._answers)
 
     def steps(self) -> Steps[None]:
-        """The run as a solver; closed early, it stops with the best point so far."""
+        """The run as a solver; closing it early stops it with the best point so far."""
         thread = Thread(target=self._go, daemon=True)
         thread.start()
         try:
@@ -173,7 +173,7 @@ class SlsqpRun:
             thread.join()
 
     def entered(self, z: Vector, rows: npt.NDArray[np.generic]) -> Point:
-        """The point at z (nf,) from the rows of its columns, which the task's evaluator keeps."""
+        """The point at z (nf,) from the rows of its columns; stored in the task's evaluator."""
         self.evaluator.foreseen[z.tobytes()] = rows
         return self._own.entered(z, rows)
 
@@ -191,7 +191,7 @@ class SlsqpRun:
 
 
 class _Asking(Evaluator):
-    """An evaluator whose points the solver's batch evaluates."""
+    """An evaluator whose points the batch evaluates."""
 
     def __init__(
         self,
@@ -207,7 +207,7 @@ class _Asking(Evaluator):
         self._cache[start.z.tobytes()] = start
 
     def point(self, z: Vector) -> Point:
-        """The evaluated point at z (nf,), once the others have asked for theirs too."""
+        """The evaluated point at z (nf,), once the other runs have requested theirs."""
         known = self._cache.get(z.tobytes())
         if known is not None:
             return known
@@ -228,7 +228,7 @@ def descents_from(
     tolerance: float = 1e-9,
     rounds: int = ROUNDS,
 ) -> list[list[Point]]:
-    """Where runs of SLSQP lead, for each problem from each of its starts.
+    """The results of SLSQP runs, for each problem from each of its starts.
 
     Parameters
     ----------
@@ -266,7 +266,7 @@ def converged_from(
     parameters: Vector,
     begun: Sequence[Sequence[Point]],
 ) -> list[list[Point | None]]:
-    """The optimum that steps with the Hessian reach from each point; None where they reach none.
+    """The optimum that steps with the Hessian reach from each point, or None.
 
     Parameters
     ----------
@@ -300,13 +300,13 @@ def converged_from(
 
 
 def _descent(evaluator: Evaluator, point: Point, hessian: Vector) -> Descent:
-    """A descent from a point, with a Hessian of its own."""
+    """A descent from a point, with its own Hessian."""
     scale = kkt.slope_scale(evaluator, point)
     return Descent(hessian, scale, evaluator.constraint_count, 1.0)
 
 
 def distinct_ends(points: Sequence[Point]) -> list[Point]:
-    """Those ends of runs that are not near a better one, the best first."""
+    """Distinct ends of runs, the best first."""
     kept: list[Point] = []
     for one in sorted(points, key=lambda p: (p.violation > ARRIVAL[2], p.objective)):
         if not any(_near(one, known) for known in kept):
@@ -315,7 +315,7 @@ def distinct_ends(points: Sequence[Point]) -> list[Point]:
 
 
 def _near(point: Point, known: Point) -> bool:
-    """Whether a run would count as arrived there."""
+    """Whether a run counts as arrived at a known point."""
     reach, share, _ = ARRIVAL
     alike = abs(point.objective - known.objective) <= share * abs(known.objective)
     return alike and bool(np.abs(point.z - known.z).max(initial=0.0) <= reach)

@@ -1,8 +1,8 @@
-"""Steps towards an optimum of a problem near a solved one, for `batch.run_batch`.
+"""Steps towards an optimum near a solved one, for `batch.run_batch`.
 
-Full quadratic steps with the Hessian of the unchanged optimum, which learns on the way, reach most.
-A descent within a trusted radius reaches what these do not, from a feasible point. A restoration
-finds such a point.
+Full quadratic steps reach most optima. They use the Hessian of the unchanged optimum and update it.
+A descent within a trust region, from a feasible point, reaches the others. A restoration finds such
+a point.
 """
 
 from __future__ import annotations
@@ -18,49 +18,49 @@ from ..problem import Vector
 from .batch import Steps
 
 ITERATIONS = 10
-"""Most full steps; 10 % changes mostly take three to five."""
+"""Maximum full steps; 10 % changes usually take three to five."""
 
 LONGEST = 60
-"""Most evaluations of a descent within a trusted radius."""
+"""Maximum evaluations of a descent within a trust region."""
 
 MEMORY = 3
-"""Merits, the worst of which a trial must beat."""
+"""Number of past merits; a trial must beat the worst of them."""
 
 RADIUS = 0.1
-"""First radius trusted, in solver coordinates: 10 % in a logarithmic variable."""
+"""First trust radius, in solver coordinates: 10 % in a logarithmic variable."""
 
 LEAST_RADIUS = 1e-4
 """Radius at which a descent gives up."""
 
 RESTORATIONS = 24
-"""Most steps towards a feasible point."""
+"""Maximum steps towards a feasible point."""
 
 PATIENCE = 4
 """Steps within which the violation must fall by 2 %, or the problem counts as infeasible."""
 
 SETTLED = 1e-6
-"""Length of the last step below which the optimality conditions are worth checking."""
+"""Step length below which the optimality conditions are checked."""
 
 FEASIBLE = 1e-11
-"""Violation left: the objective is first order in it."""
+"""Allowed violation: the objective is first order in it."""
 
 MET = 1e-6
 """Violation of a design that still counts as feasible."""
 
 RESIDUAL = 1e-6
-"""Residual of the optimality conditions left: the objective is second order in it."""
+"""Allowed residual of the optimality conditions: the objective is second order in it."""
 
 LEAST_CURVATURE = 1e-10
-"""Least ratio of the smallest to the largest curvature of a learnt Hessian: well above rounding."""
+"""Least ratio of smallest to largest curvature of an updated Hessian, well above rounding."""
 
 
 @dataclass
 class Descent:
-    """One problem on its way down: the last accepted point and the step tried from it.
+    """One descent: the last accepted point and the trial step from it.
 
-    The merit is the objective plus the violations at more than their price; a trial need only
-    beat the worst of the last `MEMORY` merits, so that curved constraints do not shorten good
-    steps [NocedalWright2006] ch. 15. Steps stay within a radius that follows their success.
+    The merit is the objective plus the violations, weighted above their price. A trial need only
+    beat the worst of the last `MEMORY` merits, so that curved constraints do not shorten good steps
+    [NocedalWright2006] ch. 15. The trust radius follows the success of the steps.
     """
 
     hessian: Vector
@@ -73,22 +73,22 @@ class Descent:
     prices: Vector | None = None
     multipliers: Vector = field(default_factory=lambda: np.zeros(0))
     corrected: bool = False
-    """Whether the step tried is one corrected for the constraints' curvature."""
+    """Whether the trial step includes a correction for the curvature of constraints."""
     past: list[tuple[float, float]] = field(default_factory=list)
 
     @property
     def known(self) -> Point:
-        """The last accepted point, which there must be."""
+        """The last accepted point, which must exist."""
         assert self.point is not None
         return self.point
 
     @property
     def length(self) -> float:
-        """Length of the step now tried, infinite before the first."""
+        """Length of the trial step, infinite before the first."""
         return np.inf if self.point is None else float(np.abs(self.step).max(initial=0.0))
 
     def accepts(self, trial: Point) -> bool:
-        """Whether the trial is good enough to go on from."""
+        """Whether the trial is accepted."""
         if self.point is None or self.length <= SETTLED:
             return True
         value, missed = self._measures(trial)
@@ -96,7 +96,7 @@ class Descent:
         return value + self.price * missed < max(merits)
 
     def go_on(self, evaluator: Evaluator, trial: Point) -> None:
-        """Learn from an accepted trial and choose the next step."""
+        """Update the Hessian from an accepted trial and choose the next step."""
         jacobian = evaluator.jacobian(trial)
         if self.point is not None:
             change = jacobian - evaluator.jacobian(self.point)
@@ -109,9 +109,9 @@ class Descent:
         self.choose(evaluator)
 
     def choose(self, evaluator: Evaluator, trial: Point | None = None) -> None:
-        """Choose the step from the accepted point, within the radius.
+        """Choose the step from the accepted point, within the trust radius.
 
-        With a trial that curved constraints spoilt, their curvature on the way to it is taken off
+        After a trial that curved constraints spoilt, the step is corrected for that curvature
         [NocedalWright2006] section 18.3.
         """
         space, point, unit = evaluator.space, self.known, np.eye(len(self.hessian))
@@ -152,18 +152,18 @@ class Descent:
             + np.outer(change, change) / float(step @ change)
         )
         curvatures = np.linalg.eigvalsh(learnt)
-        if curvatures[0] > LEAST_CURVATURE * curvatures[-1]:  # else rounding has eaten it
+        if curvatures[0] > LEAST_CURVATURE * curvatures[-1]:  # otherwise lost in rounding
             self.hessian = learnt
 
 
 def margin_price(multipliers: Vector) -> float:
-    """A price of missed margins above every multiplier."""
+    """A penalty for missed margins above every multiplier."""
     return 2 * float(multipliers.max(initial=0.0)) + 1.0
 
 
 @dataclass(frozen=True)
 class Valley:
-    """A local optimum, with what new descents begin with.
+    """A local optimum, with the initial data of new descents.
 
     Parameters
     ----------
@@ -185,7 +185,7 @@ class Valley:
         return Descent(self.hessian, self.scale, self.rows, 1.0, radius=newton.RADIUS)
 
     def trusted(self) -> Descent:
-        """A descent within a trusted radius."""
+        """A descent within a trust region."""
         return Descent(self.hessian, self.scale, self.rows, self.price)
 
 
@@ -205,7 +205,7 @@ def is_optimum(evaluator: Evaluator, point: Point) -> bool:
 def full_steps(
     evaluator: Evaluator, descent: Descent, start: Vector | Point
 ) -> Steps[Point | None]:
-    """The optimum that full quadratic steps reach; None where they do not converge.
+    """The optimum that full quadratic steps reach, or None.
 
     Parameters
     ----------
@@ -237,7 +237,7 @@ def full_steps(
 def trusted_steps(
     evaluator: Evaluator, descent: Descent, start: Vector, most: int = LONGEST
 ) -> Steps[Point | None]:
-    """The optimum that a descent within a trusted radius reaches; None where it reaches none.
+    """The optimum that a descent within a trust region reaches, or None.
 
     Parameters
     ----------
@@ -264,7 +264,7 @@ def trusted_steps(
 
 
 class Restored(NamedTuple):
-    """A feasible point, None where none was reached, and the least infeasible one on the way."""
+    """A feasible point, or None and the least infeasible one met."""
 
     feasible: Point | None
     least: Point | None
@@ -275,8 +275,8 @@ def restoring_steps(
 ) -> Steps[Restored]:
     """A feasible point near a start.
 
-    Every step is the shortest that meets the linearised rows, or misses them least. The problem
-    has no equalities.
+    Every step is the shortest one that satisfies the linearised rows, or violates them least. The
+    problem has no equalities.
 
     Parameters
     ----------

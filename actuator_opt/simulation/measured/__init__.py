@@ -1,4 +1,4 @@
-"""Measured records over a simulation: residuals, and parameters fitted with bounds."""
+"""Comparison of measured records with simulations: residuals, and fitted parameters with bounds."""
 
 from .file import Measured, parse_measured
 from .fit import Fit, fit

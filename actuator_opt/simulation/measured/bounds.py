@@ -1,4 +1,4 @@
-"""What is left over of a fitted record, and how sure that leaves the parameters."""
+"""Residuals of a fitted record, and the resulting bounds of the parameters."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ...base.numeric import Array
 from .problem import STEPS, RecordFitProblem
 
 STEADIEST: Final = 0.97
-"""Largest correlation of neighbouring samples that the bandwidth counts, as is usual."""
+"""Largest correlation of neighbouring samples used for the bandwidth, as is usual."""
 WHOLE: Final = 4
 """Least number of bandwidths in a record (a choice)."""
 ORDERS: Final = 10
@@ -19,14 +19,14 @@ ORDERS: Final = 10
 
 
 def bounds(problem: RecordFitProblem, x: Array) -> Known:
-    """What the residuals tell of the searched values.
+    """Covariance of the fitted values from the residuals.
 
-    cov = H^-1 S H^-1, H = J^T J, S the covariance of J^T r by three counts, none of which it falls
-    below: independent residuals; channels that are autoregressions, each by Akaike's order; and,
-    where misfit comes and goes, the sum of J^T r r^T J over times and lags within a bandwidth, with
-    Bartlett's weights (Newey and West; bandwidth by Andrews' rule), all channels of an instant
-    together. Spare points are those that such a window leaves, 3 n/(2 m) - p. The slopes are
-    secants over a standard error.
+    cov = H^-1 S H^-1, H = J^T J, S the covariance of J^T r. S is the largest of three estimates:
+    independent residuals; channels as autoregressions, each of the order by Akaike's criterion;
+    and, for intermittent misfit, the sum of J^T r r^T J over times and lags within a bandwidth,
+    with Bartlett's weights (Newey and West; bandwidth by Andrews' rule), all channels of an instant
+    together. The degrees of freedom follow from that window, 3 n/(2 m) - p. The slopes are secants
+    over a standard error.
     """
     rest = problem.rest(x)
     variance = float(np.sum(rest**2)) / max(rest.size - x.size, 1)
@@ -53,14 +53,14 @@ def bounds(problem: RecordFitProblem, x: Array) -> Known:
 
 
 def _larger(first: Array, second: Array) -> Array:
-    """A covariance that is nowhere less than either: the first and what the second has more."""
+    """A covariance at least as large as both: the first plus the excess of the second."""
     values, turn = np.linalg.eigh(second - first)
     found: Array = first + (turn * np.maximum(values, 0.0)) @ turn.T
     return found
 
 
 def _by_time(problem: RecordFitProblem, rows: Array) -> Array:
-    """Rows of samples, those of one instant added up, in the order of time."""
+    """Rows of samples, summed per instant, in the order of time."""
     times = np.concatenate([t for t, _ in problem.used.values()])
     instants, place = np.unique(times, return_inverse=True)
     found = np.zeros((instants.size, rows.shape[1]))
@@ -69,7 +69,7 @@ def _by_time(problem: RecordFitProblem, rows: Array) -> Array:
 
 
 def _bandwidth(moments: Array) -> float:
-    """Samples over which moments hang together, by the correlation of neighbours."""
+    """Correlation length of the moments in samples, from neighbouring values."""
     before, after = moments[:-1], moments[1:]
     power = np.maximum(np.sum(before**2, axis=0), 1e-300)
     rho = np.clip(np.sum(before * after, axis=0) / power, -STEADIEST, STEADIEST)
@@ -90,8 +90,8 @@ def _summed(moments: Array, width: float) -> Array:
 
 
 def _coloured(problem: RecordFitProblem, left: Array, rest: Array) -> Array:
-    """Covariance of U^T r where every channel's residuals are an autoregression."""
-    from scipy.linalg import matmul_toeplitz  # slow to import, rarely needed
+    """Covariance of U^T r with every channel's residuals as an autoregression."""
+    from scipy.linalg import matmul_toeplitz  # slow import, rarely used
 
     total = np.zeros((left.shape[1], left.shape[1]))
     first = 0
@@ -103,7 +103,7 @@ def _coloured(problem: RecordFitProblem, left: Array, rest: Array) -> Array:
 
 
 def _autocovariance(rest: Array) -> Array:
-    """Of the autoregression that describes some residuals best, by Levinson's recursion."""
+    """Autocovariance of the best autoregression of some residuals, by Levinson's recursion."""
     count = rest.size
     orders = min(ORDERS, count // 4)
     lags = np.array([float(rest[: count - k] @ rest[k:]) for k in range(orders + 1)]) / count

@@ -1,4 +1,4 @@
-"""A measured record as its file holds it: channels by the names of the signals they measure."""
+"""A measured record from a file: channels by the names of the signals they measure."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ COLUMNS = {name: CHANNELS[name] for name in ("t", "p1", "p2", "x", "v", "F_L", "
     "n_shaft": Channel("angular_speed", "rpm", "speed of the shaft", ("shaftspeed", "speed")),
     "phi": Channel("angle", "deg", "angle of the shaft", ("shaftangle",)),
 }
-"""Channels of a record as a header writes them; its temperature is read past."""
+"""Channels of a record and their descriptions; a temperature column is ignored."""
 SIGNALS = {
     "p1": "pressure_a", "p2": "pressure_b", "x": "position", "v": "speed", "F_L": "load_force",
     "U": "signal", "spool": "spool", "pS": "pressure_supply", "qA": "flow_a", "qB": "flow_b",
@@ -30,14 +30,14 @@ SIGNALS = {
 }  # fmt: skip
 """The simulated signal that each channel measures."""
 FEWEST = 10
-"""Samples of a channel that say something (a choice)."""
+"""Least number of samples for a usable channel (a choice)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Measured:
     """A measured record on the scenario's time: signals by name, each (time [s], values [SI]).
 
-    Channels may be sampled differently, begin late and have gaps; times rise.
+    Channels may have different sample rates, late starts and gaps; times increase.
     """
 
     channels: Mapping[str, tuple[Array, Array]]
@@ -51,7 +51,7 @@ class Measured:
         Raises
         ------
         InputError
-            no time at a sample, times that do not rise, no channel that can be compared
+            a sample without time, times that do not increase, no channel that a simulation has
         """
         time = _rising(record)
         channels: dict[str, tuple[Array, Array]] = {}
@@ -62,27 +62,29 @@ class Measured:
             seen = np.isfinite(values)
             count = int(np.count_nonzero(seen))
             if count < FEWEST:
-                notes.append(f"{signal}: {count} samples, left out: {FEWEST} tell something")
+                notes.append(f"{signal}: {count} samples, left out: at least {FEWEST} are needed")
                 continue
             channels[signal] = time[seen], values[seen]
             if absent := gaps(time, values):
                 missing.setdefault(gap_words(absent), []).append(signal)
         if known and not channels:
             message = f"fewer than {FEWEST} numbers in {', '.join(known)}"
-            raise record.fault(message, "give more: an empty cell, nan, inf or 1e30 is none")
+            raise record.fault(
+                message, "give more samples: empty cells, nan, inf and 1e30 count as missing"
+            )
         if not channels:
-            message = "no channel that a simulation tells"
+            message = "no channel matches a simulated signal"
             raise record.fault(message, f"name columns {', '.join(SIGNALS)} with units")
         notes += [
             f"{named(names, channels)}: {words}, left out" for words, names in missing.items()
         ]
         still = [signal for signal, (_, values) in channels.items() if np.ptp(values) == 0]
         if still:
-            notes.append(f"{', '.join(still)}: one value all the time in the record")
+            notes.append(f"{', '.join(still)}: constant throughout the record")
         return cls(channels, record.name, tuple(notes))
 
     def fault(self, message: str, remedy: str) -> InputError:
-        """A fault of this record."""
+        """An error about this record."""
         return InputError(Diagnostic(message, remedy, file=self.name))
 
 
@@ -99,13 +101,13 @@ def parse_measured(
     ----------
     text : of the file
     name : of the file, for messages
-    columns : header by channel, where it is none of the known names: ``{"p1": "Channel 3 [bar]"}``
+    columns : header by channel, if the names are not known: ``{"p1": "Channel 3 [bar]"}``
     units : of columns whose header states none
 
     Raises
     ------
     InputError
-        as `identification.parse_record`; no channel that a simulation tells
+        as `identification.parse_record`; no channel that a simulation has
     """
     record = parse_record(
         text, name=name, columns=columns, channels=COLUMNS, units=units, needed=SIGNALS
@@ -118,7 +120,7 @@ def parse_measured(
 
 
 def named(names: Collection[str], every: Collection[str]) -> str:
-    """Some channels by name, or all of them."""
+    """Name some channels, or "all channels"."""
     return ", ".join(names) if len(names) < max(len(every), 2) else "all channels"
 
 
@@ -127,10 +129,10 @@ def _rising(record: Record) -> Array:
     time = record.time
     lost = np.flatnonzero(~np.isfinite(time))
     if lost.size:
-        raise record.fault("no time", "give every sample its time", int(lost[0]))
+        raise record.fault("missing time", "give a time for every sample", int(lost[0]))
     back = np.flatnonzero(np.diff(time) <= 0)
     if back.size:
         at = int(back[0]) + 1
-        message = f"time does not rise at {time[at]:.9g} s"
-        raise record.fault(message, "sort the lines by time, leave repeated ones out", at)
+        message = f"time does not increase at {time[at]:.9g} s"
+        raise record.fault(message, "sort the lines by time and remove repeated ones", at)
     return time

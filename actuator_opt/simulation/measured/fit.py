@@ -1,4 +1,4 @@
-"""Parameters of a design from a measured record: least squares over whole simulations."""
+"""Fit parameters of a design to a measured record: least squares over whole simulations."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ from .problem import RecordFitProblem
 from .record import Overlay, overlay
 
 MISFIT: Final = 2.0
-"""Residual over noise from which the model misses the record (a choice)."""
+"""Residual relative to noise above which the model misses the record (a choice)."""
 WORSE: Final = 1.05
-"""Residual over that before the fit from which it is worse (a choice)."""
+"""Residual relative to that before the fit above which the fit is worse (a choice)."""
 ALIKE: Final = 0.9
-"""Correlation from which two parameters are named as not parted (a choice)."""
+"""Correlation above which two parameters are reported as inseparable (a choice)."""
 EDGE: Final = 0.01
-"""Share of a parameter's range within which it lies at its end (a choice)."""
+"""Share of a parameter's range within which it counts as at the end (a choice)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +43,7 @@ class Fitted:
     entry: Entry
     parameter: Parameter
     at_bound: Literal["lower", "upper"] | None
-    """The end of its range at which it lies."""
+    """The end of its range, if it is there."""
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data for JSON, SI."""
@@ -59,17 +59,17 @@ class Fitted:
 
 @dataclass(frozen=True, slots=True)
 class Fit:
-    """Parameters that bring a simulation to a record.
+    """Parameters fitted to a record.
 
     Parameters
     ----------
-    scenario, plant : with the parameters put in
+    scenario, plant : with the fitted parameters
     parameters : by name
     correlations : of the errors of two parameters, by their names
-    before, after : the record over the simulation with the first and with the fitted values, the
-        first with the best lag where that is asked for
-    doubts : what the numbers alone do not say
-    runs, seconds : what it took
+    before, after : the record against the simulation with the first and the fitted values, the
+        first with the best lag if a lag is fitted
+    doubts : caveats that the numbers do not show
+    runs, seconds : number of runs, and time taken
     """
 
     scenario: Scenario
@@ -84,7 +84,7 @@ class Fit:
 
     @property
     def missed(self) -> tuple[str, ...]:
-        """Channels that are left with more than their noise: there the model lacks something."""
+        """Channels with residuals above their noise, where the model lacks something."""
         found = self.after.residuals.items()
         return tuple(name for name, one in found if one.span and one.rms > MISFIT * one.noise)
 
@@ -124,13 +124,13 @@ def fit(
 ) -> Fit:
     """Fit named parameters of a design or scenario to a measured record.
 
-    Least squares over all channels, each weighted by the noise of its sensor (`record.noise`),
-    then by what is left over where that is more. Bounds hold 95 %, by the slopes at the solution
-    and by residuals that hang together over time.
+    Least squares over all channels, each weighted by its sensor noise (`record.noise`), then by its
+    residuals if larger. Bounds are 95 %, from the slopes at the solution and from residuals
+    correlated over time.
 
     Parameters
     ----------
-    scenario, plant : what was measured, as far as known
+    scenario, plant : the measured system, as far as known
     records : columns of the files that the scenario's signals name
     measured : on the scenario's time
     names : of `parameters.PARAMETERS`, and "lag"
@@ -141,9 +141,9 @@ def fit(
     Raises
     ------
     InputError
-        no such parameter, one without effect, nothing in common with the record
+        no such parameter, one without effect, or no overlap with the record
     Unsolvable
-        where the simulation cannot go on with the values it begins with
+        the simulation fails at the initial values
     """
     begin = perf_counter()
     own = entries(names, scenario, plant)
@@ -182,10 +182,10 @@ def fit(
 
 
 def _natural(one: Entry, told: Known, problem: RecordFitProblem) -> Parameter:
-    """A parameter of its own size from the searched one.
+    """A parameter in its own unit from the searched value.
 
-    Bounds are those of the parameter itself, not of its logarithm: what it does, an air content or
-    a leakage does in proportion; none is below zero.
+    Bounds apply to the parameter itself, not to its logarithm, as the effect of an air content or a
+    leakage is proportional. None is below zero.
     """
     x = told.parameters[one.name]
     half = x.upper - x.value
@@ -201,7 +201,7 @@ def _natural(one: Entry, told: Known, problem: RecordFitProblem) -> Parameter:
 
 
 def _edge(problem: RecordFitProblem, x: Array, k: int) -> Literal["lower", "upper"] | None:
-    """The end of its range at which a parameter lies."""
+    """The end of its range at which a parameter lies, or None."""
     room = EDGE * (problem.high[k] - problem.low[k])
     if x[k] - problem.low[k] < room:
         return "lower"
@@ -209,7 +209,7 @@ def _edge(problem: RecordFitProblem, x: Array, k: int) -> Literal["lower", "uppe
 
 
 def _correlations(told: Known) -> dict[tuple[str, str], float]:
-    """Of the errors of parameters that are bounded."""
+    """Correlations between the errors of bounded parameters."""
     found = {}
     for (i, one), (k, other) in combinations(enumerate(told.parameters), 2):
         size = np.sqrt(told.covariance[i, i] * told.covariance[k, k])
@@ -219,23 +219,23 @@ def _correlations(told: Known) -> dict[tuple[str, str], float]:
 
 
 def _unknown(fitted: Mapping[str, Fitted]) -> Iterator[str]:
-    """Parameters that are not known, and why."""
+    """Parameters that are not identified, and why."""
     for name, one in fitted.items():
         quantity, found = one.entry.quantity, one.parameter
         if one.at_bound is not None:
             low = one.at_bound == "lower"
             end = one.entry.lower if low else one.entry.upper
             yield (
-                f"{name} lies at the {one.at_bound} end of its range, {quantity.text(end)}: the "
-                f"record asks for {'less' if low else 'more'}, or something else is missing from "
-                "the simulation"
+                f"{name} is at the {one.at_bound} end of its range, {quantity.text(end)}: the "
+                f"record suggests {('less' if low else 'more')}, or the simulation lacks "
+                "something else"
             )
         elif found.verdict == "identifiable":
             continue
         elif not np.isfinite(found.upper):
             yield (
-                f"{name} is not identifiable: nothing measured moves with it, or only as others "
-                "that are fitted move it"
+                f"{name} is not identifiable: no measured channel depends on it, or only in "
+                "combination with other fitted parameters"
             )
         else:
             between = f"{quantity.text(found.lower, 3)} to {quantity.text(found.upper, 3)}"
@@ -245,7 +245,7 @@ def _unknown(fitted: Mapping[str, Fitted]) -> Iterator[str]:
 def _parted(
     fitted: Mapping[str, Fitted], correlations: Mapping[tuple[str, str], float]
 ) -> Iterator[str]:
-    """Parameters of which one hides in the other."""
+    """Parameters that the fit cannot separate."""
     found = [
         f"{one} with {other} ({value:.2f})"
         for (one, other), value in correlations.items()
@@ -254,13 +254,13 @@ def _parted(
     ]
     if found:
         yield (
-            f"errors go together: {', '.join(found)}; such a pair is better known than either: "
-            "state one, or measure what parts them"
+            f"correlated errors: {', '.join(found)}; the pair is known better than each alone: "
+            "state one, or measure what separates them"
         )
 
 
 def _missed(after: Overlay, before: Overlay) -> Iterator[str]:
-    """Channels of which more is left than noise."""
+    """Channels with residuals above the noise."""
     missed = []
     for name, one in after.residuals.items():
         if one.span == 0 or one.rms <= MISFIT * one.noise:
@@ -271,9 +271,9 @@ def _missed(after: Overlay, before: Overlay) -> Iterator[str]:
             yield f"{name} fits worse than before: the channels contradict each other"
     if missed:
         yield shown(
-            f"the simulation misses the record by more than its noise ({'; '.join(missed)}): it "
-            "lacks something (or the record was smoothed), and bounds do not hold by how much that "
-            "pulls the parameters",
+            f"the simulation misses the record by more than its noise ({'; '.join(missed)}): the "
+            "model lacks something (or the record was smoothed), and the bounds do not include "
+            "the resulting bias of the parameters",
             400,
         )
 
@@ -285,6 +285,6 @@ def _times(ratio: float) -> str:
 def _loop(tuned: Tuned | None) -> Iterator[str]:
     if tuned is not None and tuned.origin != "stated":
         yield (
-            f"the controller's gain is not stated but taken by {tuned.origin}: state that of the "
-            "bench in control"
+            f"the controller's gain is not stated but comes from {tuned.origin}: state the test "
+            "bench's gain in control"
         )

@@ -1,4 +1,4 @@
-"""Parameters that a measured record can tell: where each enters, its start and its range."""
+"""Parameters that can be fitted to a measured record: definition, start and range."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ Case: TypeAlias = tuple[Scenario, Plant]
 Put: TypeAlias = Callable[[Scenario, Plant, float], Case]
 
 SMALL = 0.01
-"""Share of the full signal, or of the supply pressure's force, that is little (a choice): where a
-design states no friction the search begins there, and an offset known to it is known."""
+"""A small share of the full signal, or of the supply pressure's force (a choice): start of the
+search where a design states no friction, and accuracy required of an offset."""
 BLEED = 1e-6 / 60 / 1e5
-"""Leakage where the search begins in a design without any (a choice): 1 ml/min/bar [m^3/s/Pa]."""
+"""Initial leakage for a design without any (a choice): 1 ml/min/bar [m^3/s/Pa]."""
 RISE = 1.5
-"""Breakaway over Coulomb friction where the search begins without any rise (a choice)."""
+"""Initial breakaway over Coulomb friction for a design with equal ones (a choice)."""
 LATEST = 0.2
-"""Largest lag of a record over the simulated time (a choice: a logger started by hand)."""
+"""Largest lag of a record relative to the simulated time (a choice: a manually started logger)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """A parameter: what it is, where the search begins and ends, and how it is put in, SI."""
+    """A parameter: definition, start and range of the search, and how it is applied, SI."""
 
     name: str
     quantity: Quantity
@@ -39,33 +39,33 @@ class Entry:
     lower: float
     upper: float
     positive: bool
-    """Whether it is searched by its logarithm."""
+    """Whether its logarithm is searched."""
     near: float
-    """Bounds within this of the value are near enough, even about 0; of signed ones."""
+    """Acceptable half width of the bounds, even about 0; for signed parameters."""
     put: Put
 
 
 def entries(names: Sequence[str], scenario: Scenario, plant: Plant) -> tuple[Entry, ...]:
-    """Parameters by their names, in that order.
+    """Parameters by their names, in the given order.
 
     Raises
     ------
     InputError
-        no name, an unknown or repeated one, one without effect in this scenario
+        no name, an unknown or repeated one, or one without effect in this scenario
     """
     known = (*PARAMETERS, "lag")
     faults = []
     for k, name in enumerate(names):
         if name not in known:
-            message = f'"{shown(name)}" is no parameter'
+            message = f'"{shown(name)}" is not a parameter'
             faults.append(Diagnostic(message, remedy(name, known, limit=len(known))))
         elif name in names[:k]:
             faults.append(Diagnostic(f"{name} is named twice", "name it once"))
         elif why := _idle(name, scenario, plant):
             faults.append(Diagnostic(f"{name} has no effect: {why}", "leave it out"))
         elif name == "stribeck_speed" and "static" not in names and _even(scenario, plant):
-            message = f"{name} has no effect: static and Coulomb friction are alike"
-            faults.append(Diagnostic(message, "fit static with it, or state a higher one"))
+            message = f"{name} has no effect: static and Coulomb friction are equal"
+            faults.append(Diagnostic(message, "fit static too, or state a higher one"))
     if not names:
         faults.append(Diagnostic("no parameter to fit", f"name one of {', '.join(known)}"))
     if faults:
@@ -74,23 +74,23 @@ def entries(names: Sequence[str], scenario: Scenario, plant: Plant) -> tuple[Ent
 
 
 def _idle(name: str, scenario: Scenario, plant: Plant) -> str | None:
-    """Why a parameter does nothing here, if so."""
+    """Why a parameter has no effect here, or None."""
     bench, motor = scenario.held_ports is not None, scenario.motor is not None
     if name in VALVE:
         if plant.valve is None:
             return "the design has no valve"
         if not bench and not motor and ends_of(scenario, plant) != "valve":
-            return "no valve ends the lines here"
+            return "the lines do not end at a valve"
         leaks = plant.valve.leakage_supply or plant.valve.leakage_tank
         if name == "valve_leakage" and not leaks:
-            return "it is a factor, and the design's valve leaks nothing"
+            return "it is a factor, but the design's valve has no leakage"
         return None
     if name == "lag":
         return None
     if bench:
-        return "the ports of the valve are held"
+        return "the ports of the valve are blocked"
     if motor and name not in OIL:
-        return "a motor stands in the cylinder's place"
+        return "a motor replaces the cylinder"
     if name in FRICTION and scenario.friction.model == "none" and name != "viscous":
         return "friction.model is none"
     if name == "bristle_travel" and scenario.friction.model == "stribeck":
@@ -99,7 +99,7 @@ def _idle(name: str, scenario: Scenario, plant: Plant) -> str | None:
 
 
 def _even(scenario: Scenario, plant: Plant) -> bool:
-    """Whether friction does not fall with speed."""
+    """Whether friction is independent of speed."""
     own = scenario.friction
     if own.coulomb is not None:
         return (own.static or own.coulomb) <= own.coulomb
@@ -110,7 +110,7 @@ def _entry(name: str, scenario: Scenario, plant: Plant) -> Entry:
     if name == "lag":
         most = LATEST * scenario.duration
         quantity = RECORDS["pressure_lag"]
-        late = replace(quantity, name="lag", label="time by which the record comes late")
+        late = replace(quantity, name="lag", label="time lag of the record")
         return Entry(name, late, 0.0, -most, most, False, 0.0, lambda s, p, _: (s, p))
     return PARAMETERS[name](scenario, plant)
 
@@ -139,7 +139,7 @@ def _air(scenario: Scenario, plant: Plant) -> Entry:
 
 def _bulk(scenario: Scenario, plant: Plant) -> Entry:
     quantity = MATERIAL_PROPERTIES["bulk_modulus"]
-    quantity = replace(quantity, label="bulk modulus of the oil without air, at no pressure")
+    quantity = replace(quantity, label="bulk modulus of the oil without air, at zero pressure")
 
     def put(s: Scenario, p: Plant, value: float) -> Case:
         return s, replace(p, oil=replace(p.oil, bulk_modulus=value))
@@ -175,7 +175,7 @@ def _valve_offset(scenario: Scenario, plant: Plant) -> Entry:
         assert p.valve is not None
         return s, replace(p, valve=replace(p.valve, offset=value))
 
-    quantity = replace(SCENARIOS["signal_value"], label="signal at which the spool is centred")
+    quantity = replace(SCENARIOS["signal_value"], label="signal that centres the spool")
     return Entry("valve_offset", quantity, start, -full, full, False, SMALL * full, put)
 
 
@@ -189,13 +189,13 @@ def _leakage(scenario: Scenario, plant: Plant) -> Entry:
 
 
 def _level(plane: Plane, scenario: Scenario, plant: Plant) -> float:
-    """Friction of a plane at the pressures of the start."""
+    """Friction of a plane at the initial pressures."""
     begin = start_of(scenario, plant, {})
     return float(plane.at(begin.pressure_a, begin.pressure_b))
 
 
 def _scaled(plane: Plane, scenario: Scenario, plant: Plant, value: float) -> Plane:
-    """A plane with another level at the start; over the pressures it keeps its shape."""
+    """A plane scaled to another level at the start; its shape over the pressures stays."""
     level = _level(plane, scenario, plant)
     if level <= 0:
         return Plane(value)
@@ -207,7 +207,7 @@ def _scaled(plane: Plane, scenario: Scenario, plant: Plant, value: float) -> Pla
 
 
 def _stated(scenario: Scenario, **values: float) -> Scenario:
-    """A scenario with other values of its friction."""
+    """A scenario with other friction values."""
     return scenario.model_copy(update={"friction": scenario.friction.model_copy(update=values)})
 
 
@@ -314,7 +314,7 @@ def _offset(scenario: Scenario, plant: Plant) -> Entry:
         return s.model_copy(update={"load": s.load.model_copy(update={"force": force})}), p
 
     most = _force(plant)
-    quantity = replace(SCENARIOS["force_value"], label="force of the load beside the stated one")
+    quantity = replace(SCENARIOS["force_value"], label="load force in addition to the stated one")
     return Entry("load_offset", quantity, 0.0, -most, most, False, SMALL * most, put)
 
 
@@ -339,7 +339,5 @@ PARAMETERS: dict[str, Callable[[Scenario, Plant], Entry]] = {
     "dead_volume_b": _dead("b"),
     "load_offset": _offset,
 }
-"""Parameters by name; `lag`, which shifts the record, stands beside them.
-
-Friction over the pressures keeps its shape: `coulomb` and `static` are its levels at the start.
-"""
+"""Parameters by name; `lag`, which shifts the record, is separate.  Friction keeps its shape over
+the pressures: `coulomb` and `static` are its levels at the start."""

@@ -1,4 +1,4 @@
-"""A simulation over the parameters that a record is to tell: residuals, slopes, the search."""
+"""Least-squares problem of fitting a simulation to a record: residuals, slopes, search."""
 
 from __future__ import annotations
 
@@ -23,39 +23,39 @@ from .parameters import PARAMETERS, Case, Entry
 from .record import Course, beside, inside, noise
 
 MOST: Final = 4000
-"""Largest number of samples of a channel in a fit (a choice: what is denser is thinned evenly)."""
+"""Maximum samples of a channel in a fit (a choice: denser records are thinned evenly)."""
 FINE, LONGEST = 2, 5e-4
-"""Samples of the simulation to one of the record, and the longest time between two of them [s]
-(choices: cubics between them follow a swing of 200 Hz within 0.2 %)."""
+"""Simulation samples per record sample, and the longest time between two of them [s] (choices:
+cubic interpolation follows a 200 Hz oscillation within 0.2 %)."""
 RELATIVE: Final = 1e-8
-"""Tolerance of an integration step: slopes are differences of two runs."""
+"""Tolerance of an integration step, tight because slopes are differences of two runs."""
 STEPS: Final = (1e-3, 0.1)
-"""Least and largest step of a slope over a parameter's size (choices: far above errors of the
-integration, and near enough); between them, the step that moves the residuals by their noise."""
+"""Least and largest slope step relative to a parameter's size (choices: far above integration
+errors, yet local); between them, the step that moves the residuals by their noise."""
 FIRST: Final = 1e-2
-"""The first one (a choice)."""
+"""The first slope step (a choice)."""
 GUESSES: Final = (1 / 3, 3.0)
-"""Factors on each start that are tried before the search (a choice)."""
+"""Factors on each start tried before the search (a choice)."""
 ASTRAY: Final = 5.0
-"""Residual over noise from which another start is tried (a choice)."""
+"""Residual relative to noise above which another start is tried (a choice)."""
 MARGIN: Final = 0.02
-"""Range about the lag tried best that is searched, over the simulated time (a choice)."""
+"""Search range about the best trial lag, relative to the simulated time (a choice)."""
 LAGS: Final = 801
-"""Lags that are tried before the search (a choice)."""
+"""Trial lags before the search (a choice)."""
 FAR: Final = 10.0
-"""Residual of a run that cannot go on, over the largest of the first run (a choice)."""
+"""Residual of a failed run, relative to the largest of the first run (a choice)."""
 PASSES: Final = 40
-"""Most steps of a search (a choice)."""
+"""Maximum steps of a search (a choice)."""
 ROUNDS: Final = 4
-"""Most searches with new weights (a choice)."""
+"""Maximum searches with new weights (a choice)."""
 SETTLED: Final = 0.1
-"""Share by which weights may still change (a choice)."""
+"""Relative change of the weights that counts as settled (a choice)."""
 ROUGH, SHARP = 1e-4, 1e-8
-"""Share by which a search ends, on the way and at last: of the cost, and of a step (choices)."""
+"""Relative change of cost and step that ends a search, intermediate and final (choices)."""
 
 
 class RecordFitProblem:
-    """Weighted residuals over the searched values: logarithms of positive parameters, else theirs.
+    """Weighted residuals as a function of the searched values, logarithms for positive parameters.
 
     Parameters
     ----------
@@ -89,10 +89,10 @@ class RecordFitProblem:
         self._known: tuple[bytes, Array, Mapping[str, Array]] | None = None
         self.noise = {name: noise(y) for name, (_, y) in measured.channels.items()}
         still = [name for name, one in self.noise.items() if one == 0]
-        self.notes = [f"{name} stands still in the record: not fitted to" for name in still]
+        self.notes = [f"{name} is constant in the record: not used in the fit" for name in still]
         moving = {name: one for name, one in measured.channels.items() if name not in still}
         if not moving:
-            raise measured.fault("every channel stands still", "fit to a record that moves")
+            raise measured.fault("every channel is constant", "fit to a record with motion")
         self.weights = {name: 1 / self.noise[name] for name in moving}
         _, signals = self._simulated(self.start)
         used = self._overlapping(replace(measured, channels=moving), signals)
@@ -102,7 +102,7 @@ class RecordFitProblem:
         self.far = FAR * float(np.max(np.abs(self.rest(self.start))))
 
     def put(self, x: Array) -> Case:
-        """Scenario and plant with values put in, in the order of the table."""
+        """Scenario and plant with fitted values, in the order of the table."""
         scenario, plant = self.scenario, self.plant
         for name in PARAMETERS:
             if name in self.names:
@@ -112,11 +112,11 @@ class RecordFitProblem:
         return scenario, plant
 
     def lag(self, x: Array) -> float:
-        """Time by which the record comes late [s]."""
+        """Time lag of the record [s]."""
         return 0.0 if self.late is None else float(x[self.late])
 
     def _simulated(self, x: Array) -> tuple[Array, Mapping[str, Array]]:
-        """Time and signals; the last run is kept, since a lag needs none of its own."""
+        """Time and signals; the last run is cached, as a lag does not change it."""
         own = np.array(x, dtype=float)
         if self.late is not None:
             own[self.late] = 0.0
@@ -148,7 +148,7 @@ class RecordFitProblem:
         }
 
     def rest(self, x: Array) -> Array:
-        """Weighted residuals; of a run that cannot go on those of a very bad one."""
+        """Weighted residuals; very large ones if the run fails."""
         try:
             found = self.apart(x)
         except Unsolvable:
@@ -167,7 +167,7 @@ class RecordFitProblem:
         return np.stack(columns, axis=1)
 
     def slopes_on_the_way(self, x: Array) -> Array:
-        """The same by differences to one side, of steps that follow the last ones."""
+        """One-sided differences, with steps that follow the last ones."""
         here, columns = self.rest(x), []
         for k, step in enumerate(self.steps):
             row = x.copy()
@@ -179,9 +179,9 @@ class RecordFitProblem:
         return found
 
     def solve(self) -> Array:
-        """The best values: starts that are tried, a search, at last a sharp one.
+        """The best values: trial starts, a search, then a precise one.
 
-        Where the model misses the record by far, the search begins once more at the start.
+        If the model misses the record by far, the search restarts once from the initial values.
         """
         tried = self._guessed(self.start)
         x = self._searched(tried)
@@ -192,7 +192,7 @@ class RecordFitProblem:
         return self._descended(x, SHARP)
 
     def _searched(self, x: Array) -> Array:
-        """Least squares, every channel weighted by what is left of it, until that settles."""
+        """Least squares with each channel weighted by its residual, until the weights settle."""
         self._weigh(x)
         for _ in range(ROUNDS):
             x = self._descended(x, ROUGH)
@@ -203,22 +203,22 @@ class RecordFitProblem:
         return x
 
     def left(self, x: Array) -> dict[str, float]:
-        """Root mean square residual of every channel, not less than its noise."""
+        """Root mean square residual of every channel, at least its noise."""
         return {
             name: max(self.noise[name], float(np.sqrt(np.mean(one**2))))
             for name, one in self.apart(x).items()
         }
 
     def _astray(self, x: Array) -> bool:
-        """Whether some channel is left with much more than its noise."""
+        """Whether some channel has residuals far above its noise."""
         return any(one > ASTRAY * self.noise[name] for name, one in self.left(x).items())
 
     def _weigh(self, x: Array) -> None:
-        """Weights of the channels by what is left of them."""
+        """Weight the channels by their residuals."""
         self.weights = {name: 1 / one for name, one in self.left(x).items()}
 
     def _judged(self, x: Array) -> float:
-        """Less is likelier: the logarithm of what is left, over all samples."""
+        """Negative log-likelihood: logarithm of the residuals, over all samples."""
         try:
             left = self.left(x)
         except Unsolvable:
@@ -228,7 +228,7 @@ class RecordFitProblem:
     def _overlapping(
         self, measured: Measured, signals: Mapping[str, Array]
     ) -> dict[str, tuple[Array, Array]]:
-        """What of a record overlaps the run, at every lag that is searched."""
+        """The part of a record that overlaps the run at every searched lag."""
         duration = self.scenario.duration
         if self.late is None:
             return inside(measured, signals, duration, 0.0)
@@ -244,12 +244,12 @@ class RecordFitProblem:
             if np.count_nonzero(kept) >= FEWEST
         }
         if not found:
-            message = "too little of the record overlaps the scenario for a lag to be found"
+            message = "too little of the record overlaps the scenario to determine a lag"
             raise measured.fault(message, "measure longer, or state the lag")
         return found
 
     def _aligned(self, measured: Measured, signals: Mapping[str, Array]) -> float:
-        """The lag at which the first run is likeliest, by what overlaps."""
+        """The most likely lag of the first run, from the overlap."""
         assert self.late is not None
         time, _ = self._simulated(self.start)
         lags = np.linspace(self.low[self.late], self.high[self.late], LAGS)
@@ -269,7 +269,7 @@ class RecordFitProblem:
         return float(lags[int(np.argmin(np.where(enough, judged, np.inf)))])
 
     def _guessed(self, x: Array) -> Array:
-        """With starts of positive parameters that are better by a factor, one after the other."""
+        """Improve the starts of positive parameters by trial factors, one after the other."""
         best, least = x, self._judged(x)
         for k, one in enumerate(self.own):
             for by in GUESSES if one.positive else ():
@@ -299,7 +299,7 @@ def _scaled(entry: Entry, value: float) -> float:
 
 
 def _step(apart: float, duration: float) -> float:
-    """Time between samples of a run, a whole part of the record's where that is not too fine."""
+    """Time between samples of a run: a whole fraction of the record's, unless too fine."""
     longest = max(min(apart / FINE, LONGEST), duration / (FINE * MOST))
     return apart / ceil(apart / longest) if longest < apart else longest
 
@@ -307,13 +307,13 @@ def _step(apart: float, duration: float) -> float:
 def _told(
     whole: Mapping[str, tuple[Array, Array]], used: Mapping[str, tuple[Array, Array]]
 ) -> Iterator[str]:
-    """Channels of which a fit takes a part."""
+    """Notes on channels that the fit thins."""
     steps: dict[int, list[str]] = {}
     for name, (time, _) in whole.items():
         steps.setdefault(_every(time), []).append(name)
     for every, names in sorted(steps.items()):
         if every > 1:
-            yield f"{named(names, used)}: one of {every} samples is fitted to, {MOST} at most"
+            yield f"{named(names, used)}: the fit uses one of {every} samples, {MOST} at most"
 
 
 def _every(time: Array) -> int:
@@ -321,6 +321,6 @@ def _every(time: Array) -> int:
 
 
 def _thinned(time: Array, values: Array) -> tuple[Array, Array]:
-    """Every so many samples, as few as a fit takes."""
+    """Every n-th sample, within the fit's maximum."""
     every = _every(time)
     return time[::every], values[::every]

@@ -1,4 +1,4 @@
-"""A measured record laid over a simulation in time, and what is left over."""
+"""A measured record overlaid on a simulation in time, with residuals."""
 
 from __future__ import annotations
 
@@ -17,41 +17,42 @@ from ..result import Simulation, Told
 from .file import FEWEST, SIGNALS, Measured, named
 
 FINEST = 1e-4
-"""Least noise of a sensor over the span of its record (a choice: no sensor is better)."""
+"""Least noise of a sensor relative to the span of its record (a choice: no sensor is better)."""
 ORDERS = (3, 6)
-"""Orders of the differences that show noise (a choice: the higher one bears a faster course)."""
+"""Difference orders for estimating noise (a choice: the higher one tolerates a faster signal)."""
 ROBUST = 1.4826
-"""Standard deviation over the median distance from zero, of a normal distribution."""
+"""Ratio of standard deviation to median absolute deviation of a normal distribution."""
 APART = 0.02
-"""Share of a channel's span by which the start may be off before it is told (a choice)."""
+"""Offset at the start, as a share of a channel's span, above which it is reported (a choice)."""
 BEYOND = 5.0
 """The same in standard deviations of the noise (a choice)."""
 BESIDE = 2.0
-"""Strokes or proof pressures that a record may go beyond (a choice: bar and MPa are ten apart)."""
+"""Plausible multiple of stroke or proof pressure in a record (a choice: bar and MPa differ by
+ten)."""
 STARTS = ("position", "pressure_a", "pressure_b")
-"""Signals whose start a scenario states."""
+"""Signals with an initial value in the scenario."""
 
 
 @dataclass(frozen=True, slots=True)
 class Residual:
-    """What a channel measured less what was simulated, SI."""
+    """Difference between measured and simulated values of a channel, SI."""
 
     count: int
     rms: float
     largest: float
     """Largest |measured - simulated|."""
     time: float
-    """When that is [s]."""
+    """Its time [s]."""
     bias: float
-    """Their mean."""
+    """Mean difference."""
     span: float
-    """Largest less least value measured, over the same samples."""
+    """Span of the measured values over the same samples."""
     noise: float
     """Standard deviation of the sensor's noise, by `noise`."""
 
     @property
     def relative(self) -> float | None:
-        """Root mean square over the span; None of a channel that stands still."""
+        """Root mean square over the span; None for a constant channel."""
         return self.rms / self.span if self.span > 0 else None
 
     def to_dict(self, told: Told) -> dict[str, Any]:
@@ -72,12 +73,12 @@ class Residual:
 
 @dataclass(frozen=True, slots=True)
 class Overlay:
-    """A measured record over a simulation."""
+    """A measured record overlaid on a simulation."""
 
     measured: Measured
     simulation: Simulation
     lag: float
-    """Time by which the record comes late [s]."""
+    """Time lag of the record [s]."""
     residuals: Mapping[str, Residual]
     notes: tuple[str, ...]
 
@@ -93,17 +94,17 @@ class Overlay:
 
 
 def overlay(simulation: Simulation, measured: Measured, *, lag: float = 0.0) -> Overlay:
-    """Lay a record over a simulation and tell what is left over, channel by channel.
+    """Overlay a record on a simulation, with the residuals of every channel.
 
     Parameters
     ----------
-    simulation, measured : on one time
-    lag : time by which the record comes late [s]
+    simulation, measured : on the same time
+    lag : time lag of the record [s]
 
     Raises
     ------
     InputError
-        no signal in common, no time in common
+        no common signal, or no common time
     """
     time, signals = simulation.time, simulation.signals
     duration = float(time[-1])
@@ -118,7 +119,7 @@ def overlay(simulation: Simulation, measured: Measured, *, lag: float = 0.0) -> 
         notes.append(f"not simulated here: {', '.join(absent)}")
     short = [name for name in measured.channels if name in signals and name not in used]
     if short:
-        notes.append(f"no time in common: {', '.join(short)}")
+        notes.append(f"no overlap in time: {', '.join(short)}")
     notes += _reach(used, measured, duration, lag)
     notes += _sampling(simulation, used)
     notes += _starts(simulation, used, found, lag)
@@ -129,12 +130,12 @@ def overlay(simulation: Simulation, measured: Measured, *, lag: float = 0.0) -> 
 def inside(
     measured: Measured, signals: Mapping[str, Any], duration: float, lag: float
 ) -> dict[str, tuple[Array, Array]]:
-    """The samples of a record within a run, of the signals that are simulated.
+    """The samples of a record within a run, for simulated signals.
 
     Raises
     ------
     InputError
-        where there are none
+        there are none
     """
     common = {name: one for name, one in measured.channels.items() if name in signals}
     if not common:
@@ -152,17 +153,17 @@ def inside(
         first = min(float(t[0]) for t, _ in common.values()) - lag
         last = max(float(t[-1]) for t, _ in common.values()) - lag
         raise measured.fault(
-            f"the record runs from {first:.6g} to {last:.6g} s, the scenario from 0 to "
-            f"{duration:.6g} s: fewer than {FEWEST} samples in common",
-            "count the record's time from the scenario's start, or simulate longer",
+            f"the record covers {first:.6g} to {last:.6g} s, the scenario 0 to {duration:.6g} s: "
+            f"fewer than {FEWEST} common samples",
+            "start the record's time at the scenario's start, or simulate longer",
         )
     return found
 
 
 class Course:
-    """A simulated signal at any time: cubic between samples, across no jump, still beyond its ends.
+    """A simulated signal at any time: cubic, split at jumps, constant beyond its ends.
 
-    Slopes are those of the parabola through a sample and its neighbours on the same side of a jump.
+    Slopes come from the parabola through a sample and its neighbours on the same side of a jump.
     """
 
     def __init__(self, time: Array, values: Array) -> None:
@@ -181,7 +182,7 @@ class Course:
         self.slopes[finishes + 1] = 2 * rise[finishes] - middle[finishes]
 
     def __call__(self, moment: Array) -> Array:
-        """Values at times; at a jump what follows it."""
+        """Values at the given times; at a jump the value after it."""
         t, y, m = self.time, self.values, self.slopes
         right = np.clip(np.searchsorted(t, moment, side="right"), 1, t.size - 1)
         left = right - 1
@@ -193,9 +194,9 @@ class Course:
 
 
 def beside(moment: Array, measured: Array, time: Array, values: Array) -> Array:
-    """A simulated signal beside measured samples.
+    """A simulated signal at measured samples.
 
-    A sample nearer to a jump than its neighbours may show either side of it, or what lies between.
+    Close to a jump the simulated value may be that of either side, or any value between.
     """
     found = Course(time, values)(moment)
     half = 0.5 * float(np.median(np.diff(moment)))
@@ -206,7 +207,7 @@ def beside(moment: Array, measured: Array, time: Array, values: Array) -> Array:
 
 
 def residual(time: Array, measured: Array, simulated: Array) -> Residual:
-    """What is left over of one channel."""
+    """The residual of one channel."""
     rest = measured - simulated
     worst = int(np.argmax(np.abs(rest)))
     return Residual(
@@ -223,9 +224,9 @@ def residual(time: Array, measured: Array, simulated: Array) -> Residual:
 def noise(values: Array) -> float:
     """Standard deviation of a sensor's noise, from differences of neighbouring samples.
 
-    The median size of differences of an order n, whose variance is (2n)!/n!^2 that of a sample,
-    leaves out jumps and whatever is smooth over n + 1 samples; the least over `ORDERS` counts.
-    Steps of the sensor count as theirs, step/sqrt(12); not less than `FINEST` of the span.
+    The median size of differences of order n, whose variance is (2n)!/n!^2 times that of a sample,
+    ignores jumps and any signal that is smooth over n + 1 samples; the least over `ORDERS` counts.
+    Sensor resolution counts as step/sqrt(12). The result is at least `FINEST` of the span.
 
     Parameters
     ----------
@@ -233,7 +234,7 @@ def noise(values: Array) -> float:
 
     Notes
     -----
-    Noise that a filter has made smooth is taken for the signal.
+    Noise smoothed by a filter is taken as signal.
     """
     span = float(np.ptp(values))
     steps = np.abs(np.diff(values))
@@ -248,7 +249,7 @@ def noise(values: Array) -> float:
 def _reach(
     used: Mapping[str, tuple[Array, Array]], measured: Measured, duration: float, lag: float
 ) -> Iterator[str]:
-    """Channels that begin later or end earlier than the run, or go beyond it."""
+    """Channels that cover less or more time than the run."""
     spans: dict[tuple[str, str], list[str]] = {}
     for name in used:
         time = measured.channels[name][0] - lag
@@ -260,18 +261,18 @@ def _reach(
     for (begin, end), names in spans.items():
         yield (
             f"{named(names, used)}: measured from {begin} to {end} s, simulated from 0 to "
-            f"{duration:.4g} s: compared where both are"
+            f"{duration:.4g} s: only the overlap is compared"
         )
 
 
 def _sampling(simulation: Simulation, used: Mapping[str, tuple[Array, Array]]) -> Iterator[str]:
-    """Whether the simulation is told more coarsely than the record."""
+    """Whether the simulation is sampled more coarsely than the record."""
     own = float(np.median(np.diff(simulation.time)))
     theirs = min(float(np.median(np.diff(t))) for t, _ in used.values())
     if own > WIDE * theirs:
         yield (
-            f"the simulation is told every {1e3 * own:.3g} ms, the record every "
-            f"{1e3 * theirs:.3g} ms: peaks between are cut; state sample_time"
+            f"the simulation is sampled every {1000.0 * own:.3g} ms, the record every "
+            f"{1000.0 * theirs:.3g} ms, so peaks may be missed: state sample_time"
         )
 
 
@@ -281,7 +282,7 @@ def _starts(
     found: Mapping[str, Residual],
     lag: float,
 ) -> Iterator[str]:
-    """Where the record begins elsewhere than the scenario."""
+    """Channels whose initial value differs from the scenario's."""
     for name in STARTS:
         if name not in used:
             continue
@@ -294,13 +295,13 @@ def _starts(
         if apart > max(APART * found[name].span, BEYOND * found[name].noise):
             quantity = simulation.told[name].quantity
             yield (
-                f"{name} begins at {quantity.text(float(y[0]))} in the record, at "
+                f"{name} starts at {quantity.text(float(y[0]))} in the record, but at "
                 f"{quantity.text(begun)} in the scenario: state initial.{name}"
             )
 
 
 def _absurd(simulation: Simulation, used: Mapping[str, tuple[Array, Array]]) -> Iterator[str]:
-    """Positions off the stroke and pressures off the design: another unit, or another zero."""
+    """Positions and pressures outside the plausible range, which suggests a wrong unit or zero."""
     plant = simulation.plant
     for name, low, high, what in (
         ("position", 0.0, plant.stroke, "the stroke"),
@@ -314,6 +315,6 @@ def _absurd(simulation: Simulation, used: Mapping[str, tuple[Array, Array]]) -> 
         if least < low - room or most > high + room:
             say = simulation.told[name].quantity.text
             yield (
-                f"{name} goes from {say(least)} to {say(most)} in the record, {what} is "
-                f"{say(high)}: check its unit and its zero"
+                f"{name} ranges from {say(least)} to {say(most)} in the record, but {what} is "
+                f"{say(high)}: check its unit and zero"
             )

@@ -1,4 +1,4 @@
-"""Volumes of oil under one pressure: their rate, their mass, their elastic energy."""
+"""Volumes of oil at one pressure: rate, mass and elastic energy."""
 
 from __future__ import annotations
 
@@ -14,13 +14,14 @@ from ...studies.plant import Oil
 from .circuit import Circuit
 
 DEEPEST = -12.0
-"""Travel into a stop over half the dead volume's length at which 6e-6 of it is left (a choice)."""
+"""Travel into a stop, relative to half the dead volume's length, that leaves 6e-6 of it (a
+choice)."""
 FLOOR = 1e-6
-"""Least absolute pressure of the laws of oil and air [Pa]: for their rounding alone."""
+"""Lower limit of the absolute pressure in the laws of oil and air [Pa], against rounding only."""
 
 
 LEAST_DEAD = 0.5e-3
-"""Least dead volume of a chamber over its area [m] (a choice): none would have no compliance."""
+"""Least length of a dead volume [m] (a choice): without any, a chamber would have no compliance."""
 
 
 class Volumes(NamedTuple):
@@ -34,7 +35,7 @@ class Volumes(NamedTuple):
 def oil_at(oil: Oil, pressure: Expression) -> Volumes:
     """Density ratio, bulk modulus and energy density at a pressure above vacuum.
 
-    Oil with (almost) no air opens a cavity below atmospheric pressure, which bounds the vacuum.
+    Oil with (almost) no air forms a cavity below atmospheric pressure, which limits the vacuum.
     """
     held = maximum(pressure, FLOOR - ATMOSPHERIC_PRESSURE)
     mixed = Volumes(
@@ -65,7 +66,7 @@ def node(
     volume: float,
     wall: float = 0.0,
 ) -> None:
-    """A rigid volume with an elastic wall: its pressure follows the net inflow."""
+    """Add a rigid volume with an elastic wall; its pressure follows the net inflow."""
     law = oil_at(circuit.plant.oil, pressure)
     whole = volume + wall * pressure
     circuit.system.rate(
@@ -86,7 +87,7 @@ def _content(
     inflow: Expression,
     scale: float,
 ) -> None:
-    """Count mass and energy of a volume; what flows in brings its elastic energy along."""
+    """Count mass and energy of a volume; inflow carries its elastic energy."""
     system, audit = circuit.system, circuit.audit
     mass = system.integral(f"inflow of {name}", law.ratio * inflow, scale=1e-3 * scale)
     audit.mass.append((name, law.ratio * volume, mass))
@@ -96,10 +97,10 @@ def _content(
 
 
 def _left(travel: Expression, film: float) -> tuple[Expression, Expression]:
-    """Length of the oil over that of the dead volume, and its slope over the travel.
+    """Length of the oil relative to that of the dead volume, and its slope over the travel.
 
-    The travel itself, also beyond the stop; once half the dead volume is used up there the piston
-    meets the end over more and more of its area, and what is left shrinks.
+    Equal to the travel, also beyond the stop. Once half the dead volume is used up, the piston
+    touches the end over a growing area, and the remaining volume shrinks.
     """
     half = 0.5 * film
     deep = clip((travel + half) / half, DEEPEST, 0.0)
@@ -126,12 +127,12 @@ def cylinder(
     flexibility: float,
     of: str = "",
 ) -> Expression:
-    """Both chambers of a cylinder, coupled by their walls and the rod's give; their force [N].
+    """Both chambers of a cylinder, coupled by walls and the compliance of the rod; their force [N].
 
     V_A = A_A x + V_0A + W_AA p_A + W_AB p_B, V_B = A_B (s - x) + V_0B + W_BB p_B + W_AB p_A, W(x)
-    of the walls plus f a a^T of rod and mount with a = (A_A, -A_B). The force on the piston is
-    a^T p + p^T W' p/2, as the work of the walls asks. A pressure that is a number is held outside:
-    its port gives what volume, walls and leakage ask for. Deep in a stop x is that of `_left`.
+    of the walls plus f a a^T of rod and mount with a = (A_A, -A_B). The force on the piston is a^T
+    p + p^T W' p/2, from the work of the walls. A pressure given as a number is prescribed: its port
+    supplies the flow for volume, walls and leakage. Deep in a stop x is that of `_left`.
     """
     system, audit, oil = circuit.system, circuit.audit, circuit.plant.oil
     beyond = stroke - position
@@ -181,7 +182,7 @@ def cylinder(
 
 
 def dead_volume(circuit: Circuit, volume: float, area: float, chamber: str) -> float:
-    """Dead volume of a chamber, not less than that of a short end of it."""
+    """Dead volume of a chamber, at least a short length of it."""
     least = LEAST_DEAD * area
     if volume >= least:
         return volume

@@ -1,4 +1,4 @@
-"""A circuit under construction: what its parts share."""
+"""A circuit under construction: data shared by its parts."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from ..system import System
 from . import signals
 
 FLOW = 1e-4
-"""Flow whose power at supply pressure is the scale of an energy [m^3/s], 6 l/min (a choice)."""
+"""Flow whose power at supply pressure scales energies [m^3/s], 6 l/min (a choice)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """Where a run begins."""
+    """Initial state of a run."""
 
     position: float
     pressure_a: float
@@ -29,19 +29,19 @@ class Start:
 
 @dataclass(slots=True)
 class Audit:
-    """What the balance of a run adds up."""
+    """Terms of a run's balance."""
 
     mass: list[tuple[str, Expression, Symbol]] = field(default_factory=list)
-    """Name, content at reference density [m^3], and the integral of what flowed in."""
+    """Name, content at reference density [m^3], and the integral of the inflow."""
     stored: list[tuple[str, Expression]] = field(default_factory=list)
     """Energy as a function of the states [J]."""
     flows: list[tuple[str, Symbol, bool]] = field(default_factory=list)
-    """Energy that went in (True) or out [J]."""
+    """Energy that entered (True) or left [J]."""
 
 
 @dataclass(slots=True)
 class Circuit:
-    """A system of equations with what its parts, its balance and its results are read from."""
+    """A system of equations with the data for its parts, balance and results."""
 
     scenario: Scenario
     plant: Plant
@@ -50,11 +50,11 @@ class Circuit:
     gains: ControllerGains | None = None
     loop: Loop | None = None
     linear: bool = False
-    """Whether the controller is left open at a free variable ``u``, without sticking friction."""
+    """Whether the loop is opened at a free variable ``u``, without sticking friction."""
     system: System = field(default_factory=System)
     audit: Audit = field(default_factory=Audit)
     measured: Expression = 0.0
-    """What the loop measures."""
+    """Measured value of the loop."""
     centre: float = 0.0
     """Signal that centres the spool [V]."""
 
@@ -63,7 +63,7 @@ class Circuit:
         return signals.signal(self.system, parts, self.records)
 
     def door(self, name: str, power: Expression, *, state: str = "", into: bool = False) -> None:
-        """Count energy that goes out, or comes `into` the circuit; `state` names its integral."""
+        """Add an energy flow to the balance, out of or `into` the circuit, as integral `state`."""
         scale = self.plant.supply_pressure * FLOW
         work = self.system.integral(state or name, power, scale=scale)
         self.audit.flows.append((name, work, into))

@@ -10,26 +10,26 @@ from ...base.symbolic import Expression
 from .circuit import Circuit
 
 HOLD_BAND = 1e-3
-"""Share of the full signal over which the integral part comes to rest before the limit (a choice:
-the integral is held while the signal is saturated and would be pushed further)."""
+"""Share of the full signal over which the integral part stops before the limit (a choice: the
+integral is frozen while the signal is saturated and the error would increase it)."""
 RATE_TIME = 1e-4
-"""Lag of a signal behind its wish where its rate is limited [s] (a choice)."""
+"""Time lag of a rate-limited signal [s] (a choice)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Feedback:
-    """What the controller sees."""
+    """Feedback signals of the controller."""
 
     value: Expression
     """Of the loop: position, speed, shaft speed or angle."""
     speed: Expression
     load_pressure: Expression
-    """Force of the pressures over area A [Pa]."""
+    """Load pressure: pressure force over area A [Pa]."""
     load_pressure_start: float = 0.0
 
 
 def inner(circuit: Circuit, wish: Expression, measured: Feedback) -> Expression:
-    """A wish less what the inner loops take off it: speed, and changes of the load pressure."""
+    """A reference less the inner loops: speed, and changes of the load pressure."""
     system, stated = circuit.system, circuit.scenario.control
     if stated is None:
         return wish
@@ -45,7 +45,7 @@ def inner(circuit: Circuit, wish: Expression, measured: Feedback) -> Expression:
 def command(
     circuit: Circuit, reference: Expression, measured: Feedback, scale: float
 ) -> Expression:
-    """Signal to the valve; `scale` is a typical error of the loop, for tolerances."""
+    """Signal to the valve; `scale` is a typical control error, for tolerances."""
     system, stated, gains = circuit.system, circuit.scenario.control, circuit.gains
     assert stated is not None
     assert gains is not None

@@ -1,4 +1,4 @@
-"""Friction of the seals in time: bristles, a smooth Stribeck curve, or none."""
+"""Seal friction in time: bristles, a smooth Stribeck curve, or none."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from ...studies.plant import Plane, Plant
 from .circuit import Circuit, Start
 
 LEAST = 1e-3
-"""Least level of the friction [N]: bristles without any have no length."""
+"""Least friction level [N]: bristles need a positive one."""
 SMOOTHING = 0.05
-"""Speed over the Stribeck speed within which the curve passes through zero (a choice)."""
+"""Width of the zero crossing, relative to the Stribeck speed (a choice)."""
 LONE_SPEED = 1e-3
-"""The same scale where the friction does not fall with speed [m/s]."""
+"""The same where friction does not depend on speed [m/s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +37,7 @@ class Law:
 
 
 def law(plant: Plant, stated: Stated, start: Start) -> Law:
-    """The design's friction, or the stated one; bristles at the pressures of the start."""
+    """The design's friction, or the stated one; bristle stiffness at the initial pressures."""
     seals, pressures = plant.seals, (start.pressure_a, start.pressure_b)
     coulomb, static = seals.coulomb, seals.static
     speed = seals.stribeck_speed
@@ -87,7 +87,7 @@ def resist(
 def _levels(
     own: Law, pressure_a: Expression, pressure_b: Expression
 ) -> tuple[Expression, Expression]:
-    """Coulomb and static friction at the pressures of the chambers."""
+    """Coulomb and static friction at the chamber pressures."""
     coulomb = maximum(own.coulomb.at(pressure_a, pressure_b), LEAST)
     if own.static is own.coulomb:
         return coulomb, coulomb
@@ -147,4 +147,4 @@ def _lugre(
 
 
 FORCES = per_kind(FRICTIONS, {"lugre": _lugre, "stribeck": _stribeck, "none": _viscous})
-"""Force of every friction of the seals."""
+"""Force for every seal friction law."""

@@ -1,4 +1,4 @@
-"""A load cylinder on a valve of its own: what a test bench shakes the rod with."""
+"""A load cylinder with its own valve, which loads the rod on a test bench."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ WHOSE = "load_"
 
 
 def push(circuit: Circuit, stated: LoadCylinder, *, position: Symbol, speed: Symbol) -> Expression:
-    """Force of the load cylinder on the rod, outwards [N]; its rod moves with the actuator's."""
+    """Force of the load cylinder on the rod, outwards [N]; both rods move together."""
     system = circuit.system
     area = float(forces.annulus_area(bore=stated.bore, rod_diameter=stated.rod_diameter))
     middle = 0.5 * (stated.supply_pressure + stated.return_pressure)
@@ -64,7 +64,7 @@ def push(circuit: Circuit, stated: LoadCylinder, *, position: Symbol, speed: Sym
 
 
 def _data(stated: LoadCylinder, viscosity: float) -> ValveData:
-    """Its valve's edges, with the oil of the design."""
+    """Edges of its valve, with the oil of the design."""
     own = stated.valve
     after = own.leakage_drop if own.tank_leakage_drop is None else own.tank_leakage_drop
 

@@ -1,4 +1,4 @@
-"""What the rod moves and what stops it: mass, stops, cushion, load, joint, a machine outside."""
+"""Motion of the rod: mass, end stops, cushions, load, joint, external machine."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from .signals import rate
 
 POSITION = 1e-10
 SPEED = 1e-9
-"""Errors of position [m] and speed [m/s] that are let pass."""
+"""Error tolerances of position [m] and speed [m/s]."""
 _FORCE = SCENARIOS["force_value"]
 
 
 def stops(circuit: Circuit, position: Symbol, speed: Symbol) -> Expression:
-    """Force of the end stops; contact is located, since the force jumps there."""
+    """Force of the end stops; contact is located in time, as the force jumps."""
     system, plant = circuit.system, circuit.plant
     damping = end_stop.stop_damping(
         stiffness=plant.stop_stiffness,
@@ -32,7 +32,7 @@ def stops(circuit: Circuit, position: Symbol, speed: Symbol) -> Expression:
 
 
 def cushions(circuit: Circuit, position: Symbol, speed: Symbol) -> Expression:
-    """Force of the oil driven past the spears; each chamber's whole area takes part."""
+    """Force of the oil throttled by the cushion spears, on the whole area of each chamber."""
     plant, cushion = circuit.plant, circuit.scenario.stops.cushion
     if cushion is None:
         return 0.0
@@ -71,7 +71,7 @@ def move(
     friction: Expression,
     pulled: Expression = 0.0,
 ) -> None:
-    """Equation of motion, m a = F_p - F_fr - b v + F_stop + F_cushion - F_L, and its balance."""
+    """Motion, m a = F_p - F_fr - b v + F_stop + F_cushion - F_L, with its energy balance."""
     system, plant, load = circuit.system, circuit.plant, circuit.scenario.load
 
     def spent(name: str, force: Expression) -> None:
@@ -100,7 +100,9 @@ def move(
         pull = load.drive.stiffness * (where_to - position) + load.drive.damping * (moved - speed)
         total, held = total + pull, held - pull
         spent("machine outside", -pull)
-        system.signal("drive_position", "position of the machine", INPUTS["position"], where_to)
+        system.signal(
+            "drive_position", "position of the external machine", INPUTS["position"], where_to
+        )
     if plant.design.linkage is not None:
         mass, more = _joint(circuit, position, speed)
         total, held = total - more, held + more

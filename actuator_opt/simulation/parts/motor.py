@@ -13,7 +13,7 @@ from .circuit import Circuit
 
 SPEED = 1e-8
 ANGLE = 1e-9
-"""Errors of shaft speed [rad/s] and angle [rad] that are let pass."""
+"""Error tolerances of shaft speed [rad/s] and angle [rad]."""
 
 
 class Shaft(NamedTuple):
@@ -40,7 +40,7 @@ def turn(
     inflow_a: Expression,
     inflow_b: Expression,
 ) -> None:
-    """Pipes, motor and load; a linear circuit leaves out friction with the sign of the speed."""
+    """Pipes, motor and load; a linear circuit omits Coulomb friction."""
     system, motor = circuit.system, circuit.scenario.motor
     assert motor is not None
     angle, speed = own

@@ -1,4 +1,4 @@
-"""From a chamber to what ends its line: one-way valve, line, far end."""
+"""The line of a chamber: one-way valve, line, far end."""
 
 from __future__ import annotations
 
@@ -14,33 +14,33 @@ from .chambers import node
 from .circuit import Circuit
 
 FLOW = 1e-12
-"""Error of a flow that is let pass [m^3/s]."""
+"""Error tolerance of a flow [m^3/s]."""
 LEAST_NODE = 1e-6
-"""Volume behind a throttle where the design states none (a choice: 1 ml of fittings)."""
+"""Volume behind a throttle if the design states none (a choice: 1 ml of fittings)."""
 REDUCING_FLOW = 20 / 60000
 """Largest flow of the reducing valve [m^3/s] (a choice: a pilot-operated valve of size 6)."""
 
 
 class Side(NamedTuple):
-    """A chamber as its port sees it."""
+    """A chamber with its port."""
 
     name: Chamber
     pressure: Expression
-    """Of the chamber."""
+    """Pressure of the chamber."""
     end: Expression
-    """Of the far end, where valve or reducing valve stand."""
+    """Pressure at the far end, at the valve or reducing valve."""
     lumped: float
-    """Volume and wall of lines that count to the chamber."""
+    """Line volume and wall that belong to the chamber."""
     lumped_wall: float
     line: Symbol | None
     outer: Expression | None
-    """Behind the throttle."""
+    """Pressure behind the throttle."""
 
 
 def side(circuit: Circuit, name: Chamber, ends: str, start: float) -> Side:
-    """States of a chamber and of what lies before its end.
+    """States of a chamber and of its line.
 
-    A line has inertia where something moves oil through it; behind closed ends it is volume.
+    A line has inertia if flow passes through it; behind closed ends it is only volume.
     """
     system, data = circuit.system, circuit.plant.lines[name]
     throttled = circuit.plant.throttle is not None
@@ -67,7 +67,7 @@ def side(circuit: Circuit, name: Chamber, ends: str, start: float) -> Side:
 
 
 def connect(circuit: Circuit, one: Side, ends: str, feed: Expression, *, held: float) -> Expression:
-    """Flow into the chamber; `feed` is what the end gives, `held` the pressure it holds."""
+    """Flow into the chamber; `feed` is the flow at the end, `held` a pressure held there."""
     feed = FEEDS[ends](circuit, one, feed, held)
     if one.line is not None:
         feed = _through_line(circuit, one, one.line, feed)
@@ -112,7 +112,7 @@ def _through_throttle(
 
 
 def _far(circuit: Circuit, one: Side, name: str, pressure: Symbol, inflow: Expression) -> None:
-    """What of the lines lies beyond: half of it on each side of a line behind a throttle."""
+    """Volume at the far end: half of the line behind a throttle."""
     data = circuit.plant.lines[one.name]
     share = 0.5 if one.outer is not None and one.line is not None else 1.0
     if share * data.far_volume < LEAST_NODE:
@@ -158,7 +158,7 @@ def _reducing(circuit: Circuit, one: Side, held: float) -> Expression:
 
 
 def _given(circuit: Circuit, one: Side, feed: Expression, held: float) -> Expression:
-    """What the valve, or nothing, gives."""
+    """Flow from the valve, or zero."""
     return feed
 
 
@@ -180,4 +180,4 @@ FEEDS = per_kind(
         "reducing_valve": _regulated,
     },
 )
-"""Flow that every end gives to the line."""
+"""Flow into the line for every kind of end."""

@@ -1,4 +1,4 @@
-"""Signals over time as expressions: parts that add up, split where they jump."""
+"""Signals over time as expressions: sums of parts, split where they jump."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def _slope(time: Array, values: Array) -> Callable[[Any], Any]:
 
 
 def _bends(time: Array, values: Array) -> list[float]:
-    """Samples at which the course between samples changes its slope, first and last included."""
+    """Samples at which the slope changes, first and last included."""
     rise, run = np.diff(values, prepend=values[:1], append=values[-1:]), np.diff(time)
     run = np.concatenate(([1.0], run, [1.0]))
     slope = np.divide(rise, run, out=np.full(len(rise), np.inf), where=run > 0)
@@ -83,12 +83,12 @@ def rate(system: System, expression: Expression) -> Expression:
 
 
 def steady_value(parts: Sequence[SignalSegment]) -> float:
-    """Final value of a signal: the parts whose value lasts."""
+    """Final value of a signal: the parts that persist."""
     return sum(height(part) for part in parts if SHAPES[part.shape].lasts)
 
 
 def at_start(parts: Sequence[SignalSegment], records: Records) -> float:
-    """Value of a signal as the time begins; a record that is not given counts as nothing."""
+    """Value of a signal at time zero; a missing record counts as zero."""
     return sum(SHAPES[part.shape].initial(part, records) for part in parts)
 
 

@@ -1,4 +1,4 @@
-"""What feeds the valve: constant pressure, or a pump with its line."""
+"""Supply of the valve: constant pressure, or a pump with its line."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ from .chambers import node
 from .circuit import Circuit
 
 RATE_BAND = 1e-3
-"""Share of the largest flow within which the swash plate comes to rest at its ends (a choice)."""
+"""Share of the largest flow over which the swash plate stops at its ends (a choice)."""
 AWAKE = 0.1
-"""Share of it from which a state of rest is searched (a choice: at an end nothing moves it)."""
+"""Share of it from which equilibria are searched (a choice: at an end nothing moves the plate)."""
 
 
 @dataclass(slots=True)
 class Source:
-    """The supply under construction: its pressures first, its demand when it is known."""
+    """The supply under construction: first its pressures, later the demand."""
 
     circuit: Circuit
     pressure: Expression
-    """At the valve."""
+    """Pressure at the valve."""
     unit: Expression
-    """At the pump or accumulator."""
+    """Pressure at the pump or accumulator."""
 
     @classmethod
     def of(cls, circuit: Circuit) -> Source:
-        """The pressures; a pipe between pump and valve parts them."""
+        """Create the pressures; a pipe separates those of pump and valve."""
         stated, system = circuit.scenario.supply, circuit.system
         unit: Expression = circuit.plant.supply_pressure
         if SUPPLIES[stated.type].pumps:
@@ -42,7 +42,7 @@ class Source:
         return cls(circuit, port, unit)
 
     def feed(self, demand: Expression, tank: Expression) -> None:
-        """Close the supply with the flow that the valve takes; `tank` is what it returns."""
+        """Close the supply with the flow to the valve; `tank` is the return flow."""
         circuit = self.circuit
         circuit.door("return line", circuit.plant.return_pressure * tank, state="return work")
         circuit.system.signal(
@@ -55,7 +55,7 @@ class Source:
             circuit.door("supply", self.unit * taken, state="supply work", into=True)
 
     def _through_line(self, demand: Expression) -> Expression:
-        """Flow out of the pump's side of the supply pipe; its oil springs at the valve."""
+        """Flow from the pump into the supply pipe; its elastic volume is at the valve."""
         circuit, line = self.circuit, self.circuit.scenario.supply.line
         if line is None:
             return demand
@@ -103,7 +103,7 @@ class Source:
         if one is None:
             return 0.0
         system, plant = circuit.system, circuit.plant
-        filled = accumulator.gas_volume_at(  # slowly, then it works fast about that
+        filled = accumulator.gas_volume_at(  # slow at first, then fast about the equilibrium
             pressure=plant.supply_pressure,
             precharge_pressure=one.precharge,
             gas_volume=one.gas_volume,
@@ -158,7 +158,7 @@ def _fixed_pump(source: Source) -> Expression:
 
 
 def _controlled_pump(source: Source) -> Expression:
-    """Flow of a pump that follows the pressure into the line."""
+    """Flow of a pressure-controlled pump into the line."""
     circuit = source.circuit
     unit, system, plant = circuit.scenario.supply, circuit.system, circuit.plant
     assert unit.flow is not None
@@ -184,7 +184,7 @@ DELIVERIES = per_kind(
     {name: one for name, one in SUPPLIES.items() if one.pumps},
     {"fixed_pump": _fixed_pump, "controlled_pump": _controlled_pump},
 )
-"""Flow that every pump delivers."""
+"""Flow for every kind of pump."""
 
 NECK = 5e-3
 """Bore and length of the neck of an accumulator on the supply line (a choice): 5 mm both."""

@@ -13,7 +13,7 @@ from ...studies.plant import ValveData
 from .circuit import Circuit
 
 SPOOL = 1e-7
-"""Error of the spool's position that is let pass [V]."""
+"""Error tolerance of the spool position [V]."""
 
 
 class Port(NamedTuple):
@@ -26,7 +26,7 @@ class Port(NamedTuple):
 
 
 def spool(circuit: Circuit, data: ValveData, command: Expression, whose: str = "") -> Expression:
-    """Position of the spool under a command, in volts; `whose` begins the names of its signals."""
+    """Spool position for a command, in volts; `whose` prefixes the names of its signals."""
     system = circuit.system
     opening = system.state(f"{whose}spool", 0.0, tolerance=SPOOL)
     speed = system.state(f"{whose}spool rate", 0.0, tolerance=SPOOL * 6 * data.natural_frequency)
@@ -60,7 +60,7 @@ def edges(
     pressure_b: Expression,
     whose: str = "",
 ) -> Port:
-    """Flows through the four edges, and what they lose."""
+    """Flows through the four edges, and their losses."""
     flows = valve.valve_flows(
         signal=opening - data.offset,
         rated_coefficient=data.rated,
@@ -85,7 +85,7 @@ def edges(
         ("a", "into port A", flows.into_a),
         ("b", "into port B", flows.into_b),
         ("supply", "from the supply", flows.supply),
-        ("tank", "into the tank", flows.tank),
+        ("tank", "to the tank", flows.tank),
     ):
         circuit.system.signal(f"{whose}flow_{name}", f"flow {words}{of}", _FLOW, value)
     return Port(flows.into_a, flows.into_b, flows.supply, flows.tank)

@@ -1,4 +1,4 @@
-"""Dynamic requirements checked in time, each by an experiment of its own."""
+"""Verification of dynamic requirements by separate experiments in time."""
 
 from .verify import DYNAMIC, Verification, VerifiedRequirement, verify
 

@@ -1,7 +1,7 @@
-"""Small experiments in time that find what the linear tier computes: each with its own runs.
+"""Small simulated experiments that measure the figures of the linear tier, each with its own runs.
 
-Amplitudes are small beside stroke, signal and pressure, and stated with every figure: with
-friction, all figures depend on them.
+Amplitudes are small against stroke, signal and pressure, and stated with every figure, as with
+friction all figures depend on them.
 """
 
 from __future__ import annotations
@@ -18,85 +18,86 @@ from ..harmonic import dynamic_stiffness_of_record, harmonic_fit
 from .stand import Measured, Record, Stand
 
 STROKE_SHARE = 0.05
-"""Amplitude of a sine over the stroke (a choice: small)."""
+"""Amplitude of a sine relative to the stroke (a choice: small)."""
 SIGNAL_SHARE = 0.5
-"""Largest share of the valve's full signal that a sine may need (a choice: never saturated)."""
+"""Largest share of the valve's full signal that a sine may use (a choice: never saturated)."""
 FORCE_SHARE = 0.05
-"""A push, or a swing of force, over supply pressure times piston area (a choice: small)."""
+"""Size of a push or a force oscillation, relative to supply pressure times area (a choice:
+small)."""
 SAMPLES = 40
-"""Samples of a period."""
+"""Samples per period."""
 FITTED = 4.0
-"""Periods of a sine that are fitted at once."""
+"""Periods of a sine in one fit."""
 STEADY = 0.01
-"""Change of the open loop from one fit to the next that counts as steady (a choice)."""
+"""Change of the open loop between fits that counts as steady (a choice)."""
 LONGEST = 100.0
-"""Periods after which a sine is taken as it is."""
+"""Periods after which a sine is accepted even if not steady."""
 HALF = 1 / sqrt(2)
-"""Share of the command that is -3 dB."""
+"""Amplitude ratio at -3 dB."""
 EXACT = 2e-3
-"""Relative error that is let pass where a figure is searched."""
+"""Relative tolerance of a search."""
 MOST = 16.0
-"""Factor on a linear figure within which the nonlinear one is sought (a choice)."""
+"""Factor on a linear figure within which the nonlinear one is searched (a choice)."""
 LASTING = 1e-3
-"""Decay per period below which a swing counts as lasting (a choice)."""
+"""Decay per period below which an oscillation counts as sustained (a choice)."""
 FIRST, EARLY, LATE = (0.0, 4.0), (8.0, 12.0), (18.0, 22.0)
-"""Windows after a push, in periods, between which a swing grows or decays."""
+"""Windows after a push, in periods, to compare for growth or decay."""
 UNEVEN = 2.0
-"""Ratio of the lengths of half swings from which they are no decay (a choice)."""
+"""Ratio of half-period lengths above which the motion is not a decay (a choice)."""
 FADED = 0.01
-"""Share of the first swing below which a decay is not read (a choice)."""
+"""Share of the first amplitude below which a decay is not evaluated (a choice)."""
 
 
 SWINGS = 8.0
-"""Periods over which a decay is read (a choice: leakage shifts closed chambers meanwhile)."""
+"""Periods over which a decay is evaluated (a choice: leakage shifts closed chambers meanwhile)."""
 RINGING = 20.0
-"""Periods of a resonance after which its swing counts as faded (a choice)."""
+"""Periods of a resonance after which its oscillation has died out (a choice)."""
 SHAPED = 0.6
-"""Frequency over the resonance up to which a force is begun in parts (a choice)."""
+"""Frequency relative to the resonance up to which a force is applied in parts (a choice)."""
 BESIDE = (0.7, 1.0, 1.4)
-"""Factors on a crossover of the linear loop among which the nonlinear one is sought."""
+"""Factors on a linear crossover among which the nonlinear one is searched."""
 SLIDING = (0.9, 1.0, 1.1)
 STICKING = (0.8, 0.9, 1.0, 1.1, 1.22, 1.35, 1.5)
-"""The same on a resonance; the bristles of sticking seals are a spring beside the oil."""
-HOW_PHASE = "position over error of the closed loop where it is one"
+"""The same on a resonance; bristles of sticking seals add stiffness to the oil."""
+HOW_PHASE = "position over error of the closed loop, at unit gain"
 Loop = Callable[[float], complex]
-"""The linear tier's open loop over frequency [Hz], its gain included."""
+"""Open loop of the linear tier over frequency [Hz], its gain included."""
 
 
 class Sine(NamedTuple):
-    """Complex ratios of fundamentals in a closed loop."""
+    """Complex ratios of the fundamentals in a closed loop."""
 
     closed: complex
     """Position over reference."""
     opened: complex
     """Position over error: the describing function of the open loop."""
     distortion: float
-    """Residual of the position over its fundamental's amplitude."""
+    """Residual of the position relative to the amplitude of its fundamental."""
     record: Record
 
 
 def _inset(stand: Stand, room: float) -> Stand:
-    """The stand with some room to both ends of the stroke."""
+    """The stand with a clearance to both ends of the stroke."""
     room = min(room, 0.45 * stand.plant.stroke)
     place = min(max(stand.position, room), stand.plant.stroke - room)
     return stand if place == stand.position else stand.but(position=place)
 
 
 def placed(stand: Stand) -> Stand:
-    """The stand moved off the ends of the stroke as far as the experiments swing."""
+    """The stand moved off the stroke ends by the amplitude of the experiments."""
     return _inset(stand, 1.5 * STROKE_SHARE * stand.plant.stroke * stand.scale)
 
 
 def held_place(stand: Stand) -> Stand:
-    """The stand moved off the ends as far as a held piston creeps (2 % of the stroke)."""
+    """The stand moved off the stroke ends by the creep of a held piston (2 % of the stroke)."""
     return _inset(stand, 0.02 * stand.plant.stroke)
 
 
 def amplitude(stand: Stand, frequency: float, opened: complex) -> float:
-    """Amplitude of a reference [m]; `opened` is what the linear tier expects of the open loop.
+    """Amplitude of a reference [m]; `opened` is the open loop expected by the linear tier.
 
-    5 % of the stroke, but no more than takes half the valve's signal for the error expected, or
-    a tenth of the supply pressure for the inertia of the swing expected.
+    5 % of the stroke, limited to half the valve's signal for the expected error and to a tenth of
+    the supply pressure for the expected inertia force.
     """
     plant = stand.plant
     assert plant.valve is not None
@@ -109,7 +110,7 @@ def amplitude(stand: Stand, frequency: float, opened: complex) -> float:
 
 
 def sine(stand: Stand, frequency: float, size: float, cycles: float) -> Sine:
-    """The loop following a sine, after some cycles; after more where it is not steady yet."""
+    """The loop following a sine, evaluated after some cycles, or later if not steady yet."""
     part = Position(shape="sine", value=size, frequency=frequency)
     while True:
         record = stand.closed(
@@ -164,13 +165,13 @@ def bandwidth(stand: Stand, expected: float, loop: Loop) -> Measured:
 def _no_sine(one: Sine) -> str:
     if one.distortion < 0.5:
         return ""
-    return "the response is no sine: the loop swings by itself, or sticks"
+    return "the response is not sinusoidal: the loop oscillates by itself, or sticks"
 
 
 def _root(function: Callable[[float], float], slope: float) -> float | None:
-    """Zero of a function of the logarithm of a ratio, from 0 on, by secants of steps up to 0.5.
+    """Zero of a function of a logarithmic ratio, from 0 on, by secant steps up to 0.5.
 
-    None where it does not get there in ten.
+    None without convergence in ten steps.
     """
     x, y = 0.0, function(0.0)
     for _ in range(10):
@@ -191,9 +192,9 @@ def phase_margin(
 ) -> Measured:
     """Least phase margin over the crossovers, from error and position of the closed loop.
 
-    L = position/error of the fundamentals; where |L| is one, the margin is |pi + arg L|. As the
-    loop stays closed, friction and saturation act as in service. Crossovers are sought about the
-    linear ones and about the resonances, which sticking seals move up.
+    L = position/error of the fundamentals; where |L| is one, the margin is |pi + arg L|. The loop
+    stays closed, so friction and saturation act as in service. Crossovers are searched near the
+    linear ones and near the resonances, which sticking seals raise.
     """
     from scipy.optimize import brentq
 
@@ -232,7 +233,7 @@ def phase_margin(
 
 
 def ultimate_gain(stand: Stand, expected: float, frequency: float) -> Measured:
-    """Gain from which the loop keeps swinging after a push; up or down from the linear one."""
+    """Gain above which oscillations after a push persist, searched from the linear one."""
     from scipy.optimize import brentq
 
     push = FORCE_SHARE * stand.full_force * stand.scale
@@ -252,19 +253,19 @@ def ultimate_gain(stand: Stand, expected: float, frequency: float) -> Measured:
     facts = stand.facts(seen[high])
     if (value < 0) == (way > 0):
         found = {"ultimate_gain": inf if way > 0 else 0.0}
-        words = "no swinging up to" if way > 0 else "it swings down to 1 over"
+        words = "no oscillation up to" if way > 0 else "it oscillates down to 1 over"
         return Measured(found, how, facts, f"{words} {MOST:g} times the linear one")
     share = float(brentq(growth, low, high, xtol=2 * EXACT))
     near = min(seen, key=lambda one: abs(one - share))
     facts = stand.facts(seen[near])
-    how += f", swing of {1e3 * facts.swing:.2g} mm"
+    how += f", amplitude {1000.0 * facts.swing:.2g} mm"
     return Measured({"ultimate_gain": expected * exp(share)}, how, facts)
 
 
 def _growth(stand: Stand, gain: float, frequency: float, push: float) -> tuple[float, Record]:
-    """Growth of the speed's swing per period, and the record of its early window.
+    """Growth of the speed oscillation per period, and the record of its early window.
 
-    What swings more in the end than just after the push lasts, however unevenly.
+    An oscillation larger at the end than just after the push is sustained, however irregular.
     """
     period = 1 / frequency
     record = stand.closed(
@@ -282,10 +283,10 @@ def _growth(stand: Stand, gain: float, frequency: float, push: float) -> tuple[f
 
 
 def dynamic_stiffness(stand: Stand, ends: str, frequency: float, resonance: float) -> Measured:
-    """Stiffness against a sine of force at the rod, the ports ended.
+    """Stiffness under a sinusoidal force at the rod, with terminated ports.
 
-    Below the resonance the force comes in three parts of 1, 2, 1 quarters, each half a period of
-    the resonance after the other: what one sets ringing, the others take off.
+    Below the resonance the force starts in three parts of 1, 2, 1 quarters, half a resonance period
+    apart, so that the transients cancel.
     """
     settle, cycles, wait = RINGING / resonance, 10.0, 0.5 / resonance
     shares = (0.25, 0.5, 0.25) if frequency < SHAPED * resonance else (1.0,)
@@ -303,7 +304,7 @@ def dynamic_stiffness(stand: Stand, ends: str, frequency: float, resonance: floa
         force=parts,
     ).within(settle)
     facts = stand.facts(record)
-    how = f"force of {swing:.3g} N at {frequency:.3g} Hz, swing of {1e3 * facts.swing:.2g} mm"
+    how = f"force of {swing:.3g} N at {frequency:.3g} Hz, amplitude {1000.0 * facts.swing:.2g} mm"
     names = ("dynamic_stiffness", "dynamic_phase")
     if facts.stopped:
         return Measured(dict.fromkeys(names), how, facts, "the piston creeps onto its stop")
@@ -317,9 +318,9 @@ def dynamic_stiffness(stand: Stand, ends: str, frequency: float, resonance: floa
 
 
 def decay(stand: Stand, ends: str, resonance: float) -> Measured:
-    """Natural frequency and damping ratio of the swing after a step of force, ports ended.
+    """Natural frequency and damping ratio after a step of force, with terminated ports.
 
-    Of successive extremes of the speed, D_i their spans: zeta from the logarithmic decrement
+    From successive extremes of the speed with spans D_i: zeta from the logarithmic decrement
     ln(D_0/D_n)/n over half periods, down to a hundredth; f = f_d/sqrt(1 - zeta^2).
     """
     push = FORCE_SHARE * stand.full_force * stand.scale
@@ -330,7 +331,7 @@ def decay(stand: Stand, ends: str, resonance: float) -> Measured:
         force=(Force(shape="constant", value=push),),
     )
     facts = stand.facts(record)
-    how = f"step of {push:.3g} N, swing of {1e3 * facts.swing:.2g} mm"
+    how = f"step of {push:.3g} N, amplitude {1000.0 * facts.swing:.2g} mm"
     names = ("natural_frequency", "damping_ratio")
     if facts.stopped:
         return Measured(dict.fromkeys(names), how, facts, "the piston creeps onto its stop")
@@ -339,17 +340,17 @@ def decay(stand: Stand, ends: str, resonance: float) -> Measured:
     faded = np.flatnonzero(spans < FADED * spans[:1])
     kept = int(faded[0]) if faded.size else len(spans)
     if kept < 2:
-        why = f"overdamped or stuck: it comes to rest after {len(spans)} half swings"
+        why = f"overdamped or stuck: it comes to rest after {len(spans)} half periods"
         return Measured(dict.fromkeys(names), how, facts, why)
     halves = np.diff(times[: kept + 1])
     if np.max(halves) > UNEVEN * np.min(halves):
-        why = "it sticks and slips: half swings of uneven length, no decay"
+        why = "stick-slip: half periods of uneven length, no decay"
         return Measured(dict.fromkeys(names), how, facts, why)
     decrement = log(spans[0] / spans[kept - 1]) / (kept - 1)
     ratio = decrement / sqrt(pi * pi + decrement * decrement)
     damped = (kept - 1) / (2 * float(times[kept - 1] - times[0]))
     found = damped / sqrt(1 - ratio * ratio), ratio
-    how += f", read over {kept} half swings"
+    how += f", evaluated over {kept} half periods"
     return Measured(dict(zip(names, found, strict=True)), how, facts)
 
 

@@ -1,4 +1,4 @@
-"""What the linear tier says of a design at one place, in one case, to be set beside experiments."""
+"""Figures of the linear tier at one position and load case, for comparison with experiments."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from .stand import Stand, Tally
 
 WEAKEST = "weakest position"
 STEADY = 0.4
-"""Largest gain over the ultimate one at which a loop is brought to rest (a choice)."""
+"""Gain relative to the ultimate one that brings an oscillating loop to rest (a choice)."""
 SLOW = 0.05
-"""Bandwidth over the resonance of a loop of which none is known (a choice)."""
+"""Bandwidth relative to the resonance if the loop's is unknown (a choice)."""
 PEAK = 0.5
-"""Magnitude from which a resonance of the open loop may make a crossover (a choice)."""
+"""Magnitude above which an open-loop resonance may cause a crossover (a choice)."""
 
 
 class Spot(NamedTuple):
@@ -34,34 +34,34 @@ class Spot(NamedTuple):
     case: int
     position: float
     extending: bool | None
-    """Way of the spool; None where none counts."""
+    """Direction of the spool; None if irrelevant."""
     words: str
 
 
 class LoopFigures(NamedTuple):
-    """Figures of the position loop in one way of the spool."""
+    """Figures of the position loop for one spool direction."""
 
     ultimate_gain: float
     frequency: float
-    """At which it swings there [Hz]."""
+    """Frequency of oscillation there [Hz]."""
     phase_margin: float
     bandwidth: float
 
 
 @dataclass(frozen=True, slots=True)
 class LinearTier:
-    """The linear model of a design, to be asked anywhere on the stroke."""
+    """The linear model of a design, at any position of the stroke."""
 
     subject: PreparedDesign
     done: ModelRun
 
     @classmethod
     def of(cls, subject: PreparedDesign) -> LinearTier:
-        """One pass over the models."""
+        """Build by one evaluation of the models."""
         return cls(subject, compute(subject, subject.values()))
 
     def spot(self, row: Requirement) -> Spot:
-        """The governing case and place of a requirement."""
+        """The governing load case and position of a requirement."""
         cases = self.subject.cases
         case = cases.index(row.case) if row.case in cases else 0
         place = row.place or WEAKEST
@@ -83,7 +83,7 @@ class LinearTier:
         return plant(replace(subject, design=design, films=films))
 
     def stand(self, scenario: Scenario, spot: Spot, tally: Tally, scale: float) -> Stand:
-        """The design held at a spot, with the pressures of the case."""
+        """The design held at a spot, with the pressures of the load case."""
         own = self.plant(spot.case)
         state = self.done.state
         stand = Stand(
@@ -112,7 +112,7 @@ class LinearTier:
         return of_case(self.done.computed.metrics["position_gain"][""], case)
 
     def figures(self, case: int, position: float, extending: bool) -> LoopFigures:
-        """Figures of the position loop, margins at the design's gain."""
+        """Figures of the position loop, with margins at the design's gain."""
         one, gain = self._open_loop(position, extending), self._gain(case)
         limit = loop.ultimate_gain(loop=one)
         found = loop.margins(loop=one, gain=gain)
@@ -157,7 +157,7 @@ class LinearTier:
         return of_case(self.done.motion.closed_frequency(np.array([[position]])), case)
 
     def held(self, case: int, position: float) -> dict[str, float]:
-        """Figures of the actuator as it is held: its swing, its dynamic stiffness."""
+        """Figures of the actuator with held ports: oscillation and dynamic stiffness."""
         place = np.array([[position]])
         motion = self.done.motion
         model = motion.model(place)
@@ -176,19 +176,19 @@ class LinearTier:
         }
 
     def closed(self, metric: str, case: int, position: float, extending: bool) -> float:
-        """A figure of the loop in one way of the spool."""
+        """A figure of the closed loop for one spool direction."""
         figures = self.figures(case, position, extending)
         if metric == "gain_margin":
             return figures.ultimate_gain / self._gain(case)
         return float(getattr(figures, metric))
 
     def stated(self, case: int) -> tuple[float, float]:
-        """Chamber pressures that the linear tier takes [Pa]."""
+        """Chamber pressures assumed by the linear tier [Pa]."""
         state = self.done.state
         return of_case(state.holding_a, case), of_case(state.holding_b, case)
 
     def unsimulated(self) -> str:
-        """What of the design no experiment has; empty where all is there."""
+        """Parts of the design that no experiment covers; empty if none."""
         if self.subject.design.ports.accumulators:
             return "accumulators at the ports are not simulated"
         return ""

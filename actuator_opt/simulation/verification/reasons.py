@@ -1,4 +1,4 @@
-"""Why two tiers differ, in words: what the records of experiments show, and nothing else."""
+"""Reasons why two tiers differ, in words, from the records of experiments alone."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from math import isfinite
 from .stand import Facts
 
 MANY = 9.0
-"""Change from which a factor says more than per cent (a choice)."""
+"""Change above which a factor is clearer than per cent (a choice)."""
 STILL = 0.01
-"""Share of its opening by which a spool moves that counts as held (a choice)."""
+"""Spool motion, as a share of its opening, that counts as held (a choice)."""
 
 
 def apart(value: float | None, other: float | None) -> float | None:
-    """Relative difference; None where there is none.
+    """Relative difference, or None.
 
     >>> apart(1.5, 2.0), apart(None, 2.0), apart(1.0, 0.0)
     (-0.25, None, None)
@@ -37,7 +37,7 @@ def percent(share: float) -> str:
 
 
 def seen(facts: Facts | None, cause: str) -> str:
-    """What the record of an experiment shows of a cause: friction, or the size of the swing."""
+    """Evidence in a record for a cause: friction, or the size of the oscillation."""
     if facts is None:
         return "no record"
     if cause == "friction":
@@ -49,8 +49,8 @@ def seen(facts: Facts | None, cause: str) -> str:
         words.append(f"a chamber falls to {1e-5 * facts.lowest:.2g} bar")
     low, high = (0.0, 0.0) if facts.spool is None else facts.spool
     if high - low > STILL * max(abs(low), abs(high)):
-        words.append(f"the spool swings from {low:.2g} to {high:.2g} V")
-    return "; ".join(words) or f"the pressure in A swings by {1e-5 * facts.pulse:.2g} bar"
+        words.append(f"the spool oscillates between {low:.2g} and {high:.2g} V")
+    return "; ".join(words) or f"the pressure in A oscillates by {1e-05 * facts.pulse:.2g} bar"
 
 
 def _seals(facts: Facts) -> str:
@@ -58,15 +58,15 @@ def _seals(facts: Facts) -> str:
     if not travel:
         return f"the seals slide over {swing:.2g} mm"
     word = "stick" if swing < travel else "slip"
-    return f"the seals {word}: swing of {swing:.2g} mm, their bristles give {travel:.2g} mm"
+    return f"the seals {word}: amplitude {swing:.2g} mm, bristle travel {travel:.2g} mm"
 
 
 def point(facts: Facts | None, held: tuple[float, float]) -> str:
-    """Where the loop works, beside the pressures that the linear tier takes."""
+    """Operating point of the loop, beside the pressures assumed by the linear tier."""
     if facts is None:
         return "no record"
     (a, b), (taken_a, taken_b) = ([1e-5 * one for one in pair] for pair in (facts.pressures, held))
-    words = f"chambers at {a:.0f} and {b:.0f} bar, linear {taken_a:.0f} and {taken_b:.0f}"
+    words = f"chambers at {a:.0f} and {b:.0f} bar, linear tier {taken_a:.0f} and {taken_b:.0f}"
     if facts.spool is not None:
         words += f"; spool about {0.5 * sum(facts.spool):.2g} V"
     return words

@@ -1,7 +1,7 @@
-"""A design on a stand: held at a place of its stroke under a force, for small experiments.
+"""A design on a stand: held at a position under a force, for small experiments.
 
-The equations are those of the scenario (plant, friction, valve, supply, stops); what moves it and
-what closes its loop is the experiment's own.
+Plant, friction, valve, supply and stops are those of the scenario; excitation and loop closure are
+the experiment's own.
 """
 
 from __future__ import annotations
@@ -22,30 +22,30 @@ from ..assemble import assemble
 from ..integrate import integrate
 
 RELATIVE = 1e-7
-"""Relative tolerance of a step, for a swing of full size: small ones need a smaller one."""
+"""Relative tolerance of a step for a full-size oscillation; small ones need a smaller one."""
 FINEST = 1e-9
 """Least relative tolerance of a step: 0.1 nm beside a position of 100 mm."""
 SETTLED = 3.0
-"""Periods of the bandwidth after which a loop is at rest (a choice: e^(-6 pi) is left)."""
+"""Periods of the bandwidth after which a loop is at rest (a choice: e^(-6 pi) remains)."""
 
 
 @dataclass(slots=True)
 class Tally:
-    """How many runs were made."""
+    """Counts the runs."""
 
     runs: int = 0
 
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """Signals of a run, and its last states by name."""
+    """Signals of a run, and its final states by name."""
 
     time: Array
     signals: Mapping[str, Array]
     last: Mapping[str, float]
 
     def within(self, begin: float, end: float = inf) -> Record:
-        """The samples from one time to another; of an instant told twice the later one."""
+        """The samples between two times; of a doubled instant the later one."""
         later = np.append(np.diff(self.time) > 0, True)
         kept = (self.time >= begin) & (self.time <= end) & later
         signals = {name: values[kept] for name, values in self.signals.items()}
@@ -54,12 +54,12 @@ class Record:
 
 @dataclass(frozen=True, slots=True)
 class Facts:
-    """What a record shows beside its figure."""
+    """Further facts about a record."""
 
     swing: float
-    """Half the span of the position, drift taken off [m]."""
+    """Amplitude of the position without drift [m]."""
     travel: float
-    """What the bristles of the seals give before they slip [m]; 0 without sticking friction."""
+    """Bristle travel before the seals slip [m]; 0 without sticking friction."""
     saturated: float
     """Share of the time with the valve's signal at its limit."""
     spool: tuple[float, float] | None
@@ -67,16 +67,16 @@ class Facts:
     pressures: tuple[float, float]
     """Means of the chambers A and B [Pa]."""
     pulse: float
-    """Half the span of the pressure in chamber A [Pa]."""
+    """Amplitude of the pressure in chamber A [Pa]."""
     lowest: float
     """Lowest chamber pressure [Pa]."""
     stopped: bool
-    """Whether the piston met a stop."""
+    """Whether the piston reached a stop."""
 
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """Figures of an experiment, None with a reason where it gives none."""
+    """Results of an experiment, None with a reason if it gives none."""
 
     values: Mapping[str, float | None]
     how: str
@@ -86,7 +86,7 @@ class Measured:
 
 @dataclass(frozen=True, slots=True)
 class Stand:
-    """A plant at a place, its chambers at pressures that a constant force balances."""
+    """A plant at a position, with chamber pressures in balance with a constant force."""
 
     plant: Plant
     scenario: Scenario
@@ -94,34 +94,34 @@ class Stand:
     pressure_a: float
     pressure_b: float
     gain: float = 0.0
-    """Of the design's proportional position loop [V/m]; 0 without one."""
+    """Gain of the design's proportional position loop [V/m]; 0 without one."""
     steady_gain: float = 0.0
-    """With which the loop comes to rest, where the design's own gain swings [V/m]."""
+    """Gain that brings the loop to rest where the design's own oscillates [V/m]."""
     bandwidth: float = 1.0
-    """Expected of the loop: how long it takes to rest [Hz]."""
+    """Expected bandwidth of the loop, which sets its time to rest [Hz]."""
     scale: float = 1.0
-    """On every amplitude."""
+    """Factor on all amplitudes."""
     tally: Tally = field(default_factory=Tally)
     rested: dict[str, float] = field(default_factory=dict)
-    """States of the loop at rest, once they were found."""
+    """Equilibrium states of the loop, once computed."""
 
     def but(self, **changes: Any) -> Stand:
-        """The same stand, some of it other; it has not come to rest yet."""
+        """A copy with some changes, whose equilibrium is not computed yet."""
         return replace(self, rested={}, **changes)
 
     def bare(self) -> Stand:
-        """Without sticking friction."""
+        """A copy without sticking friction."""
         free = self.scenario.friction.model_copy(update={"model": "none"})
         return self.but(scenario=self.scenario.model_copy(update={"friction": free}))
 
     @property
     def force(self) -> float:
-        """What holds the pressures [N], positive against extension."""
+        """External force that balances the pressures [N], positive against extension."""
         return self.pressure_a * self.plant.area_a - self.pressure_b * self.plant.area_b
 
     @property
     def full_force(self) -> float:
-        """Of the supply pressure on the whole piston [N]."""
+        """Force of the supply pressure on the whole piston [N]."""
         return self.plant.supply_pressure * self.plant.area_a
 
     def run(
@@ -136,7 +136,7 @@ class Stand:
         force: Sequence[Force] = (),
         start: Mapping[str, float] | None = None,
     ) -> Record:
-        """One run: closed over a gain, or open with the ports ended.
+        """One run: closed with a gain, or open with the ports terminated.
 
         Parameters
         ----------
@@ -144,8 +144,8 @@ class Stand:
         gain : of a proportional position loop [V/m]; None: no loop
         ends : what the ports lead to; None: the valve
         signal : of the valve without a loop [V]
-        reference : beside the stand's position
-        force : beside the one that holds
+        reference : relative to the stand's position
+        force : in addition to the balancing one
         start : states by name that replace those of the stand
         """
         self.tally.runs += 1
@@ -193,15 +193,15 @@ class Stand:
 
     @property
     def opening(self) -> float:
-        """Where the spool rests, off its centre [V]; positive extends."""
+        """Rest position of the spool, from its centre [V]; positive extends."""
         assert self.plant.valve is not None
         return self.rest()["spool"] - self.plant.valve.offset
 
     def rest(self) -> Mapping[str, float]:
-        """States in which the loop holds the force at the stand's place; found once.
+        """States in which the loop holds the force at the stand's position; computed once.
 
-        The valve feeds its own leakage and the piston's: the first run, at mid-stroke, finds the
-        error of that, the second one takes it off.
+        The valve feeds its own leakage and the piston's. The first run, at mid-stroke, measures the
+        resulting error, and the second one compensates it.
         """
         if not self.rested:
             duration = SETTLED / self.bandwidth * self.gain / self.steady_gain
@@ -222,7 +222,7 @@ class Stand:
     def held(
         self, *, ends: str, duration: float, sample_time: float, force: Sequence[Force] = ()
     ) -> Record:
-        """A run with the ports ended; a valve stays where it held the force."""
+        """A run with terminated ports; a valve stays where it held the force."""
         if ends != "valve" or not self.steady_gain:
             return self.run(duration=duration, sample_time=sample_time, ends=ends, force=force)
         state = self.rest()
@@ -243,7 +243,7 @@ class Stand:
         reference: Sequence[Position] = (),
         force: Sequence[Force] = (),
     ) -> Record:
-        """A run of the loop from its rest, at a gain put in without a jump of the signal."""
+        """A closed-loop run from rest; a new gain is inserted without a jump of the signal."""
         state = self.rest()
         shift = state["position"] + state["spool"] / gain - self.position
         held = Position(shape="constant", value=shift)
@@ -257,7 +257,7 @@ class Stand:
         )
 
     def facts(self, record: Record) -> Facts:
-        """What a record shows."""
+        """Further facts about a record."""
         t, signals = record.time, record.signals
         position = signals["position"]
         straight = np.polynomial.polynomial.polyfit(t - t[0], position, 1)
@@ -280,5 +280,5 @@ class Stand:
 
     @property
     def travel(self) -> float:
-        """What the bristles give before the seals slip [m]."""
+        """Bristle travel before the seals slip [m]."""
         return self.scenario.friction.bristle_travel or self.plant.seals.bristle_travel

@@ -1,9 +1,9 @@
-"""Whether the requirements of a design hold in time, and by how much the linear tier erred.
+"""Verification of a design's dynamic requirements in time, with the error of the linear tier.
 
 Each dynamic requirement has its own small experiment on the scenario's equations, where the linear
-tier is worst. Where both differ, it is repeated without sticking friction, and then with small
-swings: what each step changes is the share of friction, of the size of the swing, and of the point
-at which the loop works.
+tier is worst. If both differ, it is repeated without sticking friction, and then with small
+amplitudes. The change by each step is the share of friction, of the amplitude, and of the operating
+point.
 """
 
 from __future__ import annotations
@@ -33,15 +33,15 @@ from .stand import Measured, Stand, Tally
 LOOPS = ("ultimate_gain", "gain_margin", "phase_margin", "bandwidth")
 HELD = ("dynamic_stiffness", "dynamic_phase", "damping_ratio", "natural_frequency")
 DYNAMIC: Final = (*LOOPS, *HELD)
-"""Metrics of a design that an experiment finds again."""
+"""Metrics of a design that an experiment can measure."""
 SMALL = 0.02
-"""Swings over those of the experiment that count as small (a choice)."""
+"""Amplitude relative to the experiment's that counts as small (a choice)."""
 AGREE = 0.02
-"""Difference below which no reason is sought (a choice)."""
+"""Difference below which no reason is given (a choice)."""
 CENTRED = 1e-3
 """Share of the full signal within which a spool counts as centred (a choice)."""
 TOLERANCE = 1e-6
-"""A margin of at least -TOLERANCE counts as met, as in an evaluation."""
+"""A margin of -TOLERANCE or more counts as met, as in an evaluation."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,38 +53,38 @@ class VerifiedRequirement:
     sense: str
     limit: float
     stated: float | None
-    """What an evaluation says: the linear tier at its worst."""
+    """Value of the evaluation: the linear tier at its worst."""
     linear: float | None
-    """The same at the place of the experiment, on the side where its spool rests."""
+    """The same at the position of the experiment, for the direction in which its spool rests."""
     value: float | None
-    """In time."""
+    """Value in time."""
     difference: float | None
-    """Of `value` from `linear`, over it."""
+    """Relative difference of `value` from `linear`."""
     met: bool
     where: str = ""
     how: str = ""
     """The experiment, with its amplitude."""
     why: str = ""
-    """Where the difference comes from; without a value, why there is none."""
+    """Cause of the difference; without a value, why it is missing."""
     shares: Mapping[str, float] = field(default_factory=dict)
-    """Relative change by friction, by the size of the swing, by the operating point."""
+    """Relative change due to friction, amplitude and operating point."""
 
 
 @dataclass(frozen=True, slots=True)
 class Verification:
-    """All requirements of a design and a scenario in time."""
+    """All requirements of a design and a scenario, verified in time."""
 
     name: str
     rows: tuple[VerifiedRequirement, ...]
     simulation: Simulation
-    """The scenario itself."""
+    """Simulation of the scenario itself."""
     runs: int
     seconds: float
     notes: tuple[str, ...] = ()
 
     @property
     def met(self) -> bool:
-        """Whether every requirement holds in time."""
+        """Whether all requirements are met in time."""
         return all(row.met for row in self.rows)
 
     def to_dict(self) -> dict[str, Any]:
@@ -117,22 +117,22 @@ def verify(
     result: Simulation | None = None,
     scale: float = 1.0,
 ) -> Verification:
-    """Every dynamic requirement of a design and every one of a scenario, checked in time.
+    """Verify every dynamic requirement of a design and of a scenario in time.
 
     Parameters
     ----------
-    scenario : what happens; the experiments take its friction, supply, stops and rate limit
-    subject : the design as it is to be checked, an optimum for one
+    scenario : what happens; the experiments use its friction, supply, stops and rate limit
+    subject : the design to verify, such as an optimum
     records : columns of the files that the scenario's signals name
     result : the scenario already simulated with this design
-    scale : on the amplitudes of all experiments
+    scale : factor on the amplitudes of all experiments
 
     Raises
     ------
     InputError
         as `run.simulate`
     Unsolvable
-        where an integration cannot go on
+        an integration fails
     """
     begin = perf_counter()
     tally = Tally()
@@ -161,7 +161,7 @@ def verify(
 def _notes(scenario: Scenario, asked: bool) -> tuple[str, ...]:
     if not asked:
         return ("the design has no dynamic requirement",)
-    notes = ["each experiment stands where the linear tier is worst, and nowhere else"]
+    notes = ["each experiment is made only where the linear tier is worst"]
     control = scenario.control
     own = control is not None and (
         loop_of(control) != "position"
@@ -170,25 +170,23 @@ def _notes(scenario: Scenario, asked: bool) -> tuple[str, ...]:
     )
     if own:
         notes.append(
-            "the scenario has a controller of its own: requirements of the design are those of its "
+            "the scenario has its own controller, but requirements of the design refer to its "
             "proportional position loop"
         )
     left = _left_out(scenario.load)
     if left:
-        notes.append(
-            f"the experiments hold the load with a constant force; left out of them: {left}"
-        )
+        notes.append(f"the experiments load the rod with a constant force and omit: {left}")
     return tuple(notes)
 
 
 def _left_out(load: Load) -> str:
-    """What a scenario states at the load and no experiment has."""
+    """Parts of the scenario's load that the experiments omit."""
     stated = {
         "force of the load": any(one.shape == "record" or one.value for one in load.force),
         "torque on the joint": any(one.shape == "record" or one.value for one in load.torque),
         "spring": load.stiffness,
         "damper": load.damping,
-        "machine outside": load.drive is not None,
+        "external machine": load.drive is not None,
         "load cylinder": load.cylinder is not None,
     }
     return ", ".join(name for name, there in stated.items() if there)
@@ -196,7 +194,7 @@ def _left_out(load: Load) -> str:
 
 @dataclass(slots=True)
 class _Bench:
-    """Experiments that were made; two requirements may share one."""
+    """Completed experiments; two requirements may share one."""
 
     scenario: Scenario
     tier: LinearTier
@@ -240,29 +238,29 @@ class _Bench:
         )
 
     def _by_friction(self, asked: Requirement, spot: Spot, value: float | None) -> list[str]:
-        """A warning where a requirement holds only as the seals stick."""
+        """A warning if a requirement is met only because the seals stick."""
         if self.scenario.friction.model == "none":
             return []
         bare = self.measured(asked.metric, spot, bare=True).values.get(asked.metric)
         held = _holds(value, asked.sense, asked.limit)
         if bare is None or not held or _holds(bare, asked.sense, asked.limit):
             return []
-        return [f"only friction holds it: without it {METRICS[asked.metric].text(bare)}"]
+        return [f"met only due to friction: without it {METRICS[asked.metric].text(bare)}"]
 
     def _impossible(self, metric: str, spot: Spot) -> str:
-        """Why there is no experiment; empty where there is."""
+        """Why an experiment is impossible; empty if it is possible."""
         left_out = self.tier.unsimulated()
         if left_out:
             return left_out
         if metric not in LOOPS:
             shakes = self.tier.subject.design.load_cases[spot.case].frequency is not None
             asked = metric in ("dynamic_stiffness", "dynamic_phase")
-            return "no load case shakes" if asked and not shakes else ""
+            return "no load case has an oscillating load" if asked and not shakes else ""
         stand = self.stand(spot)
         if stand.plant.valve is None:
             return "the design has no valve"
         if not stand.steady_gain > 0:
-            return "no gain holds the loop by the linear tier: nothing comes to rest"
+            return "no gain stabilises the loop in the linear tier, so it never comes to rest"
         return ""
 
     def stand(self, spot: Spot) -> Stand:
@@ -278,7 +276,7 @@ class _Bench:
     def measured(
         self, metric: str, spot: Spot, *, bare: bool = False, small: bool = False
     ) -> Measured:
-        """The experiment that finds a metric."""
+        """The experiment that measures a metric."""
         name = _EXPERIMENTS[metric]
         key = name, spot, bare, small
         if key not in self.made:
@@ -322,14 +320,14 @@ class _Bench:
         return Measured(values, found.how, found.facts, found.why)
 
     def _way(self, spot: Spot, stand: Stand) -> bool:
-        """Whether the spool rests on the side that extends; centred: as the linear tier has it."""
+        """Whether the spool rests on the extending side; if centred, as in the linear tier."""
         assert stand.plant.valve is not None
         if abs(stand.opening) < CENTRED * stand.plant.valve.signal:
             return bool(spot.extending)
         return stand.opening > 0
 
     def linear(self, metric: str, spot: Spot) -> float:
-        """The linear tier at the place of an experiment, on the side where its spool rests."""
+        """The linear tier at the position of an experiment, for its spool direction."""
         stand = self._placed(metric, spot)
         if metric in HELD:
             return self.tier.held(spot.case, stand.position)[metric]
@@ -339,7 +337,7 @@ class _Bench:
     def _reasons(
         self, metric: str, spot: Spot, full: Measured
     ) -> tuple[dict[str, float], list[str]]:
-        """Shares of friction, swing and operating point in a difference, with what was seen."""
+        """Shares of friction, amplitude and operating point in a difference, with the evidence."""
         steps = [("size of the swing", self.measured(metric, spot, bare=True, small=True))]
         if self.scenario.friction.model != "none":
             steps.insert(0, ("friction", self.measured(metric, spot, bare=True)))
@@ -364,7 +362,7 @@ class _Bench:
         return shares, said
 
     def _compared(self, metric: str, spot: Spot) -> str:
-        """Where the linear tier is asked, if not where it is worst."""
+        """Where the linear tier is evaluated, if not where it is worst."""
         stand = self._placed(metric, spot)
         words = f"compared at {1e3 * stand.position:.3g} mm"
         if metric in HELD:

@@ -1,0 +1,466 @@
+"""The page of a comparison: which design is better and why, bars part by part, U-curves, tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from ..base.quantities import Quantity
+from ..design.kinds import Fraction
+from ..evaluation.comparison import Change, Comparison, Question, Value
+from ..evaluation.reserve import count_words
+from ..metrics import METRICS, of_metric
+from ..rendering import text
+from ..rendering.axes import AREAS
+from ..rendering.blocks import (
+    Block,
+    Column,
+    Drawing,
+    Notes,
+    Page,
+    Table,
+    Tile,
+    Verdict,
+    short,
+    tile,
+)
+from ..rendering.heights import wrap
+from ..rendering.ink import BLACK, GREY, Ink, text_width
+from ..rendering.text import DASH, limit_text, number, pretty
+from .stiffness import fills
+from .ucurves import MOST, STYLES, Required, curves_drawn, has_points
+
+_WORST = {"lighter": "light", "stiffer": "stiff", "smoother": "smooth"}
+_NAMED = {"lighter": "mass", "stiffer": "stiffness", "smoother": "running friction"}
+PART_UNITS = {"lighter": (1e3, "g"), "stiffer": (1e9, "µm/kN"), "smoother": (1.0, "N")}
+"""Factor and unit of the parts of each question."""
+PART_TITLES = {
+    "lighter": "Mass",
+    "stiffer": "Compliance at the weakest position",
+    "smoother": "Running friction",
+}
+_MOST_PARTS = 4
+"""Most parts in a sentence."""
+_LONGEST = 18
+"""Letters of an input's value: a longer word would hide the paths."""
+
+_WIDTH, _RIGHT = 180.0, 20.0
+_STEP, _LEAST_STEP, _SHARE, _LINE = 7.6, 3.8, 5.6 / 7.6, 4.2
+"""Distances of bars [mm], the share that the bar takes, and the height of a line."""
+_GAP, _TOP, _SMALL = 5.0, 8.4, 3.3
+_NOTE = "Parts of a bar in the order of their key; bold: the best."
+
+
+def page(comparison: Comparison) -> Page:
+    """The page of designs side by side."""
+    return Page(
+        name="Designs side by side",
+        kind="Comparison",
+        verdict=_verdict(comparison),
+        sentence="",
+        tiles=list(_tiles(comparison)),
+        hero=lambda room: _hero(comparison, room),
+        blocks=list(_blocks(comparison)),
+        least=_least(comparison),
+    )
+
+
+def _verdict(comparison: Comparison) -> Verdict:
+    """How many designs meet their requirements."""
+    every = len(comparison.labels)
+    met = sum(evaluation.met for evaluation in comparison.evaluations)
+    words = f"{met} OF {every} MEET THEIR REQUIREMENTS"
+    return Verdict("met" if met == every else "missed", words)
+
+
+def _tiles(comparison: Comparison) -> Iterator[Tile]:
+    """The best design of every question, and its value."""
+    for question in comparison.questions:
+        if question.best is None:
+            continue
+        leaders = " and ".join(comparison.labels[k] for k in question.leaders)
+        value = text.value_text(of_metric(question.metric), question.values[question.best])
+        yield tile(question.name, value, leaders)
+
+
+def _blocks(comparison: Comparison) -> Iterator[Block]:
+    designs = [f"{label}  {named(comparison, k)}" for k, label in enumerate(comparison.labels)]
+    yield Notes("Designs", designs, headless=True, style="bold")
+    yield Notes("Which is better", [pretty(said) for said in sentences(comparison)], headless=True)
+    if _with_curves(comparison):
+        ink = Ink(_WIDTH, 400.0)
+        ink.height = _curves(ink, 6.0, comparison)
+        yield Drawing("Stiffness over the stroke", ink)
+    changes = [
+        [change.path, *(short(shown(change, value), _LONGEST) for value in change.values)]
+        for change in comparison.changes
+        if not change.path.startswith("requirements.")  # their own table follows
+    ]
+    yield _table(comparison, "What differs in the inputs", changes)
+    yield _table(comparison, "Requirements", list(_requirements(comparison)))
+    yield _table(comparison, "Metrics that differ", list(_metrics(comparison)))
+    for question in comparison.questions:
+        scale, unit = PART_UNITS[question.name]
+        rows = [
+            [part_name(part), *(number(scale * x, 4) if x else DASH for x in values)]
+            for part, values in question.parts.items()
+        ]
+        sums = [sum(column) for column in zip(*question.parts.values(), strict=True)]
+        if rows:
+            rows.append(["sum", *(number(scale * x, 4) for x in sums)])
+            yield _table(comparison, f"{PART_TITLES[question.name]}, {unit}", rows, total=1)
+
+
+def _table(
+    comparison: Comparison, title: str, rows: Sequence[Sequence[str]], total: int = 0
+) -> Block:
+    """Values of every design; where all do not fit, each part of the table begins with A."""
+    if not rows:
+        return Notes(title, ["none"])
+    columns = [Column("", width=2.0, breaks=30, least=10)]
+    columns += [Column(label, "right", width=1.0, least=8) for label in comparison.labels]
+    return Table(title, columns, rows, total=total, repeat=2)
+
+
+# ---- words ----
+
+
+def sentences(comparison: Comparison) -> list[str]:
+    """The answer to each question, then what to know before believing it."""
+    said = [answer(comparison, question) for question in comparison.questions]
+    damping = [e.metrics["damping_ratio"].value for e in comparison.evaluations]
+    if len(set(damping)) > 1:
+        values = ", ".join(
+            f"{x} {number(v, 3)}" for x, v in zip(comparison.labels, damping, strict=True)
+        )
+        said.append(f"damping ratio: {values}")
+    for label, evaluation in zip(comparison.labels, comparison.evaluations, strict=True):
+        missed = [row.name for row in evaluation.requirements if not row.met]
+        if missed:
+            said.append(f"{label} misses {len(missed)} of its requirements: {', '.join(missed)}")
+    return [*said, *optimality(comparison, remedy=True), *unlike(comparison), *duties(comparison)]
+
+
+def unlike(comparison: Comparison) -> list[str]:
+    """Metrics whose values are not of the same kind, and why."""
+    said = []
+    for metric, senses in comparison.unlike.items():
+        least, most = (
+            ", ".join(x for x, own in zip(comparison.labels, senses, strict=True) if own == sense)
+            for sense in ("min", "max")
+        )
+        said.append(
+            f"{metric}: the smallest value of {least} and the largest of {most} govern, so that "
+            f"they cannot be compared"
+        )
+    return said
+
+
+def optimality(comparison: Comparison, *, remedy: bool = False) -> list[str]:
+    """Which designs are not known to be optima, and with `remedy` how to optimise them."""
+    labels = [comparison.labels[k] for k in comparison.not_optimised]
+    if not labels:
+        return []
+    many = len(labels) > 1
+    who = f"{', '.join(labels[:-1])} and {labels[-1]}" if many else labels[0]
+    said = (
+        f"{who} {'are' if many else 'is'} not known to be {'optima' if many else 'an optimum'}: "
+        "the differences may not be those of the best designs"
+    )
+    can = any(
+        comparison.states[k].status is None and comparison.evaluations[k].design.variables
+        for k in comparison.not_optimised
+    )
+    return [f"{said}; --optimise optimises each design first" if remedy and can else said]
+
+
+def duties(comparison: Comparison) -> list[str]:
+    """That designs do not do the same work, where they do not."""
+    paths = comparison.duties_differ
+    if not paths:
+        return []
+    more = f" and {len(paths) - 3} more" if len(paths) > 3 else ""
+    return [f"their duties differ ({', '.join(paths[:3])}{more}): each is judged at its own"]
+
+
+def part_name(part: str) -> str:
+    """A part in words; "chamber" parts oil A from a design of that letter.
+
+    >>> part_name("piston_seal"), part_name("oil A")
+    ('piston seal', 'oil in chamber A')
+    """
+    words = part.replace("_", " ")
+    return words.replace("oil ", "oil in chamber ") if words in ("oil A", "oil B") else words
+
+
+def answer(comparison: Comparison, question: Question) -> str:
+    """One question in a sentence, with the parts that decide it."""
+    name, quantity = question.name, of_metric(question.metric)
+    unknown = [k for k, value in enumerate(question.values) if value is None]
+    note = ""
+    if unknown:
+        labels = ", ".join(comparison.labels[k] for k in unknown)
+        why = comparison.evaluations[unknown[0]].metrics[question.metric].why or "not computed"
+        note = f"; {_NAMED[name]} of {labels} is not known: {why}"
+    if question.metric in comparison.unlike:
+        return f"{name}: cannot be said{note}"
+    if question.best is None or question.other is None:
+        if len(unknown) + 1 >= len(question.values):
+            return f"{name}: cannot be said{note}"
+        return f"{name}: none, all are equally {_WORST[name]}{note}"
+    best, other = (question.values[k] or 0.0 for k in (question.best, question.other))
+    equal = [comparison.labels[k] for k in question.leaders]
+    change = 100 * (best / other - 1) if other else 0.0
+    values = f"{text.value_text(quantity, best)} against {text.value_text(quantity, other)}"
+    head = f"{name}: {' and '.join(equal)}, {values} of {comparison.labels[question.other]}"
+    return f"{head} ({number(change, 3, signed=True)} %){_parts(question)}{note}"
+
+
+def _parts(question: Question) -> str:
+    """The parts that change most on the way to the better design."""
+    scale, unit = PART_UNITS[question.name]
+    steps = question.steps
+    if not steps:
+        return ""
+    floor = 0.02 * abs(steps[0][1])
+    words = [
+        f"{part_name(part)} {number(scale * step, 3, signed=True)} {unit}"
+        for part, step in [row for row in steps if abs(row[1]) >= floor][:_MOST_PARTS]
+    ]
+    where = " of compliance" if question.name == "stiffer" else ""
+    return f": {', '.join(words)}{where}"
+
+
+def named(comparison: Comparison, k: int) -> str:
+    """A design's name, its origin, whether it is an optimum and meets its requirements."""
+    evaluation, state = comparison.evaluations[k], comparison.states[k]
+    origin = comparison.origins[k]
+    beside = "" if origin == evaluation.name else f" ({origin})"
+    optimum = "optimum" if state.optimum else "evaluated, not optimised"
+    if state.status is not None and not state.optimum:
+        optimum = f"no optimum (search: {state.status.replace('_', ' ')})"
+    verdict = f"requirements {'met' if evaluation.met else 'missed'}"
+    if evaluation.met and evaluation.tight:
+        verdict += f", {count_words(len(evaluation.tight))}"
+    return f"{evaluation.name}{beside}, {optimum}, {verdict}"
+
+
+def shown(change: Change, value: Value) -> str:
+    """A value of an input as people read it."""
+    if value is None:
+        return DASH
+    if isinstance(value, Fraction):
+        return f"{100 * value.value:.4g} %"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, str):
+        return value
+    return number(value) if change.quantity is None else text.value_text(change.quantity, value)
+
+
+def _requirements(comparison: Comparison) -> Iterator[list[str]]:
+    """Limit and value of each; a missed one is marked."""
+    for name, sense, rows in comparison.limits():
+        known = [row for row in rows if row is not None]
+        quantity = comparison.evaluations[rows.index(known[0])].metrics[known[0].metric].quantity
+        limits = {row.limit for row in known}
+        common = len(limits) == 1 and len(known) == len(rows)
+        head = f"{name} {text.limit_text(quantity, sense, known[0].limit)}" if common else name
+        cells = []
+        for row in rows:
+            if row is None:
+                cells.append(DASH)
+                continue
+            own = "" if common else f" ({text.limit_text(quantity, sense, row.limit)})"
+            mark = "" if row.met else " !"
+            cells.append(f"{text.value_text(quantity, row.value)}{own}{mark}")
+        yield [head, *cells]
+
+
+def _metrics(comparison: Comparison) -> Iterator[list[str]]:
+    """Every metric that is not the same to the digits shown."""
+    for name, quantity, values in comparison.metrics():
+        cells = [_metric(quantity, value) for value in values]
+        if len(set(cells)) > 1:
+            yield [name, *cells]
+
+
+def _metric(quantity: Quantity, value: float | None) -> str:
+    return DASH if value is None else text.value_text(quantity, value)
+
+
+# ---- figures ----
+
+
+def comparison_figure(comparison: Comparison) -> Ink:
+    """A bar for every design and question; equal parts have equal fills; lengths are to scale."""
+    questions = _with_bars(comparison)
+    heads = [wrap(named(comparison, k), _WIDTH - 12.0, 7.0) for k in range(len(comparison.labels))]
+    said = (_NOTE, *duties(comparison), *optimality(comparison))
+    notes = [line for words in said for line in _wrapped(words)]
+    answers = [_wrapped(answer(comparison, question)) for question in questions]
+    above = _TOP + 1.0 + _LINE * sum(map(len, heads)) + _SMALL * len(notes) + 4.0
+    ink = Ink(_WIDTH, 400.0)
+    ink.text(4.0, 4.0, "Designs side by side", size=9.0, bold=True)
+    top = _TOP
+    for line in notes:
+        ink.text(4.0, top, line, color=GREY)
+        top += _SMALL
+    top += 1.0
+    for label, lines in zip(comparison.labels, heads, strict=True):
+        ink.text(4.0, top, label, size=7.5, bold=True)
+        for line in lines:
+            ink.text(9.0, top, line, size=7.0)
+            top += _LINE
+    top, heights = above, list[float]()
+    for question, lines in zip(questions, answers, strict=True):
+        heights.append(_bars(ink, comparison, question, top, lines))
+        top += heights[-1]
+    ink.height = above + sum(heights) + 2.0
+    return ink
+
+
+def _hero(comparison: Comparison, room: float) -> Ink:
+    """The bars alone, lower where many designs share the room."""
+    questions = _with_bars(comparison)
+    rows = len(questions) * len(comparison.labels)
+    ink = Ink(_WIDTH, 400.0)
+    step = (room - _fixed(questions)) / rows if rows else _STEP
+    top = 0.0
+    for question in questions:
+        top += _bars(ink, comparison, question, top, (), min(max(step, _LEAST_STEP), _STEP))
+    ink.height = max(top, 1.0)
+    return ink
+
+
+def _least(comparison: Comparison) -> float:
+    """Height that the bars need [mm]."""
+    questions = _with_bars(comparison)
+    return _fixed(questions) + _LEAST_STEP * len(questions) * len(comparison.labels)
+
+
+def _fixed(questions: Sequence[Question]) -> float:
+    """Height of all but the bars [mm]."""
+    return sum(7.0 + _LINE * len(_legend(list(question.parts))) + _GAP for question in questions)
+
+
+def _with_bars(comparison: Comparison) -> list[Question]:
+    """Questions whose parts are known."""
+    return [question for question in comparison.questions if any(map(sum, question.parts.values()))]
+
+
+def comparison_ucurves(comparison: Comparison) -> Ink | None:
+    """Stiffness over the stroke of the first `MOST` designs; None where none has any."""
+    if not _with_curves(comparison):
+        return None
+    ink = Ink(_WIDTH, 400.0)
+    ink.text(4.0, 4.0, "Stiffness over the stroke", size=9.0, bold=True)
+    top = _TOP
+    for words in optimality(comparison):
+        for line in _wrapped(words):
+            ink.text(4.0, top, line, color=GREY)
+            top += _SMALL
+    top += 1.0
+    for k, (label, style) in enumerate(zip(comparison.labels, STYLES, strict=False)):
+        ink.line((4.0, top), (9.0, top), **style)
+        ink.text(10.5, top, label, size=7.5, bold=True)
+        for line in wrap(named(comparison, k), _WIDTH - 18.0, 7.0):
+            ink.text(15.5, top, line, size=7.0)
+            top += _LINE
+    ink.height = _curves(ink, top + 7.0, comparison)
+    return ink
+
+
+def _with_curves(comparison: Comparison) -> bool:
+    """Whether a design that is drawn has a stiffness over the stroke."""
+    return any(has_points(evaluation.curve) for evaluation in comparison.evaluations[:MOST])
+
+
+def _curves(ink: Ink, top: float, comparison: Comparison) -> float:
+    """Draw the curves of the first `MOST` designs; the height they end at."""
+    labels = []
+    some = comparison.evaluations[:MOST]
+    for label, evaluation in zip(comparison.labels, some, strict=False):
+        least = evaluation.metrics["stiffness_min"].value
+        labels.append(label if least is None else f"{label}: least {number(least / 1e6, 4)} kN/mm")
+    curves = [evaluation.curve for evaluation in some]
+    return curves_drawn(ink, top, curves, labels, _required(comparison), "A")
+
+
+def _required(comparison: Comparison) -> list[Required]:
+    """The stiffness required, and of which designs where it is not of all."""
+    required: dict[float, list[str]] = {}
+    for _, sense, rows in comparison.limits():
+        for label, row in zip(comparison.labels, rows, strict=True):
+            if row is not None and row.metric == "stiffness_min" and sense == "min":
+                required.setdefault(row.limit, []).append(label)
+    every = len(comparison.labels)
+    return [
+        Required(
+            value,
+            f"required {limit_text(METRICS['stiffness_min'], 'min', value)}"
+            + (f" of {', '.join(who)}" if len(who) < every else ""),
+        )
+        for value, who in required.items()
+    ]
+
+
+def _wrapped(said: str) -> list[str]:
+    return wrap(pretty(said[:1].upper() + said[1:]), _WIDTH - 8.0, 6.5)
+
+
+def _legend(parts: list[str]) -> list[list[str]]:
+    """Names of parts in lines that fit."""
+    lines: list[list[str]] = [[]]
+    used = 0.0
+    for part in parts:
+        wide = text_width(part_name(part), 6.5) + 8.0
+        if lines[-1] and used + wide > _WIDTH - 8.0:
+            lines.append([])
+            used = 0.0
+        lines[-1].append(part)
+        used += wide
+    return lines
+
+
+def _bars(
+    ink: Ink,
+    comparison: Comparison,
+    question: Question,
+    top: float,
+    said: Sequence[str],
+    step: float = _STEP,
+) -> float:
+    """Title, a stacked bar for each design with its sum, and a key of the fills; its height."""
+    scale, unit = PART_UNITS[question.name]
+    parts, tall = list(question.parts), _SHARE * step
+    own = fills(parts) if question.name == "stiffer" else AREAS
+    paints = {part: own[k % len(own)] for k, part in enumerate(parts)}
+    sums = [sum(column) for column in zip(*question.parts.values(), strict=True)]
+    room = _WIDTH - 9.0 - _RIGHT
+    ink.text(4.0, top + 2.0, f"{PART_TITLES[question.name]}, {unit}", size=7.5, bold=True)
+    y = top + 6.0
+    for line in said:
+        ink.text(4.0, y, line, color=GREY)
+        y += _SMALL
+    for k, label in enumerate(comparison.labels):
+        best = k in question.leaders
+        ink.text(4.0, y + tall / 2, label, size=7.0, bold=best)
+        x = 9.0
+        for part, values in question.parts.items():
+            wide = max(values[k], 0.0) / max(sums) * room
+            if wide <= 0:
+                continue
+            ink.box(x, y, wide, tall, fill=paints[part], stroke="#ffffff", pen=0.12)
+            x += wide
+        ink.line((9.0, y - 0.6), (9.0, y + tall + 0.6), stroke=BLACK, pen=0.18)
+        ink.text(x + 1.5, y + tall / 2, number(scale * sums[k], 4), size=7.0, bold=best)
+        y += step
+    for names in _legend(parts):
+        x = 9.0
+        for part in names:
+            ink.box(x, y + 0.2, 2.4, 2.4, fill=paints[part], stroke=GREY, pen=0.1)
+            ink.text(x + 3.6, y + 1.4, part_name(part), size=6.5)
+            x += text_width(part_name(part), 6.5) + 8.0
+        y += _LINE
+    lines = len(said), len(_legend(parts))
+    return 7.0 + _SMALL * lines[0] + step * len(comparison.labels) + _LINE * lines[1] + _GAP

@@ -1,0 +1,272 @@
+"""Dynamics on paper: modes, dynamic stiffness and the position loop, as far as a design has them.
+
+A design without a valve and without shaken load cases gets one figure.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..evaluation.dynamics_study import DynamicsStudy, LoopStudy
+from ..evaluation.result import Evaluation, Requirement
+from ..rendering import text
+from ..rendering.blocks import Block, Cell, Column, Drawing, Table, clean, short, soft
+from ..rendering.text import DASH
+from .dynamics_figures import (
+    LoopLimits,
+    Shaken,
+    closed_figure,
+    compact_figure,
+    modes_figure,
+    open_figure,
+    response_figure,
+)
+
+FASTEST = 1e4
+"""Poles above this frequency (Hz) are counted, not listed: the model describes nothing there."""
+_END = {
+    "closed": "ports closed",
+    "valve": "the valve at its centre",
+    "constant_pressure": "lines held at constant pressure",
+    "reducing_valve": "a pressure reducing valve at each line",
+}
+
+
+def dynamics_blocks(evaluation: Evaluation) -> list[Block]:
+    """Every block of the dynamics; none where there is no study."""
+    study = evaluation.dynamics
+    if study is None or len(study.position) < 2 or not study.position[-1] > study.position[0]:
+        return []
+    if study.position_loop is None and not study.shaken:
+        return [_compact(evaluation, study)]
+    found = [_modes(evaluation, study), _poles(study), _response(evaluation, study)]
+    if study.position_loop is not None:
+        found += _loop(evaluation, study, (study.position_loop, *study.other_loops))
+    return found
+
+
+def required(evaluation: Evaluation, metric: str) -> list[Requirement]:
+    """Requirements on one metric."""
+    return [row for row in evaluation.requirements if row.metric == metric]
+
+
+def _ratio(value: float) -> str:
+    return text.number(value, 3)
+
+
+def damping_sentence(study: DynamicsStudy) -> str:
+    """Where the damping at the weakest position comes from."""
+    friction, ends = study.friction_share, study.conductance_share
+    whole = friction + ends
+    small = 1e-4 * abs(whole)
+    circle = " (open circle)" if abs(ends) >= small else ""
+    shares = {f"friction and oil shear{circle}": friction, "leakage and lines": ends}
+    given = ", ".join(
+        f"{name} {_ratio(share) if abs(share) >= small else 'next to nothing'}"
+        for name, share in shares.items()
+    )
+    said = f"At the weakest position the damping ratio is {_ratio(whole)}: {given}."
+    if whole >= 1:
+        said += " Above one the load does not swing."
+    if whole < 0:
+        said += " Below zero the motion grows: friction falls with speed."
+    return said
+
+
+def _held(study: DynamicsStudy) -> str:
+    return _END.get(study.end, study.end.replace("_", " "))
+
+
+def _compact(evaluation: Evaluation, study: DynamicsStudy) -> Block:
+    ink = compact_figure(
+        study, required(evaluation, "natural_frequency"), required(evaluation, "damping_ratio")
+    )
+    note = (
+        f"Case {study.case}, {_held(study)}, {text.number(1.0 * study.mass)} kg at the rod."
+        f" {damping_sentence(study)} Dynamic stiffness counts the mass; above the resonance it is"
+        " the mass that resists."
+    )
+    return Drawing("Dynamics", ink, note)
+
+
+def _modes(evaluation: Evaluation, study: DynamicsStudy) -> Block:
+    ink = modes_figure(
+        study, required(evaluation, "natural_frequency"), required(evaluation, "damping_ratio")
+    )
+    note = (
+        f"Case {study.case}, {text.number(study.mass)} kg at the rod; while the load shakes it:"
+        f" {_held(study)}. {damping_sentence(study)}"
+    )
+    return Drawing("Dynamics along the stroke", ink, note)
+
+
+def shaken_cases(study: DynamicsStudy) -> list[Shaken]:
+    """Load cases that shake the actuator, with stiffness and phase at their worst place."""
+    return [
+        Shaken(clean(one.name), one.frequency, one.stiffness, one.phase) for one in study.shaken
+    ]
+
+
+def _response(evaluation: Evaluation, study: DynamicsStudy) -> Block:
+    cases = shaken_cases(study)
+    ink = response_figure(
+        study,
+        cases,
+        required(evaluation, "dynamic_stiffness"),
+        required(evaluation, "dynamic_phase"),
+    )
+    note = f"Curves: case {study.response_case}, {_held(study)}."
+    if cases:
+        note += (
+            " Letters: load cases that shake the actuator; circles: each at its own frequency, at"
+            " its worst place. Red: what is required there, with the allowed side."
+        )
+    note += " The position loop is open"
+    note += ": slowly, what leaks lets the piston creep." if study.end != "closed" else "."
+    return Drawing("Dynamic stiffness", ink, note + lumped_sentence(study))
+
+
+def lumped_sentence(study: DynamicsStudy) -> str:
+    """How far the lumped lines follow transmission lines; nothing without lines."""
+    if study.distributed is None:
+        return ""
+    lumped = next(one for one in study.responses if one.place == "weakest position")
+    apart = np.abs(np.asarray(study.distributed) / np.asarray(lumped.magnitude) - 1)
+    reach = {}
+    for share in (0.01, 0.1):
+        beyond = study.frequencies[apart > share]
+        reach[share] = float(beyond[0]) if len(beyond) else None
+
+    def upto(share: float) -> str:
+        found = reach[share]
+        return "1 kHz" if found is None else f"{text.number(found, 2)} Hz"
+
+    said = (
+        " With transmission lines in place of the lumped ones the magnitude is within 1 % up to "
+        f"{upto(0.01)}"
+    )
+    return said + (f", within 10 % up to {upto(0.1)}." if reach[0.01] is not None else ".")
+
+
+def _poles(study: DynamicsStudy) -> Block:
+    shown = [pole for pole in study.poles if pole.frequency <= FASTEST]
+    held = float(study.frequency[int(np.argmin(study.closed_frequency))])
+    rows: list[list[Cell]] = []
+    for pole in shown:
+        if abs(pole.damping_ratio) < 1 and abs(pole.frequency / held - 1) < 1e-3:
+            what = "the load on oil, walls and rod"
+        elif abs(pole.damping_ratio) < 1:
+            what = "lines and what ends them"
+        else:
+            constant = text.number(1e3 / (2 * math.pi * pole.frequency), 3)
+            what = f"does not swing: fades with a time constant of {constant} ms"
+        if pole.damping_ratio < 0:
+            what += "; grows"
+        rows.append([text.number(pole.frequency), _ratio(pole.damping_ratio), what])
+    columns = [
+        Column("frequency, Hz", "right", 0.5),
+        Column("damping ratio", "right", 0.5),
+        Column("what", "left", 2.0),
+    ]
+    fast = len(study.poles) - len(shown)
+    note = f"At the weakest position, case {study.case}, {_held(study)}."
+    if fast:
+        plural = "poles lie" if fast > 1 else "pole lies"
+        note += f" {fast} {plural} above 10 kHz, where the model describes nothing."
+    return Table("Dynamics: poles", columns, rows, note=note, on="paper")
+
+
+# ---- the loop ----
+
+
+def _loop(
+    evaluation: Evaluation, study: DynamicsStudy, loops: tuple[LoopStudy, ...]
+) -> list[Block]:
+    limits = LoopLimits(
+        required(evaluation, "gain_margin"),
+        required(evaluation, "phase_margin"),
+        required(evaluation, "bandwidth"),
+    )
+    note = (
+        "A curve for each place and direction of the spool that governs a margin or the bandwidth."
+        " Arrows: the margins where they are least; red: what is required."
+    )
+    if any(_passes_behind(one) for one in loops):
+        note += (
+            " Behind the load's resonance the curve passes -1 on its far side: there the margin is"
+            " the angle up to -180 degrees, and the loop holds as long as the gain margin is above"
+            " one."
+        )
+    return [
+        Drawing("Position loop, open", open_figure(study, loops, limits), note),
+        Drawing("Position loop, closed", closed_figure(study, loops, limits)),
+        _loop_table(evaluation, loops),
+    ]
+
+
+def _passes_behind(one: LoopStudy) -> bool:
+    """Whether the phase margin is told at a crossover beyond -180 degrees."""
+    if one.crossover is None or one.gain_margin <= 1:
+        return False
+    above = np.asarray(one.open_magnitude) >= 1
+    return bool(np.any(np.asarray(one.open_phase)[above] < -math.pi))
+
+
+def _loop_table(evaluation: Evaluation, loops: tuple[LoopStudy, ...]) -> Block:
+    first = loops[0]
+    at = {(one.case, one.place): one for one in loops}
+    tuned = (
+        "half the ultimate gain: Ziegler and Nichols' rule for proportional control"
+        if first.tuned
+        else "as stated in control.gain"
+    )
+
+    def row(name: str) -> list[Cell]:
+        metric = evaluation.metrics[name]
+        limits = [
+            text.limit_text(metric.quantity, r.sense, r.limit) for r in required(evaluation, name)
+        ]
+        value = text.value_text(metric.quantity, metric.value)
+        where = ", ".join(part for part in (metric.case, metric.place) if part)
+        if metric.value is None:
+            where = metric.why or ""
+        one = at.get((metric.case or "", metric.place or ""), first)
+        return [
+            name.replace("_", " ").replace("position gain", "gain"),
+            value,
+            _remark(name, one, tuned),
+            ", ".join(limits) or DASH,
+            soft(short(where, 80) or DASH),
+        ]
+
+    names = ("position_gain", "ultimate_gain", "gain_margin", "phase_margin", "bandwidth")
+    columns = [
+        Column("", "left", 0.7),
+        Column("value", "right", strong=True),
+        Column("", "left", 1.3),
+        Column("required", "right"),
+        Column("where it is least", "left", 1.3),
+    ]
+    worst = first.place.partition(", ")[0]
+    note = (
+        f"Both directions of the spool differ; {worst} has the least gain margin. Values are the"
+        " least over load cases, places and directions."
+    )
+    rows = [row(name) for name in names if name in evaluation.metrics]
+    return Table("Position loop: gain, margins, bandwidth", columns, rows, note=note, on="paper")
+
+
+def _remark(name: str, one: LoopStudy, tuned: str) -> str:
+    if name == "position_gain":
+        return tuned
+    if name == "ultimate_gain" and one.ultimate_frequency > 0:
+        return f"swings at {text.number(one.ultimate_frequency)} Hz"
+    if name == "gain_margin" and 0 < one.gain_margin < math.inf:
+        return f"{text.number(20 * math.log10(one.gain_margin), 3)} dB"
+    if name == "phase_margin" and one.crossover is not None:
+        return f"open loop crosses 0 dB at {text.number(one.crossover)} Hz"
+    if name == "bandwidth":
+        return "closed loop falls to \N{MINUS SIGN}3 dB"
+    return ""

@@ -1,0 +1,702 @@
+"""The page of an evaluation or an optimisation: verdict, requirements, and what stands behind."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+from ..base.quantities import Quantity
+from ..design.paths import get, quantity_of
+from ..evaluation import reserve
+from ..evaluation.result import Check, Evaluation, Requirement
+from ..metrics import METRICS
+from ..metrics.table import ROWS
+from ..optimisation.result import Optimisation
+from ..rendering import heights, text
+from ..rendering.blocks import (
+    Bar,
+    Block,
+    Cell,
+    Column,
+    Flag,
+    Medium,
+    Notes,
+    Page,
+    Row,
+    Share,
+    State,
+    Status,
+    Table,
+    Tile,
+    Verdict,
+    clean,
+    soft,
+)
+from ..rendering.ink import Ink
+from ..rendering.text import DASH
+from ..studies.seal import SealStudy
+from . import dynamics, optimum, prices, seal, section, stiffness, trust, wall
+
+KEY_FIGURES = (
+    "mass",
+    "stiffness_min",
+    "push_force",
+    "friction_running",
+    "natural_frequency",
+    "burst_factor",
+    "buckling_factor",
+    "pull_force",
+    "closed_length",
+)
+"""Five of these, in this order, after the objective; those without a value are passed over."""
+
+NO_RESERVE = f"No reserve: met, with a margin below {100 * reserve.NO_RESERVE:g} %"
+FLAG = " (!)"
+"""Behind the name of a quantity whose value rests on a model outside its valid range."""
+FLAGGED = "(!) EXTRAPOLATED: a model was used outside its valid range"
+
+_SHORT_OF = ("missed", "infeasible")
+"""States in which an optimum lacks the yield asked for."""
+_MET = ("met", "checks")
+"""States in which every requirement is met: green, and amber."""
+_BAR = Column("", "left", "22mm", drop=2)
+_MARK = Column("", on="terminal")
+"""A state as its mark alone."""
+
+
+def page(
+    subject: Evaluation | Optimisation,
+    *,
+    extra_tables: Sequence[Block] = (),
+    seals: Sequence[SealStudy] = (),
+) -> Page:
+    """The page of a design.
+
+    Parameters
+    ----------
+    subject : what to report
+    extra_tables : further tables and drawings, before the appendix
+    seals : the seals of piston or rod, each with its sheet
+    """
+    evaluation, optimisation = parts_of(subject)
+    drawing = section.section(evaluation)
+
+    def hero(room: float) -> Ink:
+        return drawing.ink
+
+    first = Page(
+        name=evaluation.name,
+        kind="Evaluation report" if optimisation is None else "Optimisation report",
+        verdict=verdict(subject),
+        sentence=_sentence(subject),
+        tiles=key_figures(subject),
+        hero=hero,
+        scale=drawing.scale,
+        items=[(item.number, item.part, item.material) for item in drawing.items],
+        lists_input=True,
+    )
+
+    later: list[Block] = []
+    if optimisation is not None and optimisation.variables:
+        blocks, later = _with_variables(first, drawing.ink.height, optimisation)
+    else:
+        blocks = list(_opening(evaluation, optimisation))
+        if optimisation is not None:
+            blocks += optimum.sizes_and_choices(optimisation)
+        blocks.append(masses(evaluation))
+    blocks += stiffness.stiffness_blocks(evaluation, curve_shown=optimisation is None)
+    blocks += [*dynamics.dynamics_blocks(evaluation), *later]
+    if optimisation is not None:
+        blocks += trust.trust_blocks(optimisation) + prices.price_blocks(optimisation)
+        blocks += optimum.robust_tables(optimisation)
+        blocks += [masses(evaluation)] if optimisation.variables else []
+    blocks += [block for study in seals for block in seal.blocks(study)]
+    blocks += [*wall.wall_blocks(evaluation), *checks(evaluation)]
+    blocks += _remarks(evaluation, optimisation)
+    blocks += extra_tables
+    return replace(first, blocks=[*blocks, *_appendix(evaluation)])
+
+
+def prices_page(optimisation: Optimisation) -> Page:
+    """The prices of an optimum alone: what `sensitivity` shows."""
+    blocks = prices.price_blocks(optimisation, moving=True)
+    if not blocks and optimisation.infeasibility is not None:
+        blocks = optimum.infeasibility_blocks(optimisation.infeasibility)
+    return Page(
+        name=optimisation.best_evaluation.name,
+        kind="Prices",
+        verdict=verdict(optimisation),
+        sentence=_sentence(optimisation),
+        tiles=[],
+        hero=lambda room: Ink(1.0, 1.0),
+        blocks=blocks,
+    )
+
+
+def parts_of(subject: Evaluation | Optimisation) -> tuple[Evaluation, Optimisation | None]:
+    """The evaluation to show and, if there is one, the optimisation it came from.
+
+    An optimisation with sizes shows the design of these sizes: it is the one to build.
+    """
+    if isinstance(subject, Optimisation):
+        return subject.best_evaluation, subject
+    return subject, None
+
+
+def outcome(subject: Evaluation | Optimisation) -> dict[str, Any]:
+    """The numbers that say whether a result repeats: SI, by metric and by PATH."""
+    evaluation, optimisation = parts_of(subject)
+    numbers: dict[str, Any] = {
+        "metrics": {metric.name: metric.value for metric in evaluation.metrics.values()},
+        "spec_hash": evaluation.spec_hash,
+    }
+    if optimisation is None:
+        return numbers
+    return numbers | {
+        "status": optimisation.status,
+        "variables": {row.path: row.value for row in optimisation.best_variables},
+    }
+
+
+def _opening(
+    evaluation: Evaluation, optimisation: Optimisation | None, *, labelled: bool = True
+) -> Iterator[Block]:
+    """What comes first: limits missed, why nothing fits, the requirements."""
+    missed = [row.name for row in evaluation.requirements if not row.met]
+    if missed:
+        said = [f"missed: {', '.join(missed)}"]
+        yield Notes("Missed", said, headless=True, style="red", on="terminal")
+    if optimisation is not None and optimisation.infeasibility is not None:
+        yield from optimum.infeasibility_blocks(optimisation.infeasibility)
+    yield requirements(evaluation, shown=optimisation is not None, labelled=labelled)
+    if optimisation is None:
+        yield from quantities(evaluation)
+
+
+def _with_variables(
+    page: Page, hero: float, optimisation: Optimisation
+) -> tuple[list[Block], list[Block]]:
+    """Requirements and variables of the first sheet, and the tables for which it has no room.
+
+    Where the table does not fit, the requirements go without their words first; then a short
+    list takes its place.
+    """
+    table, sizes = optimum.variables(optimisation), optimum.sizes_and_choices(optimisation)
+    for labelled in (True, False):
+        opening = list(_opening(optimisation.best_evaluation, optimisation, labelled=labelled))
+        room = heights.rest(replace(page, blocks=opening), hero)
+        if heights.height(table) <= room:
+            return [*opening, table, *sizes], []
+    return [*opening, *optimum.best_values(optimisation, room)], [table, *sizes]
+
+
+# ---- verdict ----
+
+
+def sentences(optimisation: Optimisation) -> list[str]:
+    """Which design is shown where sizes are asked for, the outcome, what to do about it."""
+    said, rounding = [optimisation.shown], optimisation.rounding
+    if rounding is None or rounding.design is not None:
+        said.append(optimisation.sentence)
+    if optimisation.robust is not None:
+        said.append(optimisation.robust.sentence)
+    said.append(optimisation.remedy or ("" if rounding is None else rounding.remedy))
+    return [text.pretty(text.sentence(part)) for part in said if part]
+
+
+def reserve_sentences(subject: Evaluation | Optimisation) -> list[str]:
+    """Limits without reserve and the yield, where requirements are met and nothing said it."""
+    evaluation, optimisation = parts_of(subject)
+    said = optimisation is not None and optimisation.robust is not None
+    if said or verdict(subject).state not in _MET:
+        return []
+    return [text.pretty(part) for part in evaluation.reserve_sentences]
+
+
+def _sentence(subject: Evaluation | Optimisation) -> str:
+    optimisation = parts_of(subject)[1]
+    said = [] if optimisation is None else sentences(optimisation)
+    return " ".join([*said, *reserve_sentences(subject)])
+
+
+def verdict(subject: Evaluation | Optimisation) -> Verdict:
+    """The badge: state, words, how many rows and checks stand behind it, and what to doubt.
+
+    `cautions` are lines in amber: limits without reserve, values nobody has verified, values
+    outside a model's range.
+    """
+    evaluation, optimisation = parts_of(subject)
+    missed = sum(not row.met for row in evaluation.requirements)
+    failed = sum(check.status == "missed" for check in evaluation.checks)
+    rounding = None if optimisation is None else optimisation.rounding
+    robust = None if optimisation is None else optimisation.robust
+    tight = len((optimisation or evaluation).tight)
+    state: State
+    none_made = rounding.name if rounding is not None and rounding.design is None else ""
+    of = "continuous: " if none_made else f"{rounding.name}: " if rounding else ""
+    if optimisation is not None and optimisation.infeasibility is not None:
+        state, words = "infeasible", "INFEASIBLE"
+    elif optimisation is not None and optimisation.status == "undefined":
+        state, words = "missed", "NO USABLE ANSWER"
+    elif none_made:
+        state, words = "missed", f"NO DESIGN OF {none_made.upper()}"
+    elif missed:
+        state, words = "missed", "REQUIREMENTS MISSED"
+    elif robust is not None and not robust.reached:
+        state, words = "missed", "YIELD MISSED"
+    elif failed:
+        state, words = "checks", "REQUIREMENTS MET, CHECKS MISSED"
+    elif tight:
+        state, words = "checks", f"REQUIREMENTS MET, {reserve.count_words(tight).upper()}"
+    else:
+        state, words = "met", "REQUIREMENTS MET"
+    counts = _counts(evaluation)
+    lines, cautions = doubts(evaluation)
+    without = ", without reserves for the yield" if robust and state in _SHORT_OF else ""
+    return Verdict(
+        state,
+        words,
+        [
+            f"{of}{evaluation.tally}{_misfit(optimisation)}{without}",
+            f"checks: {counts['met']} met · {counts['missed']} missed"
+            f" · {counts['not_checked']} not checked",
+            *lines,
+        ],
+        [
+            *([reserve.count_words(tight)] if tight and failed and state == "checks" else []),
+            *cautions,
+        ],
+    )
+
+
+def doubts(evaluation: Evaluation) -> tuple[list[str], list[str]]:
+    """Plain lines and cautions: values nobody has verified, results that are extrapolated."""
+    counts = evaluation.counts
+    results, models = counts["extrapolated"], counts["extrapolated_models"]
+    words = f"{results} result{'' if results == 1 else 's'}"
+    if models:
+        words += f", {models} model{'' if models == 1 else 's'}"
+    known = (
+        (counts["unverified"], f"values not verified: {counts['unverified']}"),
+        (results + models, f"EXTRAPOLATED: {words}"),
+    )
+    return [said for number, said in known if not number], [said for n, said in known if n]
+
+
+def _counts(evaluation: Evaluation) -> dict[str, int]:
+    """Checks by their status."""
+    return {
+        name: sum(check.status == name for check in evaluation.checks)
+        for name in ("met", "missed", "not_checked")
+    }
+
+
+def _misfit(optimisation: Optimisation | None) -> str:
+    """The geometry that does not fit, where no limit need be missed for that."""
+    why = None if optimisation is None else optimisation.infeasibility
+    return f"; the geometry does not fit: {', '.join(why.laws)}" if why and why.laws else ""
+
+
+# ---- key figures ----
+
+
+def key_figures(subject: Evaluation | Optimisation) -> list[Tile]:
+    """Five numbers to remember, the objective first, each with its limit or where it came from."""
+    evaluation, optimisation = parts_of(subject)
+    first = () if optimisation is None else (optimisation.objective_metric,)
+    names = [n for n in dict.fromkeys((*first, *KEY_FIGURES)) if n in evaluation.metrics]
+    names = [n for n in names if evaluation.metrics[n].value is not None][:5]
+    tiles = []
+    for name in names:
+        metric, quantity = evaluation.metrics[name], text.metric(name)
+        row = _limited(evaluation, name)
+        value, note = metric.value, f"case {metric.case}" if metric.case else ""
+        state: State = ""
+        before = _before(optimisation, name)
+        if name in first and before is not None and metric.value is not None:
+            change = text.number(100 * (metric.value / before[1] - 1), before[2], signed=True)
+            note = f"{before[0]} {text.value_text(quantity, before[1])}, {change} %"
+        elif row is not None and row.value is not None:
+            value, state = row.value, "met" if row.met else "missed"
+            limit = text.limit_text(quantity, row.sense, row.limit)
+            note = f"{limit}, margin {text.margin_of(quantity, row.limit, row.margin, met=row.met)}"
+        elif name == "mass" and metric.value is not None:
+            oil = evaluation.metrics.get("mass_oil")
+            if oil is not None and oil.value is not None:
+                note = f"with oil {text.value_text(quantity, metric.value + oil.value)}"
+        tiles.append(
+            Tile(
+                _short_label(name, quantity),
+                text.number(text.display(quantity, value)),
+                text.unit_text(quantity.unit),
+                note,
+                state,
+                quantity.symbol,
+            )
+        )
+    return tiles
+
+
+def _short_label(name: str, quantity: Quantity) -> str:
+    """The words of a metric where there is little room."""
+    row = ROWS.get(name)
+    return (row.short if row else "") or quantity.label
+
+
+def _limited(evaluation: Evaluation, name: str) -> Requirement | None:
+    """The limit on a metric with the smallest margin; a limit without a value comes last."""
+    rows = [row for row in evaluation.requirements if row.metric == name]
+    return min(rows, key=lambda r: math.inf if r.margin is None else r.margin, default=None)
+
+
+def _before(optimisation: Optimisation | None, name: str) -> tuple[str, float, int] | None:
+    """What a figure is compared with, and digits: the optimum before rounding, else the start."""
+    if optimisation is None:
+        return None
+    words, origin, digits = "start", optimisation.start, 3
+    if optimisation.made is not None:
+        words, origin, digits = "continuous", optimisation.evaluation, 2
+    metric = origin.metrics.get(name)
+    return None if metric is None or metric.value is None else (words, metric.value, digits)
+
+
+# ---- requirements and quantities ----
+
+
+def flag(evaluation: Evaluation, name: str | None) -> str:
+    """`FLAG`, where a metric rests on a model outside its valid range; else nothing."""
+    known = evaluation.metrics.get(name or "")
+    return "" if known is None or known.in_range else FLAG
+
+
+def requirements(evaluation: Evaluation, *, shown: bool = True, labelled: bool = True) -> Block:
+    """Limit, result, margin and status of every requirement.
+
+    `shown`: on the terminal too, where no list of all quantities has them already; `labelled`:
+    with the words of each quantity on paper.
+    """
+    on: Medium = "both" if shown else "paper"
+    rows: list[Row] = []
+    for row in evaluation.requirements:
+        quantity = text.metric(row.metric)
+        cells: list[Cell] = [
+            Status(row.state, " "),
+            row.name + flag(evaluation, row.metric),
+            clean(_short_label(row.metric, quantity)),
+            text.limit_text(quantity, row.sense, row.limit),
+            _result(evaluation, row),
+            text.margin_of(quantity, row.limit, row.margin, met=row.met),
+            Bar(row.margin, met=row.met),
+            Status(row.state),
+            text.brief(row.case, row.place) or DASH,
+        ]
+        rows.append(Row(cells, row.state))
+    if not rows:
+        said = ["The design states no requirement."]
+        return Notes("Requirements", said, on=on)
+    columns = [
+        _MARK,
+        Column("requirement", "left", 1.0 if labelled else 1.2, breaks=22, mono=True, least=16),
+        Column("quantity", "left", 1.3, on="paper"),
+        Column("limit", "right"),
+        Column("result", "right", style="bold"),
+        Column("margin", "right", style="state"),
+        replace(_BAR, drop=1),
+        Column("status", on="paper"),
+        Column("governing case", "left", 1.2 if labelled else 2.0, breaks=18, drop=2, style="dim"),
+    ]
+    note = "Margin is the room left, relative to the limit; the bar is full at 100 %."
+    note = " ".join([note, *(f"{line}." for line in _row_notes(evaluation))])
+    shown_columns = [k for k, column in enumerate(columns) if labelled or column.head != "quantity"]
+    return Table(
+        "Requirements",
+        [columns[k] for k in shown_columns],
+        [Row([row.cells[k] for k in shown_columns], row.state) for row in rows],
+        note=note,
+        on=on,
+    )
+
+
+def _row_notes(evaluation: Evaluation) -> list[str]:
+    """What the states and marks of requirements mean, where some have them."""
+    rows = evaluation.requirements
+    said = [NO_RESERVE] if any(row.state == "no_reserve" for row in rows) else []
+    return said + ([FLAGGED] if any(flag(evaluation, row.metric) for row in rows) else [])
+
+
+def _result(evaluation: Evaluation, row: Requirement) -> Cell:
+    if row.value is not None:
+        return text.value_text(text.metric(row.metric), row.value)
+    metric = evaluation.metrics.get(row.metric)
+    return soft(metric.why if metric is not None and metric.why else DASH)
+
+
+def quantities(evaluation: Evaluation) -> Iterator[Block]:
+    """Every computed quantity with its limits, and what is not computed, for the terminal.
+
+    Beside a limit stands the value that the margin is of.
+    """
+    limits: dict[str, list[Requirement]] = {}
+    for required in evaluation.requirements:
+        limits.setdefault(required.metric, []).append(required)
+    rows: list[Row] = []
+    missing: dict[str, list[str]] = {}
+    for metric in evaluation.metrics.values():
+        quantity = metric.quantity
+        if metric.value is None:
+            missing.setdefault(metric.why or "not computed", []).append(metric.name)
+            continue
+        case = text.brief(metric.case, metric.place)
+        mark = "" if metric.in_range else FLAG
+        unit = text.unit_text(quantity.unit)
+        value = text.number(quantity.to_display(metric.value))
+        cells: list[Cell] = [metric.name + mark, value, unit, "", "", "", case, quantity.label]
+        for index, row in enumerate(limits.get(metric.name, ())):
+            value = DASH if row.value is None else text.number(quantity.to_display(row.value))
+            cells = [
+                metric.name + mark if index == 0 else "",
+                value,
+                unit,
+                text.limit_text(quantity, row.sense, row.limit),
+                text.margin_of(quantity, row.limit, row.margin, met=row.met),
+                Bar(row.margin, met=row.met),
+                text.brief(row.case, row.place) or case,
+                quantity.label if index == 0 else "",
+            ]
+            rows.append(Row(cells, row.state))
+        if metric.name not in limits:
+            rows.append(Row(cells))
+    columns = [
+        Column("quantity"),
+        Column("value", "right", style="bold"),
+        Column("unit", style="dim"),
+        Column("limit", "right"),
+        Column("margin", "right", style="state"),
+        _BAR,
+        Column("case", width=1.0, drop=1, style="dim"),
+        Column("what", width=1.0, drop=3, least=45, style="dim"),
+    ]
+    note = FLAGGED if any(not metric.in_range for metric in evaluation.metrics.values()) else ""
+    yield Table("Quantities", columns, rows, note=note, headless=True, on="terminal")
+    if missing:
+        said = [f"{', '.join(names)}: {why}" for why, names in missing.items()]
+        yield Notes("Not computed", said, on="terminal")
+
+
+# ---- masses ----
+
+
+def masses(evaluation: Evaluation) -> Block:
+    """Mass per part, adding up, with the oil below."""
+    quantity = METRICS["mass"]
+    parts = evaluation.mass_parts
+    total = sum(parts.values())
+    largest = max(parts.values(), default=0.0)
+    unit = text.unit_text(quantity.unit)
+    decimals = text.decimals(quantity.to_display(total), 5)
+
+    def grams(mass: float) -> str:
+        return text.fixed(quantity.to_display(mass), decimals)
+
+    rows: list[list[Cell]] = [
+        [
+            soft(part.replace("_", " ")),
+            grams(mass),
+            text.share_text(mass / total if total else 0.0),
+            Share(mass / largest if largest else 0.0),
+        ]
+        for part, mass in parts.items()
+    ]
+    rows.append(["dry mass", grams(total), text.share_text(1.0), ""])
+    oil = evaluation.metrics.get("mass_oil")
+    below = 1
+    if oil is not None and oil.value is not None:
+        rows.append(["oil inside", grams(oil.value), "", ""])
+        rows.append(["filled", grams(total + oil.value), "", ""])
+        below = 3
+    columns = [
+        Column("part", "left", 1.0),
+        Column(f"mass, {unit}", "right"),
+        Column("share", "right"),
+        Column("", "left", "80mm"),
+    ]
+    return Table("Mass", columns, rows, total=below, on="paper")
+
+
+# ---- checks ----
+
+
+def checks(evaluation: Evaluation) -> Iterator[Block]:
+    """The check list: every line on paper; those not met, without reserve, unchecked elsewhere."""
+    if not evaluation.checks:
+        yield Notes("Check list", ["No check list."], on="paper")
+        return
+    counts = _counts(evaluation)
+    note = (
+        f"{counts['met']} met, {counts['missed']} missed, {counts['not_checked']} not checked;"
+        " a line that was not checked is no statement that it holds."
+    )
+    columns = [
+        Column("check", "left", 1.25),
+        Column("limit", "right"),
+        Column("result", "right"),
+        Column("margin", "right"),
+        Column("status"),
+        Column("governing case", "left", 1.0),
+        Column("reason; source of the limit", "left", 1.45),
+    ]
+    rows = [_check(evaluation, check) for check in evaluation.checks]
+    yield Table("Check list", columns, rows, note=note, on="paper")
+    yield _open_checks(evaluation, f"checks: {counts['met']} of {len(evaluation.checks)} met")
+
+
+def _check(evaluation: Evaluation, check: Check) -> list[Cell]:
+    quantity = text.metric(check.metric or "")
+    remark = "; ".join(part for part in (check.reason, check.source) if part)
+    return [
+        *_check_values(evaluation, check),
+        text.margin_of(quantity, check.limit, check.margin, met=check.status != "missed"),
+        Status(check.state),
+        soft(", ".join(part for part in (check.case, check.place) if part) or DASH),
+        soft(remark or DASH),
+    ]
+
+
+def _check_values(evaluation: Evaluation, check: Check) -> list[str]:
+    """Name, limit and result of a line of the check list."""
+    quantity = text.metric(check.metric or "")
+    known = check.metric is not None and check.value is not None
+    return [
+        clean(check.name + flag(evaluation, check.metric)),
+        text.limit_text(quantity, check.sense, check.limit),
+        text.value_text(quantity, check.value) if known else DASH,
+    ]
+
+
+def _open_checks(evaluation: Evaluation, title: str) -> Block:
+    """Lines that are missed, without reserve or not checked, the worst first."""
+    order = ("missed", "no_reserve", "not_checked")
+    lines = [check for check in evaluation.checks if check.state in order]
+    if not lines:
+        return Notes(title, [], on="terminal")
+    columns = [
+        _MARK,
+        Column("check", width=1.0),
+        Column("limit", "right"),
+        Column("result", "right"),
+        Column("why", width=1.0, style="dim"),
+    ]
+    rows = []
+    for check in sorted(lines, key=lambda check: order.index(check.state)):
+        why = check.reason or check.source
+        why = f"met without reserve: {why}" if check.state == "no_reserve" else why
+        cells: list[Cell] = [Status(check.state, " "), *_check_values(evaluation, check), why]
+        rows.append(Row(cells, check.state))
+    return Table(title, columns, rows, on="terminal")
+
+
+# ---- remarks and appendix ----
+
+
+def warnings(subject: Evaluation | Optimisation) -> list[str]:
+    """What the evaluation warns of, then the optimiser."""
+    evaluation, optimisation = parts_of(subject)
+    return [*evaluation.warnings, *(() if optimisation is None else optimisation.warnings)]
+
+
+def _remarks(evaluation: Evaluation, optimisation: Optimisation | None) -> Iterator[Block]:
+    """Warnings; on the terminal also what paper lists in the appendix, in few words."""
+    if lines := warnings(optimisation or evaluation):
+        yield Notes("Warnings", [text.pretty(line) for line in lines], style="yellow")
+    said = []
+    if evaluation.extrapolated:
+        said.append(f"extrapolated: {', '.join(evaluation.extrapolated)}")
+    if evaluation.unverified:
+        counts: dict[str, int] = {}
+        for value in evaluation.unverified:
+            counts[value.material] = counts.get(value.material, 0) + 1
+        listed = ", ".join(f"{material} {count}" for material, count in counts.items())
+        said.append(f"unverified library values used: {len(evaluation.unverified)} ({listed})")
+    if said:
+        yield Notes("Data", said, headless=True, style="yellow", on="terminal")
+    if optimisation is not None:
+        yield from trust.brief(optimisation)
+
+
+def _appendix(evaluation: Evaluation) -> Iterator[Block]:
+    """Values nobody has verified, models, notes of the author: where the numbers come from."""
+    said = ["Values that nobody has verified, models with their valid ranges, and the input."]
+    yield Notes("Appendix", said, on="paper")
+    yield assumptions(evaluation)
+    yield models(evaluation)
+    if evaluation.design.notes:
+        lines = [line for line in evaluation.design.notes.splitlines() if line.strip()]
+        yield Notes("Notes of the author", lines, on="paper")
+
+
+def models(evaluation: Evaluation) -> Block:
+    """Models with source and valid range; extrapolation is flagged."""
+    rows: list[list[Cell]] = [
+        [
+            row.name,
+            soft(text.pretty(row.equation)),
+            row.reference or "not stated",
+            soft(text.pretty(row.valid_range) or "not stated"),
+            soft(text.pretty(row.used_at)),
+            Flag("inside" if row.in_range else "EXTRAPOLATED", not row.in_range),
+        ]
+        for row in evaluation.models
+    ]
+    if not rows:
+        return Notes("Models", ["No models recorded."], on="paper")
+    columns = [
+        Column("model", "left", 1.1, breaks=22, mono=True),
+        Column("equation", "left", 1.3),
+        Column("source", "left", 1.1, breaks=24),
+        Column("valid range", "left", 1.15),
+        Column("used at", "left", 1.0),
+        Column("range"),
+    ]
+    outside = sum(not row.in_range for row in evaluation.models)
+    note = f"{outside} of {len(rows)} models used outside their valid range." if outside else ""
+    return Table("Models", columns, rows, note=note, on="paper")
+
+
+def assumptions(evaluation: Evaluation) -> Block:
+    """Library values that nobody checked, values of test records, checks the author took out."""
+    title = "Assumptions and unverified data"
+    groups: dict[tuple[str, str, str], list[str]] = {}
+    for row in evaluation.unverified:
+        words = f"{row.property} {text.pretty(row.value)}"
+        groups.setdefault((row.material, row.source, row.note), []).append(words)
+    rows: list[list[Cell]] = [
+        [soft(material), soft("; ".join(values)), soft(source), soft(text.pretty(note) or DASH)]
+        for (material, source, note), values in groups.items()
+    ]
+    for path, known in evaluation.design.measured.items():
+        quantity = quantity_of(path, evaluation.design)
+        ends = [text.value_text(quantity, end, 3) for end in (known.lower, known.upper)]
+        value = get(evaluation.design, path)
+        shown = text.value_text(quantity, value if isinstance(value, float) else None, 3)
+        words = f"{shown} ({' to '.join(ends)})"
+        rows.append([soft(path), soft(words), soft(known.record), "test record, 95 % bounds"])
+    rows += [
+        ["waived check", soft(metric), "the author", soft(reason)]
+        for metric, reason in evaluation.design.waivers.items()
+    ]
+    if not rows:
+        said = ["Every library value used is marked as checked; no check is waived."]
+        return Notes(title, said, on="paper")
+    columns = [
+        Column("material", "left", 1.05),
+        Column("values", "left", 2.0),
+        Column("source", "left", 1.4),
+        Column("note", "left", 1.3),
+    ]
+    note = (
+        f"{len(evaluation.unverified)} library values are used that nobody has compared with their"
+        " primary source; see the materials files."
+    )
+    return Table(title, columns, rows, note=note, on="paper")

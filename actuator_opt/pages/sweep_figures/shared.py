@@ -1,0 +1,249 @@
+"""What the figures of a sweep share: columns with their units, limits in words, the heading."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ...base.errors import Diagnostic, InputError
+from ...base.numeric import Array
+from ...base.quantities import Quantity
+from ...design.paths import quantity_of
+from ...evaluation import prepare
+from ...evaluation.limits import Limit
+from ...rendering.axes import fitted
+from ...rendering.heights import wrap
+from ...rendering.ink import GREY, PALE, Ink
+from ...rendering.text import SENSES, limit_text, number, unit_text, with_unit
+from ...sweeps import Best, Swept
+from ...sweeps.chunk import Study
+
+BETTER = ("#7fb0cf", "#3f7aa3", "#0b3c5d")
+"""Feasible designs by thirds of the objective, the best third last: darker on a grey print too."""
+INFEASIBLE = PALE
+ORIGINS = ("requirement", "case")
+"""Limits that a person wrote."""
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Designs to draw: the combination of names each has, its row, and every which it is."""
+
+    variants: Array
+    rows: Array
+    every: int = 1
+
+
+@dataclass(frozen=True)
+class Track:
+    """What every design has a value of: a number, or a name out of `names`."""
+
+    words: str
+    quantity: Quantity | None = None
+    names: tuple[str, ...] = ()
+
+    @property
+    def unit(self) -> str:
+        """The unit people read."""
+        return "" if self.quantity is None else unit_text(self.quantity.unit)
+
+    @property
+    def label(self) -> str:
+        """Words with the unit."""
+        return f"{self.words}, {self.unit}" if self.unit else self.words
+
+    def shown(self, values: Array) -> Array:
+        """SI values in the unit people read."""
+        if self.quantity is None:
+            return values
+        displayed: Array = self.quantity.to_display(values)
+        return displayed
+
+
+class SweepFigureData:
+    """A sweep as its figures see it."""
+
+    def __init__(self, swept: Swept) -> None:
+        self.swept, self.study = swept, swept.study
+
+    @cached_property
+    def limits(self) -> list[tuple[Limit, float]]:
+        """Binding limits with their value (SI); not those that vary."""
+        study = self.study
+        v = prepare(study.design, plugins=study.plugins).values({})
+        varied = {axis.path for axis in study.plan.axes}
+        return [
+            (limit, float(np.max(limit.value(v))))
+            for limit in study.binding
+            if not {limit.path, limit.lever} & varied
+        ]
+
+    def limits_on(self, metric: str) -> list[tuple[str, float]]:
+        """Senses and values (SI) of the limits on a metric, the strictest of each sense."""
+        strictest: dict[str, float] = {}
+        for limit, value in self.limits:
+            if limit.metric == metric:
+                pick = max if limit.sense == "min" else min
+                strictest[limit.sense] = pick(value, strictest.get(limit.sense, value))
+        return list(strictest.items())
+
+    def limit_words(self, limit: Limit) -> str:
+        """A limit in words: ``"stiffness_min ≥ 10 kN/mm"``."""
+        known = next((value for other, value in self.limits if other is limit), None)
+        head = limit.name if limit.origin == "case" else limit.metric
+        if known is None:
+            return f"{head} {SENSES[limit.sense]} what varies"
+        return f"{head} {limit_text(self.study.quantity(limit.metric), limit.sense, known)}"
+
+    def axis(self, path: str) -> Track:
+        """What varies."""
+        axis = next(axis for axis in self.study.plan.axes if axis.path == path)
+        if axis.values is None:
+            return Track(path, names=axis.texts)
+        return Track(path, quantity_of(path, self.study.design))
+
+    def metric(self, name: str) -> Track:
+        """A metric."""
+        return Track(name, self.study.quantity(name))
+
+    def values(self, name: str, drawn: Rows) -> Array:
+        """What designs have of something that varies or of a metric, as `Track` shows it."""
+        for axis in self.study.plan.named:
+            if axis.path == name:
+                texts = [self.study.plan.texts(int(variant))[name] for variant in drawn.variants]
+                return np.array([axis.texts.index(text) for text in texts], dtype=float)
+        of_axis = any(axis.path == name for axis in self.study.plan.axes)
+        track = self.axis(name) if of_axis else self.metric(name)
+        return track.shown(drawn.rows[:, self.study.place(name)])
+
+    def objective(self, drawn: Rows) -> Array:
+        """The objective of designs, to be minimised."""
+        total = np.zeros(len(drawn.rows))
+        for name, weight in self.study.goal.weights.items():
+            total += weight / self.study.goal.scales[name] * drawn.rows[:, self.study.place(name)]
+        return self.study.goal.sign * total
+
+    @property
+    def goal(self) -> Track:
+        """The objective as a person states it."""
+        single = self.study.goal.single
+        return Track("objective") if single is None else self.metric(single)
+
+    def goals(self, drawn: Rows) -> Array:
+        """The objective of designs as `goal` shows it."""
+        single = self.study.goal.single
+        if single is not None:
+            return self.values(single, drawn)
+        return self.study.goal.sign * self.objective(drawn)
+
+    def best(self, place: int = 0) -> Rows:
+        """One of the best designs.
+
+        Raises
+        ------
+        InputError
+            no design is feasible
+        """
+        best = self.bests()[place]
+        variant = self.study.plan.points(best.number, 1).variant
+        return Rows(variant, np.array([best.row]))
+
+    def bests(self) -> list[Best]:
+        """The best designs; raises `InputError` where none is feasible."""
+        if not self.swept.best:
+            message = f"no feasible design among {self.swept.requested} variants"
+            raise InputError(Diagnostic(message, "widen what varies, or draw a contour of a grid"))
+        return self.swept.best
+
+    def feasible(self, most: int) -> tuple[Rows, list[str]]:
+        """At most so many feasible designs, the best last, each with its fill."""
+        kept = Rows(*self.swept.sample.feasible.thinned(most))
+        order = np.argsort(-self.objective(kept), kind="stable")
+        fills = [BETTER[3 * k // max(len(order), 1)] for k in range(len(order))]
+        return Rows(kept.variants[order], kept.rows[order], kept.every), fills
+
+    def others(self, most: int) -> Rows:
+        """At most so many designs that miss something."""
+        return Rows(*self.swept.sample.others.thinned(most))
+
+    def require(self, metric: str, *drawn: Rows) -> None:
+        """Refuse a metric that no design has a value of; raises `InputError`."""
+        if not any(np.isfinite(self.values(metric, x)).any() for x in drawn if len(x.rows)):
+            message = f"--show {metric}: no design of this sweep has a value of it"
+            raise InputError(Diagnostic(message, "show another metric"))
+
+    def counts(self, *drawn: tuple[str, int]) -> str:
+        """How many designs there are, and which of them are drawn."""
+        swept = self.swept
+        words = f"{_many(swept.requested)} variants, "
+        if swept.feasible is None:
+            full = swept.computed - swept.screened
+            words += f"{_many(swept.screened)} ruled out early, {_many(full)} evaluated in full"
+        else:
+            words += f"{_many(swept.feasible)} feasible"
+        if swept.failed:
+            words += f", {_many(swept.failed)} failed (not drawn)"
+        thinned = [f"every {_nth(step)} {what}" for what, step in drawn if step > 1]
+        return words + (f"; drawn: {' and '.join(thinned)} design" if thinned else "")
+
+
+def _many(count: int) -> str:
+    return number(float(count), max(len(str(count)), 1))
+
+
+def _nth(step: int) -> str:
+    ending = {1: "st", 2: "nd", 3: "rd"}.get(step % 10, "th")
+    return f"{step}{'th' if step % 100 in (11, 12, 13) else ending}"
+
+
+def heading(ink: Ink, drawn: SweepFigureData, words: str, notes: str) -> float:
+    """The name of the design and what is drawn; the height it takes."""
+    room = ink.width - 4.0
+    title = fitted(f"{drawn.study.design.name}: {words}", room * 0.88, 9.0)
+    ink.text(2.0, 3.0, title, size=9.0, bold=True)
+    lines = wrap(notes, room, 6.5)
+    for k, line in enumerate(lines):
+        ink.text(2.0, 7.6 + 3.2 * k, line, color=GREY)
+    return 7.6 + 3.2 * len(lines)
+
+
+def value_words(track: Track, value: float) -> str:
+    """A value as shown, with its unit."""
+    if track.names:
+        return track.names[int(value)]
+    return with_unit(number(value), track.unit)
+
+
+def two_lines(words: str, room: float, size: float) -> Sequence[str]:
+    """A PATH in at most two lines, cut at its last dot where it is too wide."""
+    first = fitted(words, room, size)
+    if first == words or "." not in words:
+        return [first]
+    head, _, tail = words.rpartition(".")
+    return [fitted(head + ".", room, size), fitted(tail, room, size)]
+
+
+@dataclass(frozen=True, slots=True)
+class SweepFigure:
+    """A figure of a sweep.
+
+    Attributes
+    ----------
+    every : whether it needs every design, not the best alone
+    lines : whether it draws Pareto lines of its metrics
+    check : raises `UsageError` for a sweep or metrics that do not fit
+    draw : pictures by the end of their file's name, from the sweep, the metrics, and whether
+        the user names these
+    """
+
+    every: bool
+    lines: bool
+    check: Callable[[Study, Sequence[str]], None]
+    draw: Callable[[SweepFigureData, Sequence[str], bool], Mapping[str, Ink]]
+
+
+def fits(study: Study, metrics: Sequence[str]) -> None:
+    """The check of a figure that fits every sweep."""

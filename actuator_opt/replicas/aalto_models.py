@@ -1,0 +1,713 @@
+"""The cylinder of [AaltoThesis] in this project's models: stiffness, static and dynamic tests.
+
+Every curve is the evaluation of the design itself with the oil, lines and load cell of the figure,
+so the re-creation uses no formula of its own. SI throughout.
+
+Static test: walls count as oil of the same compliance, so that `trapped_air_load_step` serves them
+too: its volumes are K C of oil and barrel. Rod and load cell give way behind the chambers, because
+the position is measured there.
+
+Dynamic tests: the linear model leaves friction out. The thesis gives no number of it, and sliding
+seals only add damping. The numbers of the reducing valve are ours; the thesis only suspects it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import pi, sqrt
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from ..base.numeric import Array
+from ..design.circuit import Line, Ports, ReducingValve, Throttle
+from ..design.model import Design
+from ..evaluation import oil
+from ..evaluation.allow import MaterialValues
+from ..evaluation.build import prepare
+from ..evaluation.circuit import CHAMBERS, Chamber, Ways
+from ..evaluation.kernel import ModelRun, compute
+from ..evaluation.springs import Springs
+from ..models import elements, fluid, linear, lines, loop, one_way_valve, orifice, resonators
+from ..models.fluid import ATMOSPHERIC_PRESSURE
+from ..models.line_ends import CONSTANT_PRESSURE, LineEnd, antiresonance_frequency
+from ..models.stiffness import LoadStep, trapped_air_load_step
+from .papers import published_numbers
+
+Topology = Literal["per_chamber", "aalto_as_published"]
+
+
+@dataclass(frozen=True, slots=True)
+class Paper:
+    """What the thesis prints, SI; ``notes/aalto.yaml`` has the places."""
+
+    bore: float
+    rod: float
+    stroke: float
+    throttle: float
+    temperatures: tuple[float, float]
+    bulk_modulus: float
+    bulk_modulus_with_air: float
+    load_cell: float
+    pressure_a: float
+    pressure_b: float
+    load_up: tuple[float, float]
+    load_down: tuple[float, float]
+    moved_up: tuple[float, float]
+    moved_down: tuple[float, float]
+    most_up: tuple[float, float]
+    most_down: tuple[float, float]
+    place: float
+    loaded_up: tuple[float, float]
+    loaded_down: tuple[float, float]
+    bubble_a: float
+    bubble_b: float
+    wave_speed: float
+    peak: float
+    speed: float
+    reynolds: float
+    flow_coefficient: float
+    cracking_pressure: float
+
+
+PAPER = published_numbers(Paper, "aalto")
+
+MARGIN = 0.005
+"""How near the ends of the stroke the thesis' test runs came (m)."""
+
+
+def places(design: Design) -> Array:
+    """Positions of the tables: both ends of the test runs and mid-stroke."""
+    stroke = design.cylinder.stroke
+    return np.array([MARGIN, stroke / 2, stroke - MARGIN])
+
+
+def pipes(design: Design) -> tuple[Line, ...]:
+    """The lines that stay on the cylinder while its ports are closed."""
+    return tuple(line for line in design.lines if line.type == "pipe")
+
+
+def variant(
+    design: Design,
+    *,
+    lines: Sequence[Line],
+    bulk_modulus: float,
+    topology: Topology = "per_chamber",
+    load_cell: bool = True,
+) -> Springs:
+    """Springs of the design with one bulk modulus, no air, chosen lines and topology."""
+    chain = {"topology": topology, "seals": "sliding"}
+    if not load_cell:
+        chain["load_cell"] = None  # type: ignore[assignment]
+    oil = design.fluid.material
+    changed = design.model_copy(
+        update={
+            "fluid": design.fluid.model_copy(
+                update={"air_content": 0.0, "bulk_modulus_law": "constant"}
+            ),
+            "lines": tuple(lines),
+            "stiffness": design.stiffness.model_copy(update=chain),
+            "materials": design.materials
+            | {oil: design.materials.get(oil, {}) | {"bulk_modulus": bulk_modulus}},
+        }
+    )
+    return evaluated(changed).springs
+
+
+def evaluated(design: Design) -> ModelRun:
+    """One pass over the models."""
+    subject = prepare(design)
+    return compute(subject, subject.values())
+
+
+def temperature_of(design: Design, viscosity: float) -> float:
+    """Temperature [K] between -20 and 120 degC at which the oil has a kinematic viscosity.
+
+    NaN where it has it at none.
+    """
+    subject = prepare(design)
+    v = subject.values()
+    stock = MaterialValues(v, subject.materials, subject.factors, subject.constants)
+    warm = np.linspace(253.15, 393.15, 1401)
+    viscosities = np.log(np.ravel(oil.kinematic_viscosity(v, design.fluid, stock, warm)))
+    return float(np.interp(-np.log(viscosity), -viscosities, warm, left=np.nan, right=np.nan))
+
+
+def first(values: Array) -> Array:
+    """The first load case of an array (cases, points)."""
+    return np.atleast_2d(np.asarray(values))[0]
+
+
+def unstretched(springs: Springs) -> Springs:
+    """The same without the barrel's axial stretch, which the thesis does not have."""
+    rest = {name: give for name, give in springs.chambers.items() if name != "stretch"}
+    return replace(springs, chambers=rest)
+
+
+@dataclass(frozen=True, slots=True)
+class Theory:
+    """One stiffness curve of the thesis [N/m] along `position` [m]: its own form and ours.
+
+    `per_chamber` has the causes of the thesis, `stretched` the barrel's axial stretch too; the
+    columns `at` hold the same at `places`.
+    """
+
+    position: Array
+    published: Array
+    per_chamber: Array
+    published_at: Array
+    per_chamber_at: Array
+    stretched_at: Array
+
+    @property
+    def weakest(self) -> tuple[float, float]:
+        """Position and stiffness of the softest place, by the thesis' form."""
+        k = int(np.argmin(self.published))
+        return float(self.position[k]), float(self.published[k])
+
+
+def _along(design: Design) -> Array:
+    stroke = design.cylinder.stroke
+    return np.linspace(0.002 * stroke, 0.998 * stroke, 4981)
+
+
+def oil_alone(design: Design, lines: Sequence[Line]) -> Theory:
+    """Figure 5: eq. 6 with rigid walls, with the volume of some lines; both forms agree."""
+    springs = variant(design, lines=lines, bulk_modulus=PAPER.bulk_modulus)
+    position = _along(design)
+    curve, at = (first(springs.hydraulic(x, springs.oil)) for x in (position, places(design)))
+    return Theory(position, curve, curve, at, at, at)
+
+
+def total(
+    design: Design, lines: Sequence[Line], bulk_modulus: float, *, load_cell: bool = True
+) -> Theory:
+    """Figures 29 and 32: eq. 37 (pipes) or 38 (hoses too), as printed and per chamber."""
+    printed = variant(
+        design,
+        lines=lines,
+        bulk_modulus=bulk_modulus,
+        topology="aalto_as_published",
+        load_cell=load_cell,
+    )
+    ours = variant(design, lines=lines, bulk_modulus=bulk_modulus, load_cell=load_cell)
+    plain, position, chosen = unstretched(ours), _along(design), places(design)
+    with np.errstate(divide="ignore"):  # each oil gives way in one chamber only
+        return Theory(
+            position=position,
+            published=first(printed.stiffness(position)),
+            per_chamber=first(plain.stiffness(position)),
+            published_at=first(printed.stiffness(chosen)),
+            per_chamber_at=first(plain.stiffness(chosen)),
+            stretched_at=first(ours.stiffness(chosen)),
+        )
+
+
+def air_behind(pressure: float) -> float:
+    """Air content at which eq. 5 turns 1600 MPa into 1300 MPa at a pressure."""
+    content = np.linspace(0.0, 0.05, 5001)
+    modulus = fluid.effective_bulk_modulus(
+        bulk_modulus=PAPER.bulk_modulus, pressure=pressure, air_content=content
+    )
+    return float(np.interp(-PAPER.bulk_modulus_with_air, -modulus, content))
+
+
+INDEX = 1.4
+"""Polytropic index of the thesis, eq. 5."""
+
+UP, DOWN = sum(PAPER.load_up) / 2, sum(PAPER.load_down) / 2
+"""Mean force steps of both piston directions [N]."""
+
+ENTRAINED = 0.005
+"""Air content of a usual mineral oil."""
+
+CONTENTS = (0.001, 0.15)
+"""Air contents searched for the one behind a displacement."""
+
+
+class Bypass(NamedTuple):
+    """Force on the chambers by the pressures of figure 41 [N]; share of the load beside them."""
+
+    force: float
+    share: float
+
+
+@dataclass(frozen=True, slots=True)
+class Air:
+    """Air in both chambers, stated at atmospheric pressure [m^3]."""
+
+    a: Array
+    b: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What one assumption makes of a load step; arrays along `position`, SI.
+
+    Displacements are magnitudes, NaN where no state of the chambers carries the load (cavitation).
+    """
+
+    displacement: Array
+    pressure_a: float
+    pressure_b: float
+    """At 185 mm, as figure 41."""
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """Least and largest displacement over the positions that have one; NaN without any."""
+        known = self.displacement[np.isfinite(self.displacement)]
+        if not known.size:
+            return float("nan"), float("nan")
+        return float(known.min()), float(known.max())
+
+    @property
+    def cavitating(self) -> int:
+        """Positions without a state."""
+        return int(np.count_nonzero(np.isnan(self.displacement)))
+
+
+@dataclass(frozen=True, slots=True)
+class Assumption:
+    """A reading of the static test, loaded up and down."""
+
+    name: str
+    up: Answer
+    down: Answer
+
+
+class ClosedCylinder:
+    """The closed cylinder with its pipes, K 1600 MPa, at the thesis' 22 positions."""
+
+    def __init__(self, design: Design) -> None:
+        springs = variant(design, lines=pipes(design), bulk_modulus=PAPER.bulk_modulus)
+        self.geometry, self.flexibility = springs.geometry, springs.series_compliance()
+        stroke = springs.geometry.stroke
+        self.position = np.linspace(MARGIN, stroke - MARGIN, 22)
+        self.place = float(np.squeeze(np.minimum(PAPER.place, 0.99 * stroke)))
+        places = np.append(self.position, self.place)
+        oil = springs.total(springs.oil).at(places, stroke)
+        walls = springs.total((*springs.oil, "barrel")).at(places, stroke)
+        scale = PAPER.bulk_modulus
+        self.oil = Air(scale * first(oil.a), scale * first(oil.b))
+        self.volume = Air(scale * first(walls.a), scale * first(walls.b))
+
+    def bypass(self, loaded: tuple[float, float], load: float) -> Bypass:
+        """What the measured pressures say of the force beside the chambers."""
+        a = (loaded[0] - PAPER.pressure_a) * self.geometry.area_a
+        b = (loaded[1] - PAPER.pressure_b) * self.geometry.area_b
+        force = abs(float(a - b))
+        return Bypass(force, 1 - force / load)
+
+    def entrained(self, content: float) -> Air:
+        """Air spread evenly through the oil, by volume at atmospheric pressure."""
+        content = min(content, CONTENTS[1])
+        return Air(content * self.oil.a, content * self.oil.b)
+
+    def bubbles(self, *, compressed: bool) -> Air:
+        """The thesis' 0.4 and 0.08 ml, read at atmospheric or at the working pressures."""
+        volumes = []
+        for bubble, pressure in (
+            (PAPER.bubble_a, PAPER.pressure_a),
+            (PAPER.bubble_b, PAPER.pressure_b),
+        ):
+            ratio = (pressure + ATMOSPHERIC_PRESSURE) / ATMOSPHERIC_PRESSURE
+            volumes.append(bubble * (ratio ** (1 / INDEX) if compressed else 1.0))
+        return Air(volumes[0], volumes[1])
+
+    def step(self, force: float, air: Air) -> LoadStep:
+        """The chambers under a step of the rod's force (> 0: the load pushes it in)."""
+        return trapped_air_load_step(
+            force=force,
+            area_a=self.geometry.area_a,
+            area_b=self.geometry.area_b,
+            volume_a=self.volume.a,
+            volume_b=self.volume.b,
+            air_volume_a=air.a,
+            air_volume_b=air.b,
+            initial_pressure_a=PAPER.pressure_a,
+            initial_pressure_b=PAPER.pressure_b,
+            bulk_modulus=PAPER.bulk_modulus,
+            polytropic_index=INDEX,
+        )
+
+    def answer(self, load: float, air: Air, *, share: float = 0.0) -> Answer:
+        """Displacement behind the load cell; `share` of the load passes the chambers by."""
+        step = self.step((1 - share) * load, air)
+        moved = np.abs(step.displacement) + abs(load) * self.flexibility
+        return Answer(
+            displacement=np.broadcast_to(moved, self.oil.a.shape)[:-1],
+            pressure_a=float(step.pressure_a[-1]),
+            pressure_b=float(step.pressure_b[-1]),
+        )
+
+    def air_needed(self, load: float, most: float, *, share: float) -> float:
+        """Entrained air at which the largest displacement is the measured one.
+
+        0 where the least of `CONTENTS` already moves more, infinite where the most moves less.
+        """
+        content = np.linspace(*CONTENTS, 300)
+        air = Air(content[:, None] * self.oil.a, content[:, None] * self.oil.b)
+        moved = np.abs(self.step((1 - share) * load, air).displacement)
+        known = np.where(np.isfinite(moved), moved, -np.inf)[:, :-1]
+        largest = known.max(axis=1) + abs(load) * self.flexibility
+        held = np.isfinite(largest)
+        if not held.any():
+            return float("inf")
+        return float(np.interp(most, largest[held], content[held], left=0.0, right=np.inf))
+
+
+@dataclass(frozen=True, slots=True)
+class StaticTest:
+    """The static test under every assumption."""
+
+    position: Array
+    place: float
+    """Of the pressures of every answer."""
+    up: Bypass
+    down: Bypass
+    assumptions: tuple[Assumption, ...]
+    air_up: tuple[float, float]
+    """Entrained air behind the largest displacement: all of the load on the chambers, and less
+    the measured by-pass. 0 and infinite beyond `CONTENTS`."""
+    air_down: tuple[float, float]
+
+
+def static_test(design: Design) -> StaticTest:
+    """Force step to displacement over position, in both directions."""
+    bench = ClosedCylinder(design)
+    up, down = bench.bypass(PAPER.loaded_up, UP), bench.bypass(PAPER.loaded_down, DOWN)
+    air_up = _needed(bench, -UP, sum(PAPER.most_up) / 2, up)
+    air_down = _needed(bench, DOWN, sum(PAPER.most_down) / 2, down)
+    usual = bench.entrained(ENTRAINED)
+    small, large = (bench.bubbles(compressed=held) for held in (False, True))
+    airs = (
+        ("no air", bench.entrained(0.0), bench.entrained(0.0), False),
+        ("0.5 % entrained", usual, usual, False),
+        ("0.5 %, by-pass", usual, usual, True),
+        (
+            "air for largest, by-pass",
+            bench.entrained(air_up[1]),
+            bench.entrained(air_down[1]),
+            True,
+        ),
+        ("bubbles at 1 bar, by-pass", small, small, True),
+        ("bubbles as held, by-pass", large, large, True),
+    )
+    return StaticTest(
+        position=bench.position,
+        place=bench.place,
+        up=up,
+        down=down,
+        assumptions=tuple(
+            Assumption(
+                name,
+                bench.answer(-UP, risen, share=up.share if passed else 0.0),
+                bench.answer(DOWN, sunk, share=down.share if passed else 0.0),
+            )
+            for name, risen, sunk, passed in airs
+        ),
+        air_up=air_up,
+        air_down=air_down,
+    )
+
+
+def _needed(bench: ClosedCylinder, load: float, most: float, bypass: Bypass) -> tuple[float, float]:
+    without, with_bypass = (
+        bench.air_needed(load, most, share=share) for share in (0.0, bypass.share)
+    )
+    return without, with_bypass
+
+
+End = Literal["constant_pressure", "reducing_valve"]
+
+OPENINGS = (1.0, 0.5, 0.25)
+"""Throttle 0, 50 and 75 %, read as the share of the needle's area that is left."""
+
+TESTED = (10.0, 15.0, 20.0, 25.0, 30.0)
+"""Loading frequencies of the thesis (Hz)."""
+
+FREQUENCIES = np.linspace(5.0, 50.0, 361)
+
+VALVE = ReducingValve(
+    conductance=8e-12, passive_conductance=1e-11, natural_frequency=19.0, damping_ratio=0.2
+)
+"""Ours: peaks at 20 Hz at mid-stroke, soft below, near the closed cylinder above."""
+
+NEAR = 0.5
+"""How far the natural frequencies of the neighbouring valves lie (Hz)."""
+
+MORE_DAMPING = (1.0, 1.25)
+"""Their damping ratios over the valve's."""
+
+THROTTLE = Throttle(
+    area=one_way_valve.NEEDLE_AREA,
+    check_area=one_way_valve.CHECK_AREA,
+    cracking_pressure=one_way_valve.CRACKING_PRESSURE,
+)
+
+EQUAL_ENERGY = 4 / (3 * pi)
+"""Share of a sine's amplitude at which the tangent of a quadratic loss dissipates as the sine."""
+
+
+@dataclass(frozen=True, slots=True)
+class Needle:
+    """The throttle's needle at the thesis' largest speed amplitude, SI."""
+
+    viscosity: float
+    """Kinematic viscosity behind the thesis' Reynolds number."""
+    temperature: float
+    """At which the design's oil has it [K]; NaN where it never does."""
+    reynolds: float
+    """With the design's oil."""
+    flow_coefficient: float
+    flow_coefficient_slow: float
+    """At the base velocity alone."""
+    drop: float
+    """Of the head side, fully open."""
+    area: float
+    """Needle that drops the cracking pressure there, as was measured."""
+
+
+@dataclass(frozen=True, slots=True)
+class Response:
+    """Dynamic stiffness at mid-stroke over `FREQUENCIES` and at `TESTED` [N/m], complex."""
+
+    opening: float
+    over: Array
+    tested: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Neighbour:
+    """A reducing valve beside ours: what it makes of the open needle as the thesis states it."""
+
+    valve: ReducingValve
+    ratio: Array
+    """Dynamic stiffness at `TESTED` over the static one, mid-stroke."""
+    slowest_decay: float
+    """As of `Peak`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Peak:
+    """The reducing valve's resonance with the cylinder."""
+
+    antiresonance_frequency: tuple[float, float]
+    """Where chamber A, and B, with its line and the valve takes no reactive flow [Hz]."""
+    position: Array
+    ratio: Array
+    """Dynamic stiffness at 20 Hz over the static one along `position`, throttle 0 %."""
+    slowest_decay: float
+    """Largest real part of all poles [1/s], over the stroke and all throttles; < 0 is stable."""
+
+
+@dataclass(frozen=True, slots=True)
+class DynamicTest:
+    """Everything the page on the dynamic tests shows."""
+
+    static: float
+    """Closed ports with hoses, mid-stroke [N/m]."""
+    closed: Response
+    """Throttle 100 %: cylinder and pipes alone."""
+    area: float
+    """The needle as stated [m^2]."""
+    needle: Needle
+    valve: ReducingValve
+    stated: dict[End, tuple[Response, ...]]
+    """By line end, for every opening, needle as the thesis states it."""
+    read_back: dict[End, tuple[Response, ...]]
+    """The same with the needle behind the measured pressure drop."""
+    peak: Peak
+    neighbours: tuple[Neighbour, ...]
+    without_opening: float
+    """Slowest decay of the valve without its passive conductance [1/s]."""
+    quarter_wave: float
+    """Lowest frequency of a pipe resonance of the longer hose [Hz]."""
+    t_pipe: float
+    """Length of a T-pipe that resonates at 20 Hz [m]."""
+
+
+class Bench:
+    """The cylinder between throttles and line ends, without friction."""
+
+    def __init__(self, design: Design, valve: ReducingValve | None = None) -> None:
+        self.design = design
+        self.throttle = design.ports.throttle or THROTTLE
+        self.valve = valve or design.ports.reducing_valve or VALVE
+        ports = Ports(end="reducing_valve", throttle=self.throttle, reducing_valve=self.valve)
+        self.done: ModelRun = evaluated(design.model_copy(update={"ports": ports}))
+        geometry, state = self.done.geometry, self.done.state
+        self.stroke = float(np.squeeze(geometry.stroke))
+        self.areas = {"a": float(geometry.area_a), "b": float(geometry.area_b)}
+        self.oil = {
+            "density": float(first(state.density)[0]),
+            "dynamic_viscosity": float(first(state.dynamic_viscosity)[0]),
+        }
+        self.motion = replace(self.done.motion, damping=0.0)
+
+    def ends(self, end: End) -> dict[Chamber, LineEnd]:
+        """Constant pressure, or the reducing valve."""
+        if end == "constant_pressure":
+            return dict.fromkeys(CHAMBERS, CONSTANT_PRESSURE)
+        return self.motion.held
+
+    def model(self, end: End, position: Array, *, area: float) -> linear.LinearActuator:
+        """Linear model; a needle of zero area is closed.
+
+        Both chambers press through their needle, as in the half cycle that empties them; the
+        tangent is taken where it dissipates as much as the sine of the thesis' speed amplitude.
+        """
+        throttles = {}
+        for chamber in CHAMBERS:
+            flow = EQUAL_ENERGY * PAPER.speed * self.areas[chamber]
+            conductance: Array = 0.0
+            if area > 0:
+                conductance = 1 / orifice.orifice_resistance(area=area, flow=flow, **self.oil)
+            throttles[chamber] = Ways(conductance, conductance)
+        return replace(self.motion, throttles=throttles, held=self.ends(end)).model(position)
+
+    def stiffness(
+        self, end: End, position: Array, frequency: Sequence[float] | Array, *, area: float
+    ) -> Array:
+        """Complex dynamic stiffness (frequencies, positions)."""
+        response = linear.dynamic_stiffness(
+            model=self.model(end, position, area=area),
+            frequency=np.asarray(frequency).reshape(-1, 1, 1),
+        )
+        value = np.asarray(response.real + 1j * response.imaginary)
+        return value[:, 0, :]
+
+    def response(self, end: End, opening: float, area: float) -> Response:
+        """A needle, opened to a share of its area, at mid-stroke."""
+        middle = np.array([self.stroke / 2])
+        over, tested = (
+            self.stiffness(end, middle, frequency, area=opening * area)[:, 0]
+            for frequency in (FREQUENCIES, TESTED)
+        )
+        return Response(opening, over, tested)
+
+    def responses(self, end: End, area: float) -> tuple[Response, ...]:
+        """Every opening at mid-stroke."""
+        return tuple(self.response(end, opening, area) for opening in OPENINGS)
+
+    @property
+    def static(self) -> float:
+        """Closed ports with hoses, mid-stroke [N/m]."""
+        return float(first(self.motion.springs.stiffness(np.array([self.stroke / 2])))[0])
+
+    def needle(self, slow: float) -> Needle:
+        """Reynolds number, flow coefficient and pressure drop of the open needle."""
+        area, flow = self.throttle.area, PAPER.speed * self.areas["a"]
+        size = float(orifice.round_diameter(area=area))
+        kinematic = self.oil["dynamic_viscosity"] / self.oil["density"]
+
+        def number(speed: float, viscosity: float) -> float:
+            return float(
+                lines.reynolds(
+                    velocity=speed * self.areas["a"] / area,
+                    diameter=size,
+                    kinematic_viscosity=viscosity,
+                )
+            )
+
+        def coefficient(speed: float) -> float:
+            return float(orifice.discharge_coefficient(reynolds=number(speed, kinematic)))
+
+        loss = 2 * PAPER.cracking_pressure / self.oil["density"]
+        without_friction = flow / (PAPER.flow_coefficient * sqrt(loss))
+        areas = np.geomspace(0.5 * without_friction, 100 * without_friction, 6001)
+        drops = orifice.orifice_pressure_drop(area=areas, flow=flow, **self.oil)
+        behind = np.interp(-PAPER.cracking_pressure, -drops, areas)
+        viscosity = number(PAPER.speed, 1.0) / PAPER.reynolds
+        return Needle(
+            viscosity=viscosity,
+            temperature=temperature_of(self.design, viscosity),
+            reynolds=number(PAPER.speed, kinematic),
+            flow_coefficient=coefficient(PAPER.speed),
+            flow_coefficient_slow=coefficient(slow),
+            drop=float(orifice.orifice_pressure_drop(area=area, flow=flow, **self.oil)),
+            area=float(behind),
+        )
+
+    def peak(self, areas: Sequence[float]) -> Peak:
+        """Where the valve peaks, how much along the stroke, and whether all is stable."""
+        position = np.linspace(MARGIN, self.stroke - MARGIN, 22)
+        give = self.motion.springs.total().at(np.array([self.stroke / 2]), self.stroke)
+        frequencies = [
+            float(
+                antiresonance_frequency(
+                    conductance=self.valve.conductance,
+                    natural_frequency=self.valve.natural_frequency,
+                    damping_ratio=self.valve.damping_ratio,
+                    compliance=float(first(compliance)[0]),
+                )
+            )
+            for compliance in (give.a, give.b)
+        ]
+        shaken = self.stiffness("reducing_valve", position, [PAPER.peak], area=self.throttle.area)
+        return Peak(
+            antiresonance_frequency=(frequencies[0], frequencies[1]),
+            position=position,
+            ratio=np.abs(shaken[0]) / first(self.motion.springs.stiffness(position)),
+            slowest_decay=self.slowest_decay(areas),
+        )
+
+    def slowest_decay(self, areas: Sequence[float]) -> float:
+        """Largest real part of all poles, over the stroke, all throttles and some needles."""
+        position = np.linspace(MARGIN, self.stroke - MARGIN, 22)
+        fastest = [
+            loop.poles(model=self.model("reducing_valve", position, area=opening * area)).real.max()
+            for area in areas
+            for opening in OPENINGS
+        ]
+        return float(max(fastest))
+
+
+def _neighbours(bench: Bench, areas: Sequence[float]) -> tuple[Neighbour, ...]:
+    """Valves a little slower, faster and more damped."""
+    ours, neighbours = bench.valve, []
+    slow = max(ours.natural_frequency - NEAR, ours.natural_frequency / 2)
+    for frequency in (slow, ours.natural_frequency + NEAR):
+        for damping in MORE_DAMPING:
+            valve = ours.model_copy(
+                update={
+                    "natural_frequency": frequency,
+                    "damping_ratio": damping * ours.damping_ratio,
+                }
+            )
+            other = Bench(bench.design, valve)
+            shaken = other.response("reducing_valve", 1.0, bench.throttle.area).tested
+            neighbours.append(
+                Neighbour(valve, np.abs(shaken) / bench.static, other.slowest_decay(areas))
+            )
+    return tuple(neighbours)
+
+
+def dynamic_test(design: Design) -> DynamicTest:
+    """The linear model's answer to the dynamic tests of the thesis."""
+    bench = Bench(design)
+    slow = max((case.speed for case in design.load_cases), default=0.0) or PAPER.speed
+    needle, stated = bench.needle(slow), bench.throttle.area
+    ends: tuple[End, End] = ("constant_pressure", "reducing_valve")
+    longest = max((line.length for line in design.lines), default=1.0)
+    areas = stated, needle.area
+    without = Bench(design, bench.valve.model_copy(update={"passive_conductance": 0.0}))
+    return DynamicTest(
+        static=bench.static,
+        closed=bench.response("constant_pressure", 0.0, stated),
+        area=stated,
+        needle=needle,
+        valve=bench.valve,
+        stated={end: bench.responses(end, stated) for end in ends},
+        read_back={end: bench.responses(end, needle.area) for end in ends},
+        peak=bench.peak(areas),
+        neighbours=_neighbours(bench, areas),
+        without_opening=without.slowest_decay(areas),
+        quarter_wave=float(
+            elements.quarter_wave_frequency(length=longest, sound_speed=PAPER.wave_speed)
+        ),
+        t_pipe=float(
+            resonators.quarter_wave_length(frequency=PAPER.peak, sound_speed=PAPER.wave_speed)
+        ),
+    )

@@ -1,0 +1,718 @@
+"""The seals of [Huang2017] on their oil films, over speed and pressure: piston cylinder, plunger.
+
+Test A is the design itself. Test B, the plunger, is the tandem of the design's rod on the plunger's
+diameter: the standard housings of both diameters are the same. SI; pressures are gauge unless
+absolute is said.
+
+Why the two cylinders may go opposite ways over pressure: the load of a face rises with the sealed
+pressure by its balance k = (df/dp)/b. Oil that falls evenly across it carries half of p b, so the
+asperities, which carry the friction at these speeds, carry more at a higher pressure above k = 1/2
+and less below.
+
+Equation 26: the paper gives no number of the back-up ring but its material, PTFE with copper; what
+it is computed from here is assumed and stated.
+
+Eq. 14 and 15 lack the rigid shift of the seal, though eq. 12 needs a balance of loads that only a
+shift can close. The text below eq. 4 calls "a" the seal and gives it the rod's speed. `readings`
+computes what both letters would do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from math import isfinite, nan, pi
+from typing import Any
+
+import numpy as np
+
+from ..base.numeric import STEP, Array
+from ..design.material_fits import fit_double_exponential, fit_power_law
+from ..design.model import Design
+from ..evaluation.build import prepare
+from ..evaluation.film import FilmRow, solve
+from ..evaluation.kernel import base
+from ..evaluation.rings import Ring
+from ..evaluation.seal_contact import seal_contact
+from ..friction import film
+from ..lubrication import Elastic, Gap, Lubricant, SmoothFilm, solve_gap
+from ..models.damping import flat_gap, secant
+from ..models.fluid import ATMOSPHERIC_PRESSURE
+from ..models.friction import HUANG_TABLE_2
+from ..models.rough_surface import asperity_pressure
+from ..seals import compact, u_cup
+from ..studies.film_walk import FilmMap, Sealing, film_map, ring_friction, sealing
+from . import huang_published
+from .huang_published import PAPER, CurveFits, plausible_chamber, secant_of
+
+CASE = 0
+"""Load case of the design that gives oil and return pressure."""
+
+SPEEDS = (0.5e-3, 0.8e-3, 1.3e-3, 2.1e-3, 3.3e-3, 5e-3, 7e-3, 10e-3)
+"""Speeds of the maps: the tested range, and 2.1 mm/s where the printed fall holds."""
+
+FAST = (10e-3, 20e-3, 40e-3, 80e-3, 0.16, 0.32)
+"""Speeds beyond the tests, where oil begins to carry the seals."""
+
+TYPICAL = 2.1e-3
+"""Speed at which pressures are compared."""
+
+PRESSURES = (0.6e6, 2e6, 4e6, 6e6, 8e6, 10e6)
+"""Pressures of the plunger's map: those of table 2, and of figure 16."""
+
+PISTON_PRESSURES = (1e6, 2e6, 4e6, 6e6, 7.15e6, 8e6, 10e6)
+"""Pressures of the driven chamber of the piston cylinder; 7.15 MPa is the paper's."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sealings:
+    """The sealings of both tests.
+
+    Parameters
+    ----------
+    piston : between driven chamber and return, its bore drawn in
+    rod : of test A, at return pressure
+    plunger : the rod's rings on the plunger
+    return_pressure : [Pa]
+    lubricant : the oil
+    """
+
+    piston: Sealing
+    rod: Sealing
+    plunger: Sealing
+    return_pressure: float
+    lubricant: Lubricant
+
+
+def sealings(design: Design) -> Sealings:
+    """The rings of both tests, each on its oil film whatever the design asks for."""
+    subject = prepare(_on_films(design))
+    v = subject.values()
+    state = base(subject, v)
+    drain = float(v["supply.return_pressure"])
+    rod = sealing(state, "rod", CASE)
+    plunger = tuple(ring.at(diameter=PAPER.plunger) for ring in rod.rings)
+    first = rod.rings[0]
+    return Sealings(
+        piston=sealing(state, "piston", CASE),
+        rod=rod,
+        plunger=replace(rod, rings=plunger),
+        return_pressure=drain,
+        lubricant=Lubricant(
+            dynamic_viscosity=first["viscosity"],
+            pressure_law=first.viscosity_law,
+            pressure_coefficient=first["viscosity_coefficient"],
+        ),
+    )
+
+
+def _on_films(design: Design) -> Design:
+    """The design with a film under every sealing element."""
+    filmed: dict[str, Any] = {"friction": film.LAW.name}
+    seals = {}
+    for place in ("piston", "rod"):
+        seal = getattr(design.seals, place)
+        second = seal.secondary and seal.secondary.model_copy(update=filmed)
+        seals[place] = seal.model_copy(update=filmed | {"secondary": second})
+    return design.model_copy(update={"seals": design.seals.model_copy(update=seals)})
+
+
+@dataclass(frozen=True, slots=True)
+class CylinderMap:
+    """Damping of the piston cylinder over the driven chamber's pressure and the speed.
+
+    Parameters
+    ----------
+    piston : over the pressure difference across it
+    rod : at return pressure
+    pressures : of the driven chamber (p,) [Pa]
+    """
+
+    piston: FilmMap
+    rod: FilmMap
+    pressures: Array
+
+    @property
+    def damping(self) -> Array:
+        """Of both (p, v) [N s/m]."""
+        return self.piston.damping + self.rod.damping
+
+
+def cylinder_map(seals: Sealings, speeds: Sequence[float] = SPEEDS) -> CylinderMap:
+    """Figure 3: piston and rod seals, driven out."""
+    across = [p - seals.return_pressure for p in PISTON_PRESSURES]
+    return CylinderMap(
+        piston=film_map(seals.piston, across, speeds),
+        rod=film_map(seals.rod, [seals.return_pressure], speeds),
+        pressures=np.array(PISTON_PRESSURES),
+    )
+
+
+def fast_map(seals: Sealings) -> FilmMap:
+    """The plunger at 6 MPa beyond the tested speeds."""
+    return film_map(seals.plunger, [PAPER.compared], FAST)
+
+
+def plunger_map(seals: Sealings, speeds: Sequence[float] = SPEEDS) -> FilmMap:
+    """Figures 6 to 8, 15 and 16: the tandem of the plunger on the outstroke."""
+    return film_map(seals.plunger, PRESSURES, speeds)
+
+
+ENDS = (0.6e6, 6e6)
+"""Pressures whose dampings are compared: those of the printed fall."""
+
+STRESS_PRESSURES = tuple(float(p) for p in np.linspace(0.0, 10e6, 41))
+
+FILM_PRESSURES = (2e6, 6e6, 10e6)
+
+FILM_SPEED = 5e-3
+"""Pressures and speed of the film profiles; the paper's figure 18 names none in its text."""
+
+
+def balance(ring: Ring, pressure: float) -> float:
+    """Rise of a ring's load with pressure over its width, (df/dp)/b."""
+    contact = seal_contact(ring.at(pressure=complex(pressure, STEP)))
+    return float(np.imag(contact.line_load) / STEP / np.real(contact.width))
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """One seal, or several, between the two pressures at the typical speed.
+
+    Parameters
+    ----------
+    name : what it is
+    balance : at the mean of the pressures; NaN for several seals
+    damping : at both pressures [N s/m]
+    """
+
+    name: str
+    balance: float
+    damping: tuple[float, float]
+
+    @property
+    def rise(self) -> float:
+        """Damping at the higher over that at the lower pressure."""
+        return self.damping[1] / self.damping[0]
+
+
+BOTH, DRAINED = "plunger, both seals", "plunger, no pressure between"
+
+_NAMES = {u_cup.TYPE.name: "Yx", compact.TYPE.name: "compact (DAS)"}
+"""Names the paper has for seals of these types."""
+
+
+def kind_name(ring: Ring) -> str:
+    """What a ring is called here."""
+    return _NAMES.get(ring.element.type, ring.element.seal_type.title)
+
+
+def single(name: str, sealing: Sealing) -> Kind:
+    """A seal alone, the whole pressure across it."""
+    (ring,) = sealing.rings
+    damping = film_map(sealing, ENDS, (TYPICAL,)).damping[:, 0]
+    return Kind(name, balance(ring, sum(ENDS) / 2), (float(damping[0]), float(damping[1])))
+
+
+def kinds(seals: Sealings, mapped: FilmMap) -> tuple[Kind, ...]:
+    """Every seal type of both cylinders, the tandem, and the tandem with its room drained."""
+    plunger = seals.plunger
+    every = [single(f"{kind_name(seals.piston.rings[0])}, piston", seals.piston.alone(0))]
+    every += [
+        single(f"{kind_name(ring)}, plunger, alone", plunger.alone(k))
+        for k, ring in enumerate(plunger.rings)
+    ]
+    j = mapped.at(ENDS[0], TYPICAL)[1]
+    ends = [float(mapped.damping[mapped.at(p, TYPICAL)[0], j]) for p in ENDS]
+    if len(plunger.rings) == 2:
+        every.append(Kind(BOTH, nan, (ends[0], ends[1])))
+        low, high = (drained(seals, p) for p in ENDS)
+        every.append(Kind(DRAINED, nan, (low, high)))
+    low, high = (float(secant_of(row, TYPICAL)) for row in (HUANG_TABLE_2[0], HUANG_TABLE_2[-1]))
+    every.append(Kind("plunger, measured (table 2)", nan, (low, high)))
+    return tuple(every)
+
+
+def drained(seals: Sealings, pressure: float, speed: float = TYPICAL, **changes: float) -> float:
+    """Damping of the plunger with the room between its seals at the outer pressure."""
+    first = solve(seals.plunger.alone(0).row(pressure, speed, **changes))
+    second = solve(seals.plunger.alone(1).row(0.0, speed))
+    return sum((*ring_friction(first), *ring_friction(second))) / speed
+
+
+@dataclass(frozen=True, slots=True)
+class Relief:
+    """A step ring with another relief.
+
+    Parameters
+    ----------
+    relief, land : [m]; the land is the design's while there is room for it
+    balance : at the mean pressure
+    pressures, damping : alone at the typical speed (p,) [Pa], [N s/m]; NaN where it lifts off
+    """
+
+    relief: float
+    land: float
+    balance: float
+    pressures: Array
+    damping: Array
+
+    @property
+    def rise(self) -> float:
+        """Damping at 6 MPa over that at 0.6 MPa."""
+        low, high = (int(np.argmin(np.abs(self.pressures - p))) for p in ENDS)
+        return float(self.damping[high] / self.damping[low])
+
+
+def reshaped(ring: Ring, relief: float) -> dict[str, float]:
+    """Relief, and the land that it leaves room for."""
+    return {"relief": relief, "land": min(ring["land"], ring["width"] - relief)}
+
+
+def with_relief(seals: Sealings, relief: float, pressures: Sequence[float] = PRESSURES) -> Relief:
+    """The plunger's step ring alone with a relief."""
+    alone = seals.plunger.alone(0)
+    ring = alone.rings[0]
+    changes = reshaped(ring, relief)
+    return Relief(
+        relief=relief,
+        land=changes["land"],
+        balance=balance(ring.at(**changes), sum(ENDS) / 2),
+        pressures=np.array(pressures),
+        damping=film_map(alone, pressures, (TYPICAL,), **changes).damping[:, 0],
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """The relief at which the damping of a step ring is the same at both pressures.
+
+    Parameters
+    ----------
+    relief, land, balance : there; NaN where no relief turns it
+    share : of the ring's width that the relief takes
+    """
+
+    relief: float
+    land: float
+    balance: float
+    share: float
+
+
+def turn(seals: Sealings) -> Turn:
+    """From rising to falling between 0.6 and 6 MPa, the step ring alone."""
+    ring = seals.plunger.rings[0]
+
+    def excess(relief: float) -> float:
+        return with_relief(seals, relief, ENDS).rise - 1
+
+    # above a relief of nine tenths no land is left to speak of
+    relief = _root(excess, 0.05 * ring["width"], 0.9 * ring["width"])
+    if not isfinite(relief):
+        return Turn(nan, nan, nan, nan)
+    there = with_relief(seals, relief, ENDS)
+    return Turn(relief, there.land, there.balance, relief / ring["width"])
+
+
+def _root(excess: Callable[[float], float], low: float, high: float) -> float:
+    """Where a falling function passes 0, to 1 um; NaN where it does not.
+
+    Where it has no value the ring has lifted off: beyond the root.
+    """
+    if not excess(low) > 0:
+        return nan
+    while high - low > 1e-6:
+        middle = (low + high) / 2
+        low, high = (middle, high) if excess(middle) > 0 else (low, middle)
+    return low if abs(excess(low)) < 0.01 else nan
+
+
+def tandem_rise(seals: Sealings, relief: float) -> float:
+    """Damping of the whole plunger at 6 over that at 0.6 MPa with a relief of its step ring."""
+    changes = reshaped(seals.plunger.rings[0], relief)
+    ends = film_map(seals.plunger, ENDS, (TYPICAL,), **changes).damping[:, 0]
+    return float(ends[1] / ends[0])
+
+
+def drained_rise(seals: Sealings, relief: float) -> float:
+    """The same with the room between the seals at the outer pressure."""
+    changes = reshaped(seals.plunger.rings[0], relief)
+    low, high = (drained(seals, p, **changes) for p in ENDS)
+    return high / low
+
+
+@dataclass(frozen=True, slots=True)
+class Stress:
+    """Figure 17: the step ring at rest over the sealed pressure.
+
+    Parameters
+    ----------
+    pressures : [Pa]
+    peak : highest contact pressure over the outer side [Pa]
+    excess : of the contact over the oil pressure [Pa]
+    width : of the contact [m]
+    """
+
+    pressures: Array
+    peak: Array
+    excess: Array
+    width: Array
+
+
+def stress(seals: Sealings) -> Stress:
+    """By the closed form of `models.step_seal`."""
+    pressures = np.array(STRESS_PRESSURES)
+    rows = [seal_contact(seals.plunger.rings[0].at(pressure=p)) for p in STRESS_PRESSURES]
+    peak, excess, width = (
+        np.array([float(getattr(row, name)) for row in rows])
+        for name in ("peak", "excess", "width")
+    )
+    return Stress(pressures, peak, excess, width)
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """Film of the step ring at a pressure, in the tandem, outstroke.
+
+    Parameters
+    ----------
+    pressure : [Pa]
+    x, film : from the sealed side [m]
+    mean : [m]
+    """
+
+    pressure: float
+    x: Array
+    film: Array
+    mean: float
+
+
+def profiles(seals: Sealings) -> tuple[Profile, ...]:
+    """Figure 18; without those that have no film."""
+    every = []
+    for pressure in FILM_PRESSURES:
+        solved = solve(seals.plunger.row(pressure, FILM_SPEED))
+        if not solved.why:
+            film = solved.films[0]
+            every.append(Profile(pressure, film.x, film.film, film.mean_film))
+    return tuple(every)
+
+
+CONTACT_PRESSURE = 0.1e6
+"""Mean pressure of the back-up ring on the plunger: the "low contact stress" of section 3 (Pa)."""
+
+CONTACT_PRESSURES = (0.02e6, 0.2e6)
+"""Least and largest one that is tried beside it."""
+
+WIDTH = 15e-3
+"""Of the ring: the ISO 10766 housing of the standards the paper names, GB/T 15242 (m)."""
+
+EDGE = 5e-6
+"""Rounding of the ring's edges (m): worn in, assumed."""
+
+EDGE_POWER = 8
+"""The face rises with this power of the distance from its middle: flat but for the edges."""
+
+NODES = 241
+
+RING_SPEEDS = (0.5e-3, 0.7e-3, 1e-3, 1.5e-3, 2e-3, 3e-3)
+"""Speeds of figure 20, and some between its own three."""
+
+
+@dataclass(frozen=True, slots=True)
+class RingFilm:
+    """The smooth film of the back-up ring at a speed.
+
+    Parameters
+    ----------
+    speed : [m/s]
+    film : solved, or why not
+    drag : on the plunger [N]
+    """
+
+    speed: float
+    film: SmoothFilm
+    drag: float
+
+    @property
+    def damping(self) -> float:
+        """Secant damping [N s/m]."""
+        return self.drag / self.speed
+
+
+def back_up_ring(
+    lubricant: Lubricant,
+    elastic: Elastic,
+    speed: float,
+    contact_pressure: float = CONTACT_PRESSURE,
+) -> RingFilm:
+    """Equations 19 to 22 with density and viscosity in their places.
+
+    The pressure around the ring is the same on both sides and bends nothing, so it counts as that
+    of the atmosphere; a higher one would only keep the film from rupturing.
+    """
+    place = np.linspace(-1.0, 1.0, NODES)
+    around = ATMOSPHERIC_PRESSURE
+    gap = Gap(
+        width=WIDTH,
+        profile=EDGE * np.abs(place) ** EDGE_POWER,
+        lubricant=lubricant,
+        speed=speed,
+        sealed_pressure=around,
+        outer_pressure=around,
+        line_load=(around + contact_pressure) * WIDTH,
+        elastic=elastic,
+    )
+    film = solve_gap(gap)
+    return RingFilm(speed, film, pi * PAPER.plunger * film.viscous_drag)
+
+
+def ring_elastic(seals: Sealings) -> Elastic:
+    """The PTFE of the design's first rod seal: the ring is of the same stuff."""
+    first = seals.plunger.rings[0]
+    return Elastic(first["face_modulus"], first["face_poissons_ratio"])
+
+
+def ring_films(seals: Sealings) -> tuple[RingFilm, ...]:
+    """Figures 19 and 20."""
+    elastic = ring_elastic(seals)
+    return tuple(back_up_ring(seals.lubricant, elastic, v) for v in RING_SPEEDS)
+
+
+@dataclass(frozen=True, slots=True)
+class Total:
+    """Equation 26 of the plunger at a pressure and speed.
+
+    Parameters
+    ----------
+    pressure, speed : [Pa], [m/s]
+    parts : secant damping of every part by its name [N s/m]
+    ring_range : damping of the back-up ring at the least and largest contact pressure [N s/m]
+    """
+
+    pressure: float
+    speed: float
+    parts: dict[str, float]
+    ring_range: tuple[float, float]
+
+    @property
+    def damping(self) -> float:
+        """B = (seals + back-up rings + chamber)/U [N s/m]."""
+        return sum(self.parts.values())
+
+    @property
+    def seals(self) -> float:
+        """Damping of the seals alone [N s/m]."""
+        return sum(value for name, value in self.parts.items() if name not in (BACK_UP, CHAMBER))
+
+    def share(self, name: str) -> float:
+        """Of a part in the total."""
+        return self.parts[name] / self.damping
+
+    @property
+    def beside_share(self) -> float:
+        """Of back-up ring, at its largest, and chamber, over the seals."""
+        return (max(self.ring_range) + self.parts[CHAMBER]) / self.seals
+
+
+BACK_UP, CHAMBER = "back-up ring", "chamber"
+
+
+def total(seals: Sealings, mapped: FilmMap, pressure: float, speed: float) -> Total:
+    """Equation 26 at a point of the plunger's map."""
+    i, j = mapped.at(pressure, speed)
+    labels = [ring.label.replace("rod ", "") for ring in seals.plunger.rings]
+    elastic = ring_elastic(seals)
+    ring = back_up_ring(seals.lubricant, elastic, speed)
+    ends = [back_up_ring(seals.lubricant, elastic, speed, q).damping for q in CONTACT_PRESSURES]
+    forces = dict(zip(labels, map(float, mapped.parts[i, j]), strict=True))
+    forces |= {BACK_UP: ring.drag, CHAMBER: chamber_drag(speed)}
+    parts = {name: float(secant(friction=force, speed=speed)) for name, force in forces.items()}
+    return Total(pressure, speed, parts, (ends[0], ends[1]))
+
+
+def dry_ring(seals: Sealings) -> float:
+    """Friction of the back-up ring without oil, by the PTFE's dry coefficient [N]."""
+    coefficient = seals.plunger.rings[0]["asperity_friction"]
+    return float(pi * PAPER.plunger * WIDTH * CONTACT_PRESSURE * coefficient)
+
+
+def chamber_drag(speed: float) -> float:
+    """Equation 24 and 25 with the member of `huang_published.chamber` that has reasons."""
+    member = plausible_chamber()
+    coefficient = flat_gap(
+        dynamic_viscosity=member.viscosity,
+        diameter=PAPER.plunger,
+        length=member.length,
+        gap=member.gap,
+    )
+    return float(coefficient) * speed
+
+
+PRESSURE = 6e6
+"""Sealed pressure of both readings; the speed is that of the film profiles (Pa)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Readings:
+    """The step ring of the plunger, alone; NaN without a film.
+
+    Parameters
+    ----------
+    shift : rigid shift of the solved film [m]
+    mean : its mean film [m]
+    excess : (carried - given load)/given load if the film were thinner by the shift
+    flow, swapped : oil dragged outwards with the rough side the seal, or the rod [m^3/s]
+    """
+
+    shift: float
+    mean: float
+    excess: float
+    flow: float
+    swapped: float
+
+
+def readings(seals: Sealings) -> Readings:
+    """What the missing shift and the swapped sides would do, of the plunger's first seal."""
+    row = seals.plunger.alone(0).row(PRESSURE, FILM_SPEED)
+    solved, other = solve(row), solve(_swapped(row))
+    if solved.why or other.why:
+        return Readings(nan, nan, nan, nan, nan)
+    film = solved.films[0]
+    contact, around = film.contact, pi * row.rings[0]["diameter"]
+    surface, elastic = contact.surface, contact.elastic
+    thinner = (film.film - film.rigid_shift) / surface.roughness
+    carried = film.pressure + asperity_pressure(
+        film_ratio=np.maximum(thinner, 0.0),
+        youngs_modulus=elastic.youngs_modulus,
+        poissons_ratio=elastic.poissons_ratio,
+        asperity_density=surface.asperity_density,
+        asperity_radius=surface.asperity_radius,
+        roughness=surface.roughness,
+    )
+    loads = [
+        float(np.trapezoid(pressure, film.x)) for pressure in (carried, contact.static_pressure)
+    ]
+    return Readings(
+        shift=film.rigid_shift,
+        mean=film.mean_film,
+        excess=loads[0] / loads[1] - 1,
+        flow=around * film.flow,
+        swapped=around * other.films[0].flow,
+    )
+
+
+def _swapped(row: FilmRow) -> FilmRow:
+    """The same surfaces, the rough one on the rod: the composite roughness stays."""
+    rings = [
+        ring.at(
+            seal_roughness=ring["counterface_roughness"],
+            counterface_roughness=ring["seal_roughness"],
+        )
+        for ring in row.rings
+    ]
+    return replace(row, rings=tuple(rings))
+
+
+RELIEFS = (3e-3, 3.7e-3)
+"""Reliefs that are drawn beside the design's, the one that turns the trend and a longer one (m)."""
+
+BEYOND = (1.08, 1.16)
+"""Reliefs beyond the turning one, over it."""
+
+TOTALS = tuple((p, v) for p in ENDS for v in (0.5e-3, 10e-3))
+"""Pressures and speeds at which every part of eq. 26 is shown."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HuangStudy:
+    """Both tests on films, and the paper's own curves.
+
+    Parameters
+    ----------
+    sealings : rings, oil
+    cylinder, plunger, fast : maps of test A, of test B, and of test B beyond its speeds
+    published, films : fits of table 2 and of the plunger's map, by pressure; without those that
+        lack a film somewhere
+    rings, totals : of the back-up ring, of eq. 26
+    kinds, stress, profiles : of the seal types and of the step ring
+    turn, reliefs : None and empty where the first rod seal is no step ring
+    readings : what the paper's letters would do
+    whole, drained : rise of the plunger's damping by relief, tandem and without pressure between
+    """
+
+    sealings: Sealings
+    cylinder: CylinderMap
+    plunger: FilmMap
+    fast: FilmMap
+    published: tuple[CurveFits, ...]
+    films: tuple[tuple[float, CurveFits], ...]
+    rings: tuple[RingFilm, ...]
+    totals: tuple[Total, ...]
+    kinds: tuple[Kind, ...]
+    stress: Stress
+    profiles: tuple[Profile, ...]
+    readings: Readings
+    turn: Turn | None
+    reliefs: tuple[Relief, ...]
+    whole: tuple[float, ...]
+    drained: tuple[float, ...]
+
+
+def study_of(design: Design) -> HuangStudy:
+    """Both tests with the seals of a design."""
+    seals = sealings(design)
+    plunger = plunger_map(seals)
+    turn, reliefs, whole, drained = _reliefs(seals)
+    return HuangStudy(
+        sealings=seals,
+        cylinder=cylinder_map(seals),
+        plunger=plunger,
+        fast=fast_map(seals),
+        published=tuple(map(huang_published.fitted, HUANG_TABLE_2)),
+        films=_fitted(plunger),
+        rings=ring_films(seals),
+        totals=tuple(total(seals, plunger, p, v) for p, v in TOTALS),
+        kinds=kinds(seals, plunger),
+        stress=stress(seals),
+        profiles=profiles(seals),
+        readings=readings(seals),
+        turn=turn,
+        reliefs=reliefs,
+        whole=whole,
+        drained=drained,
+    )
+
+
+def _fitted(mapped: FilmMap) -> tuple[tuple[float, CurveFits], ...]:
+    """Both laws through every pressure of a map."""
+    fits = []
+    for row in HUANG_TABLE_2:
+        i, _ = mapped.at(row.pressure, PAPER.speeds[0])
+        curve = mapped.damping[i]
+        if np.all(np.isfinite(curve)):
+            power = fit_power_law(mapped.speeds, curve)
+            both = CurveFits(row, power, fit_double_exponential(mapped.speeds, curve))
+            fits.append((row.pressure, both))
+    return tuple(fits)
+
+
+def _reliefs(
+    seals: Sealings,
+) -> tuple[Turn | None, tuple[Relief, ...], tuple[float, ...], tuple[float, ...]]:
+    """What other reliefs of the step ring do to the trend over pressure."""
+    ring = seals.plunger.rings[0]
+    if "relief" not in ring.numbers:
+        return None, (), (), ()
+    turned = turn(seals)
+    wanted = {*RELIEFS, ring["relief"]}
+    if np.isfinite(turned.relief):
+        wanted |= {turned.relief, *(turned.relief * share for share in BEYOND)}
+    lengths = [relief for relief in sorted(wanted) if relief < 0.93 * ring["width"]]
+    two = len(seals.plunger.rings) == 2
+    return (
+        turned,
+        tuple(with_relief(seals, relief) for relief in lengths),
+        tuple(tandem_rise(seals, relief) for relief in lengths) if two else (),
+        tuple(drained_rise(seals, relief) for relief in lengths) if two else (),
+    )
