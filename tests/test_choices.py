@@ -49,20 +49,20 @@ def alone(text, values):
 
 
 FAULTS = [
-    ("seals.rod.compound: [nbr_7, nbr_90]", '"nbr_7": no such material', "nbr_70"),
+    ("seals.rod.compound: [nbr_7, nbr_90]", '"nbr_7": unknown material', "nbr_70"),
     ("seals.rod.compound: [nbr_90, steel_e355]", "kind (metal) does not suit", "use e.g."),
     ("seals.rod.count: [1.5, 2]", "1.5: must be a whole number", "write 1"),
     ("seals.rod.section: [1.78, 2.62 mm]", "unit missing", "1.78 mm"),
     ("seals.rod.section: [2 bar]", "bar is a pressure", "mm"),
     ("seals.rod.section: [900 mm]", "outside the valid range", "30 mm"),
     ("seals.rod.section: [1.78 mm, 0.178 cm]", "the same as value 1", "keep one"),
-    ("cylinder.bore: [20 mm, 25 mm]", "is a variable too", "variables or in choices"),
+    ("cylinder.bore: [20 mm, 25 mm]", "is also a variable", "variables or in choices"),
     ("seals.rod.count: 2", 'need a list of allowed values, not "2"', "write [2]"),
     ("seals.rod.count: []", "the list is empty", "write e.g. [1]"),
     ("seals.rod.count:", "no value", "write one"),
     ("seals.rod.section: [[1 mm]]", "not a list", "write one value"),
     ("seals.rod.type: [o_ring, o_rng]", '"o_rng" is not a choice', "o_ring"),
-    ("seals.rod.compond: [nbr_70]", "no such PATH", "seals.rod.compound"),
+    ("seals.rod.compond: [nbr_70]", "unknown PATH", "seals.rod.compound"),
     ("seals.rod: [nbr_70]", "names a block", "add one of"),
     ("name: [a, b]", "is no value of a part", "name a number"),
     ("requirements.seal_gap.max: [1 um]", "is no value of a part", "name a number"),

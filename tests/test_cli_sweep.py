@@ -52,7 +52,7 @@ def test_no_feasible_variant_is_exit_1():
     [
         ([], "nothing to vary", 2),
         (["--vary", "cylinder.bore"], "no values", 2),
-        (["--vary", "cylinder.bohr=1..2:3"], "no such PATH", 3),
+        (["--vary", "cylinder.bohr=1..2:3"], "unknown PATH", 3),
         ([*BORES, "--method", "dice"], "use grid, sobol, lhs", 2),
         ([*BORES, "--reduce", "worst:3"], "write best:K", 2),
         (
@@ -68,7 +68,7 @@ def test_no_feasible_variant_is_exit_1():
         ([*BORES, "--csv", "-"], "standard output is used for the results", 2),
         ([*BORES, "--parquet", "-"], "standard output is used for the results", 2),
         ([*BORES, "--csv", "x.db", "--store", "x.db"], "one file for two of", 2),
-        (["--vary", "fluid.flavour=1..2:3"], "no such PATH", 3),
+        (["--vary", "fluid.flavour=1..2:3"], "unknown PATH", 3),
     ],
 )
 def test_bad_input_is_one_line(words, text, code):
@@ -85,7 +85,7 @@ def test_a_missing_engine_is_told_and_numpy_works(monkeypatch):
     words = ["sweep", KNEE, *SETS, *BORES, "--reduce", "best:1", "--json"]
     plain, asked = run(*words), run(*words, "--engine", "jax")
     assert asked.err.strip().splitlines() == [
-        "JAX is missing (pip install 'actuator-opt[gpu]'): NumPy did its work"
+        "JAX not installed (pip install 'actuator-opt[gpu]'); used NumPy"
     ]
     plain, asked = json.loads(plain.out), json.loads(asked.out)
     assert asked["engine"] == "numpy"

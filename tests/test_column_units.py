@@ -149,7 +149,7 @@ def test_simulate_takes_units(tmp_path):
     scenario = DESIGNS / "scenarios" / "knee_step.yaml"
     result = run("simulate", scenario, "--units", "SI", "--json")
     assert result.code == 2
-    assert "--units: no record is read" in result.errors[0]["message"]
+    assert "--units: only with a record" in result.errors[0]["message"]
     (tmp_path / "pull.csv").write_text("t,F\n0,2000\n1,2000\n")
     file = tmp_path / "a.yaml"
     file.write_text(

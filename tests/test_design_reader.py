@@ -138,7 +138,7 @@ objective:
 """
 EXPECTED = [
     # place in the text (line, column), path, part of the message, part of the remedy
-    ((3, 13), "fluid.material", "no such material", 'did you mean "iso_vg_32"?'),
+    ((3, 13), "fluid.material", "unknown material", 'did you mean "iso_vg_32"?'),
     ((4, 3), "fluid.temprature", "unknown key", 'did you mean "temperature"?'),
     ((6, 13), "supply.pressure", "mm is a length, need a pressure", "bar"),
     ((7, 20), "supply.return_pressure", "unit missing", '"12 bar"'),
@@ -160,7 +160,7 @@ EXPECTED = [
     ((40, 12), "load_cases[1].force", 'unknown unit "x10 kN"', "kN"),
     ((41, 5), "load_cases[1].joint_torque", "force and joint torque", "keep one"),
     ((42, 15), "load_cases[1].position", "120 %: outside", "0 % to 100 %"),
-    ((44, 3), "variables.cylinder.bor", "no such PATH", 'did you mean "cylinder.bore"?'),
+    ((44, 3), "variables.cylinder.bor", "unknown PATH", 'did you mean "cylinder.bore"?'),
     ((49, 12), "variables.rod.outer_diameter.upper", "bounds reversed", "swap"),
     ((51, 3), "requirements.stifness_min", "not a metric", 'did you mean "stiffness_min"?'),
     ((54, 10), "requirements.mass.max", "unit missing", '"3 g"'),
@@ -211,7 +211,7 @@ CROSS = [
     ("    force: 1 kN", "    joint_torque: 10 N*m", "load_cases[swing].lever_arm", "missing"),
     ("    force: 1 kN", "    lever_arm: 10 mm", "load_cases[swing].joint_torque", "missing"),
     ("    force: 1 kN", "    side_load: 1 N", "load_cases[swing].force", "missing"),
-    ("    lower: 18 mm", "    lower: 26 mm", "cylinder.bore", "start value outside its bounds"),
+    ("    lower: 18 mm", "    lower: 26 mm", "cylinder.bore", "start value outside the bounds"),
     ("    upper: 40 mm", "    upper: 40 mm\n    start: 41 mm", "variables.cylinder.bore.start",
      "start value outside"),
     ("    upper: 40 mm", "    upper: 2000 mm", "variables.cylinder.bore.upper", "valid range"),

@@ -133,7 +133,7 @@ def test_laminated_rod():
     moved = with_values(loaded.design, {"rod.layup[0].thickness": 2e-3, "rod.fitting.wall": 1e-3})
     text = to_yaml(moved, loaded.source)
     assert read_design(text).design == moved
-    assert "# what shows when retracted" in text
+    assert "# length outside the head when retracted" in text
 
 
 BALANCE = "      angle: 20 deg\n      thickness: 0.8 mm\n"
@@ -144,7 +144,8 @@ FAULTS = [
      "follows from", "remove the line"),
     (changed((HOLLOW, LAYUP + FITTING)), "variables.rod.inner_diameter", "rod.inner_diameter:",
      "follows from", "rod.layup[0].thickness"),
-    (changed((HOLLOW, FITTING), (MOVED, "")), "rod.fitting", "fitting:", "without layup", "layers"),
+    (changed((HOLLOW, FITTING), (MOVED, "")), "rod.fitting", "fitting:", "rod with layup",
+     "layers"),  # fmt: skip
     (laminated(LAYUP.replace("1.6 mm", "5.6 mm") + FITTING), "rod.layup", "layup:\n    - material: "
      "t700_epoxy\n      angle: 10", "layers of 6 mm leave no bore in a rod of 12 mm", "6 mm"),
     (laminated(LAYUP.replace("1.6 mm", "0 mm") + FITTING), "rod.layup[0].thickness", "0 mm\n    - ",
@@ -169,14 +170,14 @@ FAULTS = [
     (changed((BALANCE, BALANCE + "      balanced: perhaps\n")), "barrel.layup[2].balanced",
      "perhaps", "need true or false", "write true or false"),
     (changed((MODEL, "  model: isotropic  ")), "barrel.model", "isotropic",
-     "the model takes one", "auto"),
+     "the model has one", "auto"),
     (changed((MODEL, "  criterion: tsai_hu\n" + MODEL)), "barrel.criterion", "tsai_hu",
      "not a choice", "tsai_wu"),
     (changed((MODEL, "  autofrettage_pressure: 90 bar\n" + MODEL)), "barrel.autofrettage_pressure",
      "90 bar", "not above supply.pressure (100 bar)", "100 bar"),
     (changed((MODEL, "  autofrettage_pressure: 400 bar\n" + MODEL),
              ("    - material: al_6061_t6 ", "    - material: woven_cfrp ")),
-     "barrel.autofrettage_pressure", "autofrettage_pressure", "no metal liner", "metal liner"),
+     "barrel.autofrettage_pressure", "autofrettage_pressure", "not a metal liner", "metal liner"),
     (changed((MODEL, "  allowed_angles: [0 deg, -45 deg]\n" + MODEL)), "barrel.allowed_angles[1]",
      "-45 deg", "outside the valid range", "0 deg to 90 deg"),
     (changed((MODEL, "  allowed_angles: 45 deg\n" + MODEL)), "barrel.allowed_angles", "45 deg",
@@ -211,7 +212,7 @@ def test_autofrettage_needs_a_wrap():
     text = head + rest[rest.index("  rod.outer_diameter:") :]
     fault = only(text)
     assert fault.path == "barrel.autofrettage_pressure"
-    assert "nothing holds a liner" in fault.message
+    assert "nothing supports a liner" in fault.message
 
 
 class Stock(dict):
@@ -253,7 +254,7 @@ def test_criterion_needs_its_strengths():
     fault = only(text, materials=lacking)
     assert fault.path == "barrel.criterion"
     assert text.splitlines()[fault.line - 1] == "  criterion: hashin"
-    assert fault.message == "hashin: t700_epoxy states no strength_12"
+    assert fault.message == "hashin: t700_epoxy has no strength_12"
     assert "materials.t700_epoxy" in fault.remedy
     added = text + "materials:\n  t700_epoxy:\n    strength_12: 80 MPa\n"
     assert read_design(added, materials=lacking).design

@@ -77,10 +77,10 @@ def test_set_and_date(design, tmp_path):
 @pytest.mark.parametrize(
     ("formats", "message", "remedy"),
     [
-        ((), "no format named", "--format step|dxf|xlsx"),
+        ((), "no format given", "--format step|dxf|xlsx"),
         (("stp",), '"stp"', "use step, dxf, xlsx"),
         (("step", "pdf"), '"pdf"', "use step, dxf, xlsx"),
-        (("step,dxf",), '"step,dxf"', "a --format of its own"),
+        (("step,dxf",), '"step,dxf"', "its own --format"),
         (("",), '""', "use step, dxf, xlsx"),
         (("STEP",), '"STEP"', "use step, dxf, xlsx"),
         (("x" * 5000,), "xxx", "use step, dxf, xlsx"),
@@ -186,7 +186,7 @@ def test_the_verb_takes_any_form_of_a_design(design, tmp_path):
     assert file.to_dict() == {"path": str(file.path), "sha256": file.sha256}
     with pytest.raises(ao.ActuatorError, match="is not a date"):
         ao.export(evaluation, formats=["xlsx"], folder=tmp_path, date="yesterday")
-    with pytest.raises(ao.ActuatorError, match="no format named"):
+    with pytest.raises(ao.ActuatorError, match="no format given"):
         ao.export(evaluation, formats=[], folder=tmp_path)
 
 

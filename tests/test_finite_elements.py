@@ -258,7 +258,7 @@ def test_the_side_wall_of_a_round_groove_carries_an_annulus(on_rod, sign):
     [
         ({"squeeze": 0.6}, "squeeze 0.6 is outside"),
         ({"groove_width": 2.5e-3}, "fills its groove"),
-        ({"pressures": [2e6, 1e6]}, "must be positive and rise"),
+        ({"pressures": [2e6, 1e6]}, "must be positive and increasing"),
         ({"elements_around": 30}, "a multiple of 4"),
         ({"section": 0.0}, "is not positive"),
         ({"rubber": MooneyRivlin(0.0, 0.0)}, "not positive"),

@@ -171,7 +171,7 @@ def test_the_stiff_ring_carries_the_stress(pressed):
         ({"land_width": 3.8e-3}, "leave no width"),
         ({"land_width": 0.0}, "is not positive"),
         ({"relief_angle": -0.1}, "outside 0 to 1"),
-        ({"chamfer_height": 1.4e-3}, "takes the slide ring's thickness"),
+        ({"chamfer_height": 1.4e-3}, "uses up the thickness of the slide ring"),
     ],
 )
 def test_an_impossible_slide_ring_is_one_clear_line(shape, message):
@@ -184,7 +184,7 @@ def test_an_impossible_slide_ring_is_one_clear_line(shape, message):
 
 def test_a_slide_ring_wider_than_its_groove_is_refused():
     """One clear line again."""
-    with pytest.raises(ActuatorError, match=r"0\.004 m wide, its groove 0\.003 m"):
+    with pytest.raises(ActuatorError, match=r"0\.004 m wide, but its groove 0\.003 m"):
         squeezed_step_ring(
             section=SECTION,
             squeeze=SQUEEZE,

@@ -144,7 +144,7 @@ def test_exact_number_of_points_leaves_no_bounds():
     assert np.isinf(fit.parameters["exponent"].upper)
     lower, upper = fit.bounds(2e-3)
     assert (lower, upper) == (-np.inf, np.inf)
-    assert fit.doubts == ("2 points leave none to judge 2 parameters by",)
+    assert fit.doubts == ("2 points leave no degree of freedom for 2 parameters",)
 
 
 def test_constant_damping_has_exponent_zero_and_no_r_squared():
@@ -235,15 +235,15 @@ def test_no_rising_curve_fits_a_falling_damping():
 @pytest.mark.parametrize(
     ("speed", "points", "weights", "said"),
     [
-        ([0.0, 1.0, 2.0, 3.0, 4.0], [1.0] * 5, None, "speed of point 0 is 0; a secant damping"),
+        ([0.0, 1.0, 2.0, 3.0, 4.0], [1.0] * 5, None, "speed of point 0 is 0; secant damping"),
         ([1.0, -2.0, 2.0, 3.0, 4.0], [1.0] * 5, None, "speed of point 1 is -2"),
         ([1.0, 2.0, 3.0, 4.0], [1.0, np.nan, 1.0, 1.0], None, "damping of point 1 is nan"),
         ([1.0, 2.0, np.inf, 4.0], [1.0] * 4, None, "speed of point 2 is inf"),
         ([1.0, 2.0, 3.0, 4.0], [1.0] * 4, [1.0, 0.0, 1.0, 1.0], "weight of point 1 is 0"),
         ([1.0, 2.0, 3.0], [1.0, 2.0], None, "shapes"),
-        ([1.0], [1.0], None, "1 different speeds for a law of"),
-        ([1.0] * 5, [1.0, 2.0, 3.0, 4.0, 5.0], None, "1 different speeds for a law of"),
-        ([], [], None, "0 different speeds for a law of"),
+        ([1.0], [1.0], None, "1 different speeds for a law with"),
+        ([1.0] * 5, [1.0, 2.0, 3.0, 4.0, 5.0], None, "1 different speeds for a law with"),
+        ([], [], None, "0 different speeds for a law with"),
     ],
 )
 def test_points_that_cannot_be_fitted_are_named(law, speed, points, weights, said):

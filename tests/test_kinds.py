@@ -106,12 +106,12 @@ def test_no_piece_of_a_kind_has_a_default(cls):
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"name": "Quad-Ring"}, "no word"),
+        ({"name": "Quad-Ring"}, "lower-case letters"),
         ({"title": None}, "title is missing"),
         ({"help": "  "}, "help is empty"),
         ({"contact": None}, "contact is missing"),
-        ({"outline": "a circle"}, "outline is no function"),
-        ({"model": "seals"}, "model is no function"),
+        ({"outline": "a circle"}, "outline is not a function"),
+        ({"model": "seals"}, "model is not a function"),
     ],
 )
 def test_a_type_without_a_piece_is_refused(changes, words):
@@ -122,7 +122,7 @@ def test_a_type_without_a_piece_is_refused(changes, words):
 
 def test_two_of_one_name_are_refused():
     """The second would hide the first."""
-    with pytest.raises(ValueError, match='"o_ring": there are two'):
+    with pytest.raises(ValueError, match='"o_ring": duplicate name'):
         kinds("seal type", o_ring.TYPE, replace(o_ring.TYPE, title="another"))
 
 
@@ -295,7 +295,7 @@ def test_what_a_type_needs_and_refuses_is_a_fault(kind):
     for size in refused:
         (fault,) = faults(block(kind, **{size.key: size.example}))
         assert fault.path == f"seals.piston.{size.key}"
-        assert "has none" in fault.message
+        assert "not a size of" in fault.message
     assert not ao.check(text(block(kind), block(kind)))
 
 

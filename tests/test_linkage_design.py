@@ -275,18 +275,19 @@ def test_both_radii_free_end_at_an_optimum():
 ONE = case(TORQUE)
 # between the stops of WIDE: (245^2 + 70^2 - l^2)/(2 245 70) = cos 41.42 deg and cos 150.8 deg
 FAULTS = [
-    (linkage(245, 55), ONE, "linkage.crank_radius", "110 mm takes the joint past a dead point"),
+    (linkage(245, 55), ONE, "linkage.crank_radius", "110 mm moves the joint past a dead point"),
     (linkage(238, 70), ONE, "linkage.base_radius", "198 mm to 308 mm from pin to pin"),
-    (linkage(268, 70), ONE, "linkage.base_radius", "takes the joint past a dead point"),
+    (linkage(268, 70), ONE, "linkage.base_radius", "moves the joint past a dead point"),
     ("", ONE, "load_cases[a].lever_arm", "missing: joint_torque needs it, or a linkage"),
     ("", case("force: 1 kN", "angle: 40 deg"), "load_cases[a].angle", "no linkage stated"),
     ("", case("force: 1 kN", "joint_speed: 1 rad/s"), "load_cases[a].joint_speed", "no linkage"),
     (WIDE, case(TORQUE, "angle: 40 deg", "position: 0 mm"), "load_cases[a].angle", "position and"),
     (WIDE, case(TORQUE, "joint_speed: 1 rad/s", "speed: 0.1 m/s"), "load_cases[a].joint_speed",
      "speed and joint_speed"),
-    (WIDE, case(TORQUE, "angle: 10 deg"), "load_cases[a].angle", "the joint turns from 41.42 deg"),
+    (WIDE, case(TORQUE, "angle: 10 deg"), "load_cases[a].angle", "the joint is 41.42 deg"),
     (WIDE, case(TORQUE, "angle: 170 deg"), "load_cases[a].angle", "to 150.8 deg"),
-    (WIDE, case("lever_arm: 40 mm"), "load_cases[a].joint_torque", "missing: lever_arm needs it"),
+    (WIDE, case("lever_arm: 40 mm"), "load_cases[a].joint_torque", "missing: required with "
+                                                                   "lever_arm"),
     (WIDE, case("speed: 1 m/s"), "load_cases[a].force", "missing"),
     (WIDE, case(TORQUE, "joint_speed: 1 m/s"), "load_cases[a].joint_speed", "is a speed"),
     (linkage(-245, 70), ONE, "linkage.base_radius", "must be > 0"),

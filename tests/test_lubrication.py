@@ -287,7 +287,7 @@ def test_a_lost_film_says_why(monkeypatch):
     monkeypatch.setattr("actuator_opt.lubrication.newton.MOST_ITERATIONS", 1)
     film = solve_film(lip(0.3))
     assert not film.converged
-    assert "no balance within 1 iterations" in film.reason
+    assert "no equilibrium within 1 iterations" in film.reason
     assert np.isnan(film.flow)
 
 

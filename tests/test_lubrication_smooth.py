@@ -136,7 +136,7 @@ def test_stiff_ring_is_a_rigid_one():
         ({"line_load": 400.0}, "so the ring lifts off"),
         ({"speed": 0.0}, "no film carries a load at rest"),
         ({"profile": np.zeros(21), "elastic": PTFE}, "leaves no wedge"),
-        ({"line_load": None, "profile": np.zeros(21)}, "least film of a held gap 0"),
+        ({"line_load": None, "profile": np.zeros(21)}, "least film of a fixed gap 0"),
         ({"cavitation_pressure": 2e5}, "below the cavitation pressure"),
     ],
 )

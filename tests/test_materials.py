@@ -442,7 +442,7 @@ def test_a_table_of_vapour_pressures_starts_above_zero(tmp_path):
 
 def test_a_missing_file_is_an_input_error(tmp_path):
     """No traceback for a wrong path."""
-    assert "no such material library" in faults_of(tmp_path / "none.yaml")[0]
+    assert "the material library does not exist" in faults_of(tmp_path / "none.yaml")[0]
 
 
 def test_duplicate_materials_in_one_file_are_refused(tmp_path):

@@ -61,8 +61,8 @@ def test_bounds_are_settable_by_path():
 @pytest.mark.parametrize(
     ("changes", "message", "remedy"),
     [
-        ({"path": "seals.piston.friction_coeff"}, "no such PATH", PATH),
-        ({"path": "seals.piston.compound"}, "is no number of the actuator", "remove"),
+        ({"path": "seals.piston.friction_coeff"}, "unknown PATH", PATH),
+        ({"path": "seals.piston.compound"}, "is not a number of the actuator", "remove"),
         ({"path": "seals.rod.stribeck_speed", "lower": "1 mm/s", "upper": "2 mm/s"},
          "is not set", "set it"),
         ({"lower": "0.2"}, "bounds reversed: upper 0.11 is below lower 0.2", "swap"),
@@ -70,7 +70,7 @@ def test_bounds_are_settable_by_path():
         ({"upper": None}, "missing", 'add "upper'),
         ({"record": None}, "missing", 'add "record'),
         ({"path": "load_cases[stance].spead", "lower": "1 m/s", "upper": "2 m/s"},
-         "no such PATH", "load_cases[stance].speed"),
+         "unknown PATH", "load_cases[stance].speed"),
     ],
 )  # fmt: skip
 def test_faults_are_one_line_at_their_place(changes, message, remedy):
@@ -83,13 +83,13 @@ def test_faults_are_one_line_at_their_place(changes, message, remedy):
 
 
 def test_a_value_beyond_its_bounds_is_said():
-    """Who changes a measured value is told that the record does not speak for it."""
+    """Who changes a measured value learns that the record does not support it."""
     inside, outside = (ao.evaluate(ao.read(entry(), set={PATH: v})) for v in (0.1, 0.2))
     assert not any("bench.csv" in words for words in inside.warnings)
     said = [words for words in outside.warnings if "bench.csv" in words]
     assert said == [
-        f"{PATH}: 0.2 lies outside what bench.csv measured, 0.09 to 0.11: the record does not "
-        "speak for it"
+        f"{PATH}: 0.2 is outside the bounds from bench.csv, 0.09 to 0.11: the record does "
+        "not support it"
     ]
 
 

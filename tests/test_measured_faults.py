@@ -76,7 +76,7 @@ def test_missing_samples_of_an_input_are_told(replay):
     found = ao.simulate(replay(lines))
     assert found.notes[0] == (
         'column "x" of in.csv (control.position[0]): 7 samples are missing in 2 places, first from '
-        "0.03 to 0.033 s, last from 0.08 to 0.082 s, a straight line between those beside them"
+        "0.03 to 0.033 s, last from 0.08 to 0.082 s, interpolated linearly"
     )
     whole = ao.simulate(replay(course()))
     assert found.signals["reference"][-1] == whole.signals["reference"][-1] == pytest.approx(0.042)
@@ -87,7 +87,7 @@ def test_an_input_that_ends_early_is_held_and_told(replay):
     found = ao.simulate(replay(course(end=0.15)))
     assert found.notes[0] == (
         'column "x" of in.csv (control.position[0]) ends at 0.15 s, the scenario at 0.2 s: its '
-        "last value is held"
+        "last value is kept"
     )
     assert found.signals["reference"][-1] == pytest.approx(0.042)
     assert found.values["hold_drift"] is not None

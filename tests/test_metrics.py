@@ -36,13 +36,13 @@ def test_a_row_that_forgets_a_piece_is_refused(piece):
 @pytest.mark.parametrize(
     ("changed", "words"),
     [
-        ({"worst": "least"}, "worst value is min or max"),
-        ({"feeds": ("air",)}, "feeds are wall, oil, own"),
+        ({"worst": "least"}, "worst value must be min or max"),
+        ({"feeds": ("air",)}, "feeds must be one of wall, oil, own"),
         ({"least": Least(1e-3, "choice")}, "state `least`"),
         ({"label": ""}, "label is empty"),
         ({"dimension": "lenght"}, "no dimension lenght"),
         ({"unit": "mn"}, "mn"),
-        ({"model": "gland"}, r"gland is no module\.function"),
+        ({"model": "gland"}, r"gland is not module\.function"),
     ],
 )
 def test_a_doubtful_row_is_refused(changed, words):
@@ -61,18 +61,18 @@ def test_every_model_of_a_row_exists(name):
 
 def test_a_limit_without_source_is_refused():
     """A check states both or neither."""
-    with pytest.raises(ValueError, match="its source, or neither"):
+    with pytest.raises(ValueError, match="limit and source, or neither"):
         CheckLine("1.9", "span", 0.1)
-    with pytest.raises(ValueError, match="its source, or neither"):
+    with pytest.raises(ValueError, match="limit and source, or neither"):
         CheckLine("1.9", "span", source="practice")
 
 
 def test_doubled_rows_and_checks_are_refused():
     """Two metrics of a name, two lines of a number."""
-    with pytest.raises(ValueError, match="metric mass: stated twice"):
+    with pytest.raises(ValueError, match="metric mass: duplicate name"):
         metric.table([MASS, MASS])
     other = row(check=CheckLine(MASS.check.number, "span"))
-    with pytest.raises(ValueError, match=r"check 13\.1: both mass and span"):
+    with pytest.raises(ValueError, match=r"check 13\.1: used by mass and span"):
         metric.table([MASS, other])
 
 

@@ -131,7 +131,7 @@ def test_nothing_that_is_read_is_written_over(verb, tmp_path):
     for target in targets:
         result = run(verb, str(record), "--design", str(design), option, str(target))
         assert result.code == 3
-        assert "written over what is read" in result.err
+        assert "is an input and would be overwritten" in result.err
     assert record.read_bytes() == RECORD.read_bytes()
     assert design.read_bytes() == KNEE.read_bytes()
 

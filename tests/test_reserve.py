@@ -123,7 +123,7 @@ def test_without_draws_the_reason_and_the_way_on_are_said(wide):
     films = prepare(ao.read(DESIGNS / "huang_110_80_560.yaml").design)
     reasons = {
         "oil films": quick_yield(films, replace(wide, requirements=())),
-        "draws nothing": wide.yield_estimate,
+        "does not sample": wide.yield_estimate,
         "own metrics": quick_yield(
             ao.read(case.PLAIN).subject(),
             replace(wide, requirements=(replace(wide.requirements[0], metric="mine"),)),

@@ -515,7 +515,7 @@ def test_plies_too_coarse_for_the_requirements(tmp_path):
     assert rounding["remedy"]
     assert not file.exists()
     (fault,) = data["errors"]
-    assert f"not written, there is no design to save: {rounding['outcome']}" in fault["message"]
+    assert f"not written, no design to save: {rounding['outcome']}" in fault["message"]
     assert result.err == ""
     assert data["shown"]["design"] == "continuous"
     assert rounding["outcome"] in data["shown"]["sentence"]

@@ -167,7 +167,7 @@ def test_lists_filter_and_order(folder, design):
     (folder / "notes.txt").write_text("mine")
     told = run("runs", "list", encoding="ascii")
     assert told.code == 0
-    assert told.err.count("is no record of a run, or a damaged one") == 2
+    assert told.err.count("is not a record of a run, or is damaged") == 2
     assert len(told.out.splitlines()) == 3
     assert max(map(len, run("runs", "list", environment={"COLUMNS": "60"}).out.splitlines())) <= 60
 
@@ -185,7 +185,7 @@ def test_names_of_runs(folder, design):
     assert run("runs", "show", folder / f"{second}.run", "--json").json["id"] == second
     several = run("runs", "show", "2023", "--json")
     assert several.code == 3
-    assert "begins several runs" in several.errors[0]["message"]
+    assert "several runs begin with" in several.errors[0]["message"]
     for name in ("nothing", "", "/no/such.run", "2024"):
         assert run("runs", "show", name, "--json").code == 3, name
     assert run("report", "2024", "--json").code == 3
@@ -317,8 +317,8 @@ def test_damaged_newer_and_foreign_records(folder, design, tmp_path):
     text = path.read_text()
     head = text.splitlines()[0]
     cases = {
-        "is no record of a run": ["", "[]\n{}", "{}", "\x00\x01", head, head + "\n{}"],
-        "in a newer form": [('"record": 2', '"record": 3')],
+        "is not a record of a run": ["", "[]\n{}", "{}", "\x00\x01", head, head + "\n{}"],
+        "in a newer format": [('"record": 2', '"record": 3')],
         "damaged": [('"kind": "optimise"', '"kind": "sweep"'), ('"state"', '"State"')],
         "does not fit this version": [('"samples"', '"Samples"')],
         "no such report": [('"kind": "optimise"', '"kind": "simulate"')],

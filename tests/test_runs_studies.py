@@ -208,10 +208,10 @@ def test_a_store_that_is_not_what_it_was(folder, design, tmp_path):
         assert "explore F.db" in words
     ao.sweep(design, ["cylinder.bore=21..22 mm:2"], store=store)
     for verb in ("report", "explore"):
-        assert "holds no such sweep" in told(verb, "last", "--out", out)
+        assert "does not contain this sweep" in told(verb, "last", "--out", out)
     store.unlink()
     store.write_text("no database")
-    assert "is no database" in told("explore", "last", "--out", out)
+    assert "is not a database" in told("explore", "last", "--out", out)
     store.unlink()
     store.mkdir()
     assert "is a folder" in told("explore", "last", "--out", out)
@@ -274,7 +274,7 @@ def test_a_front_is_not_solved_to_be_shown(folder, design, tmp_path, monkeypatch
     page = (tmp_path / "e" / "small_pareto_explore.html").read_text("utf-8")
     data = json.loads(re.search(r'id="data">(.*?)</script>', page, re.DOTALL)[1])
     assert data["rows"] == len(printed["points"])
-    assert "5 of those shown meet every requirement" in data["summary"]
+    assert "5 of these meet every requirement" in data["summary"]
     across, up = (data["columns"][data["start"][key]]["name"] for key in "xy")
     assert (across, up) == ("mass", "stiffness_min")
     base = tmp_path / "e" / "small_pareto_explore_base.yaml"

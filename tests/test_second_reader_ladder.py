@@ -200,7 +200,7 @@ def test_first_ply_of_the_lined_wall(criterion):
     value = evaluated(("barrel:\n", f"barrel:\n  criterion: {criterion}\n"))
     assert value("first_ply_factor") == near(expected)
     assert value("proof_factor") == near(min(expected, value("liner_yield_factor")) / 1.5)
-    place = f"first ply with the liner yielding, {CLIMATES[degrees]}, {PLACES[axial]}"
+    place = f"first ply with yielding liner, {CLIMATES[degrees]}, {PLACES[axial]}"
     assert value.place("first_ply_factor") == place
 
 

@@ -259,7 +259,7 @@ def test_a_curve_marks_where_no_design_is_found(steel):
         (lambda s: s.price("variables.cylinder.bore.upper"), ao.ActuatorError, "session.solve"),
         (lambda s: s.price("environment.temperature_max"), ao.ActuatorError, "session.solve"),
         (lambda s: s.predict({"seals.rod.count": 2}), ao.ActuatorError, "whole number"),
-        (lambda s: s.price("nothing"), ao.InputError, "no such PATH"),
+        (lambda s: s.price("nothing"), ao.InputError, "unknown PATH"),
         (lambda s: s.price(3), ao.InputError, "need a PATH"),
         (lambda s: s.curve(STROKE, []), ao.ActuatorError, "list of values"),
         (lambda s: s.curve(STROKE, "110 mm"), ao.ActuatorError, "list of values"),

@@ -51,9 +51,9 @@ FAULTS = [
     (["sizes: [2 bar]"], "bar is a pressure", "mm"),
     (["sizes: [[22 mm]]"], "not a list", "write one value"),
     (["sizes: {a: 22 mm}"], "need sizes, not a block", "write [25 mm]"),
-    (["sizes: iso_3230"], '"iso_3230" is no series', 'did you mean "iso_3320"'),
-    (["sizes: 22 mm"], '"22 mm" is no series', "or list them: [25 mm]"),
-    (["sizes: whole_plies"], "whole_plies has no sizes of cylinder.bore", "the thickness of"),
+    (["sizes: iso_3230"], '"iso_3230" is not a series', 'did you mean "iso_3320"'),
+    (["sizes: 22 mm"], '"22 mm" is not a series', "or list them: [25 mm]"),
+    (["sizes: whole_plies"], "whole_plies has no sizes for cylinder.bore", "the thickness of"),
     (["sizes: iso_6020_2"], "no ISO 6020-2 size lies between", "widen the bounds"),
     (["sizes: iso_3320", "step: 1 mm"], "sizes and step", "keep one"),
     (["step: 0 mm"], "more than 1000 sizes", "at least"),
@@ -85,20 +85,20 @@ def test_where_nothing_fits_the_nearest_sizes_are_named():
     ):
         (fault,) = found
         assert fault["message"] == "no ISO 3320 size lies between 26 mm and 31 mm"
-        assert "hold 25 mm or 32 mm" in fault["remedy"]
+        assert "include 25 mm or 32 mm" in fault["remedy"]
 
 
 @pytest.mark.parametrize(
     ("more", "message", "remedy"),
     [
-        (SQUEEZE + "    sizes: iso_3601\n" + SECTION, "hang on seals.rod.section", "or fix it"),
+        (SQUEEZE + "    sizes: iso_3601\n" + SECTION, "depend on seals.rod.section", "or fix it"),
         (SECTION.replace("1.5 mm", "2 mm").replace("4 mm", "2.5 mm") + "    start: 2.2 mm\n"
          "    sizes: iso_3601\n", "no ISO 3601 size lies between 2 mm and 2.5 mm",
          "1.78 mm or 2.62 mm"),
         (ROD + "    sizes: iso_6022\n", "pairs of bore and rod", "sizes: iso_6022"),
-        (ROD + HOLE + "    sizes: en_10305_1\n", "hang on rod.outer_diameter", "or fix it"),
+        (ROD + HOLE + "    sizes: en_10305_1\n", "depend on rod.outer_diameter", "or fix it"),
         ("  barrel.layup[0].thickness:\n    lower: 0.1 mm\n    upper: 1 mm\n"
-         "    sizes: whole_plies\n", "states no ply_thickness", "ply_thickness"),
+         "    sizes: whole_plies\n", "has no ply_thickness", "ply_thickness"),
         ("  barrel.layup[2].angle:\n    lower: 20 deg\n    upper: 40 deg\n"
          "    sizes: allowed_angles\n", "no allowed_angles", "allowed_angles"),
     ],

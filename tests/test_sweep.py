@@ -326,10 +326,10 @@ def test_a_store_that_cannot_be_used_is_said_in_one_line(tmp_path):
     with sqlite3.connect(old) as connection:
         connection.execute("UPDATE meta SET value = '0.1' WHERE key = 'version'")
     for path, words in (
-        (text, "is no database of sweeps"),
+        (text, "is not a database of sweeps"),
         (foreign, "another program's"),
         (browser, "another program's"),
-        (old, "holds rows of the models 0.1"),
+        (old, "has rows of model version 0.1"),
         (tmp_path / "no" / "where.db", "name a file in a folder that is there"),
         (tmp_path, "cannot be written"),
     ):
@@ -403,7 +403,7 @@ def test_a_store_without_checksums_is_refused(tmp_path):
         lambda: ao.sweep(STEEL, vary, store=store),
         lambda: ao.explore(store, out=tmp_path),
     ):
-        with pytest.raises(InputError, match="was written without checksums"):
+        with pytest.raises(InputError, match="has no checksums"):
             read()
 
 
@@ -426,7 +426,7 @@ def test_the_design_is_not_written_over(kind, tmp_path):
     design = tmp_path / "d.yaml"
     text = Path(STEEL).read_bytes()
     design.write_bytes(text)
-    with pytest.raises(InputError, match="would be written over what is read"):
+    with pytest.raises(InputError, match="is an input and would be overwritten"):
         ao.sweep(design, ["cylinder.bore=18..26 mm:3"], **{kind: design})
     assert design.read_bytes() == text
 
@@ -480,7 +480,7 @@ def test_a_full_disk_keeps_the_rows_that_stand(tmp_path):
     ao.sweep(STEEL, ["cylinder.bore=18..26 mm:3"], store=store)
     command = [sys.executable, "-c", LIMITED, STEEL, str(store), *vary]
     end = subprocess.run(command, capture_output=True, text=True, check=True)
-    assert "rows kept so far stay" in end.stdout
+    assert "stored rows are kept" in end.stdout
     with sqlite3.connect(store) as connection:
         assert connection.execute("PRAGMA integrity_check").fetchone() == ("ok",)
         assert connection.execute("SELECT count(*) FROM rows").fetchone()[0] >= 3

@@ -138,9 +138,9 @@ def test_a_thread_into_plies_is_refused_by_the_name_of_the_layer():
         ({"caps.material": "t700_epoxy"}, "caps.material", "plies"),
         ({"barrel.layup[0].thickness": "1.61 mm"}, "barrel.layup[0].thickness", "leaves 0.9966 mm"),
         ({"retention.thread.diameter": "25.9 mm"}, "barrel.layup[0].thickness", "leaves 0.8366 mm"),
-        ({"retention.thread.diameter": "27.3 mm"}, "retention.thread.diameter", "outside (27 mm)"),
+        ({"retention.thread.diameter": "27.3 mm"}, "retention.thread.diameter", "barrel (27 mm)"),
         ({"retention.material": "steel_42crmo4"}, "retention.material", "without effect"),
-        ({"retention.thread.pitch": "6 mm"}, "retention.length", "no whole turn"),
+        ({"retention.thread.pitch": "6 mm"}, "retention.length", "less than one turn"),
     ],
 )
 def test_a_thread_that_cannot_be_cut_is_refused(changes, path, said):
@@ -174,7 +174,7 @@ def test_a_choice_that_cannot_be_cut_is_no_design():
     for name in ("pa12_mjf", "t700_epoxy"):
         assert looks[name].how == "not possible"
         assert "barrel.layup[0].material" in looks[name].fault
-        assert "metal only" in looks[name].fault
+        assert "needs metal" in looks[name].fault
 
 
 def test_a_chosen_type_leaves_the_adhesive_to_the_bond():

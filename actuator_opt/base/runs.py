@@ -1,7 +1,7 @@
 """Records of runs: one file each in the user's folder, written completely or not at all.
 
 A record is a file of two lines of JSON: a short head for lists, and the body. Each line ends with
-the checksum of its preceding text, which reveals damage. The checksum is no signature: whoever
+the checksum of its preceding text, which reveals damage. The checksum is no signature: who
 writes a record can also write its checksum. This module does not interpret runs, and deletes only
 on request.
 """

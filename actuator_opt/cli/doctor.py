@@ -12,7 +12,7 @@ from .options import REPORTS, Json, Out, Quiet
 
 
 def doctor(out: Out = REPORTS, as_json: Json = False, quiet: Quiet = False) -> ExitCode:
-    """Check the installation, its optional libraries and its folders."""
+    """Check the installation and its optional libraries."""
     from .. import api as verbs
 
     found = verbs.doctor(out=out, runs=run_store.folder(), terminal=_terminal())

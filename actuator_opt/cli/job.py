@@ -154,7 +154,7 @@ class Job:
         except ActuatorError as error:
             remedy = "set ACTUATOR_OPT_RUNS to another folder, or give --no-record"
             fault = replace(error.diagnostics[0], remedy=remedy)
-            streams.err(f"the run was not recorded:  {fault}")
+            streams.err(f"the run was not recorded: {fault}")
 
     def _origin(self) -> dict[str, Any]:
         """Origin of the result."""

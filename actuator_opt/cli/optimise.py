@@ -175,7 +175,7 @@ def pareto(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Trade off two to four objectives: the Pareto front and its knee."""
+    """Pareto front of two to four objectives, and its knee."""
     from .. import api as verbs
 
     job = Job(

@@ -145,7 +145,7 @@ def identify(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Identify friction and damping from a test record, with bounds."""
+    """Friction and damping from a test record, with bounds."""
     from .. import api as verbs
 
     job = Job(

@@ -79,7 +79,7 @@ def uncertainty(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Compute yield, Sobol indices and tornado from scatter and tolerances."""
+    """Yield, Sobol indices and tornado from scatter."""
     from .. import api as verbs
 
     job = Job(
@@ -180,7 +180,7 @@ Fitted = Annotated[
     typer.Option(
         "--fit",
         metavar="NAME",
-        help="Fit a parameter to the record, with bounds (e.g.  air_content, valve_capacity, "
+        help="Fit a parameter to the record, with bounds (e.g. air_content, valve_capacity, "
         "piston_leakage, coulomb). Repeatable.",
     ),
 ]

@@ -66,7 +66,7 @@ def recheck(tree: dict[str, Any]) -> Iterator[Fault]:
     if count > MOST_COMBINATIONS:
         yield Fault(
             ("choices",),
-            f"{count} combinations are too many, as every one is tried",
+            f"{count} combinations are too many, as each is tried",
             f"remove values until at most {MOST_COMBINATIONS} are left",
             at_key=True,
         )

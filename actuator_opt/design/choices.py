@@ -44,7 +44,7 @@ ViscosityLaw: TypeAlias = Annotated[
 Mount: TypeAlias = Annotated[
     Literal["cap_clevis", "head_flange", "head_trunnion", "cap_flange"],
     Choice(
-        "how the cylinder is mounted;  cap_clevis: an eye at the cap end, free to swing; "
+        "how the cylinder is mounted; cap_clevis: an eye at the cap end, free to swing; "
         "head_flange: bolted at the head; head_trunnion: pivots at the head, free to swing; "
         "cap_flange: bolted at the cap end"
     ),
@@ -106,7 +106,7 @@ Topology: TypeAlias = Annotated[
     Literal["per_chamber", "aalto_as_published", "elasswad_as_published"],
     Choice(
         "how the stiffness of oil, walls and lines combines; "
-        "per_chamber: the parts of each chamber in series, both chambers in parallel;  "
+        "per_chamber: the parts of each chamber in series, both chambers in parallel; "
         "aalto_as_published: totals of oil, walls and lines in series, as [AaltoThesis] prints it; "
         "elasswad_as_published: oil and wall in series, as [ElAsswad2018] prints it"
     ),

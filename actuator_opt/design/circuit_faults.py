@@ -48,7 +48,7 @@ def ports(view: View) -> Iterator[Fault]:
     if end != "reducing_valve" and view.has("ports", "reducing_valve"):
         yield Fault(
             ("ports", "reducing_valve"),
-            "does not end the lines",
+            "is not the selected end of the lines",
             'write "end: reducing_valve", or remove it',
             at_key=True,
         )
@@ -107,7 +107,7 @@ def held_pressures(view: View) -> Iterator[Fault]:
         if a != b:
             missing, other = ("pressure_b", "pressure_a") if a else ("pressure_a", "pressure_b")
             yield Fault(
-                (*loc, missing), f"missing: {other} needs it", f'add e.g. "{missing}: 20 bar"'
+                (*loc, missing), f"missing: required with {other}", f'add e.g. "{missing}: 20 bar"'
             )
         for name in ("pressure_a", "pressure_b"):
             pressure, supply = view.number(*loc, name), view.number("supply", "pressure")

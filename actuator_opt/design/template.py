@@ -172,7 +172,7 @@ variables:                     # dimensions that the optimiser varies; all other
     upper: 12 mm
 
 # choices:                     # PATH with the values to choose from; every
-#   seals.rod.compound: [nbr_70, hnbr_75]      # combination is optimised, the best one kept
+#   seals.rod.compound: [nbr_70, hnbr_75]      # combination is optimised, the best is kept
 #   seals.rod.section: [2.62 mm, 3.53 mm]
 
 requirements:                  # METRIC with min and/or max; every metric: actuator-opt schema

@@ -41,7 +41,7 @@ class Uncertain(Section):
     distribution: Annotated[
         Shape,
         Choice(
-            "distribution of the value; normal:  about the value, by deviation or cv; "
+            "distribution of the value; normal: about the value, by deviation or cv; "
             "lognormal: the value is its median, by cv or by the factor that covers 95 %; "
             "uniform: between bounds, half_width about the value, or an ISO 286 tolerance; "
             "loguniform: uniform in its logarithm, between bounds or value/factor to value*factor; "

@@ -20,7 +20,7 @@ from .values import Values
 
 
 def fittings(v: Values, stock: MaterialValues, design: Design, rod: Rod) -> Overlap | str:
-    """End fittings in a laminated rod, or why there are none."""
+    """End fittings in a laminated rod, or a reason why the rod has none."""
     fitting = design.rod.fitting
     if fitting is None:
         return "the rod has no bonded fittings"

@@ -135,7 +135,7 @@ def _rod_warnings(subject: PreparedDesign, done: ModelRun) -> Iterable[tuple[str
         if rod.expansion is None:
             name = next(layer.name for layer in rod.layers if layer.expansions is None)
             why = f"{name} has no thermal expansion"
-        yield "rod_factor", f"the rod's layers exclude cooling stresses:  {why}"
+        yield "rod_factor", f"the rod's layers exclude cooling stresses: {why}"
     if rod.missing:
         yield "rod_factor", f"rod: {rod.missing[0]}"
     factors = done.computed.metrics["buckling_factor"][""]

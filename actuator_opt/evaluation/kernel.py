@@ -124,7 +124,7 @@ class Base:
 
 @dataclass(frozen=True, slots=True)
 class Implicit:
-    """Models without a closed expression of the dimensions: lower bounds replace them."""
+    """Models without a closed formula in the dimensions; a lower bound passes its own instead."""
 
     wall: Callable[[Values, Design, MaterialValues, Geometry, LoadState], Wall] = (
         barrel_module.compute

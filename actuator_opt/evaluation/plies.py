@@ -88,7 +88,7 @@ class Layer:
         )
 
     def as_wall(self, climate: int | None = None) -> WallLayer:
-        """The layer as input of the burst models, in one climate or in all, (climates, 1, 1)."""
+        """The layer as input of the burst models, in one or all climates, (climates, 1, 1)."""
         c, (first, second) = self.constants, self.expansions or (0.0, 0.0)
         return WallLayer(
             expansion_1=first,

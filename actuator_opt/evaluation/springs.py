@@ -69,7 +69,7 @@ class Springs:
     geometry: Geometry
     topology: str
     pressure: Array
-    """Pressure difference across the piston, for the published form that needs it."""
+    """Pressure difference across the piston, used by a published form only."""
     rod_place: str = ""
 
     @property

@@ -202,7 +202,7 @@ def _summary(explored: Explored) -> str:
         reasons = list(kept.failures.items())
         told = "; ".join(f"{times} times {reason}" for reason, times in reasons[:TOLD])
         more = f"; and {len(reasons) - TOLD} more reasons" if len(reasons) > TOLD else ""
-        words += f" {explored.failed} failed and have no results:  {told}{more}."
+        words += f" {explored.failed} failed and have no results: {told}{more}."
     if explored.damaged:
         words += f" {explored.damaged} damaged and left out."
     return f"{pretty(words)} Models of version {VERSION}."

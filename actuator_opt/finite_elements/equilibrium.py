@@ -225,7 +225,7 @@ def _damped(problem: ElementProblem, state: ElementState, move: Floats) -> float
     while section.smallest_volume(state.values + share * move) < least:
         share /= 2
         if share < 1e-3:
-            raise NotConverged("an element is turned inside out")
+            raise NotConverged("an element is inverted")
     return share
 
 

@@ -101,7 +101,7 @@ def resampled(
     """
     if count < FEWEST:
         message = f"{count} resamples are too few for 2.5 % tails"
-        raise InputError(Diagnostic(message, f"take {FEWEST} or more, usually 200"))
+        raise InputError(Diagnostic(message, f"use {FEWEST} or more, usually 200"))
     first, second = (np.random.default_rng(one) for one in np.random.SeedSequence(seed).spawn(2))
     curve_known = stribeck if isinstance(stribeck, StribeckFit) else None
     if isinstance(lugre, LuGreFit):

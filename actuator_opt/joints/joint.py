@@ -287,7 +287,7 @@ class Joint:
     kinds: tuple[str, ...]
     """Allowed kinds of `retention.material`; empty: no material."""
     without: Mapping[str, tuple[str, str]]
-    """Fault and remedy of an unused key, where the usual text is too short."""
+    """Specific fault and remedy of an unused key, in place of the general text."""
     faults: Callable[[Stated], Iterable[Fault]]
     """Faults of the values of a file."""
     material_faults: Callable[[Stated, Known], Iterable[Fault]]

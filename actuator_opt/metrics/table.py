@@ -192,7 +192,7 @@ ROWS = table((
     MetricRow("cap_factor", "S_c", "ratio", "", "yield over bending stress of the end caps",
               worst="min", model="end_plate.hub_plate_stress", feeds=(),
               check=CheckLine("4.3", "end plate bending", 1.5, "choice: 1.5 on yield"),
-              at={"cap, hung on its skirt": "end_plate.hung_plate_stress",
+              at={"cap, supported by its skirt": "end_plate.hung_plate_stress",
                   "head": "end_plate.end_plate_stress"}),
     MetricRow("pin_factor", "S_pin", "ratio", "", "shear yield over shear stress of the clevis pins",
               worst="min", model="retention.pin_shear_stress", feeds=(),

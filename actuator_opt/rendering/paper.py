@@ -240,7 +240,7 @@ def _table(table: Table) -> dict[str, object]:
 
 def _cell(cell: Cell, breaks: int) -> object:
     if isinstance(cell, str):
-        return soft(cell, breaks) if breaks else cell
+        return soft(cell, breaks) if breaks else clean(cell)
     if isinstance(cell, Status):
         return {"status": cell.state, "text": cell.words}
     if isinstance(cell, Bar):

@@ -33,7 +33,7 @@ LOOKED = 1024
 WORTH = 2048
 """Least number of designs that justifies a screen, which takes some 20 ms to build."""
 
-NO_ANSWER = "the models have no finite result for these dimensions"
+NO_ANSWER = "not computable for these dimensions"
 MARGIN, MISSED, FEASIBLE = "least_margin", "governing_limit", "feasible"
 """Columns beside the metrics: least margin, number of its limit, whether all limits are met."""
 

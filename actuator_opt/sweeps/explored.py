@@ -139,7 +139,7 @@ def _none_whole(kept: StoredRows, path: Path) -> InputError:
     """Explain why a study has no results."""
     if not kept.failures:
         message = f"study {kept.number}: its rows are damaged"
-        return InputError(Diagnostic(message, "run its sweep again with --store", str(path)))
+        return InputError(Diagnostic(message, "run the sweep again with --store", str(path)))
     message = f"study {kept.number}: every design failed: {next(iter(kept.failures))}"
     return InputError(Diagnostic(message, "vary other values", str(path)))
 

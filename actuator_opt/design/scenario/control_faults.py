@@ -96,7 +96,7 @@ def tuning(view: View) -> Iterator[Fault]:
     needed = ([] if loop is None else [REFERENCES[loop]]) + times
     for key in needed if way == "stated" else ():
         if not view.has("control", key):
-            what = "tuning stated" if key not in times else f"a stated {law} law"
+            what = "stated tuning" if key not in times else f"a stated {law} law"
             how = how_to_add(key, known[key])
             yield Fault(("control", key), f"missing: required by {what}", how)
     yield from _unread(view, own, way)

@@ -23,7 +23,7 @@ Supply: TypeAlias = Annotated[str, choice_of("type of supply", SUPPLIES)]
 Ends: TypeAlias = Annotated[
     str | None,
     choice_of(
-        "connection of the ports (default:  the valve of the design, else its ports.end)", ENDS
+        "connection of the ports (default: the valve of the design, else its ports.end)", ENDS
     ),
 ]
 CushionEnd: TypeAlias = Annotated[
