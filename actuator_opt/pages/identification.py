@@ -265,7 +265,7 @@ def _curve(identification: Identification) -> list[Block]:
 
 
 class Shown(NamedTuple):
-    """How a parameter is printed: display value = SI value x scale."""
+    """Label, symbol and unit of a parameter; display value = SI value x scale."""
 
     label: str
     symbol: str
@@ -528,7 +528,7 @@ def conditioning(identification: Identification) -> str:
 
 
 def _lag(identification: Identification) -> str:
-    """The lag taken off the pressures, or why there is none."""
+    """The lag taken off the pressures, or the reason for none."""
     taken, seen = identification.pressure_lag, identification.lag_seen
     if identification.settings.pressure_lag is not None:
         return f"{number(1e3 * taken, 3)} ms of lag taken off the pressures, as stated"

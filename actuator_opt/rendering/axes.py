@@ -251,7 +251,7 @@ def even_ticks(low: float, high: float, count: int) -> Ticks:
     [(54.95, '54.95'), (55.0, '55.00'), (55.05, '55.05')]
     """
     values = ticks(low, high, count)
-    while len(values) < 2 and count < 9:  # one tick tells no scale
+    while len(values) < 2 and count < 9:  # a single tick shows no scale
         count += 1
         values = ticks(low, high, count)
     step = values[1] - values[0] if len(values) > 1 else abs(high) or 1.0

@@ -157,11 +157,11 @@ class _Column:
 
     @property
     def head(self) -> float:
-        """Of the first panel."""
+        """Height of the words above the first frame."""
         return self.frames[0].head
 
     def fit(self, room: float, height: float, head: float) -> None:
-        """Places of the frames in a room [mm]; the first one begins below `head`."""
+        """Places of the frames in a room [mm]; the first frame begins below `head`."""
         ticks = [words for frame in self.frames for _, words in _y_ticks(frame)]
         self.left = min(max([text_width(w, SIZE) for w in ticks], default=0.0), NAMES) + 2.0
         self.right = max(_right_room(frame) for frame in self.frames)
@@ -190,7 +190,7 @@ class _Column:
 
 
 def _overhang(frame: _Frame, wide: float) -> tuple[float, float]:
-    """How far the numbers of x reach beyond both ends of a frame."""
+    """Lengths by which the numbers of x reach beyond both ends of a frame."""
     low, high = frame.x.range
     before = after = 0.0
     for place, words in frame.x.ticks(wide, across=True) if frame.label else ():
