@@ -35,7 +35,7 @@ from ..rendering.blocks import (
     Verdict,
     tile,
 )  # fmt: skip
-from ..rendering.heights import HALF, height
+from ..rendering.heights import HALF, SPARE, height
 from ..rendering.series import Series
 from ..rendering.text import (
     DASH,
@@ -83,7 +83,7 @@ def page(identification: Identification) -> Page:
         sentence=subject(identification),
         tiles=_tiles(identification),
         hero=lambda room: identification_figure(identification, min(room, MOST)),
-        least=LEAST,
+        least=LEAST - SPARE,  # the heights of the blocks are estimated too high by it
         blocks=list(_blocks(identification)),
     )
 
