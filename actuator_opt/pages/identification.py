@@ -34,8 +34,8 @@ from ..rendering.blocks import (
     Tile,
     Verdict,
     tile,
-)
-from ..rendering.heights import HALF, height
+)  # fmt: skip
+from ..rendering.heights import HALF, SPARE, height
 from ..rendering.series import Series
 from ..rendering.text import (
     DASH,
@@ -83,7 +83,7 @@ def page(identification: Identification) -> Page:
         sentence=subject(identification),
         tiles=_tiles(identification),
         hero=lambda room: identification_figure(identification, min(room, MOST)),
-        least=LEAST,
+        least=LEAST - SPARE,  # the heights of the blocks are estimated too high by it
         blocks=list(_blocks(identification)),
     )
 
@@ -265,7 +265,7 @@ def _curve(identification: Identification) -> list[Block]:
 
 
 class Shown(NamedTuple):
-    """How a parameter is printed: display value = SI value x scale."""
+    """Label, symbol and unit of a parameter; display value = SI value x scale."""
 
     label: str
     symbol: str
@@ -528,7 +528,7 @@ def conditioning(identification: Identification) -> str:
 
 
 def _lag(identification: Identification) -> str:
-    """The lag taken off the pressures, or why there is none."""
+    """The lag taken off the pressures, or the reason for none."""
     taken, seen = identification.pressure_lag, identification.lag_seen
     if identification.settings.pressure_lag is not None:
         return f"{number(1e3 * taken, 3)} ms of lag taken off the pressures, as stated"
