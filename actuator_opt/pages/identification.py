@@ -20,7 +20,7 @@ from ..identification.record import CHANNELS, Record
 from ..identification.result import Identification
 from ..identification.stribeck_fit import StribeckFit
 from ..metrics import METRICS
-from ..rendering.blocks import (
+from ..rendering.blocks import (  # fmt: skip
     Block,
     Column,
     Notes,
@@ -34,7 +34,7 @@ from ..rendering.blocks import (
     Tile,
     Verdict,
     tile,
-)  # fmt: skip
+)
 from ..rendering.heights import HALF, SPARE, height
 from ..rendering.series import Series
 from ..rendering.text import (

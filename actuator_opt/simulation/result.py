@@ -19,12 +19,12 @@ from ..evaluation.result import State, without_reserve
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..studies.plant import Plant
 from .components.circuit import Circuit
+from .components.signals import Records, acts_after, frequencies
 from .harmonic import dynamic_stiffness_of_record, windows
 from .integrate import Event, Trajectory
 from .linear import StepMetrics, Tuned, step_metrics
 from .loops import Loop, loop_of
 from .methods import Stuck
-from .parts.signals import Records, acts_after, frequencies
 from .system import Compiled, System
 
 

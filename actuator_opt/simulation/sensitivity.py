@@ -23,8 +23,8 @@ from ..design.walls import Loc, child, child_at, leaves, number_of
 from ..evaluation.build import prepare
 from ..evaluation.kernel import PreparedDesign
 from ..studies.plant import plant
+from .components.signals import Records
 from .linear import Tuned, tune
-from .parts.signals import Records
 from .result import Simulation
 from .run import run
 

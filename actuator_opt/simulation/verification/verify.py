@@ -21,8 +21,8 @@ from ...evaluation.build import evaluate
 from ...evaluation.kernel import PreparedDesign
 from ...evaluation.result import Requirement
 from ...metrics import METRICS
+from ..components.signals import Records
 from ..loops import loop_of
-from ..parts.signals import Records
 from ..result import Simulation
 from ..run import simulate
 from . import experiments
