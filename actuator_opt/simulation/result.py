@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..base.display import Displayed
 from ..base.errors import Diagnostic, InputError, Unsolvable
 from ..base.numeric import Array
 from ..base.quantities import RESULTS, Quantity
@@ -124,7 +125,7 @@ class Told:
 
 
 @dataclass(frozen=True, slots=True)
-class Simulation:
+class Simulation(Displayed):
     """Results of a simulated scenario.
 
     `time` may contain an instant twice: before and after a jump. `values` are results by the names

@@ -14,6 +14,7 @@ from math import inf, isfinite, isnan
 from time import perf_counter
 from typing import Any, Final, Literal
 
+from ...base.display import Displayed
 from ...base.errors import InputError, Unsolvable
 from ...base.progress import steps
 from ...design.scenario.model import Load, Scenario
@@ -69,7 +70,7 @@ class VerifiedRequirement:
 
 
 @dataclass(frozen=True, slots=True)
-class Verification:
+class Verification(Displayed):
     """All requirements of a design and a scenario, verified in time."""
 
     name: str
