@@ -285,10 +285,10 @@ def _share(index: float | None, half: float | None) -> str:
 def _inputs(study: Uncertainty) -> Table:
     """All uncertain inputs."""
     columns = [
-        Column("input", "left", 1.3, breaks=30, mono=True, least=34),
+        Column("input", "left", 1.3, breaks=30, mono=True, least=34, wraps=True),
         *(Column(head, "right") for head in ("value", "5 %", "95 %")),
         Column("distribution", drop=2),
-        Column("from", "left", 1.2, breaks=30, drop=1, least=16),
+        Column("from", "left", 1.2, breaks=30, drop=1, least=16, wraps=True),
     ]
     return Table("Uncertain inputs", columns, [_input(x) for x in study.inputs])
 
