@@ -367,7 +367,7 @@ class LugreProblem:
     def _lag_error(self, x: Array, chain: Array, scatter: float) -> float:
         """Standard error of the lag from scatter, position, velocity and sampling [s].
 
-        Resolution of the position sensor shifts all reversals alike, its white noise each one
+        Resolution of the position sensor shifts all reversals alike, its white noise each reversal
         separately. A velocity with a lower cut-off than the pressures' starts early, which looks
         like a lag; the velocity at the record's own cut-off shows the difference.
         """

@@ -197,7 +197,7 @@ def windows(
     ----------
     slidings, motion : friction along the record, and its filter
     reference : pressure from which changes are counted [Pa]
-    slowest : speed above which points of steady sliding cover settled sliding [m/s]
+    slowest : speed above which points of steady sliding cover steady motion [m/s]
     settling : distance after a reversal from which sliding is steady [m]
 
     Returns
@@ -313,7 +313,7 @@ def _lanes(
 
 
 def _settled_above(sliding: Sliding, slowest: float, settling: float) -> Array:
-    """Samples of settled sliding above a speed."""
+    """Samples of steady sliding above a speed."""
     found = np.zeros(sliding.piece.time.size, dtype=bool)
     found[settled(sliding, settling)] = True
     return found & (np.abs(sliding.piece.velocity) >= slowest)

@@ -14,14 +14,14 @@ BENT = 1.5
 """Mean square change of the position by a lower cut-off, relative to the sensor's errors, that is
 allowed (a choice: 1 if only errors are removed)."""
 PADDING = 1.5
-"""Periods of a lower cut-off beside a section that affect its filter (a choice: a step has settled
+"""Periods of a lower cut-off beside a section that affect its filter (a choice: a step response is
 within 0.5 % there)."""
 
 
 def velocities(piece: Piece, motion: Motion, first: int, last: int) -> Array:
     """Velocity along a section at the record's cut-off and at lower ones.
 
-    A cut-off that moves the position by more than the sensor's errors is replaced by the one
+    A cut-off that moves the position by more than the sensor's errors is replaced by the cut-off
     before.
 
     Parameters

@@ -81,7 +81,7 @@ class Axis:
 def read_axis(text: str, design: Design, metrics: Metrics = None) -> Axis:
     """Return the axis for a user's text: ``PATH=A..B:N`` or ``PATH=a,b,c``.
 
-    Numbers without a unit take the unit of the last one; without any unit they are SI. `metrics`
+    Numbers without a unit take the unit of the last number; without any unit they are SI. `metrics`
     are the names that the design may use; they include the user's own.
 
     Raises
@@ -122,7 +122,7 @@ def _steps(text: str, count: str | None) -> int | None:
 
 
 def _with_unit(texts: list[str]) -> list[str]:
-    """Return the values; bare numbers take the unit of the last one."""
+    """Return the values; bare numbers take the unit of the last value."""
     try:
         unit = units.split(texts[-1])[1]
     except units.UnitError:

@@ -85,7 +85,7 @@ class Plan:
         return dict(reversed(found.items()))
 
     def points(self, first: int, count: int) -> Points:
-        """Return points `first` to `first + count`, up to the last one."""
+        """Return points `first` to `first + count`, up to the last point."""
         index = np.arange(first, min(first + count, self.count), dtype=np.int64)
         places = self._grid(index) if self.method == "grid" else self._sampled(index)
         variant = np.zeros(len(index), dtype=np.int64)

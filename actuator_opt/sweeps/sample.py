@@ -52,7 +52,7 @@ def front(first: Array, second: Array) -> Array:
 
 @dataclass
 class Pool:
-    """Every k-th row of a stream, at most `MOST` in all."""
+    """Every k-th row of a stream, at most `MOST` in total."""
 
     seen: int = 0
     step: int = 1

@@ -30,7 +30,7 @@ WORTH = 1e-9
 """Least excess times price that justifies a split."""
 
 FAR_OFF = 0.2
-"""Excess above which further splits of a curve gain little; the first one gains most."""
+"""Excess above which further splits of a curve gain little; the first split gains most."""
 
 FLOOR = 0.003
 """Least price of a curve when choosing a direction; consecutive loose curves show none."""

@@ -203,6 +203,6 @@ def _applying(out: MetricArrays, metric: str, case: str) -> Iterator[tuple[str, 
 
 
 def _positions(there: ModelRun) -> tuple[float, ...]:
-    """Positions of least stiffness in all load cases, as shares of the stroke."""
+    """Positions of least stiffness over the load cases, as shares of the stroke."""
     shares = np.ravel(there.weakest / there.geometry.stroke)
     return tuple(sorted({round(float(share), 6) for share in shares if np.isfinite(share)}))
