@@ -67,7 +67,7 @@ def test_the_script_tells_the_story(ran):
     Friction stays below its limit at the optimum before and after: the best design is the same.
     """
     text, folder = ran
-    assert "what moves most is friction_running" in text.lower()
+    assert "largest change: friction_running" in text.lower()
     before, after = re.search(r"^mass +([\d.]+) g +([\d.]+) g", text, re.MULTILINE).groups()
     assert before == after
     assert "at its limit: friction_running" not in text
