@@ -17,8 +17,8 @@ from actuator_opt.design.scenario.model import Scenario
 from actuator_opt.evaluation.springs import Give
 from actuator_opt.models.tuning import ControllerGains
 from actuator_opt.simulation.assemble import assemble
+from actuator_opt.simulation.components.circuit import Circuit
 from actuator_opt.simulation.integrate import Trajectory, integrate
-from actuator_opt.simulation.parts.circuit import Circuit
 from actuator_opt.simulation.system import Compiled
 from actuator_opt.studies import plant as plants
 from actuator_opt.studies.plant import LineData, Oil, Plane, Plant, SealData, ValveData

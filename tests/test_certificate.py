@@ -10,8 +10,7 @@ from certificate_cases import HEAVIER, case
 
 from actuator_opt.optimisation.certificate.bounding import Bounding
 from actuator_opt.optimisation.certificate.box import Box, Layout
-from actuator_opt.optimisation.certificate.certify import certify
-from actuator_opt.optimisation.certificate.search import BoxSearch
+from actuator_opt.optimisation.certificate.certify import BoxSearch, certify
 
 FREE_PRESSURE = (
     ("variables.supply.pressure.lower", "150 bar"),

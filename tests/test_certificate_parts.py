@@ -11,15 +11,21 @@ import pytest
 from hypothesis import assume, given, strategies as st
 
 from actuator_opt.base.symbolic import Graph
-from actuator_opt.optimisation.certificate.bounding import Bounding
+from actuator_opt.optimisation.certificate.bounding import Bounding, straighten
 from actuator_opt.optimisation.certificate.box import Box, Layout
 from actuator_opt.optimisation.certificate.builder import Builder
+from actuator_opt.optimisation.certificate.certify import BoxSearch
 from actuator_opt.optimisation.certificate.intervals import narrow, tighten
-from actuator_opt.optimisation.certificate.plain import straighten
-from actuator_opt.optimisation.certificate.relaxation import Relaxation, Unknown
-from actuator_opt.optimisation.certificate.search import BoxSearch
-from actuator_opt.optimisation.certificate.shapes import SHAPES, Mixed, Table, Tables
-from actuator_opt.optimisation.certificate.signomial import Form, Signomial
+from actuator_opt.optimisation.certificate.relaxation import (
+    SHAPES,
+    Form,
+    Mixed,
+    Relaxation,
+    Signomial,
+    Table,
+    Tables,
+    Unknown,
+)
 
 ROUNDING = 1e-9
 KNOWN = -83.2497

@@ -17,7 +17,7 @@ from scipy.signal import sosfilt
 from actuator_opt.base.errors import InputError
 from actuator_opt.identification.conditioning import condition, low_pass, pass_cutoff, zero_phase
 from actuator_opt.identification.record import Record
-from actuator_opt.identification.spectrum import spectrum
+from actuator_opt.identification.straight import spectrum
 
 STEP = 1e-3
 

@@ -21,8 +21,7 @@ from actuator_opt.evaluation.springs import Give
 from actuator_opt.models.tuning import ControllerGains
 from actuator_opt.simulation import Simulation
 from actuator_opt.simulation.assemble import assemble
-from actuator_opt.simulation.gains import tune
-from actuator_opt.simulation.linearise import Linear, ultimate
+from actuator_opt.simulation.linear import Linear, tune, ultimate
 from actuator_opt.simulation.run import run
 from actuator_opt.studies.plant import Plant, plant
 

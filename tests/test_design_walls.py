@@ -145,7 +145,7 @@ FAULTS = [
     (changed((HOLLOW, LAYUP + FITTING)), "variables.rod.inner_diameter", "rod.inner_diameter:",
      "follows from", "rod.layup[0].thickness"),
     (changed((HOLLOW, FITTING), (MOVED, "")), "rod.fitting", "fitting:", "rod with layup",
-     "layers"),  # fmt: skip
+     "layers"),
     (laminated(LAYUP.replace("1.6 mm", "5.6 mm") + FITTING), "rod.layup", "layup:\n    - material: "
      "t700_epoxy\n      angle: 10", "layers of 6 mm leave no bore in a rod of 12 mm", "6 mm"),
     (laminated(LAYUP.replace("1.6 mm", "0 mm") + FITTING), "rod.layup[0].thickness", "0 mm\n    - ",

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from actuator_opt.design import read_design
-from actuator_opt.evaluation import compute, distributed, prepare
+from actuator_opt.evaluation import compute, dynamics_study, prepare
 from actuator_opt.models import linear
 
 LENGTH, INNER, OUTER = 1.5, 8e-3, 12e-3
@@ -42,7 +42,7 @@ def both(held, frequencies, position=0.05):
         frequency=frequencies.reshape(-1, 1, 1),
     )
     lumped = (parts.real + 1j * parts.imaginary)[:, 0, 0]
-    exact = distributed.dynamic_stiffness(
+    exact = dynamics_study.dynamic_stiffness(
         v, subject.design, done.state, done.motion, 0, position, frequencies
     )
     return lumped, exact

@@ -54,7 +54,7 @@ def _done(path):
 def _layers(subject, values):
     """Tube layers and strengths per climate, from the material's own numbers."""
     from actuator_opt.evaluation import plies
-    from actuator_opt.evaluation.allow import MaterialValues
+    from actuator_opt.evaluation.limits import MaterialValues
 
     stock = MaterialValues(values, subject.materials, subject.factors, subject.constants)
     states = plies.climates(values, subject.design)

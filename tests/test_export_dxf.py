@@ -15,8 +15,7 @@ from hypothesis import given, strategies as st
 from test_export_step import FITTED_ROD, SHIPPED, VARIANTS
 
 import actuator_opt as ao
-from actuator_opt.exports.dxf import dxf, layer_name
-from actuator_opt.exports.layout import Length, Paper, rows
+from actuator_opt.exports.dxf import Length, Paper, dxf, layer_name, rows
 
 ezdxf = pytest.importorskip("ezdxf")
 bbox = pytest.importorskip("ezdxf.bbox")

@@ -11,8 +11,7 @@ from hypothesis import given, strategies as st
 from step_reader import StepFile, volume
 
 import actuator_opt as ao
-from actuator_opt.exports.solids import Body, bodies, joined, sound, tidy
-from actuator_opt.exports.step import step
+from actuator_opt.exports.step import Body, bodies, joined, sound, step, tidy
 
 SHIPPED = sorted(DESIGNS.glob("*.yaml"))
 

@@ -15,8 +15,8 @@ from cli_runner import BENCH, DESIGNS, KNEE, command, run, spawn, surroundings
 import actuator_opt as ao
 from actuator_opt import api as verbs, cli
 from actuator_opt.base.errors import InputError
-from actuator_opt.base.plain_json import encoded
-from actuator_opt.evaluation import compute, film_tables as films, without_films
+from actuator_opt.base.tables import encoded
+from actuator_opt.evaluation import compute, film as films, without_films
 
 LONG, DIGITS = "a" * 300, "9" * 5000
 """More letters than a file system takes in a name, more digits than Python reads as an integer."""

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from test_front import objectives
 
-from actuator_opt.optimisation.front import dominance, references
+from actuator_opt.optimisation.front import dominance, plane as cells
 from actuator_opt.optimisation.front.front import Front, Settings, front
 from actuator_opt.optimisation.problem import Values
 
@@ -162,12 +162,12 @@ def test_front_in_four_pieces():
 def test_places_of_a_lattice():
     """Levels of places add up to one; those next to one are all equally far from it."""
     for count, steps in ((3, 4), (4, 2)):
-        places = references.places(count, steps)
-        levels = np.stack([references.level(place, steps) for place in places], axis=1)
+        places = cells.places(count, steps)
+        levels = np.stack([cells.level(place, steps) for place in places], axis=1)
         np.testing.assert_allclose(levels.sum(axis=0), 1)
         assert (np.ptp(levels, axis=0) <= 1 + 1e-12).all()
         assert len(set(places)) == len(places)
-        near = references.around((0,) * count)
+        near = cells.around((0,) * count)
         assert len(set(near)) == count * (count - 1)
-        apart = [np.linalg.norm(references.level(p, steps) - 1 / count) for p in near]
+        apart = [np.linalg.norm(cells.level(p, steps) - 1 / count) for p in near]
         np.testing.assert_allclose(apart, np.sqrt(2) / steps)

@@ -19,8 +19,7 @@ from test_rerun import FACTS, _pdf
 import actuator_opt as ao
 from actuator_opt import api as verbs
 from actuator_opt.base import files as store, runs as run_store
-from actuator_opt.base.errors import Diagnostic, InputError
-from actuator_opt.base.suggest import escaped
+from actuator_opt.base.errors import Diagnostic, InputError, escaped
 from actuator_opt.cli import streams
 from actuator_opt.rendering.console import Console
 

@@ -21,7 +21,7 @@ from actuator_opt.identification.bootstrap import (
     searched,
 )
 from actuator_opt.identification.identify import identify
-from actuator_opt.identification.lugre_windows import windows
+from actuator_opt.identification.lugre import windows
 from actuator_opt.identification.many_fits import FitSearch, relaxed
 from actuator_opt.identification.points import Point
 from actuator_opt.identification.stribeck_fit import fit_stribeck

@@ -8,7 +8,7 @@ from actuator_opt.base.kinds import kinds, per_kind
 from actuator_opt.design.scenario import Scenario, signals
 from actuator_opt.design.scenario.components import ENDS, FRICTIONS, LAWS, SUPPLIES
 from actuator_opt.design.scenario.shapes import SHAPES
-from actuator_opt.design.structure import entries
+from actuator_opt.design.walls import entries
 from actuator_opt.models.tuning import ziegler_nichols
 from actuator_opt.simulation.parts.friction import FORCES
 from actuator_opt.simulation.parts.ports import FEEDS

@@ -134,8 +134,8 @@ def test_stiff_ring_is_a_rigid_one():
     [
         ({"width": 0.0}, "width 0: must be above zero"),
         ({"line_load": 400.0}, "so the ring lifts off"),
-        ({"speed": 0.0}, "no film carries a load at rest"),
-        ({"profile": np.zeros(21), "elastic": PTFE}, "leaves no wedge"),
+        ({"speed": 0.0}, "a film at rest carries no load"),
+        ({"profile": np.zeros(21), "elastic": PTFE}, "has no wedge"),
         ({"line_load": None, "profile": np.zeros(21)}, "least film of a fixed gap 0"),
         ({"cavitation_pressure": 2e5}, "below the cavitation pressure"),
     ],

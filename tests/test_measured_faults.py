@@ -16,7 +16,7 @@ from test_report_simulation import boxes_collide
 
 import actuator_opt as ao
 from actuator_opt.base.errors import InputError
-from actuator_opt.design.scenario import recorded
+from actuator_opt.design.scenario import reader
 from actuator_opt.identification import parse_column
 from actuator_opt.pages import measured as pages
 from actuator_opt.pages.measured import drawn, measured_figures
@@ -377,7 +377,7 @@ def test_no_name_of_a_curve_is_cut_for_a_record(kind):
     assert not [one for one in words - bare if "…" in one]
 
 
-@pytest.mark.parametrize("module", [recorded, pages])
+@pytest.mark.parametrize("module", [reader, pages])
 def test_examples_in_docstrings(module):
     """What the docstrings show is what comes out."""
     found = doctest.testmod(module)

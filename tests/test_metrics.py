@@ -6,9 +6,8 @@ import pytest
 
 import actuator_opt as ao
 from actuator_opt.evaluation.kernel import compute
-from actuator_opt.evaluation.limits import all_limits, default_limits
-from actuator_opt.evaluation.provenance import function_of, model_of
-from actuator_opt.evaluation.rows import MetricArrays
+from actuator_opt.evaluation.limits import MetricArrays, all_limits, default_limits
+from actuator_opt.evaluation.validity import function_of, model_of
 from actuator_opt.metrics import METRICS, metric, table
 from actuator_opt.metrics.metric import CRITERION, CheckLine, Least, MetricRow
 from actuator_opt.metrics.table import ROWS

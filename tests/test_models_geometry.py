@@ -12,7 +12,7 @@ import pytest
 from model_samples import cases, leaves, public_functions
 from test_models_laws import called
 
-from actuator_opt.base.geometry import PAIRS, sizes
+from actuator_opt.base.numeric import PAIRS, sizes
 from actuator_opt.models import barrel, forces
 from actuator_opt.models.layered_tube import TubeLayer, layered_tube, tube_state
 

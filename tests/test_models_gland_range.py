@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from actuator_opt.base.errors import InputError
-from actuator_opt.design import housings, standards
+from actuator_opt.design import housings, standard_sizes as standards
 from actuator_opt.design.materials import load_library
 from actuator_opt.models import extrusion, gland, gland_range
 

@@ -10,7 +10,7 @@ from hypothesis import given, strategies as st
 
 from actuator_opt.base.errors import InputError
 from actuator_opt.simulation.harmonic import dynamic_stiffness_of_record, harmonic_fit, windows
-from actuator_opt.simulation.step_response import step_metrics
+from actuator_opt.simulation.linear import step_metrics
 
 TIME = np.linspace(0.0, 2.0, 20001)
 

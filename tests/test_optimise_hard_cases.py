@@ -12,7 +12,7 @@ from cli_runner import bench
 import actuator_opt as ao
 from actuator_opt import api as verbs
 from actuator_opt.base.errors import InputError
-from actuator_opt.optimisation.outcome import Outcome
+from actuator_opt.optimisation.actuator import Outcome
 from actuator_opt.optimisation.problem import BoxProblem, Values
 from actuator_opt.optimisation.solver import solve
 

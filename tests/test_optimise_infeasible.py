@@ -6,8 +6,8 @@ import numpy as np
 import problems
 import pytest
 
+from actuator_opt.optimisation.actuator import Outcome
 from actuator_opt.optimisation.infeasibility import explain
-from actuator_opt.optimisation.outcome import Outcome
 from actuator_opt.optimisation.problem import BoxProblem, Values
 from actuator_opt.optimisation.solver import solve
 

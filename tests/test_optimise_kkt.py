@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from scipy.optimize import nnls as reference_nnls
 
-from actuator_opt.optimisation import kkt, newton
+from actuator_opt.optimisation import kkt
 from actuator_opt.optimisation.evaluator import Evaluator
 from actuator_opt.optimisation.problem import BoxProblem, Values
 
@@ -42,7 +42,7 @@ def test_quadratic_programme_is_optimal(seed, n, rows):
     hessian = root @ root.T + 0.1 * np.eye(n)
     slope, matrix = generator.normal(size=n), generator.normal(size=(rows, n))
     margins = generator.uniform(0, 1, rows)  # no step at all is feasible
-    step, prices = newton.quadratic_programme(hessian, slope, matrix, margins)
+    step, prices = kkt.quadratic_programme(hessian, slope, matrix, margins)
     left = margins + matrix @ step
     assert (left >= -1e-8).all()
     assert (prices >= 0).all()
@@ -52,7 +52,7 @@ def test_quadratic_programme_is_optimal(seed, n, rows):
 
 def test_contradicting_rows_give_the_least_violation():
     """Where linearised rows exclude each other, the step halves the contradiction."""
-    step, _ = newton.quadratic_programme(
+    step, _ = kkt.quadratic_programme(
         np.eye(1), np.zeros(1), np.array([[1.0], [-1.0]]), np.array([-1.0, -3.0])
     )
     assert step[0] == pytest.approx(-1.0)  # least squares of d = 1 and d = -3
@@ -64,7 +64,7 @@ def test_polish_converges_from_nearby(offset):
     evaluator = Evaluator(problems.thrust_bearing())
     x = np.array([5.95578050, 5.38901305, 5.35869727e-6, 2.26965596])
     z = evaluator.space.to_z(x) + offset * np.array([1, -1, 1, 1])
-    found = newton.polish(evaluator, evaluator.point(z))
+    found = kkt.polish(evaluator, evaluator.point(z))
     assert kkt.check(evaluator, found).residual <= 1e-12
     assert found.objective == pytest.approx(1625.442759, abs=5e-6)
 
@@ -73,7 +73,7 @@ def test_polish_adds_and_drops_active_rows():
     """The finish changes the active set where the start suggests a wrong one."""
     evaluator = Evaluator(problems.rosen_suzuki())
     near = evaluator.space.to_z(np.array([0.02, 1.0, 1.97, -1.02]))
-    found = newton.polish(evaluator, evaluator.point(near))
+    found = kkt.polish(evaluator, evaluator.point(near))
     assert kkt.check(evaluator, found).active == ("g1", "g3")
     np.testing.assert_allclose(found.x, [0, 1, 2, -1], atol=1e-7)
 
@@ -87,7 +87,7 @@ def test_polish_never_worsens():
             share = generator.random(4)
             z = evaluator.space.lower + share * (evaluator.space.upper - evaluator.space.lower)
             start = evaluator.point(z)
-            found = newton.polish(evaluator, start)
+            found = kkt.polish(evaluator, start)
             assert found.violation <= max(start.violation, 1e-9)
             if start.violation == 0:
                 assert found.objective <= start.objective * (1 + 1e-8)
@@ -102,7 +102,7 @@ def test_polish_does_not_settle_on_a_maximum():
 
     evaluator = Evaluator(BoxProblem(("a", "b"), [0.1, 0.1], [10, 10], evaluate))
     start = evaluator.point(np.array([0.01, 0.3]))
-    found = newton.polish(evaluator, start, iterations=40)
+    found = kkt.polish(evaluator, start, iterations=40)
     assert found.objective < start.objective
     assert abs(found.z[0]) > 1.0
 

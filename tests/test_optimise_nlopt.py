@@ -5,8 +5,8 @@ import pytest
 
 from actuator_opt.base.errors import UsageError
 from actuator_opt.optimisation import nlopt_wrapper
+from actuator_opt.optimisation.actuator import Outcome
 from actuator_opt.optimisation.evaluator import Evaluator
-from actuator_opt.optimisation.outcome import Outcome
 from actuator_opt.optimisation.problem import BoxProblem, Values
 from actuator_opt.optimisation.solver import solve
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from hypothesis.extra.numpy import arrays
 
-from actuator_opt.optimisation import movement
+from actuator_opt.optimisation import prices as price_table
 from actuator_opt.optimisation.prices import prices
 from actuator_opt.optimisation.problem import BoxProblem, ParametricProblem, Values
 from actuator_opt.optimisation.resolve.steps import Descent
@@ -181,7 +181,7 @@ def test_linear_programming_agrees_with_enumeration(monkeypatch):
 
     problem = parametric(evaluate, np.ones(5), tuple("vwxyz"))
     _, first = priced(problem, resolve=False)
-    monkeypatch.setattr(movement, "BASES", 0)
+    monkeypatch.setattr(price_table, "BASES", 0)
     _, second = priced(problem, resolve=False)
     for name, row in first.items():
         assert row.price_up == pytest.approx(second[name].price_up, abs=1e-8)

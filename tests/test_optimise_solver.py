@@ -9,12 +9,11 @@ import pytest
 
 from actuator_opt.base.errors import InputError
 from actuator_opt.optimisation import solver
+from actuator_opt.optimisation.actuator import Outcome
 from actuator_opt.optimisation.evaluator import Evaluator
 from actuator_opt.optimisation.kkt import Curvature
-from actuator_opt.optimisation.outcome import Outcome
 from actuator_opt.optimisation.problem import BoxProblem, Space, Values
-from actuator_opt.optimisation.sampling import Halton
-from actuator_opt.optimisation.solver import solve
+from actuator_opt.optimisation.solver import Halton, solve
 
 
 def box(evaluate, n=2, constraints=(), low=0.1, high=10.0, **others):

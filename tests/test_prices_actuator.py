@@ -14,10 +14,8 @@ import actuator_opt as ao
 from actuator_opt import api as verbs
 from actuator_opt.optimisation import actuator as actuator_module
 from actuator_opt.optimisation.actuator import build
-from actuator_opt.optimisation.price_table import sensitivities
-from actuator_opt.optimisation.prices import prices
+from actuator_opt.optimisation.prices import prices, ranked, sensitivities
 from actuator_opt.optimisation.problem import BoxProblem, ParametricProblem, Values
-from actuator_opt.optimisation.sensitivity import ranked
 from actuator_opt.optimisation.solver import solve
 from actuator_opt.pages import prices as told
 from actuator_opt.pages.prices import tornado

@@ -15,8 +15,8 @@ from test_finite_elements_step_ring import SECTION, SHAPE, SQUEEZE, seal as step
 from test_report_seal import TEXTS, area, blocks, ink_of, shown
 
 import actuator_opt as ao
-from actuator_opt.evaluation.contact_elements import closed_form, room
 from actuator_opt.evaluation.kernel import base
+from actuator_opt.evaluation.sealing import closed_form, room
 from actuator_opt.finite_elements.material import MooneyRivlin
 from actuator_opt.finite_elements.o_ring import squeezed_ring
 from actuator_opt.finite_elements.result import StressField

@@ -10,7 +10,7 @@ from hypothesis import given, strategies as st
 from report_fixture import overlaps
 
 from actuator_opt.design import read_design
-from actuator_opt.optimisation import certified
+from actuator_opt.optimisation import run as runs
 from actuator_opt.optimisation.certificate.envelopes import refuse
 from actuator_opt.optimisation.certificate.relaxation import Unknown
 from actuator_opt.optimisation.result import Certificate
@@ -60,7 +60,7 @@ def test_names_on_the_scale_never_touch(share, others):
 @given(st.floats(0.0, 0.99))
 def test_a_gap_is_never_told_smaller_than_it_is(share):
     """Rounded to be read, upwards."""
-    assert float(certified._percent(share).removesuffix(" %")) >= 100 * share - 1e-9
+    assert float(runs._percent(share).removesuffix(" %")) >= 100 * share - 1e-9
 
 
 @pytest.mark.parametrize(

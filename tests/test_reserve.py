@@ -21,24 +21,16 @@ from scipy.special import betaincinv, ndtri
 import actuator_opt as ao
 from actuator_opt import api as verbs
 from actuator_opt.evaluation import prepare
-from actuator_opt.evaluation.reserve import YieldEstimate, without_reserve
-from actuator_opt.evaluation.result import Check, Unverified
+from actuator_opt.evaluation.result import Check, Unverified, YieldEstimate, without_reserve
+from actuator_opt.optimisation.problem import Robust
 from actuator_opt.optimisation.recorded import from_plain, to_plain
 from actuator_opt.optimisation.result import Optimisation
-from actuator_opt.optimisation.robustness import Robust
-from actuator_opt.pages import (
-    calibration,
-    comparison,
-    pareto,
-    report as page,
-    runs,
-    sweep,
-)
+from actuator_opt.pages import calibration, comparison, pareto, report as page, runs, sweep
 from actuator_opt.rendering import paper, paper_plain as fallback, terminal as renderer
 from actuator_opt.rendering.terminal import blocks_text
 from actuator_opt.uncertainties.draw import normal_quantile
 from actuator_opt.uncertainties.estimate import exact
-from actuator_opt.uncertainties.quick import DRAWS, quick_yield
+from actuator_opt.uncertainties.study import DRAWS, quick_yield
 
 DESIGNS = Path(__file__).parents[1] / "designs"
 DENSITY = "materials.steel_42crmo4.density"

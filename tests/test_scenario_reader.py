@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from actuator_opt.design.scenario.signal_faults import SHAPES
 from hypothesis import given, settings, strategies as st
 
 from actuator_opt.base import quantities, units
@@ -18,11 +19,9 @@ from actuator_opt.base.errors import InputError
 from actuator_opt.base.quantities import RESULTS, SCENARIOS
 from actuator_opt.design.kinds import Fraction, ValueFault, example, read_quantity
 from actuator_opt.design.scenario import Scenario, read_design_of, read_scenario
-from actuator_opt.design.scenario.faults import cross_field
-from actuator_opt.design.scenario.signal_faults import SHAPES, part_lists
-from actuator_opt.design.schema import json_schema
-from actuator_opt.design.schema_values import quantity_schema
-from actuator_opt.design.structure import entries
+from actuator_opt.design.scenario.faults import cross_field, part_lists
+from actuator_opt.design.schema import json_schema, quantity_schema
+from actuator_opt.design.walls import entries
 
 DESIGN = (Path(__file__).parent.parent / "designs" / "servo_knee.yaml").read_text("utf-8")
 

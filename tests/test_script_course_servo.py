@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from script_loader import script
 
-from actuator_opt.simulation.gains import Tuned
+from actuator_opt.simulation.linear import Tuned
 
 ROOT = Path(__file__).parents[1]
 REPORT = ROOT / "reports" / "samples" / "course_servo.pdf"

@@ -18,11 +18,10 @@ import servo_oracle_parts as parts
 from simulation_case import AREA_A, AREA_B, BAR, FULL, LEAK, OIL, VALVE as FAST, plant, scenario
 
 from actuator_opt.base.errors import InputError
-from actuator_opt.simulation.gains import tune
-from actuator_opt.simulation.measured.file import Measured, parse_measured
+from actuator_opt.simulation.linear import tune
 from actuator_opt.simulation.measured.fit import fit
 from actuator_opt.simulation.measured.parameters import PARAMETERS, entries
-from actuator_opt.simulation.measured.record import Course, noise, overlay
+from actuator_opt.simulation.measured.record import Course, Measured, noise, overlay, parse_measured
 from actuator_opt.simulation.run import run
 from actuator_opt.studies.plant import Plane, SealData
 

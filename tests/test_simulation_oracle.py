@@ -29,8 +29,7 @@ from simulation_case import (
 
 from actuator_opt.models.tuning import ControllerGains
 from actuator_opt.simulation.assemble import assemble
-from actuator_opt.simulation.gains import tune
-from actuator_opt.simulation.linearise import Linear, ultimate
+from actuator_opt.simulation.linear import Linear, tune, ultimate
 from actuator_opt.studies.plant import Plane, SealData
 
 SHARP = {"sharp": 1e3, "relative": 1e-9}

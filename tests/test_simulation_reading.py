@@ -11,8 +11,7 @@ from simulation_case import plant, scenario
 
 import actuator_opt as ao
 from actuator_opt.simulation.assemble import assemble
-from actuator_opt.simulation.gains import tune
-from actuator_opt.simulation.linearise import Law, Linear, margins, ultimate
+from actuator_opt.simulation.linear import Law, Linear, margins, tune, ultimate
 
 DESIGNS = Path(__file__).parent.parent / "designs"
 KNEE = f"name: a\ndesign: {DESIGNS / 'servo_knee.yaml'}\nduration: 0.2 s\n"

@@ -21,7 +21,7 @@ from actuator_opt.rendering import terminal
 from actuator_opt.simulation import sensitivity
 from actuator_opt.simulation.sensitivity import sensitivities
 from actuator_opt.simulation.verification import DYNAMIC, experiments, verify
-from actuator_opt.simulation.verification.stand import Stand
+from actuator_opt.simulation.verification.experiments import Stand
 from actuator_opt.simulation.verification.verify import _left_out
 from actuator_opt.studies.plant import Plane, SealData, ValveData, plant
 

@@ -18,8 +18,8 @@ import actuator_opt as ao
 from actuator_opt.base.errors import InputError
 from actuator_opt.design import choice_list, read_design
 from actuator_opt.design.schema import json_schema
-from actuator_opt.design.size_series import SERIES
 from actuator_opt.design.sizes import groups
+from actuator_opt.design.standard_sizes import SERIES
 from actuator_opt.design.writer import to_yaml
 from actuator_opt.optimisation.actuator import build
 from actuator_opt.optimisation.branch_and_bound import search

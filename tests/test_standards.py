@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from actuator_opt.base.errors import InputError
-from actuator_opt.design import standards
+from actuator_opt.design import standard_sizes as standards
 from actuator_opt.models.gland import groove_width
 
 MM = 1e-3

@@ -441,8 +441,7 @@ def test_a_store_called_memory_is_a_file(tmp_path, monkeypatch):
 
 def test_a_long_axis_takes_no_memory():
     """Its values are found from their numbers, bit for bit those of all of them at once."""
-    from actuator_opt.sweeps.axes import Axis
-    from actuator_opt.sweeps.plan import plan
+    from actuator_opt.sweeps.plan import Axis, plan
 
     axis = Axis("p", np.array([0.018, 0.040]), range=True, count=977)
     assert (axis.numbers() == np.linspace(0.018, 0.040, 977)).all()

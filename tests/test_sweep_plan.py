@@ -10,7 +10,7 @@ from scipy.stats import qmc
 from actuator_opt.base.errors import InputError, UsageError
 from actuator_opt.design import read_design
 from actuator_opt.sweeps import plan, read_axis
-from actuator_opt.sweeps.axes import Axis
+from actuator_opt.sweeps.plan import Axis
 
 KNEE = read_design("designs/knee.yaml").design.model_copy(update={"variables": {}})
 

@@ -13,7 +13,7 @@ import pytest
 
 import actuator_opt as ao
 from actuator_opt.evaluation.kernel import compute
-from actuator_opt.evaluation.wall_result import YIELD
+from actuator_opt.evaluation.wall_study import YIELD
 from actuator_opt.models import barrel
 from actuator_opt.models.criteria import CRITERIA
 

@@ -11,12 +11,11 @@ from hypothesis import given, settings, strategies as st
 from scipy.stats import binom, norm
 
 import actuator_opt as ao
-from actuator_opt.design.distributions import REACH
+from actuator_opt.design.uncertain import REACH
 from actuator_opt.models.elastomer import modulus_gent, modulus_ruess
 from actuator_opt.uncertainties import estimate
 from actuator_opt.uncertainties.draw import about
-from actuator_opt.uncertainties.inputs import inputs
-from actuator_opt.uncertainties.model import Model, without_basis
+from actuator_opt.uncertainties.inputs import Model, inputs, without_basis
 from actuator_opt.uncertainties.study import draw
 
 WIDE = (-math.inf, math.inf)

@@ -16,8 +16,8 @@ import actuator_opt as ao
 from actuator_opt.design.kinds import ValueFault
 from actuator_opt.design.materials import load_library
 from actuator_opt.design.schema import json_schema
-from actuator_opt.design.standards import tables
-from actuator_opt.design.tolerances import class_limits
+from actuator_opt.design.standard_sizes import tables
+from actuator_opt.design.uncertain import class_limits
 from actuator_opt.design.writer import to_yaml
 from actuator_opt.pages import uncertainty_document as document
 from actuator_opt.rendering.origin import Origin

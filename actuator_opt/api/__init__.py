@@ -4,13 +4,21 @@ from ..evaluation.comparison import Comparison
 from .actuator import Actuator, read
 from .checking import check, examine
 from .comparing import compare, comparison_json, draw_comparison
-from .exploring import explore
-from .exports import export
+from .exports import explore, export
 from .fronts import pareto, write_front, write_front_csv
 from .installation import Installation, doctor
 from .optimum import Prices, evaluate, optimise, sensitivity, with_yield
-from .recorded_runs import Run, delete_run, prune_runs, read_run, record_run, runs
-from .recording import record, record_front, record_sweep
+from .recorded_runs import (
+    Run,
+    delete_run,
+    prune_runs,
+    read_run,
+    record,
+    record_front,
+    record_run,
+    record_sweep,
+    runs,
+)
 from .records import (
     Calibrated,
     bending,
@@ -40,8 +48,8 @@ from .simulations import (
     write_signals,
     write_simulation,
 )
+from .studies import uncertainty, write_draws, write_uncertainty
 from .sweeping import draw_sweep, sweep
-from .uncertain import uncertainty, write_draws, write_uncertainty
 
 __all__ = [
     "Actuator",

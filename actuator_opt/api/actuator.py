@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -161,3 +162,20 @@ def unanswered(actuator: Actuator, subject: PreparedDesign) -> list[Diagnostic]:
         found = source.diagnostic(path, message, remedy) if source is not None else None
         faults.append(found or Diagnostic(message, remedy, path=path))
     return faults
+
+
+_STAMP = "# Written by actuator-opt optimise: an optimum as long as its spec hash is "
+
+
+_LINE = re.compile(re.escape(_STAMP) + r"([0-9a-f]{16})\n")
+
+
+def stamped(text: str, spec_hash: str) -> str:
+    """A design file with the stamp, replacing an older one."""
+    return f"{_STAMP}{spec_hash}\n{_LINE.sub('', text, count=1)}"
+
+
+def is_optimum(text: str, spec_hash: str) -> bool:
+    """Whether a design file is still the optimum that was saved."""
+    found = _LINE.match(text)
+    return found is not None and found[1] == spec_hash

@@ -11,12 +11,11 @@ from ..base.errors import Diagnostic, InputError, UsageError
 from ..design import Design
 from ..evaluation import Evaluation, comparison
 from ..evaluation.comparison import Comparison, DesignState
-from .actuator import Actuator, Plugins, read
+from .actuator import Actuator, Plugins, is_optimum, read
 from .optimum import evaluate
 from .recorded_runs import Run
 from .reports import Paper, file_name, report_files
 from .restoring import Restored, restore
-from .stamp import is_optimum
 
 if TYPE_CHECKING:
     from ..optimisation.result import Optimisation

@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..base import files as files, runs as run_store
+from ..base.errors import Diagnostic, InputError, UsageError
 from ..design import Design
 from ..evaluation import Evaluation
-from .actuator import Actuator, Plugins, as_actuator
+from ..explorer import ExplorerFile
+from ..sweeps.explored import Explored
+from .actuator import Actuator, Plugins, as_actuator, plugins_of
+from .kept_sweeps import store_of
 from .optimum import evaluate
+from .recorded_runs import Run, read_run, sound
 from .reports import date_from_environment, file_name, require_date
+from .restoring import changed_plugins, named_plugins, restore
+from .sweeping import free
 
 if TYPE_CHECKING:
     from ..exports import ExportFile
@@ -71,4 +80,100 @@ def export(
         folder=Path(folder),
         stem=stem or Path(file_name(evaluation.design, source)).stem,
         date=date or date_from_environment(),
+    )
+
+
+ROWS = 5000
+"""Designs of a page; larger sets are sampled evenly."""
+
+
+def explore(
+    store: str | Path,
+    *,
+    out: str | Path = "reports",
+    study: int | None = None,
+    rows: int = ROWS,
+    plugins: Sequence[str | Path] = (),
+) -> list[ExplorerFile]:
+    """Write an interactive page of a stored sweep or a front, and its base design beside it.
+
+    Parameters
+    ----------
+    store : database of `sweep`, or a recorded run of `sweep` or `pareto` as `read_run` takes it
+    out : the page's file (``.html``), or a folder
+    study : number of the study; default: the newest, or that of the run
+    rows : maximum designs of a sweep shown; larger ones give an even sample and the best
+    plugins : files with the user's metrics and constraints, as in the sweep; a record names them
+        but never runs them
+
+    Returns
+    -------
+    The page and the design, with their hashes.
+
+    Raises
+    ------
+    UsageError
+        fewer than one row
+    InputError
+        no such file, study or run; not a store, or one that has moved; one of other models,
+        materials or custom metrics; or a place that cannot be written
+    """
+    from ..explorer import write_explorer
+    from ..sweeps.explored import explored
+
+    if rows < 1:
+        raise UsageError(Diagnostic(f"--rows {rows}", "give 1 or more"))
+    if str(out) == "-":
+        raise UsageError(Diagnostic("--out -: the page cannot be printed as text", "name a file"))
+    run = read_run(store) if run_store.is_name(str(store)) else None
+    if run is not None and study is not None:
+        raise UsageError(Diagnostic("--study: a run has only one study", "leave it out"))
+    front = run is not None and run.head.get("kind") == "pareto"
+    which: int | str | None = study
+    source, target = Path(store), Path(out)
+    own, remarks = plugins_of(plugins), list[str]()
+    if run is not None:
+        with sound(run):
+            source, which = (run.path, None) if front else store_of(run)
+            remarks = changed_plugins(run, named_plugins(run, own))
+    if target.suffix.lower() not in (".html", ".htm"):
+        stem = f"{Path(str(run.head.get('file'))).stem}_pareto" if run and front else source.stem
+        target = target / f"{stem}_explore.html"
+    _require(target, source)
+    if run is not None and front:
+        with sound(run):
+            found = _front(run, own)
+    else:
+        found = explored(source, study=which, most=rows, plugins=own)
+    with files.writing(target.parent):
+        target.parent.mkdir(parents=True, exist_ok=True)
+    named = [os.path.relpath(Path(file).resolve(), target.parent.resolve()) for file in plugins]
+    return write_explorer(found, target, plugins=named, remarks=remarks)
+
+
+def _require(target: Path, source: Path) -> None:
+    """Reject a target that cannot be written or is the source itself."""
+    from ..explorer import design_beside
+
+    files.require_folder(target.parent)
+    for path in (target, design_beside(target)):
+        files.require_apart(path, str(source))
+
+
+def _front(run: Run, plugins: Plugins) -> Explored:
+    """The designs of a recorded front."""
+    from ..optimisation.pareto_result import ParetoFront
+    from ..sweeps.explored import explored_designs
+
+    back = restore(run, plugins=plugins)
+    front = back.result
+    assert isinstance(front, ParetoFront)
+    if not front.points:
+        raise InputError(Diagnostic(front.sentence, "see: runs show", str(run.path)))
+    return explored_designs(
+        free(back.actuator),
+        [point.variables for point in front.points],
+        plugins=back.actuator.plugins,
+        origin="Pareto front",
+        shown=tuple(one.metric for one in front.objectives),
     )

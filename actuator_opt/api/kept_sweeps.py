@@ -36,8 +36,7 @@ def kept_sweep(run: Run, actuator: Actuator) -> KeptSweep:
 def _plan(run: Run) -> Plan:
     import numpy as np
 
-    from ..sweeps.axes import Axis
-    from ..sweeps.plan import plan
+    from ..sweeps.plan import Axis, plan
 
     told: dict[str, Any] = run.body["plan"]
     axes = [

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 from ..design import Design
 from ..evaluation import Evaluation, PreparedDesign, evaluate as evaluate_subject, prepare
 from ..evaluation.plugin import Plugin
-from ..evaluation.reserve import YieldEstimate
+from ..evaluation.result import YieldEstimate
 from .actuator import Actuator, Plugins, answered, as_actuator, located, place
 
 if TYPE_CHECKING:
+    from ..optimisation.prices import Sensitivity
     from ..optimisation.result import Optimisation
-    from ..optimisation.sensitivity import Sensitivity
     from ..pages import ReportFile
     from ..rendering.blocks import Page
 
@@ -48,7 +48,7 @@ def with_yield(
     plugins : the user's own metrics it was evaluated with
     seed : of the draws
     """
-    from ..uncertainties.quick import quick_yield
+    from ..uncertainties.study import quick_yield
 
     subject = replace(prepare(evaluation.design, plugins=plugins), lenient=True)
     return replace(evaluation, yield_estimate=quick_yield(subject, evaluation, seed=seed))

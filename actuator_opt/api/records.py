@@ -14,7 +14,7 @@ from .reports import Paper, page_of
 
 if TYPE_CHECKING:
     from ..identification import BendingResult, Calibration, Identification, Record, Specimen
-    from ..identification.specimen import Part
+    from ..identification.bending import Part
     from ..optimisation.redesign import Redesign
     from ..pages import ReportFile
     from ..rendering.blocks import Page
@@ -181,7 +181,7 @@ def bending(
         a missing channel, no straight part, or no section
     """
     from ..identification import bending as run
-    from ..identification.specimen import specimen_of
+    from ..identification.bending import specimen_of
 
     if specimen is None:
         if span is None or design is None:

@@ -11,16 +11,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, Unpack
 
 from ..base.bounds import CHECKS, FRONT, SEED, STARTS, Bounds
-from ..base.errors import Diagnostic, InputError
-from ..base.suggest import shown
+from ..base.errors import Diagnostic, InputError, shown
 from ..evaluation import Evaluation
 from ..version import VERSION
 from . import results
 from .actuator import Actuator, Plugins, plugins_of, read_as
 from .fronts import pareto
 from .optimum import evaluate, optimise
-from .record_form import run_fault
-from .recorded_runs import Run, differing
+from .recorded_runs import Run, differing, run_fault
 from .reports import Paper, is_date, verification_tables
 
 if TYPE_CHECKING:

@@ -15,8 +15,7 @@ from ..design import Design, Source
 from ..evaluation import Evaluation, PreparedDesign, prepare
 from ..evaluation.plugin import with_own
 from ..metrics import METRICS
-from .actuator import Actuator, as_actuator
-from .stamp import stamped
+from .actuator import Actuator, as_actuator, stamped
 
 if TYPE_CHECKING:
     from ..evaluation.rings import Place

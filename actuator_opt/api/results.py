@@ -18,7 +18,7 @@ from ..base import runs as run_store
 from ..base.errors import Diagnostic, ExitCode, UsageError
 from ..design import Design
 from ..evaluation import Evaluation
-from ..evaluation.reserve import UNKNOWN
+from ..evaluation.result import UNKNOWN
 from .actuator import Actuator, Plugins, as_actuator
 from .optimum import evaluate, with_yield
 from .recorded_runs import Run
@@ -151,7 +151,7 @@ KINDS = kinds(
         writes=lambda swept: False,  # rows are written as they come, figures by draw_sweep
     ),
     ResultKind(
-        "studies.seal_result:SealStudy", _converged, page="pages.seal:page",
+        "studies.seal:SealStudy", _converged, page="pages.seal:page",
         report="api:write_seal", csv=None, record=None,
     ),
     ResultKind(

@@ -9,9 +9,8 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..base.errors import Diagnostic, InputError, UsageError
+from ..base.errors import Diagnostic, InputError, UsageError, remedy
 from ..base.quantities import Quantity
-from ..base.suggest import remedy
 from ..base.tables import aligned
 from ..design import Design, canonical, get, quantity_of
 from ..evaluation import PreparedDesign
@@ -162,8 +161,7 @@ class Session:
     """
 
     def __init__(self, actuator: Actuator, *, seed: int = 0) -> None:
-        from ..optimisation.actuator import build, require_movable_objective
-        from ..optimisation.outcome import Outcome
+        from ..optimisation.actuator import Outcome, build, require_movable_objective
         from ..optimisation.rounding import Wanted, sizes_of
         from ..optimisation.run import result_of
         from ..optimisation.solver import solve

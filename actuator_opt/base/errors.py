@@ -7,11 +7,91 @@ Every failure that a user can cause is a `UsageError` (exit 2), an `InputError` 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from enum import IntEnum
+from importlib import import_module
+from typing import Any
 
-from .suggest import shown
+
+def closest(word: str, names: Iterable[str]) -> str | None:
+    """The most similar name: equal but for case, else with the fewest edits.
+
+    >>> closest("Bore", ["stroke", "bore"])
+    'bore'
+    """
+    candidates = list(names)
+    if not word or len(word) > 80:
+        return None
+    folded = word.casefold().replace("-", "_").replace(" ", "_")
+    for name in candidates:
+        if name.casefold() == folded:
+            return name
+    import difflib  # slow to import, needed for faults only
+
+    found = difflib.get_close_matches(word, candidates, n=1, cutoff=0.6)
+    return found[0] if found else None
+
+
+def remedy(word: str, names: Iterable[str], limit: int = 12) -> str:
+    """``did you mean "x"?``, else a list of the valid names.
+
+    >>> remedy("strok", ["stroke", "bore"])
+    'did you mean "stroke"?'
+    """
+    candidates = list(names)
+    match = closest(word, candidates)
+    if match is not None:
+        return f'did you mean "{match}"?'
+    if not candidates:
+        return ""
+    more = ", …" if len(candidates) > limit else ""
+    return f"use one of {', '.join(candidates[:limit])}{more}"
+
+
+CONTROLS = r"\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff"
+"""Characters, as in a regular expression, that move the cursor or reverse the text direction."""
+
+
+_CONTROL = rf"\r(?!\n)|(?!\r)[{CONTROLS}]"
+
+
+def escaped(text: str, own: str = "") -> str:
+    r"""Text with control characters escaped, except tabs and new lines.
+
+    Parameters
+    ----------
+    text : text to print
+    own : sequences to keep, as a regular expression without groups
+
+    >>> print(escaped("\x1b[2J\u202e" "a\tb"))
+    \x1b[2J\u202ea	b
+    """
+    pattern = f"({own})|{_CONTROL}" if own else f"(?!)()|{_CONTROL}"
+    return re.sub(pattern, lambda m: m[1] or m[0].encode("unicode_escape").decode("ascii"), text)
+
+
+def shown(text: object, limit: int = 60) -> str:
+    r"""Text for one line of a message: control characters escaped, long text shortened.
+
+    >>> shown("two\nlines")
+    'two\\nlines'
+    """
+    line = "".join(
+        c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in str(text)
+    )
+    return line if len(line) <= limit else line[: limit - 1] + "…"
+
+
+def article(words: str) -> str:
+    """A noun with its indefinite article, by its first letter.
+
+    >>> article("oil volume"), article("bore")
+    ('an oil volume', 'a bore')
+    """
+    return f"an {words}" if words[:1].lower() in "aeiou" else f"a {words}"
+
 
 _LONGEST = 400
 """Characters of a file name that a message shows."""
@@ -122,3 +202,23 @@ class Unsolvable(ActuatorError):
     """The solver found no usable solution (exit 4)."""
 
     exit_code = ExitCode.SOLVER_FAILED
+
+
+EXTRAS = {"ezdxf": ("DXF", "cad"), "openpyxl": ("XLSX", "excel"), "pyarrow": ("Parquet", "parquet")}
+"""Format and package extra of every optional library."""
+
+
+def library(name: str) -> Any:
+    """Import a module of an optional library; a one-line error where it is not installed.
+
+    Raises
+    ------
+    ActuatorError : not installed
+    """
+    try:
+        return import_module(name)
+    except ImportError as missing:
+        root = name.partition(".")[0]
+        kind, extra = EXTRAS[root]
+        fault = Diagnostic(f"{kind} files need {root}", f"pip install 'actuator-opt[{extra}]'")
+        raise ActuatorError(fault) from missing

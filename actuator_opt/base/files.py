@@ -13,8 +13,7 @@ from math import isfinite
 from pathlib import Path
 from typing import BinaryIO, TextIO
 
-from .errors import Diagnostic, InputError
-from .suggest import closest
+from .errors import Diagnostic, InputError, closest
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 _CREATE = (

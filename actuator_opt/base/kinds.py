@@ -13,7 +13,7 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import Any, Protocol, TypeVar
 
-from .suggest import remedy
+from .errors import remedy
 
 _WORD = re.compile(r"[a-z][a-z0-9_]*")
 

@@ -17,9 +17,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from .errors import Diagnostic, InputError
+from .errors import Diagnostic, InputError, shown
 from .files import private_part, read_json
-from .suggest import shown
 
 FOLDER, SWITCH = "ACTUATOR_OPT_RUNS", "ACTUATOR_OPT_NO_RECORD"
 """Environment variables: folder of the records, and a switch that disables them (not "0")."""
@@ -94,7 +93,7 @@ def write(place: Path, started: str, head: Mapping[str, Any], body: Mapping[str,
     ------
     InputError : not writable; no file is left
     """
-    from .plain_json import encoded
+    from .tables import encoded
 
     lines = [
         encoded(part, separators=(",", ":")) for part in ({"record": FORMAT} | dict(head), body)

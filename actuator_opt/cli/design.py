@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..base import files as store, runs as run_store
-from ..base.errors import Diagnostic, ExitCode, UsageError
-from ..base.suggest import shown
+from ..base.errors import Diagnostic, ExitCode, UsageError, shown
 from . import streams
 from .job import Job
 from .options import (

@@ -6,8 +6,7 @@ import errno
 import os
 import sys
 
-from ..base.errors import Diagnostic, ExitCode
-from ..base.suggest import shown
+from ..base.errors import Diagnostic, ExitCode, shown
 from ..version import VERSION
 from . import streams
 

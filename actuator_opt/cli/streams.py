@@ -17,9 +17,8 @@ from time import monotonic
 from types import FrameType
 from typing import TYPE_CHECKING, Any, TextIO
 
-from ..base.errors import Diagnostic, ExitCode, InputError
+from ..base.errors import Diagnostic, ExitCode, InputError, escaped
 from ..base.progress import watched
-from ..base.suggest import escaped
 from ..base.units import whole
 
 if TYPE_CHECKING:
@@ -186,7 +185,7 @@ def watching() -> Iterator[None]:
 
 def out_json(data: dict[str, Any]) -> None:
     """Print one JSON object."""
-    from ..base.plain_json import encoded
+    from ..base.tables import encoded
 
     out(encoded(data, indent=1))
 

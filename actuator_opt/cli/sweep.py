@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..base.bounds import SWEEP_FIGURES
-from ..base.errors import ActuatorError, Diagnostic, ExitCode, UsageError
-from ..base.suggest import shown
+from ..base.errors import ActuatorError, Diagnostic, ExitCode, UsageError, shown
 from ..base.units import whole
 from . import streams
 from .job import Job

@@ -8,18 +8,18 @@ from typing import Any, Generic, TypeVar
 
 from pydantic import ValidationError
 
-from ..base import suggest
+from ..base import errors
 from ..base.errors import Diagnostic, Fault, InputError
 from ..base.quantities import Quantity
 from ..metrics import METRICS
-from . import choice_list, wishes
+from . import choice_list, requirements as wishes
 from .faults import cross_field, material_faults
 from .kinds import Fraction, Of, ValueFault, example, what
 from .model import Design, Ply
 from .paths import put, resolve, spell
 from .section import Section
-from .structure import Entry, Loc, child_at, entries, leaves
 from .view import Materials
+from .walls import Entry, Loc, child_at, entries, leaves
 
 MOST_FAULTS = 100
 
@@ -183,9 +183,9 @@ def _translate(error: ValidationError, root: type[Section]) -> Iterator[Fault]:
         elif kind == "literal_error" and entry is not None:
             word = value if isinstance(value, str) else ""
             message = (
-                f'"{suggest.shown(word)}" is not a choice' if word else "a single word is required"
+                f'"{errors.shown(word)}" is not a choice' if word else "a single word is required"
             )
-            yield Fault(loc, message, suggest.remedy(word, entry.choices))
+            yield Fault(loc, message, errors.remedy(word, entry.choices))
         elif kind in ("too_short", "too_long"):
             few = kind == "too_short"
             if few and value:
@@ -204,11 +204,11 @@ def _translate(error: ValidationError, root: type[Section]) -> Iterator[Fault]:
         elif kind == "string_type":
             yield Fault(loc, f"need a text, not {_word(value)}", "write one value")
         else:
-            yield Fault(loc, suggest.shown(item["msg"], 120))
+            yield Fault(loc, errors.shown(item["msg"], 120))
 
 
 def _word(value: object) -> str:
-    return f'"{suggest.shown(value)}"' if isinstance(value, str) else what(value)
+    return f'"{errors.shown(value)}"' if isinstance(value, str) else what(value)
 
 
 def _unknown_key(loc: Loc, root: type[Section]) -> Fault:
@@ -219,7 +219,7 @@ def _unknown_key(loc: Loc, root: type[Section]) -> Fault:
     else:
         names = list(entries(section)) if section else []
         names += ["plies"] if section is Ply else []
-    return Fault(loc, "unknown key", suggest.remedy(str(loc[-1]), names), at_key=True)
+    return Fault(loc, "unknown key", errors.remedy(str(loc[-1]), names), at_key=True)
 
 
 def how_to_add(name: str, entry: Entry | None) -> str:

@@ -12,16 +12,16 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeAlias
 
-from ..base import suggest
+from ..base import errors
 from ..base.errors import Fault
 from ..base.quantities import Quantity
 from .kinds import Fraction, MaterialName, Text, ValueFault, what
 from .material import ROLES
 from .model import Design
 from .paths import Target, resolve
-from .structure import Entry, number_of, value_at
+from .requirements import in_faulty_block
 from .view import Materials
-from .wishes import in_faulty_block
+from .walls import Entry, number_of, value_at
 
 Value: TypeAlias = float | bool | str | Fraction
 """An allowed value: SI number, boolean, name or word, or share of the stroke."""
@@ -51,8 +51,8 @@ def recheck(tree: dict[str, Any]) -> Iterator[Fault]:
             continue
         if not isinstance(values, list):
             if values is not None:
-                given = f'"{suggest.shown(values)}"' if isinstance(values, str) else what(values)
-                good = suggest.shown(values) if isinstance(values, str) else _example(target)
+                given = f'"{errors.shown(values)}"' if isinstance(values, str) else what(values)
+                good = errors.shown(values) if isinstance(values, str) else _example(target)
                 yield Fault(loc, f"need a list of allowed values, not {given}", f"write [{good}]")
             continue
         if not values:
@@ -112,7 +112,7 @@ def _values(loc: tuple[str, str], values: list[Any], target: Target) -> Iterator
             continue
         twin = next((i for i, other in good if same(other, value)), None)
         if twin is not None:
-            message = f"{suggest.shown(raw)}: the same as value {twin + 1} of the list"
+            message = f"{errors.shown(raw)}: the same as value {twin + 1} of the list"
             yield Fault((*loc, index), message, "keep one of them")
         good.append((index, value))
 
@@ -123,10 +123,8 @@ def _read(raw: Any, entry: Entry) -> Value:
         if raw in entry.choices:
             return str(raw)
         word = raw if isinstance(raw, str) else ""
-        message = (
-            f'"{suggest.shown(word)}" is not a choice' if word else "a single word is required"
-        )
-        raise ValueFault(message, suggest.remedy(word, entry.choices))
+        message = f'"{errors.shown(word)}" is not a choice' if word else "a single word is required"
+        raise ValueFault(message, errors.remedy(word, entry.choices))
     assert entry.kind is not None
     value: Value = entry.kind.validate(raw)
     return value
@@ -161,8 +159,8 @@ def material_faults(tree: Any, materials: Materials) -> Iterator[Fault]:
                 continue
             loc = ("choices", path, index)
             if name not in materials:
-                message = f'"{suggest.shown(name)}": unknown material'
-                yield Fault(loc, message, suggest.remedy(name, fitting))
+                message = f'"{errors.shown(name)}": unknown material'
+                yield Fault(loc, message, errors.remedy(name, fitting))
             else:
                 message = f"{name}: its kind ({materials.kind(name)}) does not suit this place"
                 yield Fault(loc, message, f"use e.g. {', '.join(fitting[:6])}")

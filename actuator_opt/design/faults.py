@@ -11,20 +11,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from ..base import quantities, suggest
+from ..base import errors, quantities
 from ..base.errors import Fault
-from . import (
-    circuit_faults,
-    linkage_faults,
-    material_laws,
-    retention_faults,
-    seal_faults,
-    wall_faults,
-)
+from . import circuit_faults, linkage_faults, material, seal_faults, wall_faults
 from .kinds import MaterialName
 from .material import ROLES
-from .structure import Loc, child, leaves
 from .view import Materials, View, length_text
+from .walls import Loc, child, leaves
 
 
 def _smaller(
@@ -141,7 +134,7 @@ def load_cases(view: View) -> Iterator[Fault]:
         name = child(case, "name")
         if isinstance(name, str):
             if name in seen:
-                message = f'"{suggest.shown(name)}": also the name of entry {seen[name]}'
+                message = f'"{errors.shown(name)}": also the name of entry {seen[name]}'
                 yield Fault((*loc, "name"), message, "give each load case its own name")
             seen.setdefault(name, index)
         if isinstance(case, dict):
@@ -180,16 +173,16 @@ def _case_force(loc: Loc, case: dict[str, Any], *, linked: bool) -> Iterator[Fau
 CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
     rod,
     barrel_length,
-    retention_faults.skirts,
+    wall_faults.skirts,
     supply,
     environment,
-    retention_faults.keys,
+    wall_faults.keys,
     load_cases,
     *seal_faults.CHECKS,
     *circuit_faults.CHECKS,
     *linkage_faults.CHECKS,
     *wall_faults.CHECKS,
-    retention_faults.values,
+    wall_faults.values,
 )
 
 
@@ -208,14 +201,14 @@ def material_faults(tree: Any, materials: Materials) -> Iterator[Fault]:
     """All faults that depend on the material library."""
     yield from _material_names(tree, materials)
     yield from wall_faults.of_materials(tree, materials)
-    yield from retention_faults.of_materials(tree, materials)
+    yield from wall_faults.of_end_materials(tree, materials)
     yield from seal_faults.sliding_rings(tree, materials)
-    yield from material_laws.of_fluid(tree, materials)
+    yield from material.of_fluid(tree, materials)
 
 
 def _material_names(tree: Any, materials: Materials) -> Iterator[Fault]:
     """Unknown materials, and materials that do not suit their place."""
-    joint = retention_faults.joint_of(View(tree))
+    joint = wall_faults.joint_of(View(tree))
     for loc, entry, name in leaves(tree):
         if not isinstance(entry.kind, MaterialName) or not isinstance(name, str):
             continue
@@ -228,14 +221,14 @@ def _material_names(tree: Any, materials: Materials) -> Iterator[Fault]:
             continue
         fitting = [other for other in materials.names() if materials.kind(other) in fits]
         if name not in materials:
-            message = f'"{suggest.shown(name)}": unknown material'
-            yield Fault(loc, message, suggest.remedy(name, fitting))
+            message = f'"{errors.shown(name)}": unknown material'
+            yield Fault(loc, message, errors.remedy(name, fitting))
         else:
             message = f"{name} is {_a(materials.kind(name))}, need {_a(' or '.join(fits))}"
             yield Fault(loc, message, f"use e.g. {', '.join(fitting[:6])}" if fitting else "")
     changed = child(tree, "materials")
     for name in changed if isinstance(changed, Mapping) else ():
         if name not in materials:
-            message = f'"{suggest.shown(name)}": unknown material'
-            remedy = suggest.remedy(name, materials.names())
+            message = f'"{errors.shown(name)}": unknown material'
+            remedy = errors.remedy(name, materials.names())
             yield Fault(("materials", name), message, remedy, at_key=True)

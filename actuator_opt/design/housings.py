@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
 from ..base.errors import Diagnostic, InputError
-from .standards import Gland, citation, metres, section_tolerance, tables
+from .standard_sizes import Gland, citation, metres, section_tolerance, tables
 
 Place: TypeAlias = Literal["rod", "piston"]
 Points: TypeAlias = tuple[tuple[float, float], ...]

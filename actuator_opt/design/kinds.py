@@ -16,9 +16,9 @@ from pydantic import GetCoreSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from ..base import kinds, quantities, units
+from ..base.errors import article, shown
 from ..base.numeric import Array
 from ..base.quantities import Quantity
-from ..base.suggest import article, shown
 
 _LONGEST_NUMBER = 100
 _DECIMAL_COMMA = re.compile(r"\s*[+-]?\d+,\d")

@@ -18,12 +18,11 @@ from decimal import Decimal
 from typing import Any, NamedTuple
 
 from ..base import quantities, units
-from ..base.errors import Diagnostic
-from ..base.suggest import shown
+from ..base.errors import Diagnostic, shown
 from .kinds import ValueFault, example, read_quantity, what
 from .model import MOST_LAYERS, Ply
 from .paths import spell
-from .structure import Loc, child, child_at, lists_of
+from .walls import Loc, child, child_at, lists_of
 from .yaml_source import Document, Shorthand, Span
 
 EXAMPLE = "[90_4 / +-25_2 / 0]s"

@@ -11,8 +11,8 @@ from ..base.errors import Fault
 from ..models import linkage as crank
 from .linkage import closed_length
 from .model import PLAIN_CAP
-from .structure import Loc
 from .view import View, length_text
+from .walls import Loc
 
 _ROUND = math.radians(0.01)
 """Joint angles in remedies are rounded inwards to this step (rad), for short numbers."""

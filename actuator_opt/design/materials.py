@@ -3,13 +3,389 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterable, Iterator
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any, TypeAlias
 
-from ..base import files as store
-from ..base.errors import Diagnostic, InputError
+from ..base import files as store, units
+from ..base.errors import Diagnostic, InputError, remedy, shown
+from ..base.quantities import INPUTS, MATERIAL_PROPERTIES, Quantity
+from . import material, yaml_source
+from .kinds import ValueFault, read_quantity, what
 from .material import ROLES, Material, Property, Spread, allowable_factor, compatible, ply_constants
-from .material_files import MaterialFile, read_entry, read_file
+
+_TOP = re.compile(r"(?m)^(?P<quote>['\"]?)(?P<name>[^\W\d][\w.+-]*)(?P=quote)[ \t]*:")
+
+
+_STRAY = re.compile(r"(?m)^(?!#|---|['\"]?[^\W\d][\w.+-]*['\"]?[ \t]*:)\S.*$")
+
+
+_KIND = re.compile(r"(?m)^[ ]+kind:[ ]*(\w+)[ ]*$")
+
+
+_SCATTER = re.compile(
+    r"(?:not stated|(?P<cv>\d*\.?\d+)(?: to (?P<cv2>\d*\.?\d+))? % CV"
+    r"|\+-(?P<half>\d*\.?\d+ \S.*?)|factor (?P<factor>\d*\.?\d+))(?:; .*)?"
+)
+
+
+_META = ("source", "confidence", "scatter", "basis")
+
+
+_ENTRY_KEYS = (
+    "kind", "label", "inherit", "notes", "warning", "family", "suits", *_META, "properties",
+)  # fmt: skip
+
+
+_PROPERTY_KEYS = ("value", "points", "note", *_META)
+
+
+_ARGUMENTS = {"temperature": 313.15, "pressure": float("inf")}
+"""Arguments of tables and their reference values (the nearest point is used)."""
+
+
+Parent: TypeAlias = Callable[[str], Material | None]
+"""Returns the material of an ``inherit:``; None if unknown."""
+
+
+@dataclass(slots=True, eq=False)
+class MaterialFile:
+    """A library file, split into entries."""
+
+    path: str
+    text: str
+    places: dict[str, tuple[int, int, int]] = field(default_factory=dict)
+    """Start, end and line of each entry's text by name."""
+    faults: list[Diagnostic] = field(default_factory=list)
+    """Faults of the file as a whole."""
+    _sources: dict[str, str] | None = None
+
+    def names(self) -> list[str]:
+        """Entries of the file, including templates (leading underscore)."""
+        return [name for name in self.places if name != "sources"]
+
+    def kind(self, name: str) -> str | None:
+        """Kind of an entry, read without parsing it."""
+        start, end, _ = self.places[name]
+        match = _KIND.search(self.text, start, end)
+        return match[1] if match else None
+
+    def document(self, name: str) -> yaml_source.Document:
+        """Parse the text of an entry; its line numbers are those of the file."""
+        start, end, line = self.places[name]
+        return yaml_source.parse("\n" * (line - 1) + self.text[start:end], self.path)
+
+    def sources(self) -> Mapping[str, str]:
+        """Citations by key."""
+        if self._sources is None:
+            found: dict[str, str] = {}
+            if "sources" in self.places:
+                table = self.document("sources").data["sources"]
+                if not isinstance(table, dict):
+                    raise InputError(self.fault("sources", "need a block of citations by key"))
+                found = {key: " ".join(str(text).split()) for key, text in table.items()}
+            self._sources = found
+        return self._sources
+
+    def fault(self, name: str, message: str, advice: str = "") -> Diagnostic:
+        """A fault at the head of an entry."""
+        _, _, line = self.places[name]
+        return Diagnostic(message, advice, self.path, line, 1, name, f"{name}:")
+
+
+def read_file(path: Path) -> MaterialFile:
+    """Read a library file and split it into entries; cached until the file changes."""
+    try:
+        state = path.stat()
+    except OSError:
+        raise InputError(
+            Diagnostic("the material library does not exist", "check the path", str(path))
+        ) from None
+    return _read_file(str(path), state.st_mtime_ns, state.st_size)
+
+
+@functools.lru_cache(maxsize=64)
+def _read_file(path: str, changed: int, size: int) -> MaterialFile:
+    text = yaml_source.decode(Path(path).read_bytes(), path)
+    text = text.replace("\r\n", "\n").replace("\r", "\n")
+    found = MaterialFile(path, text)
+    heads = list(_TOP.finditer(text))
+    ends = [head.start() for head in heads[1:]] + [len(text)]
+    line, at = 1, 0
+    for head, end in zip(heads, ends, strict=True):
+        line, at = line + text.count("\n", at, head.start()), head.start()
+        name = head["name"]
+        if name in found.places:
+            message = f'duplicate material "{name}", first at line {found.places[name][2]}'
+            found.faults.append(
+                Diagnostic(message, "keep one of them", path, line, 1, name, f"{name}:")
+            )
+            continue
+        found.places[name] = (head.start(), end, line)
+    for stray in _STRAY.finditer(text):
+        line = text.count("\n", 0, stray.start()) + 1
+        message = f'"{shown(stray[0], 30)}" belongs to no material'
+        advice = "write NAME: and indent what belongs to it"
+        found.faults.append(Diagnostic(message, advice, path, line, 1, None, shown(stray[0], 120)))
+    found.text = _STRAY.sub(lambda stray: " " * len(stray[0]), text)
+    return found
+
+
+def read_entry(file: MaterialFile, name: str, parent: Parent) -> Material:
+    """An entry as a `Material`; raises `InputError` with all of its faults.
+
+    Parameters
+    ----------
+    file, name : file and name of the entry
+    parent : returns the material of an ``inherit:``
+    """
+    reader = _Reader(file, name)
+    found = reader.entry(parent)
+    if reader.faults or found is None:
+        raise InputError(reader.faults)
+    return found
+
+
+class _Reader:
+    """Reads an entry and collects its faults."""
+
+    def __init__(self, file: MaterialFile, name: str) -> None:
+        self.file = file
+        self.name = name
+        self.document = file.document(name)
+        self.faults = list(self.document.faults)
+
+    def fault(self, loc: tuple[str | int, ...], message: str, advice: str = "") -> None:
+        """Add a fault at a key or value of the entry."""
+        spans = self.document.values
+        span = spans.get((self.name, *loc)) or self.document.keys.get((self.name, *loc))
+        path = ".".join([self.name, *(str(k) for k in loc if k not in ("properties", "value"))])
+        self.faults.append(self.document.diagnostic(span, message, advice, path))
+
+    def entry(self, parent: Parent) -> Material | None:
+        """Material of the entry, or None if it is not a block."""
+        data = self.document.data.get(self.name)
+        if not isinstance(data, dict):
+            self.fault((), f"need a block of keys, not {what(data)}", "see: materials show")
+            return None
+        self._unknown((), data, _ENTRY_KEYS)
+        base = None
+        if isinstance(data.get("inherit"), str):
+            base = parent(data["inherit"])
+            if base is None:
+                self.fault(("inherit",), f'unknown material "{shown(data["inherit"])}"')
+        kind = data.get("kind") or (base.kind if base else None)
+        if kind not in material.KINDS:
+            message = f'"{shown(kind)}" is not a kind' if kind else "the kind is missing"
+            self.fault(("kind",) if kind else (), message, remedy(str(kind), material.KINDS))
+        properties = dict(base.properties) if base else {}
+        properties |= self._properties(data)
+        properties = {name: properties[name] for name in MATERIAL_PROPERTIES if name in properties}
+        found = Material(
+            self.name, str(kind), self._text(data, "label") or self.name, properties,
+            self._text(data, "notes"), self._text(data, "warning"),
+            self._family(data, base), self._suits(data, base),
+            self.file.path, self.file.places[self.name][2],
+        )  # fmt: skip
+        if not self.faults and not self.name.startswith("_"):
+            self._complete(found)
+        return found
+
+    def _properties(self, data: dict[str, Any]) -> dict[str, Property]:
+        defaults = self._meta((), data, {})
+        table = data.get("properties")
+        if table is None:
+            return {}
+        if not isinstance(table, dict):
+            self.fault(("properties",), f"need a block of properties, not {what(table)}")
+            return {}
+        found = {}
+        for name, spec in table.items():
+            quantity = MATERIAL_PROPERTIES.get(name)
+            loc = ("properties", name)
+            if quantity is None:
+                advice = remedy(name, MATERIAL_PROPERTIES)
+                self.fault(loc, f'unknown property "{shown(name)}"', advice)
+                continue
+            entry = self._property(loc, quantity, spec, defaults)
+            if entry is not None:
+                found[name] = entry
+        return found
+
+    def _property(
+        self, loc: tuple[str, ...], quantity: Quantity, spec: Any, defaults: Mapping[str, str]
+    ) -> Property | None:
+        if not isinstance(spec, dict):
+            spec, at = {"value": spec}, loc
+        else:
+            self._unknown(loc, spec, _PROPERTY_KEYS)
+            at = (*loc, "value")
+        meta = self._meta(loc, spec, defaults)
+        for key in _META:
+            if key not in meta and key not in ("scatter",):
+                self.fault(loc, f"the {key} is missing", f"write {key}: here or in the entry")
+        argument: str | None = None
+        points: tuple[tuple[float, float], ...] = ()
+        if "points" in spec:
+            argument, points = self._points((*loc, "points"), quantity, spec["points"])
+            if not points or argument is None:
+                return None
+            target = _ARGUMENTS[argument]
+            value = min(points, key=lambda p: abs(p[0] - min(target, points[-1][0])))[1]
+        elif "value" in spec:
+            number = self._number(at, quantity, spec["value"])
+            if number is None:
+                return None
+            value = number
+        else:
+            self.fault(loc, "the value is missing", "write value: or points:")
+            return None
+        scatter = meta.get("scatter", "not stated")
+        return Property(
+            quantity, value, meta.get("source", ""), scatter, meta.get("confidence", ""),
+            meta.get("basis", ""), self._text(spec, "note", loc),
+            self._spread(loc, scatter, quantity, value), argument, points,
+        )  # fmt: skip
+
+    def _points(
+        self, loc: tuple[str, ...], quantity: Quantity, rows: Any
+    ) -> tuple[str | None, tuple[tuple[float, float], ...]]:
+        if not isinstance(rows, list) or len(rows) < 2:
+            self.fault(loc, "need a list of two or more points", "- {temperature: ..., value: ...}")
+            return None, ()
+        argument: str | None = None
+        found: list[tuple[float, float]] = []
+        for index, row in enumerate(rows):
+            keys = set(row) - {"value"} if isinstance(row, dict) else set()
+            if len(keys) != 1 or "value" not in row or not keys <= set(_ARGUMENTS):
+                advice = "write {temperature: ..., value: ...} or {pressure: ..., value: ...}"
+                self.fault((*loc, index), "not a table point", advice)
+                return None, ()
+            (key,) = keys
+            argument = argument or key
+            if key != argument:
+                self.fault((*loc, index), f"this table is over {argument}, not {key}")
+                return None, ()
+            x = self._number((*loc, index, key), INPUTS[key], row[key])
+            y = self._number((*loc, index, "value"), quantity, row["value"])
+            if x is None or y is None:
+                return None, ()
+            if found and x <= found[-1][0]:
+                self.fault((*loc, index), f"the {key} must rise from point to point", "sort them")
+                return None, ()
+            found.append((x, y))
+        return argument, tuple(found)
+
+    def _meta(
+        self, loc: tuple[str, ...], spec: dict[str, Any], defaults: Mapping[str, str]
+    ) -> dict[str, str]:
+        found = dict(defaults)
+        for key in _META:
+            if key in spec:
+                found[key] = self._text(spec, key, loc)
+        if "source" in spec:
+            found["source"] = self.file.sources().get(found["source"], found["source"])
+        for key, allowed in (("confidence", material.CONFIDENCES), ("basis", material.BASES)):
+            if key in spec and found[key] not in allowed:
+                advice = f"use one of {', '.join(allowed)}"
+                self.fault((*loc, key), f'unknown {key} "{shown(found[key])}"', advice)
+        return found
+
+    def _spread(
+        self, loc: tuple[str, ...], text: str, quantity: Quantity, value: float
+    ) -> Spread | None:
+        match = _SCATTER.fullmatch(text)
+        if match is None:
+            advice = 'write "not stated", "3 % CV", "+-5 %" or "factor 2", remarks after ";"'
+            self.fault(loc, f'unknown scatter "{shown(text)}"', advice)
+            return None
+        if match["cv"]:
+            return Spread("cv", float(match["cv2"] or match["cv"]) / 100)
+        if match["factor"]:
+            return Spread("factor", float(match["factor"]))
+        if not match["half"]:
+            return None
+        number, unit = units.split(match["half"])
+        if unit == "%":
+            return Spread("tolerance", number / 100)
+        try:
+            half = number * units.unit(unit, quantity.dimension).scale
+        except units.UnitError as error:
+            self.fault(loc, f"scatter: {error.message}", error.remedy)
+            return None
+        return Spread("tolerance", half / abs(value)) if value else None
+
+    def _number(self, loc: tuple[str | int, ...], quantity: Quantity, text: Any) -> float | None:
+        try:
+            return read_quantity(text, quantity)
+        except ValueFault as error:
+            self.fault(loc, error.message, error.remedy)
+            return None
+
+    def _text(self, spec: Mapping[str, Any], key: str, loc: tuple[str, ...] = ()) -> str:
+        value = spec.get(key)
+        if value is None:
+            return ""
+        if not isinstance(value, str):
+            self.fault((*loc, key), f"need a text, not {what(value)}")
+            return ""
+        return " ".join(value.split())
+
+    def _family(self, data: Mapping[str, Any], base: Material | None) -> str:
+        family = self._text(data, "family") or (base.family if base else "")
+        if family and family not in material.FAMILIES:
+            advice = remedy(family, material.FAMILIES)
+            self.fault(("family",), f'unknown fluid family "{shown(family)}"', advice)
+        return family
+
+    def _suits(self, data: Mapping[str, Any], base: Material | None) -> tuple[str, ...]:
+        rows = data.get("suits")
+        if rows is None:
+            return base.suits if base else ()
+        if not isinstance(rows, list) or not set(rows) <= set(material.FAMILIES):
+            self.fault(("suits",), f"need a list of {', '.join(material.FAMILIES)}")
+            return ()
+        return tuple(rows)
+
+    def _unknown(
+        self, loc: tuple[str, ...], spec: Mapping[str, Any], allowed: tuple[str, ...]
+    ) -> None:
+        for key in spec:
+            if key not in allowed:
+                self.fault((*loc, key), f'unknown key "{shown(key)}"', remedy(key, allowed))
+
+    def _complete(self, found: Material) -> None:
+        """Faults of the entry as a whole: missing or impossible properties."""
+        required = material.REQUIRED[found.kind]
+        if found.kind == "ply" and not found.isotropic:
+            required += material.PLY_REQUIRED
+        missing = [name for name in required if name not in found.properties]
+        if missing:
+            self.fault((), f"a {found.kind} needs {', '.join(missing)}", "add it to properties:")
+            return
+        if found.kind == "fluid" and not found.viscosity_points:
+            loc = ("properties", "kinematic_viscosity")
+            advice = "write points: [{temperature: 40 degC, value: ...}, ...]"
+            self.fault(loc, "a fluid needs its viscosity at two or more temperatures", advice)
+            return
+        vapour = found.properties.get("vapour_pressure")
+        if vapour is not None and vapour.points and min(vapour.values) <= 0:
+            loc = ("properties", "vapour_pressure")
+            self.fault(
+                loc,
+                "a table of vapour pressures needs values above zero",
+                "remove the point with value 0",
+            )
+            return
+        constants = material.ply_constants(found.numbers)
+        if constants and material.compliance_determinant(constants) <= 0:
+            message = (
+                "the elastic constants are impossible: the compliance is not positive definite"
+            )
+            self.fault(("properties",), message, "check the Poisson's ratios against the moduli")
+
 
 __all__ = [
     "ROLES",

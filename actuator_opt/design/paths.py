@@ -14,15 +14,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from ..base import quantities, suggest, units
+from ..base import errors, quantities, units
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..base.quantities import Quantity
 from ..metrics import METRICS
-from .distributions import NUMBERS, quantity_of_entry
 from .kinds import Fraction, ValueFault
 from .model import Design
 from .section import Section
-from .structure import Entry, Loc, child, child_at, entries, leaves, number_of
+from .uncertain import NUMBERS, quantity_of_entry
+from .walls import Entry, Loc, child, child_at, entries, leaves, number_of
 
 _PATH = re.compile(r"[^.\[\]=]+(\[[^\[\]=]+\])?(\.[^.\[\]=]+(\[[^\[\]=]+\])?)*")
 _TOKEN = re.compile(r"\[([^\[\]]+)\]|([^.\[\]]+)")
@@ -97,7 +97,7 @@ def resolve(
     path = path.strip()
     if len(path) > 200 or _PATH.fullmatch(path) is None:
         raise ValueFault(
-            f'"{suggest.shown(path)}": not a PATH',
+            f'"{errors.shown(path)}": not a PATH',
             "write e.g. cylinder.bore or barrel.layup[0].angle",
         )
     head, _, rest = path.partition(".")
@@ -154,8 +154,8 @@ def _index(path: str, text: str, node: Any, loc: Loc) -> int:
     if index is not None and index < len(items):
         return index
     have = [str(n) for n in names if n is not None] or [str(i) for i in range(len(items))]
-    message = f"{path}: {spell(loc)} has no entry {suggest.shown(text)}"
-    raise ValueFault(message, suggest.remedy(text, have) or "it is empty")
+    message = f"{path}: {spell(loc)} has no entry {errors.shown(text)}"
+    raise ValueFault(message, errors.remedy(text, have) or "it is empty")
 
 
 def _resolve_table(head: str, rest: str, tree: Any, metrics: Mapping[str, Quantity]) -> Target:
@@ -187,7 +187,7 @@ def _resolve_table(head: str, rest: str, tree: Any, metrics: Mapping[str, Quanti
             raise ValueFault(f"{path}: unknown PATH", "write materials.NAME.PROPERTY")
     if key not in known:
         what = "metric" if head == "requirements" else "material property"
-        raise ValueFault(f'{path}: "{key}" is not a {what}', suggest.remedy(key, known))
+        raise ValueFault(f'{path}: "{key}" is not a {what}', errors.remedy(key, known))
     return Target(path, (head, name, last), known[key])
 
 
@@ -196,7 +196,7 @@ def _not_a_value(path: str, below: Sequence[str]) -> ValueFault:
 
 
 def _no_such(path: str, every: Sequence[str]) -> ValueFault:
-    return ValueFault(f"{path}: unknown PATH", suggest.remedy(path, dict.fromkeys(every), 6))
+    return ValueFault(f"{path}: unknown PATH", errors.remedy(path, dict.fromkeys(every), 6))
 
 
 def canonical(path: str, design: Design) -> str:
@@ -258,7 +258,7 @@ def split_assignment(text: str) -> tuple[str, str]:
     """
     path, equals, value = text.partition("=")
     if not equals or not path.strip() or not value.strip():
-        message = f'"{suggest.shown(text)}": not PATH=VALUE'
+        message = f'"{errors.shown(text)}": not PATH=VALUE'
         raise UsageError(Diagnostic(message, 'write e.g. --set "cylinder.bore=30 mm"'))
     return path.strip(), value.strip()
 

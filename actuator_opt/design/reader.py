@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
-from ..base import suggest, units
+from ..base import errors, units
 from ..base.errors import Diagnostic, Fault, InputError
 from ..base.files import read_bytes
 from ..base.quantities import Quantity
@@ -20,8 +20,8 @@ from .kinds import ValueFault
 from .model import Design
 from .paths import put, resolve, spell
 from .section import Section
-from .structure import Loc
 from .view import Materials
+from .walls import Loc
 from .yaml_source import MAX_BYTES, Document, Span, decode, parse
 
 TEXT = "<text>"
@@ -86,7 +86,7 @@ class Source:
         if path is None:
             path = spell(fault.loc, self.document.data) or None
         if path is not None:
-            path = suggest.shown(path, 120)
+            path = errors.shown(path, 120)
         place = self._find(fault)
         if isinstance(place, Override):
             return place.diagnostic(fault.message, fault.remedy, path)
@@ -203,7 +203,7 @@ def load(
             put(tree, target, value if file is not None else _bare_is_si(value, target.quantity))
             places[target.loc] = override
         except ValueFault as fault:
-            message, shown = fault.message.removeprefix(f"{path}: "), suggest.shown(path, 120)
+            message, shown = fault.message.removeprefix(f"{path}: "), errors.shown(path, 120)
             faults.append(override.diagnostic(message, fault.remedy, shown, at_key=True))
     source = Source(document, places, root, metrics)
     section, all_found = made(tree)

@@ -8,8 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from ..base.errors import Fault, InputError
-from ..base.suggest import article
+from ..base.errors import Fault, InputError, article
 from ..friction.kinds import LAWS as FRICTION_LAWS
 from ..models.elastomer import modulus_gent
 from ..models.seals import LAWS
@@ -17,11 +16,11 @@ from ..seals.kinds import SIZES, TYPES
 from ..seals.seal_type import SealType, SizeFault
 from ..seals.sizes import GROOVE_WIDTH
 from ..seals.u_cup import lip_faults
-from . import profile_faults
-from .profile_faults import elements
+from . import wall_faults
 from .seals import BACK_UPS
-from .structure import Loc, child_at
 from .view import Materials, Properties, View, length_text
+from .wall_faults import elements
+from .walls import Loc, child_at
 
 
 def fields(view: View) -> Iterator[Fault]:
@@ -276,7 +275,7 @@ def films(view: View) -> Iterator[Fault]:
                 )
 
 
-CHECKS = (fields, widths, grooves, clearances, squeeze, shapes, *profile_faults.CHECKS, films)
+CHECKS = (fields, widths, grooves, clearances, squeeze, shapes, *wall_faults.PROFILE_CHECKS, films)
 
 
 def _numbers(block: object) -> dict[str, float]:

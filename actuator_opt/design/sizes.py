@@ -12,14 +12,14 @@ from dataclasses import dataclass, replace
 from decimal import Decimal
 from typing import Any
 
-from ..base import suggest
+from ..base import errors
 from ..base.errors import Fault
 from ..base.quantities import Quantity
 from .kinds import ValueFault, example, read_quantity, what
 from .paths import resolve
-from .size_series import SERIES, Series
-from .structure import Loc, child, child_at, number_of, value_at
+from .standard_sizes import SERIES, Series
 from .view import View
+from .walls import Loc, child, child_at, number_of, value_at
 
 MOST_SIZES = 1000
 """Most sizes of a variable, and rows of a group."""
@@ -62,8 +62,8 @@ def read(loc: Loc, bounds: dict[str, Any], quantity: Quantity) -> Iterator[Fault
     if isinstance(sizes, str):
         if sizes not in SERIES:
             suited = [name for name, one in SERIES.items() if one.paths.fullmatch(str(loc[-1]))]
-            message = f'"{suggest.shown(sizes)}" is not a series of sizes'
-            remedy = suggest.remedy(sizes, suited)
+            message = f'"{errors.shown(sizes)}" is not a series of sizes'
+            remedy = errors.remedy(sizes, suited)
             yield Fault(
                 here, message, f"{remedy}, or list them: {good}" if remedy else f"write {good}"
             )
@@ -119,7 +119,7 @@ def _read_list(
         near = ROOM * abs(value)
         twin = next((i for i, other in known if abs(other - value) <= near), None)
         if twin is not None:
-            message = f"{suggest.shown(raw)}: the same as value {twin + 1} of the list"
+            message = f"{errors.shown(raw)}: the same as value {twin + 1} of the list"
             yield Fault((*loc, index), message, "keep one of them")
         known.append((index, value))
         if not isinstance(lower, float) or not isinstance(upper, float) or lower > upper:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, get_args
 
-from ..base import suggest
+from ..base import errors
 from ..base.errors import Fault
-from .distributions import KEYS, NUMBERS, misfit, quantity_of_entry
 from .kinds import ValueFault, example, read_quantity, what
 from .paths import Target, resolve
-from .structure import number_of, value_at
+from .uncertain import KEYS, NUMBERS, misfit, quantity_of_entry
 from .variable import Shape
+from .walls import number_of, value_at
 
 
 def faults(tree: dict[str, Any]) -> Iterator[Fault]:
@@ -77,11 +77,9 @@ def _fit(
     if shape not in get_args(Shape):
         word = shape if isinstance(shape, str) else ""
         message = (
-            f'"{suggest.shown(word)}" is not a distribution'
-            if word
-            else "a single word is required"
+            f'"{errors.shown(word)}" is not a distribution' if word else "a single word is required"
         )
-        remedy = suggest.remedy(word, get_args(Shape))
+        remedy = errors.remedy(word, get_args(Shape))
         yield Fault((*loc, "distribution"), message, remedy)
         return
     given = tuple(key for key in (*NUMBERS, "tolerance") if entry.get(key) is not None)

@@ -9,7 +9,7 @@ from ..base import quantities
 from ..base.errors import Fault
 from .model import Design
 from .section import Section
-from .structure import Loc, child_at, number_of, value_at
+from .walls import Loc, child_at, number_of, value_at
 
 
 class Materials(Protocol):

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from itertools import pairwise
 from typing import Any
 
 from ..base import quantities
 from ..base.errors import Fault, InputError
+from ..base.quantities import INPUTS
+from ..joints.joint import Joint
+from ..joints.kinds import JOINTS
 from .material import PLY_CONSTANTS, PLY_REQUIRED, compliance_determinant, ply_constants
-from .model import Ply
+from .model import Ply, Retention
 from .paths import spell
-from .structure import Loc, child, child_at, lists_of, number_of
 from .view import Materials, Properties, View, length_text
+from .walls import Loc, child, child_at, entries, lists_of, number_of
 
 PLY_STRENGTHS = (
     "strength_1_tension", "strength_1_compression", "strength_2_tension",
@@ -215,3 +219,174 @@ def _stiffness(view: View, known: _Known) -> Iterator[Fault]:
                 "these elastic constants are impossible: the stiffness is not positive definite",
                 "check the Poisson's ratios against the moduli: nu_12^2 < E_1/E_2 and similar",
             )
+
+
+def elements(view: View) -> Iterator[Loc]:
+    """Place of every sealing element the file states."""
+    for name in ("piston", "rod"):
+        yield ("seals", name)
+        if view.has("seals", name, "secondary"):
+            yield ("seals", name, "secondary")
+
+
+def profiles(view: View) -> Iterator[Fault]:
+    """Stated contact pressures: positions increase from 0, one stress each, sorted by pressure."""
+    for loc in elements(view):
+        last = -1.0
+        for index, _ in enumerate(view.items(*loc, "contact")):
+            at = (*loc, "contact", index)
+            positions = view.items(*at, "positions")
+            stresses = view.items(*at, "stresses")
+            pressure = view.number(*at, "pressure")
+            if pressure is not None and pressure <= last:
+                yield Fault(
+                    (*at, "pressure"),
+                    f"{INPUTS['pressure'].text(pressure)}: not above the previous profile",
+                    "sort the profiles by pressure, each once",
+                )
+            last = last if pressure is None else pressure
+            known = [x for x in stresses if isinstance(x, float)]
+            complete = known and len(known) == len(stresses)
+            if complete and pressure is not None and max(known) <= pressure:
+                yield Fault(
+                    (*at, "stresses"),
+                    f"nowhere above the sealed pressure ({INPUTS['pressure'].text(pressure)}): "
+                    "this contact does not seal",
+                    "state contact pressures that include the sealed pressure",
+                )
+            if len(positions) != len(stresses):
+                yield Fault(
+                    (*at, "stresses"),
+                    f"{len(stresses)} stresses at {len(positions)} positions",
+                    "write one stress for every position",
+                )
+            numbers = [x for x in positions if isinstance(x, float)]
+            pairs = pairwise(numbers)
+            if numbers and (numbers[0] != 0 or any(b <= a for a, b in pairs)):
+                yield Fault(
+                    (*at, "positions"),
+                    "not from 0 upwards",
+                    "begin with 0 mm at the sealed side, then increase",
+                )
+
+
+def reach(view: View) -> Iterator[Fault]:
+    """Stated profiles extend from zero pressure to the supply pressure."""
+    supply, text = view.number("supply", "pressure"), INPUTS["pressure"].text
+    for loc in elements(view):
+        count = len(view.items(*loc, "contact"))
+        first = view.number(*loc, "contact", 0, "pressure")
+        last = view.number(*loc, "contact", count - 1, "pressure")
+        if first is not None and first > 0:
+            yield Fault(
+                (*loc, "contact", 0, "pressure"),
+                f"{text(first)}: the profile without pressure is missing",
+                "add a profile at 0 bar before it",
+            )
+        if last is not None and supply is not None and last < supply * (1 - 1e-9):
+            yield Fault(
+                (*loc, "contact", count - 1, "pressure"),
+                f"{text(last)}: the profiles end below supply.pressure ({text(supply)})",
+                "add a profile at the supply pressure",
+            )
+
+
+PROFILE_CHECKS = (profiles, reach)
+
+
+_TYPE = ("retention", "type")
+
+
+def joint_of(view: View) -> Joint | None:
+    """The joint of a file; None if unknown."""
+    return JOINTS.get(view.text(*_TYPE) or "")
+
+
+def keys(view: View) -> Iterator[Fault]:
+    """All keys that the joint needs are stated, and no others."""
+    joint = joint_of(view)
+    if joint is None:
+        return
+    yield from _unused(view, joint)
+    for field in joint.fields:
+        loc = ("retention", *field.key.split("."))
+        needed = field.missing and all(view.has(*loc[:end]) for end in range(1, len(loc)))
+        if needed and not view.has(*loc):
+            yield Fault(loc, field.missing, field.remedy)
+
+
+def _unused(view: View, joint: Joint) -> Iterator[Fault]:
+    """Keys that neither the joint nor an alternative among the choices uses, except defaults."""
+    offered = [JOINTS.get(name) for name in view.items("choices", ".".join(_TYPE))]
+    used = _keys(one for one in (joint, *offered) if one is not None)
+    for name, entry in entries(Retention).items():
+        value = view.value("retention", name)
+        if entry.required or name in used or value is None or value == entry.default:
+            continue
+        users = [one for one in JOINTS.values() if name in _keys([one])]
+        message, remedy = joint.without.get(name) or (
+            f"{joint.noun} {_have([joint])} no {name}, "
+            f"only {' and '.join(one.noun for one in users)} {_have(users)}",
+            f"remove the line, or write type: {' or '.join(one.name for one in users)}",
+        )
+        yield Fault(("retention", name), message, remedy, at_key=True)
+
+
+def _keys(joints: Iterable[Joint]) -> set[str]:
+    """Keys of `retention` that only some joints use."""
+    return {field.key.partition(".")[0] for joint in joints for field in joint.fields}
+
+
+def _have(joints: list[Joint]) -> str:
+    return "have" if len(joints) > 1 or joints[0].plural else "has"
+
+
+def skirts(view: View) -> Iterator[Fault]:
+    """The skirts of both ends do not meet on the barrel."""
+    joint = joint_of(view)
+    if joint is None or not joint.skirts:
+        return
+    overlap, length = view.number("retention", "length"), view.number("barrel", "length")
+    parts = [("cylinder", "stroke"), ("piston", "length"), ("head", "length")]
+    known = [one for one in (view.number(*part) for part in parts) if one is not None]
+    if length is None and len(known) == len(parts):
+        length = sum(known)
+    if overlap is not None and length is not None and 2 * overlap > length * (1 + 1e-9):
+        yield Fault(
+            ("retention", "length"),
+            f"{length_text(overlap)}: the skirts of both ends meet on the barrel, which is "
+            f"{length_text(length)} long",
+            f"write at most {length_text(length / 2)}",
+        )
+
+
+def values(view: View) -> Iterator[Fault]:
+    """Faults that the joint reports for the values of the file."""
+    joint = joint_of(view)
+    if joint is not None:
+        yield from joint.faults(view)
+
+
+class _KnownEnds:
+    """The library, overridden by the properties that the design states."""
+
+    def __init__(self, view: View, materials: Materials) -> None:
+        self._view, self._materials = view, materials
+
+    def kind(self, name: str) -> str | None:
+        """Kind of a material; None if the name is unknown."""
+        return self._materials.kind(name) if name in self._materials else None
+
+    def properties(self, name: str) -> Iterable[str]:
+        """Names of the stated properties; empty if unreadable."""
+        if isinstance(self._materials, Properties):
+            return known_numbers(self._view, self._materials, name)
+        return ()
+
+
+def of_end_materials(tree: Any, materials: Materials) -> Iterator[Fault]:
+    """Faults of the joint that depend on the material library."""
+    view = View(tree)
+    joint = joint_of(view)
+    if joint is not None:
+        yield from joint.material_faults(view, _KnownEnds(view, materials))

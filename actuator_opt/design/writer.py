@@ -25,7 +25,7 @@ from .model import Design
 from .paths import resolve
 from .reader import Source
 from .section import Section
-from .structure import Loc, child, child_at, entries, number_of, value_at
+from .walls import Loc, child, child_at, entries, number_of, value_at
 from .yaml_source import Document, parse
 
 _PLAIN = re.compile(r"[^\W\d_][\w .()/+%-]*(?<! )")

@@ -12,9 +12,8 @@ from typing import Any, NamedTuple
 
 import yaml
 
-from ..base.errors import Diagnostic, InputError
-from ..base.suggest import shown
-from .structure import Loc
+from ..base.errors import Diagnostic, InputError, shown
+from .walls import Loc
 
 try:
     from yaml.cyaml import CParser as _Parser  # type: ignore[attr-defined]

@@ -18,16 +18,26 @@ from ..design.model import Design
 from ..metrics import METRICS, MetricRow
 from ..metrics.table import CHECKS
 from ..version import VERSION
-from . import doubts, dynamics_study as dynamics, outline, standard_parts
-from .allow import allowances, extremes
+from . import dynamics_study as dynamics, outline, standard_parts, validity as doubts
 from .governing import governing
 from .kernel import ModelRun, PreparedDesign, compute
-from .limits import Limit, all_limits, check_limits, default_limits
+from .limits import (
+    ALL_CASES,
+    Limit,
+    LimitRow,
+    MetricArrays,
+    all_limits,
+    allowances,
+    by_case,
+    check_limits,
+    default_limits,
+    extremes,
+    rows_of,
+)
 from .plugin import Plugin
-from .provenance import model_of
 from .result import Check, Evaluation, Metric, Requirement, StrokeCurve
 from .rings import Ring
-from .rows import ALL_CASES, LimitRow, MetricArrays, by_case, rows_of
+from .validity import model_of
 from .values import Values, of_case
 from .wall_study import study as wall_study
 

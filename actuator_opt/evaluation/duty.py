@@ -7,12 +7,11 @@ from ..design.model import Design
 from ..joints.joint import Fatigue
 from ..models import density, end_stop, endurance, rod
 from . import rod_strength
-from .allow import MaterialValues
 from .barrel import Wall
 from .geometry import Geometry
-from .joint import Demand
+from .joints import Demand
+from .limits import MaterialValues, MetricArrays
 from .rods import Rod
-from .rows import MetricArrays
 from .state import LoadState
 from .strength import Held
 from .values import Values

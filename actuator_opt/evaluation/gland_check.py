@@ -10,8 +10,8 @@ from ..design.housings import extrusion_tables
 from ..design.material import Material
 from ..design.model import Design
 from ..models import extrusion, gland, gland_range
-from .allow import MaterialValues
 from .geometry import Geometry
+from .limits import MaterialValues
 from .rings import Ring
 from .state import LoadState
 from .values import Values

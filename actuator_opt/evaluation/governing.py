@@ -11,8 +11,7 @@ import numpy as np
 from ..base.numeric import Array, maximum, minimum, where
 from ..base.quantities import Sense
 from .kernel import PreparedDesign
-from .limits import margin
-from .rows import MetricArrays, by_case
+from .limits import MetricArrays, by_case, margin
 from .values import Values
 
 

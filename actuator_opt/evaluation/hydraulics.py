@@ -7,9 +7,9 @@ from ..design.model import Design
 from ..friction.law import Friction
 from ..models import damping, elements, forces, lines, water_hammer
 from .circuit import wall_compliance
-from .film_tables import Running
+from .film import Running
 from .geometry import Geometry
-from .rows import MetricArrays
+from .limits import MetricArrays
 from .state import LoadState
 from .values import Values
 

@@ -19,10 +19,10 @@ from . import (
     beam as beam_module,
     circuit,
     duty,
-    film_tables,
+    film,
     geometry as geometry_module,
     hydraulics,
-    joint,
+    joints as joint,
     motion,
     oil_range,
     rings as rings_module,
@@ -33,20 +33,18 @@ from . import (
     strength,
     weight,
 )
-from .allow import MaterialValues
 from .barrel import Wall
 from .beam import Beam
-from .film_tables import Key, Table
+from .film import Key, Table
 from .geometry import Geometry
-from .limits import ENDS
+from .limits import ENDS, MaterialValues, MetricArrays
 from .plugin import Plugin, with_own
 from .rings import Ring
 from .rods import Rod
-from .rows import MetricArrays
 from .state import LoadState
 from .values import Values
 
-STROKES: tuple[film_tables.Stroke, ...] = ("drive", "return")
+STROKES: tuple[film.Stroke, ...] = ("drive", "return")
 """The stroke of the case, and the return stroke."""
 
 
@@ -301,19 +299,19 @@ def without_films(subject: PreparedDesign) -> PreparedDesign:
 
     The metrics and the numbers they read are the same with and without films.
     """
-    if not film_tables.films_asked(subject.design):
+    if not film.films_asked(subject.design):
         return subject
     rings = base(subject, subject.values()).rings
-    return replace(subject, films=film_tables.unsolved(subject.design, rings))
+    return replace(subject, films=film.unsolved(subject.design, rings))
 
 
 def _films(subject: PreparedDesign) -> dict[Key, Table]:
     """Tables of the oil films, made on first use."""
     design = subject.design
-    if not film_tables.films_asked(design):
+    if not film.films_asked(design):
         return {}
     if not subject.films:
-        found = film_tables.tables(design, subject.values, lambda v: base(subject, v).rings)
+        found = film.tables(design, subject.values, lambda v: base(subject, v).rings)
         subject.films.update(found)
     return subject.films
 

@@ -7,13 +7,17 @@ limit; `waivers` remove a line, and the report prints their reason.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from typing import Literal
+
+import numpy as np
 
 from ..base.numeric import Array, absolute, real, where
 from ..base.quantities import Sense
+from ..design.material import Material, allowable_factor, ply_constants
 from ..design.model import Design, LoadCase
+from ..metrics import METRICS
 from ..metrics.table import CHECKS, ROWS
 from .plugin import Plugin
 from .values import Values
@@ -158,3 +162,193 @@ def margin(value: Array, limit: Array, sense: Sense) -> Array:
     scale = where(real(limit) == 0, 1.0 + 0 * limit, absolute(limit))
     difference = (value - limit) / scale
     return difference if sense == "min" else -difference
+
+
+ALL_CASES = "all"
+
+
+UNLIMITED = 1e300
+"""Replaces an infinite value (unloaded part) in margins, which must be finite."""
+
+
+@dataclass(slots=True)
+class MetricArrays:
+    """Results of a kernel: metric → place → array, and reasons for missing metrics.
+
+    Arrays are floats, (designs,), (cases, 1) or (cases, designs). A place is a ply, a seal or a
+    part; "" if the metric has a single place. `applies` marks the cases of a metric, `applies_at`
+    those of a place.
+    """
+
+    metrics: dict[str, dict[str, Array]] = field(default_factory=dict)
+    why: dict[str, str] = field(default_factory=dict)
+    applies: dict[str, Array] = field(default_factory=dict)
+    applies_at: dict[tuple[str, str], Array] = field(default_factory=dict)
+    friction_parts: dict[str, Array] = field(default_factory=dict)
+    """Running friction of each seal; the parts sum to `friction_running`."""
+
+    def put(self, name: str, value: Array | dict[str, Array], cases: Array = None) -> None:
+        """Record a metric: an array, or an array per place; `cases` marks where it applies.
+
+        Raises
+        ------
+        KeyError : `metrics.table` has no row with this name
+        """
+        if name not in METRICS:
+            raise KeyError(f"metric {name}: add its row to metrics/table.py")
+        self.metrics[name] = value if isinstance(value, dict) else {"": value}
+        if cases is not None:
+            self.applies[name] = cases
+
+    def skip(self, name: str, why: str) -> None:
+        """Record why a metric does not apply or is unknown."""
+        self.why[name] = why
+
+
+@dataclass(frozen=True, slots=True)
+class LimitRow:
+    """A limit in one case at one place: `value`, `limit` and `margin` are (designs,)."""
+
+    limit_of: Limit
+    case: str
+    place: str
+    value: Array
+    limit: Array
+    margin: Array
+    case_index: int | None = None
+    """Row index in the computed array, if it has a row per load case."""
+
+    @property
+    def label(self) -> str:
+        """Name with case and place, unique among the rows of a design."""
+        where = ", ".join(p for p in (self.case if self.case != ALL_CASES else "", self.place) if p)
+        return f"{self.limit_of.name} ({where})" if where else self.limit_of.name
+
+
+def by_case(
+    computed: MetricArrays, metric: str, array: Array, cases: tuple[str, ...], place: str = ""
+) -> Iterator[tuple[str, Array]]:
+    """Split a computed array into (case name, (designs,) array) where the metric applies."""
+    array = np.asarray(array)
+    if array.ndim < 2:
+        yield ALL_CASES, np.atleast_1d(array)
+        return
+    applies = computed.applies_at.get((metric, place), computed.applies.get(metric))
+    for i, case in enumerate(cases):
+        if applies is None or applies[i]:
+            yield case, array[i]
+
+
+def rows_of(limit: Limit, computed: MetricArrays, v: Values) -> Iterator[LimitRow]:
+    """All rows of a limit; none if the metric was not computed."""
+    bound = limit.value(v)
+    for place, array in computed.metrics.get(limit.metric, {}).items():
+        if limit.places is not None and place not in limit.places:
+            continue
+        for case, value in by_case(computed, limit.metric, array, v.cases, place):
+            if limit.case is not None and case not in (ALL_CASES, limit.case):
+                continue
+            unlimited = real(value) == np.inf
+            finite = where(unlimited, UNLIMITED, value)
+            yield LimitRow(
+                limit_of=limit,
+                case=case,
+                place=place,
+                value=value,
+                limit=bound,
+                margin=margin(finite, bound, limit.sense),
+                case_index=None if case == ALL_CASES else v.cases.index(case),
+            )
+
+
+def extremes(design: Design, numbers: Mapping[str, float]) -> tuple[float, float]:
+    """Lowest and highest temperature of oil, load cases and environment, K."""
+    temperatures = [numbers["fluid.temperature"]]
+    temperatures += [c.temperature for c in design.load_cases if c.temperature is not None]
+    if design.environment is not None:
+        temperatures += [design.environment.temperature_min, design.environment.temperature_max]
+    return min(temperatures), max(temperatures)
+
+
+def allowances(
+    materials: Mapping[str, Material],
+    numbers: Mapping[str, float],
+    *,
+    temperatures: tuple[float, float],
+    wet: bool,
+) -> dict[tuple[str, str, bool], float]:
+    """Remaining share of every strength after temperature, moisture, basis and process.
+
+    Keys are (material, property, cold) for the lowest and the highest of `temperatures`; `numbers`
+    (by PATH) may override the knock-downs of the library.
+    """
+    factors = {}
+    for name, material in materials.items():
+        own = {key: numbers[f"materials.{name}.{key}"] for key in material.numbers}
+        for key, entry in material.properties.items():
+            if "strength" not in key:
+                continue
+            for cold, temperature in zip((True, False), temperatures, strict=True):
+                factors[name, key, cold] = float(
+                    allowable_factor(own, key, basis=entry.basis, temperature=temperature, wet=wet)
+                )
+    return factors
+
+
+class MaterialValues:
+    """Materials of a design: their properties (possibly varied) and their allowables."""
+
+    def __init__(
+        self,
+        v: Values,
+        materials: Mapping[str, Material],
+        factors: Mapping[tuple[str, str, bool], float],
+        constants: dict[str, dict[str, Array]],
+    ) -> None:
+        self._v = v
+        self.materials = materials
+        self._factors = factors
+        self._constants = constants
+
+    def material(self, name: str) -> Material:
+        """Library entry of `name`."""
+        return self.materials[name]
+
+    def kind(self, name: str) -> str:
+        """Kind of a material: metal, ply, polymer, adhesive, fluid or seal."""
+        return self.materials[name].kind
+
+    def names(self) -> list[str]:
+        """All materials of the design."""
+        return list(self.materials)
+
+    def numbers(self, name: str) -> dict[str, Array]:
+        """All stated properties of a material, SI."""
+        return {key: self._v[f"materials.{name}.{key}"] for key in self.materials[name].numbers}
+
+    def ply_constants(self, name: str) -> dict[str, Array]:
+        """Elastic constants and expansions of a material as a ply; cached if fixed."""
+        prefix = f"materials.{name}."
+        if any(path.startswith(prefix) for path in self._v.varied):
+            return ply_constants(self.numbers(name))
+        if name not in self._constants:
+            self._constants[name] = ply_constants(self.numbers(name))
+        self._v.read.update(prefix + key for key in self.materials[name].numbers)
+        return self._constants[name]
+
+    def get(self, name: str, *properties: str, default: Array = None) -> Array:
+        """The first stated property of several; `default` if none is stated."""
+        for key in properties:
+            if key in self.materials[name].numbers:
+                return self._v[f"materials.{name}.{key}"]
+        return default
+
+    def allowable(self, name: str, *properties: str, cold: bool = False) -> Array:
+        """A strength after all applicable knock-downs; None if not stated.
+
+        The temperature is the highest of oil, load cases and environment, or the lowest.
+        """
+        for key in properties:
+            if key in self.materials[name].numbers:
+                return self._v[f"materials.{name}.{key}"] * self._factors[name, key, cold]
+        return None

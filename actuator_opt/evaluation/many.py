@@ -11,8 +11,7 @@ from ..base.numeric import Array
 from .build import TOLERANCE
 from .governing import governing
 from .kernel import PreparedDesign, compute
-from .limits import Limit, all_limits
-from .rows import MetricArrays, rows_of
+from .limits import Limit, MetricArrays, all_limits, rows_of
 from .values import Values
 
 

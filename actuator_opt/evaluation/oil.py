@@ -11,12 +11,11 @@ from collections.abc import Callable, Iterable
 from typing import TypeAlias
 
 from ..base.numeric import Array
-from ..design.material import Material
-from ..design.material_laws import bulk_modulus_law, viscosity_law
+from ..design.material import Material, bulk_modulus_law, viscosity_law
 from ..design.model import FluidSection
 from ..models import density as density_models, fluid
 from ..models.oil_laws import BULK_MODULUS_LAWS, VISCOSITY_LAWS
-from .allow import MaterialValues
+from .limits import MaterialValues
 from .values import Values
 
 Law: TypeAlias = Callable[..., Array]

@@ -7,15 +7,13 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from ..base.numeric import minimum, real
-from ..design.material import Material
-from ..design.material_laws import bulk_modulus_law, viscosity_law
+from ..design.material import Material, bulk_modulus_law, viscosity_law
 from ..design.model import FluidSection
 from ..metrics.table import OIL_FED
 from ..models import fluid
 from ..models.oil_laws import BULK_MODULUS_LAWS, VISCOSITY_LAWS
 from . import oil as oil_laws
-from .allow import MaterialValues
-from .rows import MetricArrays
+from .limits import MaterialValues, MetricArrays
 from .state import LoadState
 
 

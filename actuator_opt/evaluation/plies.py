@@ -19,7 +19,7 @@ from ..models.criteria import CRITERIA
 from ..models.layered_tube import TubeLayer
 from ..models.solid_ply import Solid, solid_stiffness
 from ..models.strength_modes import PlyRatios, PlyStrength, Stress
-from .allow import MaterialValues
+from .limits import MaterialValues
 from .values import Values
 
 _STRENGTHS = (

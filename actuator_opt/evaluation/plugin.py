@@ -19,10 +19,9 @@ from typing import Literal
 
 import numpy as np
 
-from ..base.errors import Diagnostic, InputError
+from ..base.errors import Diagnostic, InputError, shown
 from ..base.numeric import Array, maximum, minimum
 from ..base.quantities import Quantity
-from ..base.suggest import shown
 from ..base.units import BASE, UnitError, unit
 from ..metrics import METRICS
 from .values import Values

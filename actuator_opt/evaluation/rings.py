@@ -12,10 +12,10 @@ from ..design.seals import SealElement
 from ..models import elastomer, gland
 from ..seals.seal_type import SealSizes
 from . import oil
-from .allow import MaterialValues
 from .barrel import SEAL_STEP
 from .geometry import Geometry
 from .grooves import Groove
+from .limits import MaterialValues
 from .state import LoadState
 from .values import Values
 

@@ -16,12 +16,11 @@ from ..design.model import Design
 from ..models import beam_column, rod, shell_buckling, yielding
 from ..models.strength_modes import Stress, load_multiplier
 from . import plies
-from .allow import MaterialValues
 from .barrel import Cycle
 from .beam import Beam
 from .geometry import Geometry
+from .limits import MaterialValues, MetricArrays
 from .rods import FORCE, OUTSIDE, WARMTH, Rod
-from .rows import MetricArrays
 from .state import LoadState
 
 
@@ -179,7 +178,7 @@ def _stress(parts: Sequence[Array]) -> Stress:
     return one, two, three, slip
 
 
-def _unit(section: Rod, rows: list[int], load: int) -> list[Array]:
+def _unit_load(section: Rod, rows: list[int], load: int) -> list[Array]:
     """Ply stresses of these layers per unit load, (faces, layers, 1, 1, 1, designs)."""
     assert section.unit is not None
     return [part[:, rows][:, :, load][:, :, None, None, None] for part in section.unit]
@@ -187,7 +186,7 @@ def _unit(section: Rod, rows: list[int], load: int) -> list[Array]:
 
 def _load(section: Rod, rows: list[int], forces: Array, pressures: Array) -> Stress:
     """Stresses of the load, (faces, layers, 1, sides, cases, designs)."""
-    units = (_unit(section, rows, load) for load in (FORCE, OUTSIDE))
+    units = (_unit_load(section, rows, load) for load in (FORCE, OUTSIDE))
     return _stress([f * forces + p * pressures for f, p in zip(*units, strict=True)])
 
 
@@ -198,4 +197,4 @@ def _residual(section: Rod, rows: list[int]) -> Stress | None:
     change = np.stack(
         np.broadcast_arrays(*[np.atleast_1d(state.change) for state in section.climates])
     )[:, None, None]
-    return _stress([part * change for part in _unit(section, rows, WARMTH)])
+    return _stress([part * change for part in _unit_load(section, rows, WARMTH)])

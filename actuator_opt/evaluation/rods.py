@@ -23,8 +23,8 @@ from ..models.layered_tube import (
 from ..models.shell_buckling import shell_modulus
 from ..models.strength_modes import Stress
 from . import plies
-from .allow import MaterialValues
 from .geometry import Geometry
+from .limits import MaterialValues
 from .plies import Climate, Layer
 from .values import Values
 

@@ -15,8 +15,8 @@ from ..models import dynamics, lugre, stiffness, stiffness_published as publishe
 from .barrel import Wall
 from .circuit import Branch, Chamber
 from .geometry import Geometry
+from .limits import MetricArrays
 from .rods import Rod
-from .rows import MetricArrays
 from .state import LoadState
 from .values import Values
 

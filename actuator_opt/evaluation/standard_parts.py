@@ -8,10 +8,10 @@ from typing import Literal
 import numpy as np
 
 from ..base.errors import InputError
-from ..design import standards
+from ..design import standard_sizes as standards
 from ..design.housings import gland_deviations, housings, housings_for
 from ..design.model import Design
-from .film_tables import floats
+from .film import floats
 from .gland_check import squeezes
 from .result import Check
 from .rings import Place, Ring

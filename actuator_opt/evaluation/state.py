@@ -11,10 +11,10 @@ from ..base.numeric import Array, where
 from ..design.kinds import Fraction
 from ..design.model import Design
 from ..models import retention, stiffness
-from . import joint as joint_module, oil
-from .allow import MaterialValues
+from . import joints as joint_module, oil
 from .geometry import Geometry
-from .joint import WORST, Demand, Joint
+from .joints import WORST, Demand, Joint
+from .limits import MaterialValues
 from .values import Values, stacked
 
 

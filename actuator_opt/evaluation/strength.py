@@ -16,15 +16,14 @@ from ..joints.joint import Joint, Loaded, Strength
 from ..joints.kinds import JOINTS
 from ..joints.overlap import Overlap
 from ..models import end_plate, retention, rod
-from . import bonds, rod_strength
-from .allow import MaterialValues
+from . import joints, rod_strength
 from .barrel import Wall, load_path
 from .beam import Beam
 from .geometry import Geometry, end_at
 from .grooves import Groove, taken
+from .limits import MaterialValues, MetricArrays
 from .retention import Numbers, clamped, joint_of
 from .rods import Rod
-from .rows import MetricArrays
 from .state import LoadState, side_reactions
 from .values import Values
 
@@ -90,13 +89,13 @@ def compute(
     _rod_end(v, stock, design, section, pull, out)
     found = NO_RETENTION if held is None else held.joint.strength(held.loaded)
     _retention(found, out)
-    fittings = bonds.fittings(v, stock, design, section)
+    fittings = joints.fittings(v, stock, design, section)
     _fittings(stock, fittings, push, out)
     thermal = {
         "caps": found if isinstance(found, str) else found.thermal,
         "rod fittings": fittings if isinstance(fittings, str) else fittings.thermal(stock),
     }
-    bonds.thermal(v, design, thermal, out)
+    joints.thermal(v, design, thermal, out)
     _caps(stock, design, g, supply, out)
     _pins(v, stock, design, push, out)
     _guides(stock, design, g, state, out)
@@ -140,7 +139,7 @@ def _fitting_yield(
     strength = stock.allowable(section.end_material, "yield_strength")
     if strength is None or design.rod.fitting is None:
         return {}
-    return {"rod fitting": strength * bonds.fitting_area(v, design, section) / push}
+    return {"rod fitting": strength * joints.fitting_area(v, design, section) / push}
 
 
 def _rod_end(

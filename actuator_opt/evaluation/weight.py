@@ -5,9 +5,9 @@ from __future__ import annotations
 from ..base.numeric import Array
 from ..design.model import Design
 from ..models import mass
-from .allow import MaterialValues
-from .bonds import fitting_hole
 from .geometry import Geometry, end_at
+from .joints import fitting_hole
+from .limits import MaterialValues
 from .retention import Numbers, joint_of
 from .rods import Rod
 from .values import Values

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from ..base.files import write_text
-from ..base.plain_json import encoded
+from ..base.tables import encoded
 from ..sweeps.explored import Explored
 from .payload import payload
 

@@ -15,8 +15,7 @@ from ..design.paths import quantity_of
 from ..evaluation import prepare
 from ..evaluation.limits import Limit
 from ..evaluation.plugin import Plugin, with_own
-from ..evaluation.reserve import NO_RESERVE, NO_ROOM
-from ..evaluation.result import Outline
+from ..evaluation.result import NO_RESERVE, NO_ROOM, Outline
 from ..evaluation.shapes import LENGTHS, Template
 from ..rendering.text import SENSES, limit_text, pretty, unit_text
 from ..sweeps.explored import BEST, Explored

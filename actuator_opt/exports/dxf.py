@@ -6,16 +6,311 @@ import io
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import pairwise
 from math import cos, radians, sin, sqrt, tan
 from typing import Any, TypeAlias
 
-from ..base.extras import library
+from ..base.errors import library
 from ..evaluation.outline import notes
 from ..evaluation.result import Evaluation, Outline
-from . import dimensions
-from .layout import Paper
-from .solids import EYES, Profile, joined, millimetres, title
+from ..rendering.ink import spread
+from .step import EYES, Profile, joined, millimetres, title
 from .words import plain
+
+LETTER = 0.95
+"""Upper estimate of character width over height, as fonts differ between programs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Paper:
+    """Sizes of drawing elements at the intended print scale."""
+
+    scale: float
+    """mm of the drawing per mm of paper."""
+
+    @property
+    def letter(self) -> float:
+        """Height of letters."""
+        return 2.5 * self.scale
+
+    @property
+    def arrow(self) -> float:
+        """Length of an arrowhead."""
+        return 2.5 * self.scale
+
+    @property
+    def row(self) -> float:
+        """Distance between rows of dimensions."""
+        return 8.0 * self.scale
+
+    def width(self, text: str) -> float:
+        """Width of a text."""
+        return LETTER * self.letter * len(text)
+
+
+@dataclass(frozen=True, slots=True)
+class Length:
+    """An axial length with its dimension text."""
+
+    start: float
+    end: float
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Placed:
+    """A length with its row, counted outwards, and the centre of its text."""
+
+    length: Length
+    row: int
+    middle: float
+    outside: bool
+
+
+def _clear(middle: float, half: float, lines: Sequence[float]) -> bool:
+    return all(abs(middle - x) > half for x in lines)
+
+
+def _middle(length: Length, paper: Paper, lines: Sequence[float]) -> tuple[float, bool]:
+    """Centre of a text over its own dimension line, else beside it, clear of all lines."""
+    half, pad = paper.width(length.text) / 2, 0.5 * paper.letter
+    centre = (length.start + length.end) / 2
+    inner = [x for x in lines if length.start < x < length.end]
+    room = length.end - length.start - 2 * (half + paper.arrow)
+    if room > 0:
+        reach = [0.0] + [sign * k * paper.letter / 2 for k in range(1, 200) for sign in (1, -1)]
+        for shift in reach:
+            if abs(shift) <= room / 2 and _clear(centre + shift, half + pad, inner):
+                return centre + shift, False
+    beside = half + 2 * paper.arrow + pad
+    for k in range(2000):
+        for edge, sign in ((length.end, 1), (length.start, -1)):
+            middle = edge + sign * (beside + k * paper.letter / 2)
+            if _clear(middle, half + pad, lines):
+                return middle, True
+    return length.end + beside, True
+
+
+def rows(lengths: Sequence[Length], paper: Paper) -> list[Placed]:
+    """Assign every length to a row: short lengths next to the parts, long lengths outside.
+
+    Extension lines of a length cross all rows nearer to the parts, so a text must not overlap the
+    ends of lengths in its own row or further out.
+    """
+    ordered = sorted(set(lengths), key=lambda one: (round(one.end - one.start, 6), one.start))
+    ends = sorted({x for one in ordered for x in (one.start, one.end)})
+    taken: list[list[tuple[float, float]]] = []
+    placed = []
+    for one in ordered:
+        middle, outside = _middle(one, paper, [x for x in ends if x not in (one.start, one.end)])
+        half = paper.width(one.text) / 2 + paper.letter / 2
+        arrows = 2 * paper.arrow if outside else 0.0
+        low = min(one.start - arrows, middle - half)
+        high = max(one.end + arrows, middle + half)
+        free = (
+            row for row, spans in enumerate(taken) if all(high <= a or low >= b for a, b in spans)
+        )
+        row = next(free, len(taken))
+        if row == len(taken):
+            taken.append([])
+        taken[row].append((low, high))
+        placed.append(Placed(one, row, middle, outside))
+    return placed
+
+
+LAYER = "dimensions"
+
+
+STYLE = "TRUE"
+
+
+_COLOUR, _BY_LAYER, _BLACK_OR_WHITE = 153, 256, 7
+"""Of the lines, which show on black and on white; letters take the colour that the ground lacks."""
+
+
+_SMALLEST = 1e-6
+"""Shorter lengths (mm) are not dimensioned."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Diameter:
+    """A diameter and its axial position in the drawing."""
+
+    x: float
+    value: float
+    name: str
+
+    @property
+    def text(self) -> str:
+        return f"%%c<> {self.name}"
+
+    @property
+    def shown(self) -> str:
+        return f"0{number(self.value)} {self.name}"
+
+
+def number(value: float) -> str:
+    """A length in the format of the dimension style: three decimals, no trailing zeros.
+
+    >>> number(12.0), number(7.12345)
+    ('12', '7.123')
+    """
+    return f"{value:.3f}".rstrip("0").rstrip(".")
+
+
+def set_up(document: Any, paper: Paper) -> None:
+    """Add the layer and the dimension style: true lengths, ISO arrows."""
+    document.layers.add(LAYER, color=_COLOUR, lineweight=18)
+    style = document.dimstyles.new(STYLE)
+    style.set_arrows(blk="", blk1="", blk2="")
+    for name, value in {
+        "dimlfac": 1.0, "dimscale": 1.0, "dimtxt": paper.letter, "dimasz": paper.arrow,
+        "dimexo": 1.0 * paper.scale, "dimexe": 1.5 * paper.scale, "dimgap": 0.8 * paper.scale,
+        "dimtad": 1, "dimtih": 0, "dimtoh": 0, "dimdec": 3, "dimzin": 8, "dimdsep": ord("."),
+        "dimtxsty": "Standard",
+        "dimclrd": _BY_LAYER,
+        "dimclre": _BY_LAYER,
+        "dimclrt": _BLACK_OR_WHITE,
+    }.items():  # fmt: skip
+        style.dxf.set(name, value)
+
+
+def reach(profiles: Sequence[Profile], x: float) -> float:
+    """Largest radius of the parts at an axial position."""
+    found = [
+        max(r for _, r in profile)
+        for profile in profiles
+        if min(a for a, _ in profile) - 1e-9 <= x <= max(a for a, _ in profile) + 1e-9
+    ]
+    return max(found, default=0.0)
+
+
+def _stations(lengths: Mapping[str, float]) -> dict[str, tuple[float, float]]:
+    """Start and end of every axial length, mm."""
+    mm = {name: 1000 * value for name, value in lengths.items()}
+    face = mm["eye_offset"]
+    start = face + mm["plate"]
+    end = start + mm["barrel_length"]
+    piston = start + mm["piston_length"]
+    spans = {
+        "plate": (face, start),
+        "piston": (start, piston),
+        "stroke": (piston, piston + mm["stroke"]),
+        "head": (end - mm["head_length"], end),
+        "other plate": (end, end + mm["plate"]),
+        "extension": (end + mm["plate"], end + mm["plate"] + mm["extension"]),
+        "barrel": (start, end),
+        "closed length": (mm["pin_cap"], mm["pin_rod"]),
+    }
+    return {name: span for name, span in spans.items() if span[1] - span[0] > _SMALLEST}
+
+
+def _dimension_words(name: str, span: tuple[float, float]) -> str:
+    told = {"stroke": "stroke ", "closed length": "closed length "}.get(name, "")
+    return told + number(span[1] - span[0])
+
+
+def lengths_below(
+    space: Any,
+    evaluated: Mapping[str, float],
+    skirts: Sequence[tuple[float, float]],
+    profiles: Sequence[Profile],
+    paper: Paper,
+) -> float:
+    """Draw dimension lengths below the parts, row by row.
+
+    Parameters
+    ----------
+    space : model space
+    evaluated : `lengths` of the evaluation
+    skirts : start and end of the dimensioned skirt, mm, if any
+    profiles : half-sections of all parts
+    paper : sizes of letters and gaps
+
+    Returns
+    -------
+    the lowest y coordinate used
+    """
+    spans = _stations(evaluated) | {f"skirt {k}": span for k, span in enumerate(skirts)}
+    lengths = [Length(*span, _dimension_words(name, span)) for name, span in spans.items()]
+    base = -max(r for profile in profiles for _, r in profile) - 1.2 * paper.row
+    lowest = base
+    for placed in rows(lengths, paper):
+        one, y = placed.length, base - placed.row * paper.row
+        ends = [(x, -reach(profiles, x)) for x in (one.start, one.end)]
+        value = number(one.end - one.start)
+        dimension = space.add_linear_dim(
+            base=(one.start, y),
+            p1=ends[0],
+            p2=ends[1],
+            text=one.text.replace(value, "<>"),
+            dimstyle=STYLE,
+            dxfattribs={"layer": LAYER},
+        )
+        height = y + 0.4 * paper.letter + 0.5 * paper.letter
+        dimension.set_location((placed.middle, height), leader=False, relative=False)
+        dimension.render()
+        if placed.outside:
+            half = paper.width(one.text) / 2
+            far = placed.middle + (half if placed.middle > one.end else -half)
+            near = one.end if placed.middle > one.end else one.start
+            space.add_line((near, y), (far, y), dxfattribs={"layer": LAYER})
+        lowest = min(lowest, y)
+    return lowest
+
+
+def _wanted(evaluated: Mapping[str, float], profiles: Sequence[Profile]) -> list[_Diameter]:
+    """Diameters of rod, bore and barrel at the chamber, and of the plate."""
+    spans = _stations(evaluated)
+    low, high = spans["stroke"]
+    names = {
+        "rod_inner": "rod bore",
+        "rod": "rod",
+        "bore": "bore",
+        "barrel_outer_diameter": "barrel",
+    }
+    asked = [(key, name) for key, name in names.items() if evaluated[key] > 0]
+    found = [
+        _Diameter(low + (high - low) * (2 * k + 1) / (2 * len(asked)), 1000 * evaluated[key], name)
+        for k, (key, name) in enumerate(asked)
+    ]
+    if "plate" in spans:
+        found.append(_Diameter(sum(spans["plate"]) / 2, 1000 * evaluated["plate_outer"], "cap"))
+    if evaluated["pin"] > 0:
+        found.append(_Diameter(0.0, 1000 * evaluated["pin"], "pin"))
+    return sorted(found, key=lambda one: one.x)
+
+
+def diameters_above(
+    space: Any, evaluated: Mapping[str, float], profiles: Sequence[Profile], paper: Paper
+) -> float:
+    """Draw diameters, with texts in one row above the parts; returns the highest y used."""
+    wanted = _wanted(evaluated, profiles)
+    top = max(r for profile in profiles for _, r in profile)
+    widths = [paper.width(one.shown) for one in wanted]
+    gaps = [(a + b) / 2 + 2 * paper.letter for a, b in pairwise(widths)]
+    elbow, row = top + 3 * paper.scale, top + 9 * paper.scale
+    for one, middle in zip(wanted, spread([one.x for one in wanted], gaps), strict=True):
+        half = one.value / 2
+        dimension = space.add_linear_dim(
+            base=(one.x, 0.0),
+            p1=(one.x, -half),
+            p2=(one.x, half),
+            angle=90,
+            text=one.text,
+            dimstyle=STYLE,
+            override={"dimse1": 1, "dimse2": 1, "dimtih": 1, "dimtoh": 1},
+            dxfattribs={"layer": LAYER},
+        )
+        centre = row + 0.9 * paper.letter
+        dimension.set_location((middle, centre), leader=False, relative=False)
+        dimension.dimension.dxf.text_rotation = 0.0
+        dimension.render()
+        corners = [(one.x, half), (one.x, elbow), (middle, row)]
+        space.add_lwpolyline(corners, dxfattribs={"layer": LAYER})
+    return row + 2 * paper.letter
+
 
 _SHEET = 270.0
 """Paper length (mm) for the section: A3 with space for dimensions."""
@@ -29,7 +324,7 @@ _POLYMER = ((15.0, 1.2),)
 """Angle and spacing (mm of paper) of hatches, by material in order of appearance."""
 
 _COLOURS = (7, 23, 142, 94, 6, 42, 134, 200, 54, 213, 233, 74)
-"""Of the layers, by part: each shows on a black ground and on a white ground (7 is the other)."""
+"""Colours of the layers, by part: each is visible on black and white (7 adapts itself)."""
 
 _Corner: TypeAlias = tuple[float, float, float]
 """x, y and bulge of a polyline: tan of a quarter of the arc to the next corner."""
@@ -231,13 +526,13 @@ def dxf(evaluation: Evaluation, *, program: str, date: str | None = None) -> byt
         document.header["$DIMLFAC"] = 1.0
         document.styles.get("Standard").dxf.font = "arial.ttf"
         space = document.modelspace()
-        dimensions.set_up(document, paper)
+        set_up(document, paper)
         _parts(space, evaluation, outlines, paper)
         _axis(space, first, last, paper)
         lengths = evaluation.lengths
-        dimensions.diameters_above(space, lengths, profiles, paper)
+        diameters_above(space, lengths, profiles, paper)
         skirts = _skirts(outlines, 1000 * (lengths["eye_offset"] + lengths["plate"]))
-        lowest = dimensions.lengths_below(space, lengths, skirts, profiles, paper)
+        lowest = lengths_below(space, lengths, skirts, profiles, paper)
         made = ", ".join(part for part in (program, date) if part)
         corner = (first, lowest - 1.5 * paper.row)
         _words(space, evaluation, outlines, paper, corner, made)

@@ -7,10 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..base.errors import Diagnostic, UsageError
-from ..base.extras import library
+from ..base.errors import Diagnostic, UsageError, library, shown
 from ..base.files import write_all
-from ..base.suggest import shown
 from ..evaluation.result import Evaluation
 
 FORMATS = ("step", "dxf", "xlsx")
@@ -53,8 +51,7 @@ def require_formats(formats: Sequence[str]) -> tuple[str, ...]:
 def _content(evaluation: Evaluation, name: str, date: str | None) -> bytes:
     program = f"actuator-opt {evaluation.version}"
     if name == "step":
-        from .solids import bodies
-        from .step import step
+        from .step import bodies, step
 
         made = step(bodies(evaluation), name=evaluation.name, program=program, date=date)
         return made.encode("ascii")

@@ -17,11 +17,10 @@ from datetime import datetime
 from typing import Any
 
 from ..base import units
-from ..base.extras import library
+from ..base.errors import library
 from ..base.quantities import Quantity
 from ..design.paths import get, quantity_of
-from ..evaluation.reserve import NO_RESERVE, NO_ROOM
-from ..evaluation.result import Check, Evaluation, Requirement
+from ..evaluation.result import NO_RESERVE, NO_ROOM, Check, Evaluation, Requirement
 from ..metrics import METRICS
 from ..pages.section import section
 from ..rendering.image import images
@@ -52,7 +51,7 @@ _FONT = {"name": "Calibri", "size": 11}
 _LINE = 15.0
 """Height of a line of text, points."""
 _PIXELS = 96 / 25.4
-"""Of a sheet, per millimetre."""
+"""Pixels of a sheet per millimetre."""
 _WIDEST = 110.0
 """Largest column width in characters."""
 _FIRST = 5

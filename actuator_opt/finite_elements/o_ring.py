@@ -18,12 +18,18 @@ from .contact import (
     reached,
     wall_pressing,
 )
-from .equilibrium import Bounds, ElementProblem, ElementState, NotConverged
+from .equilibrium import (
+    SQUEEZE_STEP,
+    Bounds,
+    ElementProblem,
+    ElementState,
+    NotConverged,
+    check_inputs,
+    follow,
+)
 from .material import Floats, MooneyRivlin
-from .mesh import disc
-from .path import SQUEEZE_STEP, check_inputs, follow
+from .mesh import Body, Section, disc
 from .result import Contact, SealSolution, stress_field
-from .section import Body, Section
 
 MOST_FILL = 0.98
 """Largest fill of the groove by an incompressible section: corners stay open."""

@@ -8,8 +8,7 @@ import numpy as np
 
 from . import material
 from .material import Floats
-from .mesh import Integers
-from .section import Section
+from .mesh import Integers, Section
 
 
 @dataclass(frozen=True, slots=True)

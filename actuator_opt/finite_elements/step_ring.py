@@ -18,13 +18,19 @@ from .contact import (
     reached,
     wall_pressing,
 )
-from .equilibrium import Bounds, ElementProblem, ElementState, NotConverged
+from .equilibrium import (
+    SQUEEZE_STEP,
+    Bounds,
+    ElementProblem,
+    ElementState,
+    NotConverged,
+    Pair,
+    check_inputs,
+    follow,
+)
 from .material import Floats, MooneyRivlin
-from .mesh import SlideRing, disc, slide_ring
-from .pair import Pair
-from .path import SQUEEZE_STEP, check_inputs, follow
+from .mesh import Body, Section, SlideRing, disc, slide_ring
 from .result import Contact, SealSolution, stress_field
-from .section import Body, Section
 
 COARSE = 0.12
 """Largest element size of the slide ring, over the section of the rubber ring."""

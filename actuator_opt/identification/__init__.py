@@ -1,14 +1,12 @@
 """Identification: friction, damping and modulus from the records of a test bench."""
 
-from .bending import BendingResult, bending
+from .bending import BendingResult, Specimen, bending
 from .calibration import Calibration, calibration
 from .column import parse_column
 from .column_units import ColumnUnits, column_units
-from .csv_table import decode_record
 from .identify import identify
-from .record import CHANNELS, Record, parse_record
+from .record import CHANNELS, Record, decode_record, parse_record
 from .result import Identification, Settings
-from .specimen import Specimen
 
 __all__ = [
     "CHANNELS",

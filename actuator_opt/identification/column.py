@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..base.errors import Diagnostic, InputError
+from ..base.errors import Diagnostic, InputError, remedy as remedy_for, shown
 from ..base.numeric import Array
-from ..base.suggest import remedy as remedy_for, shown
 from ..base.units import UnitError
 from .column_units import NONE, ColumnUnits
-from .csv_table import numbers, read_sheet
-from .record import CHANNELS, column_of, contradicted, converted, header_cells
+from .record import CHANNELS, column_of, contradicted, converted, header_cells, numbers, read_sheet
 
 FEWEST = 2
 """Least number of samples of a signal."""

@@ -8,9 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..base import units
-from ..base.errors import Diagnostic, InputError
+from ..base.errors import Diagnostic, InputError, shown
 from ..base.files import read_bytes
-from ..base.suggest import shown
 from ..design.yaml_source import MAX_BYTES, decode, parse
 
 SI = "SI"

@@ -15,12 +15,11 @@ from .bootstrap import resampled
 from .coefficient import coefficient
 from .conditioning import Motion, condition
 from .lag import CANNOT, lag_of, taken_off, undone, unparted
-from .lugre_fit import LuGreFit, fit_lugre, settling_distance
-from .lugre_problem import BENDS
+from .lugre import BENDS, LuGreFit, fit_lugre, settling_distance
 from .points import BLURRED, LASTING, SETTLED, SETTLING, Point, independent, settled, steady_points
 from .record import Record
 from .result import Identification, Mean, Settings
-from .spectrum import spectrum
+from .straight import spectrum
 from .stribeck_fit import StribeckFit, different, fit_stribeck
 
 LAWS = {"power_law": fit_power_law, "double_exponential": fit_double_exponential}

@@ -7,8 +7,7 @@ from math import isfinite
 
 from ..base.fitting import Parameter
 from .doubtful import opened
-from .lugre_problem import LuGreFit
-from .lugre_windows import LAG
+from .lugre import LAG, LuGreFit
 
 LEAST_LAG = 3e-4
 """Least lag worth correcting [s]."""

@@ -9,8 +9,7 @@ import numpy as np
 
 from ..base.numeric import Array
 from .balance import Sliding
-from .conditioning import Motion
-from .pace import velocities
+from .conditioning import Motion, velocities
 
 STEADY, FLOOR = 0.04, 2e-5
 """Speed tolerance of a plateau, relative and absolute [m/s] (choices: viscous friction then changes

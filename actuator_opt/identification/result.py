@@ -16,10 +16,10 @@ from ..version import VERSION
 from .balance import Sliding
 from .coefficient import Coefficient
 from .conditioning import CUTOFF, ORDER, Motion
-from .lugre_fit import LuGreFit
+from .lugre import LuGreFit
 from .points import Point
 from .record import Record
-from .spectrum import Spectrum
+from .straight import Spectrum
 from .stribeck_fit import StribeckFit
 
 

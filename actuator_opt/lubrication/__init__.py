@@ -4,7 +4,7 @@ NumPy only. Pressures are absolute; forces are per circumference unless stated o
 """
 
 from .film import Film, solve_film
-from .inputs import Contact, Elastic, Lubricant, Surface
+from .reynolds import Contact, Elastic, Lubricant, Surface
 from .slopes import sensitivities
 from .smooth import Gap, SmoothFilm, solve_gap
 from .tandem import SealElement, Tandem, solve_tandem

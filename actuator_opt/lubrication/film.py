@@ -17,9 +17,8 @@ from ..models.flow_factors import (
     shear_stress_factor,
 )
 from ..models.rough_surface import film_ratio_under_contact
-from .inputs import Contact, fault
 from .newton import Bed, FilmState, Outcome, contact_pressure, follow, newton, weights
-from .reynolds import Flow, Vector, flux
+from .reynolds import Contact, Flow, Vector, fault, flux
 
 LEAST_CONTACT = 1e-12
 """Static pressure over asperity stiffness below which the surfaces count as barely touching."""

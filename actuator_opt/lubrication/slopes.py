@@ -8,9 +8,8 @@ import numpy as np
 
 from ..base.numeric import STEP
 from .film import Film, outputs, scaled
-from .inputs import Contact
 from .newton import FilmState, Linear, Residual, residual
-from .reynolds import Vector
+from .reynolds import Contact, Vector
 
 
 def sensitivities(film: Film, stepped: Sequence[Contact]) -> Vector:

@@ -8,9 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .film import outputs
-from .inputs import Elastic, Lubricant
 from .newton import Bed, FilmState, Outcome, follow, kernel, newton, weights
-from .reynolds import Flow, Vector
+from .reynolds import Elastic, Flow, Lubricant, Vector
 
 _NARROWEST = 0.04
 """Square of the smallest relative half width of the initial pressure."""

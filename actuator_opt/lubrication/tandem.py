@@ -7,8 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from .film import Film, solve_film
-from .inputs import Contact, Elastic, Lubricant, Surface
-from .reynolds import Vector
+from .reynolds import Contact, Elastic, Lubricant, Surface, Vector
 
 HIGHEST = 1.5
 """Largest interseal pressure that is tried, over the higher end pressure,

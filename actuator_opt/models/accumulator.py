@@ -7,8 +7,7 @@ its neck before this capacitance.
 
 from __future__ import annotations
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, maximum, minimum, real, where
+from ..base.numeric import Array, geometry, maximum, minimum, real, where
 from .fluid import ATMOSPHERIC_PRESSURE
 
 

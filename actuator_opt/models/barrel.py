@@ -10,8 +10,7 @@ from math import pi
 
 import numpy as np
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, namespace, positive, real, sqrt
+from ..base.numeric import Array, geometry, namespace, positive, real, sqrt
 
 
 @geometry

@@ -6,8 +6,7 @@ The barrel's axial force follows from how the cylinder is mounted, never from a 
 
 from __future__ import annotations
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, absolute, namespace, positive, real, sqrt, where
+from ..base.numeric import Array, absolute, geometry, namespace, positive, real, sqrt, where
 
 
 @geometry

@@ -7,8 +7,7 @@ overhang at the head. Critical loads come from `stepped`.
 
 from __future__ import annotations
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, positive, real, where
+from ..base.numeric import Array, geometry, positive, real, where
 
 
 @geometry

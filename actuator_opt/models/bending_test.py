@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, positive, sqrt
+from ..base.numeric import Array, geometry, positive, sqrt
 
 
 @geometry

@@ -17,8 +17,7 @@ from functools import reduce
 from math import inf
 from typing import Any, Protocol
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, absolute, maximum, real, together, where
+from ..base.numeric import Array, absolute, geometry, maximum, real, together, where
 from .strength_modes import PlyStrength, Stress, load_multiplier
 from .yielding import yield_utilisation
 

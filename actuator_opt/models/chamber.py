@@ -9,8 +9,7 @@ from __future__ import annotations
 
 import math
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, log1p_quotient, namespace, real, where
+from ..base.numeric import Array, geometry, log1p_quotient, namespace, real, where
 from .fluid import ATMOSPHERIC_PRESSURE
 
 

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from math import pi
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, namespace, sqrt
+from ..base.numeric import Array, geometry, namespace, sqrt
 
 
 @geometry

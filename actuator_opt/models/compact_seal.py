@@ -11,8 +11,7 @@ from __future__ import annotations
 
 import math
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, minimum, real, where
+from ..base.numeric import Array, geometry, minimum, real, where
 
 
 def energised_share(*, poissons_ratio: Array) -> Array:

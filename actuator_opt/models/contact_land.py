@@ -9,8 +9,7 @@ contact, and the profile must not be used.
 
 from __future__ import annotations
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, positive, real, where
+from ..base.numeric import Array, geometry, positive, real, where
 
 LAND_POWER = 8
 """Even power of the excess, 1 - u^8 (*choice*: flat within 5 % over the middle 69 %)."""

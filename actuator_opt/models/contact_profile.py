@@ -15,8 +15,7 @@ import math
 from collections.abc import Sequence
 from itertools import pairwise
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, clip, maximum, positive, real, sqrt, where
+from ..base.numeric import Array, clip, geometry, maximum, positive, real, sqrt, where
 
 LIP_PLACES, LIP_SHARE = (0.0, 0.2, 0.6, 1.0), 0.42
 """Knots of the lip profile, and its third pressure over its second (*choice*, surrogate)."""

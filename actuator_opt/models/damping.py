@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import math
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, namespace, real, where
+from ..base.numeric import Array, geometry, namespace, real, where
 
 
 @geometry

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import math
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, sqrt
+from ..base.numeric import Array, geometry, sqrt
 
 
 @geometry

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from math import pi
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, namespace, positive
+from ..base.numeric import Array, geometry, namespace, positive
 
 
 @geometry

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import math
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, clip, maximum, real, sqrt, where
+from ..base.numeric import Array, clip, geometry, maximum, real, sqrt, where
 from .endurance import end_stop_energy
 from .orifice import TURBULENT_COEFFICIENT, orifice_pressure_drop
 

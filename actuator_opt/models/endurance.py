@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, namespace, real, sqrt, where
+from ..base.numeric import Array, geometry, namespace, real, sqrt, where
 
 _LOW_CYCLES = 1e3
 _LOW_SHARE = 0.9

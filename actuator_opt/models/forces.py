@@ -9,8 +9,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, namespace, real, sqrt, where
+from ..base.numeric import Array, geometry, namespace, real, sqrt, where
 
 
 @geometry

@@ -9,8 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, absolute, maximum, namespace, real, where
+from ..base.numeric import Array, absolute, geometry, maximum, namespace, real, where
 
 
 @geometry

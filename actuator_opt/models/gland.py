@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import math
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, minimum, namespace, real, where
+from ..base.numeric import Array, geometry, minimum, namespace, real, where
 
 WIDTH_RATIO = 1.3655
 """Groove width over free section: least squares through the origin on the five tabulated

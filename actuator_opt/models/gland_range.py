@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, real, sqrt, where
+from ..base.numeric import Array, geometry, real, sqrt, where
 
 
 def volume_ratio(

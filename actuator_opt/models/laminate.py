@@ -12,8 +12,7 @@ from collections.abc import Sequence
 from math import pi
 from typing import Any, TypeAlias
 
-from ..base.geometry import geometry
-from ..base.numeric import Array
+from ..base.numeric import Array, geometry
 
 THIN_WALL_LIMIT = 0.05
 """t/r_i above which the thin laminate should be replaced by the exact layered tube."""

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from math import pi
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, namespace, positive, sqrt
+from ..base.numeric import Array, geometry, namespace, positive, sqrt
 
 
 def _edge_ratio(*, loaded: Array, free: Array, reach: Array) -> Array:

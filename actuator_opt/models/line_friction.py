@@ -10,8 +10,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, namespace, where
+from ..base.numeric import Array, geometry, namespace, where
 
 FRICTION = ("lossless", "steady", "distributed")
 _LEVELS = 28

@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..base.geometry import geometry
-from ..base.numeric import STEP, Array, absolute, namespace, real, where
+from ..base.numeric import STEP, Array, absolute, geometry, namespace, real, where
 from .layered_tube import TubeLayer, layered_tube, tube_state
 from .strength_modes import Stress
 from .yielding import mises_product

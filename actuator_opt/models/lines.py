@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import math
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, absolute, clip, maximum, real, where
+from ..base.numeric import Array, absolute, clip, geometry, maximum, real, where
 
 LAMINAR_REYNOLDS = 2300.0
 """Below: pure Hagen-Poiseuille."""

@@ -10,8 +10,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, angle, namespace, real, sqrt, where
+from ..base.numeric import Array, angle, geometry, namespace, real, sqrt, where
 from .forces import crank, joint_force
 
 

@@ -13,8 +13,7 @@ from __future__ import annotations
 
 import math
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, maximum, minimum, namespace, real, sqrt, where
+from ..base.numeric import Array, geometry, maximum, minimum, namespace, real, sqrt, where
 from .contact_profile import lip_mean
 
 LYING_STEPS = 7

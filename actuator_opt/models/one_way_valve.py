@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import math
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, absolute, clip, maximum, minimum, namespace, real, where
+from ..base.numeric import Array, absolute, clip, geometry, maximum, minimum, namespace, real, where
 from .orifice import orifice_conductance, orifice_flow, orifice_pressure_drop
 
 NEEDLE_AREA = 0.22e-4

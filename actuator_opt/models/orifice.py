@@ -10,8 +10,7 @@ from __future__ import annotations
 
 import math
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, absolute, namespace, real, sqrt, where
+from ..base.numeric import Array, absolute, geometry, namespace, real, sqrt, where
 
 TURBULENT_COEFFICIENT = 0.611
 """C of a sharp edge, pi/(pi + 2) [AaltoThesis]."""

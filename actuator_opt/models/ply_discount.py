@@ -10,8 +10,7 @@ from dataclasses import dataclass
 from math import pi
 from typing import Any
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, namespace, where
+from ..base.numeric import Array, geometry, namespace, where
 from .burst_ladder import (
     BurstLadder,
     WallLayer,

@@ -9,8 +9,7 @@ from __future__ import annotations
 
 import math
 
-from ..base.geometry import geometry
-from ..base.numeric import Array
+from ..base.numeric import Array, geometry
 from .transmission_line import input_impedance, line_matrix
 
 

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from math import pi
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, absolute
+from ..base.numeric import Array, absolute, geometry
 from .rod import thread_stress
 
 

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from math import pi
 from typing import Any
 
-from ..base.geometry import geometry
-from ..base.numeric import Array
+from ..base.numeric import Array, geometry
 
 
 @geometry

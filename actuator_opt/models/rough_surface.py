@@ -10,8 +10,7 @@ import math
 
 import numpy as np
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, magnitude, namespace, real, where
+from ..base.numeric import Array, geometry, magnitude, namespace, real, where
 
 _STEP = 0.15
 _HEIGHTS = tuple((_STEP * i) ** 2 for i in range(29))

@@ -23,9 +23,8 @@ import math
 from dataclasses import dataclass
 from typing import Protocol
 
-from ..base.geometry import geometry
 from ..base.kinds import kinds
-from ..base.numeric import Array, clip, namespace, real, sqrt, where
+from ..base.numeric import Array, clip, geometry, namespace, real, sqrt, where
 from .contact_profile import o_ring_mean
 
 

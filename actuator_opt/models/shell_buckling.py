@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from math import pi
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, minimum, namespace, sqrt
+from ..base.numeric import Array, geometry, minimum, namespace, sqrt
 from .column import local_shell_stress
 
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from math import pi
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, maximum, positive, sqrt
+from ..base.numeric import Array, geometry, maximum, positive, sqrt
 from .orifice import TURBULENT_COEFFICIENT
 
 

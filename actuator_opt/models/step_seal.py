@@ -10,8 +10,7 @@ land, `contact_land.land_peak`.
 
 from __future__ import annotations
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, maximum, real, sqrt, where
+from ..base.numeric import Array, geometry, maximum, real, sqrt, where
 
 
 @geometry

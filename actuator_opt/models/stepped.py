@@ -18,8 +18,7 @@ from dataclasses import dataclass
 from math import pi
 from typing import Any, Literal, TypeAlias
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, maximum, minimum, namespace, positive, real, sqrt, where
+from ..base.numeric import Array, geometry, maximum, minimum, namespace, positive, real, sqrt, where
 
 End: TypeAlias = Literal["pinned", "fixed", "free", "guided"]
 """pinned: w = M = 0; fixed: w = slope = 0; free: M = Q = 0; guided: slope = Q = 0."""

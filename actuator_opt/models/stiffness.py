@@ -11,8 +11,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, clip, maximum, real, sqrt, where
+from ..base.numeric import Array, clip, geometry, maximum, real, sqrt, where
 from .fluid import ATMOSPHERIC_PRESSURE
 
 

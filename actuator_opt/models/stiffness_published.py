@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import math
 
-from ..base.geometry import geometry
-from ..base.numeric import Array
+from ..base.numeric import Array, geometry
 from .barrel import bore_growth_as_published
 from .lines import line_compliance
 

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from math import pi, sqrt, tan
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, real, where
+from ..base.numeric import Array, geometry, real, where
 from .mass import pitch_diameter
 
 HEIGHT = sqrt(3) / 2

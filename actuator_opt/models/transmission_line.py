@@ -11,8 +11,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, namespace, where
+from ..base.numeric import Array, geometry, namespace, where
 from .line_friction import series_impedance
 
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, namespace, sqrt
+from ..base.numeric import Array, geometry, namespace, sqrt
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,8 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from ..base.geometry import geometry
-from ..base.numeric import Array
+from ..base.numeric import Array, geometry
 
 Chamber: TypeAlias = Literal["a", "b"]
 

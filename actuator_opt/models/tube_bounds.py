@@ -10,8 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import sqrt
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, namespace
+from ..base.numeric import Array, geometry, namespace
 from .mass import layer_area
 
 

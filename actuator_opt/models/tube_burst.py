@@ -10,8 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, cast
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, namespace, together, where
+from ..base.numeric import Array, geometry, namespace, together, where
 from .burst_ladder import BurstLadder, WallLayer, batch_zero, climb, inverse_strengths, metals_first
 from .layered_tube import closed, forcing
 from .solid_ply import Solid, solid_stiffness

@@ -20,8 +20,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple, cast
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, expm1_quotient, lifted, namespace, stacked, together
+from ..base.numeric import Array, expm1_quotient, geometry, lifted, namespace, stacked, together
 from .solid_ply import Solid, TubeStiffness, solid_expansion_load, solid_rotated
 
 

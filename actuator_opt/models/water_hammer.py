@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, sqrt
+from ..base.numeric import Array, geometry, sqrt
 
 
 @geometry

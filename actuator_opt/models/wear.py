@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from ..base.geometry import geometry
-from ..base.numeric import Array, real, where
+from ..base.numeric import Array, geometry, real, where
 
 
 @geometry

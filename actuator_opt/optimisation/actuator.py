@@ -4,18 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from enum import Enum
 
 import numpy as np
 
 from ..base.errors import Diagnostic, InputError
-from ..base.numeric import Array, real, where
+from ..base.numeric import STEP, Array, real, where
 from ..base.quantities import Sense
 from ..evaluation import PreparedDesign, compute
 from ..evaluation.governing import extreme, worst_of
-from ..evaluation.limits import all_limits, margin
-from ..evaluation.rows import UNLIMITED, LimitRow, MetricArrays, rows_of
+from ..evaluation.limits import UNLIMITED, LimitRow, MetricArrays, all_limits, margin, rows_of
 from ..evaluation.values import Values as Numbers
-from .problem import BoxProblem, ParametricProblem, Values
+from .evaluator import Evaluator, Point
+from .kkt import Kkt
+from .problem import BoxProblem, ParametricProblem, Values, Vector
 
 Fault = Callable[[str, str, str], Diagnostic]
 """Builds the Diagnostic of a variable at its place in the file, from path, message and remedy."""
@@ -321,3 +323,355 @@ def _check_read(numbers: Numbers, paths: tuple[str, ...], fault: Fault | None) -
             faults.append(place or Diagnostic(message, remedy, path=f"variables.{path}"))
     if faults:
         raise InputError(faults)
+
+
+RELATIVE_STEP = 1e-5
+"""Step of central differences, relative to the parameter (absolute where it is 0)."""
+
+
+@dataclass(frozen=True)
+class Responses:
+    """Derivatives by each parameter (q of them, bounds included) at one point.
+
+    Parameters
+    ----------
+    names, values : of the parameters
+    rows : (rows, q), derivative of objective, constraints and equalities
+    mixed : (nf, q), derivative of the gradient of the Lagrangian
+    bounds : (2 nf, q), derivative of the distance to lower, then upper bounds
+    differences : labels of parameters that fell back to finite differences
+    """
+
+    names: tuple[str, ...]
+    values: Vector
+    rows: Vector
+    mixed: Vector
+    bounds: Vector
+    differences: tuple[str, ...]
+
+    def matters(self, k: int) -> bool:
+        """Whether parameter k changes anything at the point."""
+        return bool(self.rows[:, k].any() or self.bounds[:, k].any())
+
+
+def responses(
+    parametric: ParametricProblem, evaluator: Evaluator, point: Point, weights: Vector
+) -> Responses:
+    """Return derivatives by the parameters; `weights` (rows,) make the Lagrangian of the rows."""
+    count, nf = len(parametric.parameters), evaluator.space.size
+    steps = RELATIVE_STEP * np.where(parametric.parameters == 0, 1.0, parametric.parameters)
+    rows, fallen = _row_slopes(parametric, point, steps)
+    mixed = _mixed(parametric, evaluator, point, weights, steps)
+    return Responses(
+        tuple(parametric.parameter_names),
+        parametric.parameters,
+        rows,
+        mixed,
+        np.zeros((2 * nf, count)),
+        fallen,
+    )
+
+
+def with_bounds(found: Responses, evaluator: Evaluator, multipliers: Vector) -> Responses:
+    """Return the same with a parameter "NAME lower" or "NAME upper" for each bound that costs.
+
+    `multipliers` (2 nf,) are those of the lower, then the upper bounds.
+    """
+    space, problem = evaluator.space, evaluator.problem
+    nf = space.size
+    priced = np.flatnonzero(multipliers > 0)
+    names, values, shifts = [], [], np.zeros((2 * nf, len(priced)))
+    for k, i in enumerate(priced):
+        j, upper = int(i) % nf, bool(i >= nf)
+        limit = (problem.upper if upper else problem.lower)[space.free[j]]
+        slope = limit if space.logarithmic[j] else space.scale[j]
+        names.append(f"{problem.names[space.free[j]]} {'upper' if upper else 'lower'}")
+        values.append(limit)
+        shifts[i, k] = (1.0 if upper else -1.0) / slope
+    extra = len(priced)
+    return replace(
+        found,
+        names=(*found.names, *names),
+        values=np.concatenate([found.values, np.array(values, dtype=float)]),
+        rows=np.concatenate([found.rows, np.zeros((len(found.rows), extra))], axis=1),
+        mixed=np.concatenate([found.mixed, np.zeros((nf, extra))], axis=1),
+        bounds=np.concatenate([found.bounds, shifts], axis=1),
+    )
+
+
+def perturbed(parametric: ParametricProblem, name: str, k: int, value: float) -> BoxProblem | None:
+    """Return the problem with parameter k (a bound beyond the parameters) at `value`.
+
+    None where the bounds would cross.
+    """
+    if k < len(parametric.parameters):
+        parameters = parametric.parameters.copy()
+        parameters[k] = value
+        return parametric.at(parameters)
+    problem = parametric.problem
+    variable, side = name.rsplit(" ", 1)
+    j = list(problem.names).index(variable)
+    bound = (problem.upper if side == "upper" else problem.lower).copy()
+    bound[j] = value
+    lower, upper = (bound, problem.upper) if side == "lower" else (problem.lower, bound)
+    if lower[j] > upper[j]:
+        return None
+    return replace(problem, lower=lower, upper=upper, start=None)
+
+
+def _rows(parametric: ParametricProblem, points: Vector, parameters: Vector) -> Vector:
+    problem = replace(
+        parametric.problem, start=None, evaluate=lambda x: parametric.evaluate(x, parameters)
+    )
+    return np.asarray(problem.rows(points))
+
+
+def _row_slopes(
+    parametric: ParametricProblem, point: Point, steps: Vector
+) -> tuple[Vector, tuple[str, ...]]:
+    """Return derivative of the rows (rows, q), and the parameters that fell back to differences."""
+    count = len(steps)
+    if count == 0:
+        return np.zeros((len(point.rows), 0)), ()
+    at = np.repeat(parametric.parameters[:, None], count, axis=1)
+    x = np.repeat(point.x[:, None], count, axis=1)
+    moves = np.diag(steps)
+    both = _rows(
+        parametric,
+        np.concatenate([x, x], axis=1),
+        np.concatenate([at + moves, at - moves], axis=1),
+    ).real
+    above, below = both[:, :count], both[:, count:]
+    middle = point.rows[:, None]
+    above = np.where(np.isfinite(above), above, 2 * middle - below)
+    below = np.where(np.isfinite(below), below, 2 * middle - above)
+    crude = np.nan_to_num((above - below) / (2 * steps))
+    try:
+        fine = _rows(parametric, x, at + 1j * STEP * moves).imag / STEP / steps
+    except (TypeError, ValueError, np.exceptions.ComplexWarning):
+        return crude, tuple(parametric.parameter_names)
+    room = 1e-4 * np.abs(crude).max(axis=0) + 1e-6 * (1 + np.abs(point.rows).max()) / np.abs(steps)
+    room = np.minimum(room, 1e-4 * np.abs(crude).max(axis=0) + 1e-9 / np.abs(steps))
+    wrong = ~(np.abs(fine - crude) <= room).all(axis=0)
+    names = tuple(parametric.parameter_names[int(k)] for k in np.flatnonzero(wrong))
+    return np.where(wrong, crude, fine), names
+
+
+def _mixed(
+    parametric: ParametricProblem,
+    evaluator: Evaluator,
+    point: Point,
+    weights: Vector,
+    steps: Vector,
+) -> Vector:
+    """Return the derivative of the Lagrangian's gradient (nf, q), in one call where exact."""
+    count, nf = len(steps), evaluator.space.size
+    if count == 0 or nf == 0:
+        return np.zeros((nf, count))
+    slopes = []
+    if evaluator.complex_works and not evaluator.difference_rows.any():
+        x = np.repeat(point.x[:, None].astype(complex), nf, axis=1)
+        seeds = evaluator.space.slope(point.x[:, None])[:, 0]
+        x[evaluator.space.free, np.arange(nf)] += 1j * STEP * seeds
+        for sign in (1.0, -1.0):
+            at = parametric.parameters[:, None] + sign * np.diag(steps)
+            rows = _rows(parametric, np.tile(x, count), np.repeat(at, nf, axis=1))
+            part = (rows.imag / STEP).reshape(len(rows), count, nf)
+            slopes.append(np.tensordot(weights, part, axes=1))
+    else:
+        for sign in (1.0, -1.0):
+            side = []
+            for k in range(count):
+                parameters = parametric.parameters.copy()
+                parameters[k] += sign * 100 * steps[k]
+                near = Evaluator(parametric.at(parameters))
+                near.complex_works = evaluator.complex_works
+                near.difference_rows = evaluator.difference_rows
+                side.append(weights @ near.jacobians(point.z[:, None])[:, 0])
+            slopes.append(np.array(side))
+        steps = 100 * steps
+    return np.asarray(np.nan_to_num((slopes[0] - slopes[1]) / (2 * steps[:, None])).T)
+
+
+MET = 1e-6
+"""Worst violation that counts as met (contract)."""
+
+
+class Outcome(Enum):
+    """Outcome of a run: status word, sentence, remedy."""
+
+    OPTIMUM = (
+        "optimal",
+        "optimum found: all requirements are met and the optimality conditions are satisfied",
+        "",
+    )
+    NOT_STATIONARY = (
+        "feasible",
+        "all requirements are met, but the optimality conditions are not satisfied to 1e-6",
+        "run again with more starts or another seed, or check custom metrics for a kink (min, "
+        "max, look-up table) or the edge of a table near this point",
+    )
+    SADDLE = (
+        "feasible",
+        "all requirements are met and the gradients balance, but the point is not a minimum",
+        "run again with another seed or more starts",
+    )
+    INFEASIBLE = (
+        "infeasible",
+        "no design meets all requirements",
+        "free a dimension, change a choice, widen a bound or relax a conflicting requirement",
+    )
+    LIMIT = (
+        "limit",
+        "stopped at the evaluation or time limit; the best feasible design so far is kept",
+        "raise the limit to let the search finish",
+    )
+    LIMIT_INFEASIBLE = (
+        "limit_infeasible",
+        "stopped at the evaluation or time limit before any design met all requirements",
+        "raise the limit, or start from a design that meets the requirements",
+    )
+    INTERRUPTED = (
+        "interrupted",
+        "interrupted; the best feasible design so far is kept",
+        "run again to let the search finish",
+    )
+    INTERRUPTED_INFEASIBLE = (
+        "interrupted_infeasible",
+        "interrupted before any design met all requirements",
+        "run again to let the search finish",
+    )
+    FLAT = (
+        "flat",
+        "no variable affects the objective; the design only meets the requirements",
+        "free a variable that the objective depends on, or choose another objective",
+    )
+    UNDEFINED = (
+        "undefined",
+        "the model has no finite values at any point tried",
+        "narrow the bounds to the valid range of the model, or check custom metrics for NaN",
+    )
+    NOTHING_FREE = (
+        "nothing_free",
+        "equal bounds fix every variable; the design is only evaluated",
+        "give at least one variable a lower bound below its upper bound",
+    )
+
+    @property
+    def status(self) -> str:
+        """Status word for machines."""
+        return str(self.value[0])
+
+    @property
+    def sentence(self) -> str:
+        """The outcome in plain words."""
+        return str(self.value[1])
+
+    @property
+    def remedy(self) -> str:
+        """The recommended action; empty if none is needed."""
+        return str(self.value[2])
+
+    @property
+    def feasible(self) -> bool:
+        """Whether the point meets every constraint (if the outcome determines that)."""
+        return self in (
+            Outcome.OPTIMUM,
+            Outcome.NOT_STATIONARY,
+            Outcome.SADDLE,
+            Outcome.LIMIT,
+            Outcome.INTERRUPTED,
+            Outcome.FLAT,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class LocalOptimum:
+    """A distinct end point of local runs, and the number of starts that reached it."""
+
+    x: Vector
+    objective: float
+    violation: float
+    residual: float
+    hits: int
+
+
+@dataclass(frozen=True, slots=True)
+class StartRecord:
+    """One start and its result: the last algorithm and the final values."""
+
+    x: Vector
+    objective: float
+    violation: float
+    algorithm: str
+    evaluations: int
+
+    @property
+    def feasible(self) -> bool:
+        """Whether it reached a point that meets every limit."""
+        return self.violation <= MET
+
+
+@dataclass(frozen=True)
+class Solution:
+    """The best point, its quality and the search statistics.
+
+    Parameters
+    ----------
+    problem : the problem solved
+    outcome : how the run ended
+    x : variables (n,)
+    objective, constraints, equalities : values at x
+    violation : worst missed margin, 0 if all are met
+    kkt : optimality conditions at x; None if the model is undefined there
+    evaluations, gradients : points evaluated and gradients computed in the local phase
+    samples, feasible_samples : points of the global sweep, and how many were feasible
+    undefined : share of the sweep where the model has no finite values
+    starts : result of each start, in order
+    optima : distinct local optima, the best first
+    trace : (evaluation, objective, violation) of each improvement
+    algorithm : the algorithm that reached x
+    without_effect : labels of variables that changed no value at any point tried
+    warnings : messages for the user
+    seed, seconds : of the run
+    """
+
+    problem: BoxProblem
+    outcome: Outcome
+    x: Vector
+    objective: float
+    constraints: Vector
+    equalities: Vector
+    violation: float
+    kkt: Kkt | None
+    evaluations: int
+    gradients: int
+    algorithm: str
+    seconds: float
+    samples: int = 0
+    feasible_samples: int = 0
+    undefined: float = 0.0
+    starts: tuple[StartRecord, ...] = ()
+    optima: tuple[LocalOptimum, ...] = ()
+    trace: tuple[tuple[int, float, float], ...] = ()
+    without_effect: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+    seed: int = 0
+
+    @property
+    def feasible(self) -> bool:
+        """Whether every margin is at least -1e-6 and every equality within 1e-6."""
+        return self.violation <= MET
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether Ctrl-C ended the search."""
+        return self.outcome in (Outcome.INTERRUPTED, Outcome.INTERRUPTED_INFEASIBLE)
+
+    def at_bound(self, index: int) -> str | None:
+        """``"lower"``, ``"upper"`` or None for variable `index`."""
+        low, high = self.problem.lower[index], self.problem.upper[index]
+        room = 1e-6 * max(abs(low), abs(high), high - low)
+        if self.x[index] - low <= room:
+            return "lower"
+        return "upper" if high - self.x[index] <= room else None

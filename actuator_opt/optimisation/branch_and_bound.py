@@ -25,8 +25,7 @@ from .listed import ON, Assignment, Box, Listed, between, with_rows
 from .problem import BoxProblem, ParametricProblem, Values, Vector
 from .resolve.boxes import EXACT, ROUGH, BoxTask, Criteria, Nearest, resolve_boxes
 from .resolve.changed import ChangedProblems, applicable
-from .resolve.hessians import ScaledHessian, hessian_at
-from .resolve.steps import valley_at
+from .resolve.steps import ScaledHessian, hessian_at, valley_at
 
 MOST_SOLVES = 400
 """Maximum re-optimisations of one search."""

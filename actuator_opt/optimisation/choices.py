@@ -21,8 +21,7 @@ from ..design.material import Material
 from ..design.materials import load_library
 from ..evaluation import PreparedDesign, compute, prepare
 from ..evaluation.build import names_of_materials
-from ..evaluation.limits import all_limits
-from ..evaluation.rows import LimitRow, rows_of
+from ..evaluation.limits import LimitRow, all_limits, rows_of
 from .actuator import ActuatorProblem, Goal, build, goal_of
 from .descents import FEASIBLE
 from .quick_look import DOUBTFUL, Look, Start, hessian_of, look_quickly

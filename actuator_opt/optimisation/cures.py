@@ -20,7 +20,7 @@ from ..base.numeric import STEP, Array
 from ..base.progress import tell
 from ..base.quantities import INPUTS, Quantity
 from ..base.units import unit
-from ..design import quantity_of, standards, with_values
+from ..design import quantity_of, standard_sizes as standards, with_values
 from ..design.material import Material
 from ..design.materials import Library, load_library
 from ..design.model import Design

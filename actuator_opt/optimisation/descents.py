@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import elastic, kkt, nlopt_wrapper
+from .actuator import StartRecord
 from .evaluator import Evaluator, Point
-from .newton import polish
-from .outcome import StartRecord
+from .kkt import polish
 
 FEASIBLE = 1e-6
 """Worst missed margin that still counts as met (contract)."""

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from ..base.numeric import Array
 from .evaluator import Evaluator, Point
-from .newton import polish
+from .kkt import polish
 from .nlopt_wrapper import run
 from .problem import BoxProblem, Values, Vector
 

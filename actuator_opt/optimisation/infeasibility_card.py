@@ -11,12 +11,11 @@ import numpy as np
 
 from ..base.quantities import Quantity
 from ..design import quantity_of
-from ..evaluation.rows import LimitRow
+from ..evaluation.limits import LimitRow
 from ..metrics import METRICS
-from .actuator import ActuatorProblem
+from .actuator import ActuatorProblem, Outcome, Solution
 from .cures import DIGITS, Cure, Cures, cures, outward
 from .infeasibility import Infeasibility as Explanation, explain
-from .outcome import Outcome, Solution
 from .repairs import WIDEST, Opening, Relaxation
 from .result import Infeasibility
 

@@ -9,19 +9,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..base.bounds import FRONT
-from ..base.errors import Diagnostic, InputError, UsageError
+from ..base.errors import Diagnostic, InputError, UsageError, remedy
 from ..base.numeric import Array
 from ..base.quantities import Quantity
-from ..base.suggest import remedy
 from ..design.model import Objective
 from ..evaluation import PreparedDesign, compute, evaluate
 from ..evaluation.build import spec_hash
 from ..evaluation.governing import governing
-from ..evaluation.rows import MetricArrays
+from ..evaluation.limits import MetricArrays
 from .actuator import ActuatorProblem, Fault, Goal, build, idle_metrics
 from .descents import FEASIBLE
-from .front.ends import NoEnd
-from .front.front import Front, Settings, front
+from .front.front import Front, NoEnd, Settings, front
 from .front.objectives import Objectives
 from .infeasibility_card import explained
 from .pareto_result import FrontPoint, Knee, ParetoFront, Wish

@@ -10,7 +10,7 @@ from typing import Any, Literal
 from ..base.quantities import Quantity
 from ..design import Design
 from ..evaluation import Evaluation
-from .front.even import Gap
+from .front.front import Gap
 from .result import Infeasibility
 
 

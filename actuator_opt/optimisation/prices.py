@@ -8,17 +8,450 @@ error of the straight line.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import itertools
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
-from . import kkt, movement
+from ..base import quantities
+from ..base.numeric import STEP
+from ..base.quantities import Quantity, short
+from ..base.units import unit
+from ..design import quantity_of
+from . import kkt
+from .actuator import ActuatorProblem, Responses, Solution, perturbed, responses, with_bounds
 from .evaluator import Evaluator, Point
-from .outcome import Solution
-from .parameters import Responses, perturbed, responses, with_bounds
 from .problem import ParametricProblem, Vector
 from .resolve import ladder
 from .resolve.steps import valley_at
+
+INSTANT = 1e-7
+"""Change of an active margin per relative parameter change that counts as zero."""
+
+
+BASES = 1000
+"""Maximum vertices of the multiplier polytope to enumerate; beyond, linear programming."""
+
+
+@dataclass(frozen=True)
+class Optimum:
+    """Linear algebra of an optimum: margins of constraints, then lower and upper bounds.
+
+    Parameters
+    ----------
+    margins, multipliers : (M,)
+    gradients : (M, nf)
+    equalities : gradients (e, nf)
+    equality_multipliers : (e,)
+    slope : gradient of the objective (nf,)
+    hessian : of the Lagrangian (nf, nf)
+    labels : of the margins
+    weights : of the rows in the Lagrangian
+    """
+
+    margins: Vector
+    multipliers: Vector
+    gradients: Vector
+    equalities: Vector
+    equality_multipliers: Vector
+    slope: Vector
+    hessian: Vector
+    labels: tuple[str, ...]
+    weights: Vector
+
+    @property
+    def held(self) -> npt.NDArray[np.intp]:
+        """Margins with a positive multiplier."""
+        size = self.multipliers * np.sqrt((self.gradients**2).sum(axis=1))
+        return np.flatnonzero(size > 1e-10 * max(float(np.linalg.norm(self.slope)), 1e-300))
+
+
+def optimum(evaluator: Evaluator, point: Point, quality: kkt.Kkt) -> Optimum:
+    """Collect margins, gradients, multipliers and the Hessian at an optimum."""
+    space, m = evaluator.space, evaluator.constraint_count
+    jacobian, unit = evaluator.jacobian(point), np.eye(evaluator.space.size)
+    weights = kkt.lagrangian_weights(quality.multipliers, quality.equality_multipliers)
+    names = [evaluator.problem.names[j] for j in space.free]
+    return Optimum(
+        margins=np.concatenate(
+            [point.rows[1 : 1 + m], point.z - space.lower, space.upper - point.z]
+        ),
+        multipliers=np.concatenate(
+            [
+                quality.multipliers,
+                quality.lower_multipliers[space.free],
+                quality.upper_multipliers[space.free],
+            ]
+        ),
+        gradients=np.concatenate([jacobian[1 : 1 + m], unit, -unit]),
+        equalities=jacobian[1 + m :],
+        equality_multipliers=quality.equality_multipliers,
+        slope=jacobian[0],
+        hessian=evaluator.hessian(point, weights, np.arange(space.size)),
+        labels=(
+            *evaluator.problem.constraint_names,
+            *(f"{name} lower" for name in names),
+            *(f"{name} upper" for name in names),
+        ),
+        weights=weights,
+    )
+
+
+def margin_slopes(found: Optimum, given: Responses) -> Vector:
+    """Explicit derivative of every margin by every parameter (M, q)."""
+    m = len(found.margins) - len(given.bounds)
+    return np.concatenate([given.rows[1 : 1 + m], given.bounds])
+
+
+def lagrangian_slopes(found: Optimum, given: Responses) -> Vector:
+    """Price of every parameter (q,): derivative of the Lagrangian."""
+    m = len(found.margins) - len(given.bounds)
+    return found.weights @ given.rows - found.multipliers[m:] @ given.bounds
+
+
+def movement(found: Optimum, given: Responses) -> tuple[Vector, Vector]:
+    """Return derivatives by the parameters of the optimum (nf, q) and its multipliers (M, q).
+
+    Directions that change nothing to second order do not move.
+    """
+    held, nf = found.held, len(found.slope)
+    rows = np.concatenate([found.gradients[held], found.equalities])
+    explicit = np.concatenate(
+        [margin_slopes(found, given)[held], given.rows[len(given.rows) - len(found.equalities) :]]
+    )
+    # solves d gradient of the Lagrangian = 0 and d margin = 0 along the active rows, scaled
+    size = np.sqrt((rows**2).sum(axis=1))
+    size = np.where(size > 0, size, 1.0)
+    scale = max(float(np.linalg.norm(found.slope)), 1e-300)
+    rows, explicit = rows / size[:, None], explicit / size[:, None]
+    system = np.block([[found.hessian / scale, -rows.T], [rows, np.zeros((len(rows),) * 2)]])
+    right = -np.concatenate([given.mixed / scale, explicit])
+    answer = np.linalg.lstsq(system, right, rcond=1e-11)[0]
+    shifts = np.zeros((len(found.margins), right.shape[1]))
+    shifts[held] = answer[nf : nf + len(held)] * scale / size[: len(held), None]
+    return answer[:nf], shifts
+
+
+def reach(
+    found: Optimum, given: Responses, moves: Vector, shifts: Vector
+) -> list[tuple[float | None, str | None]]:
+    """For each parameter the nearest value at which the active set changes, and the change.
+
+    None if beyond -100 % and +100 % of the parameter.
+    """
+    result: list[tuple[float | None, str | None]] = []
+    for value, changes in zip(given.values, _changes(found, given, moves, shifts), strict=True):
+        nearest = min(changes, key=lambda change: abs(change.distance), default=None)
+        if nearest is None or abs(nearest.distance) > (abs(value) if value else 1.0):
+            result.append((None, None))
+        else:
+            result.append((float(value + nearest.distance), nearest.text))
+    return result
+
+
+class ActiveSetChange(NamedTuple):
+    """A change of the active set: distance and direction of the parameter, and the change.
+
+    The direction matters at distance 0: a margin already used up without a multiplier becomes
+    active on one side only.
+    """
+
+    distance: float
+    direction: int
+    text: str
+
+
+def ends(
+    found: Optimum, given: Responses, moves: Vector, shifts: Vector
+) -> list[tuple[ActiveSetChange | None, ActiveSetChange | None]]:
+    """For each parameter the nearest change of the active set below and above its value."""
+    return [
+        (
+            min((one for one in changes if one.direction < 0), key=_size, default=None),
+            min((one for one in changes if one.direction > 0), key=_size, default=None),
+        )
+        for changes in _changes(found, given, moves, shifts)
+    ]
+
+
+def _size(change: ActiveSetChange) -> float:
+    return abs(change.distance)
+
+
+def _changes(
+    found: Optimum, given: Responses, moves: Vector, shifts: Vector
+) -> Iterator[list[ActiveSetChange]]:
+    """For each parameter the points where margins or multipliers vanish on their straight lines."""
+    rates = margin_slopes(found, given) + found.gradients @ moves
+    held = found.held
+    for k, value in enumerate(given.values):
+        changes: list[ActiveSetChange] = []
+        reference = abs(value) if value else 1.0
+        for i, label in enumerate(found.labels):
+            if i in held:
+                level, rate, event = found.multipliers[i], shifts[i, k], "stops being active"
+            else:
+                level, rate, event = max(found.margins[i], 0.0), rates[i, k], "becomes active"
+            if abs(rate) * reference <= INSTANT * max(level, 1.0 if i not in held else 0.0):
+                continue
+            direction = -1 if rate > 0 else 1
+            changes.append(ActiveSetChange(-level / rate, direction, f"{label} {event}"))
+        yield changes
+
+
+def one_sided(found: Optimum, given: Responses, active: npt.NDArray[np.intp]) -> Vector:
+    """Smallest and largest price (2, q) over all multipliers of the optimum."""
+    keep = _without_copies(found, given, active)
+    rows = np.concatenate([found.gradients[keep], found.equalities])
+    count, e = len(rows), len(found.equalities)
+    size = np.sqrt((rows**2).sum(axis=1))
+    size = np.where(size > 0, size, 1.0)
+    rank = int(np.linalg.matrix_rank(rows / size[:, None], tol=1e-8)) if count else 0
+    slopes = np.concatenate([margin_slopes(found, given)[keep], given.rows[len(given.rows) - e :]])
+    single = lagrangian_slopes(found, given)
+    if rank == count:
+        return np.stack([single, single])
+    target = rows.T @ np.concatenate([found.multipliers[keep], found.equality_multipliers])
+    if rank >= e and math.comb(count - e, rank - e) <= BASES:
+        vertices = _vertices(rows / size[:, None], target, rank, e) / size
+        vertices = np.concatenate(
+            [vertices, [np.concatenate([found.multipliers[keep], found.equality_multipliers])]]
+        )
+        all_prices = given.rows[0] - vertices @ slopes
+        return np.stack([all_prices.min(axis=0), all_prices.max(axis=0)])
+    return _by_linear_programming(rows, target, slopes, given.rows[0], e)
+
+
+def _without_copies(
+    found: Optimum, given: Responses, active: npt.NDArray[np.intp]
+) -> npt.NDArray[np.intp]:
+    """Active margins without exact copies (the same limit in two load cases); sums are kept.
+
+    Only copies without a multiplier are dropped; least squares leaves at most one with it.
+    """
+    slopes = np.concatenate([found.gradients, margin_slopes(found, given)], axis=1)
+    kept: list[int] = []
+    order = sorted(active, key=lambda i: (found.multipliers[i] <= 0, i))
+    for i in order:
+        size = 1e-9 * np.abs(slopes[i]).max(initial=1e-300)
+        if found.multipliers[i] > 0 or not any(
+            (np.abs(slopes[i] - slopes[j]) <= size).all() for j in kept
+        ):
+            kept.append(int(i))
+    return np.array(sorted(kept), dtype=np.intp)
+
+
+def _vertices(rows: Vector, target: Vector, rank: int, free: int) -> Vector:
+    """Vertices (v, a) of {multipliers : rows.T @ multipliers = target}, the last `free` free."""
+    count = len(rows)
+    found = []
+    for chosen in itertools.combinations(range(count - free), rank - free):
+        basis = [*chosen, *range(count - free, count)]
+        part, _, got, _ = np.linalg.lstsq(rows[basis].T, target, rcond=1e-10)
+        fits = np.linalg.norm(rows[basis].T @ part - target) <= 1e-8 * np.linalg.norm(target)
+        if got == rank and fits and (part[: len(chosen)] >= -1e-9 * np.abs(part).max()).all():
+            full = np.zeros(count)
+            full[basis] = part
+            found.append(full)
+    return np.array(found).reshape(len(found), count)
+
+
+def _by_linear_programming(
+    rows: Vector, target: Vector, slopes: Vector, objective: Vector, free: int
+) -> Vector:
+    from scipy.optimize import linprog  # slow import, rarely used
+
+    limits = [(0, None)] * (len(rows) - free) + [(None, None)] * free
+    result = np.empty((2, slopes.shape[1]))
+    for k in range(slopes.shape[1]):
+        for side, sign in ((0, 1.0), (1, -1.0)):
+            answer = linprog(-sign * slopes[:, k], A_eq=rows.T, b_eq=target, bounds=limits)
+            # an unbounded price means that this direction has no feasible point
+            value = -np.inf if answer.fun is None else float(answer.fun)
+            result[side, k] = objective[k] + sign * value
+    return result
+
+
+CHANGE = 0.1
+"""Relative change at which every row is predicted and re-solved (contract)."""
+
+
+STRAIGHT = 0.25
+"""Largest error of the straight line, as a share of the re-solved change, to call it straight."""
+
+
+Kind: TypeAlias = Literal["requirement", "parameter", "material"]
+"""A limit to negotiate, a fixed number of the design, or a material property."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sensitivity:
+    """The price of one requirement limit or one parameter, in SI of the objective per SI of it.
+
+    Parameters
+    ----------
+    parameter : its PATH
+    label : of its quantity
+    unit : display unit
+    scale : display value = SI value / scale
+    limit : present value
+    price : change of the objective per unit of it
+    percent_per_percent : relative change of the objective per relative change of it; None if one of
+        the two is 0
+    predicted_10, resolved_10, predicted_minus10, resolved_minus10 : the objective at ±10 % by the
+        price, and re-optimised; None without a design
+    holds_until : where the active set changes; None beyond ±100 %
+    next_active : what changes there
+    active : whether the limit is active at the optimum
+    price_up, price_down : prices of raising and of lowering it, which differ only at a degenerate
+        vertex; None if the next step that way leaves no design
+    movement : change of each variable of the optimum per unit of it, by PATH
+    """
+
+    parameter: str
+    label: str
+    unit: str
+    scale: float
+    limit: float
+    price: float
+    percent_per_percent: float | None
+    predicted_10: float | None
+    resolved_10: float | None
+    predicted_minus10: float | None
+    resolved_minus10: float | None
+    holds_until: float | None
+    next_active: str | None
+    active: bool
+    price_up: float | None
+    price_down: float | None
+    movement: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def kind(self) -> Kind:
+        """Whether it is a limit to negotiate, a number of the design, or a material property."""
+        root = self.parameter.partition(".")[0].partition("[")[0]
+        if root in ("requirements", "load_cases"):
+            return "requirement"
+        return "material" if root == "materials" else "parameter"
+
+    @property
+    def ends(self) -> tuple[tuple[int, float | None, float | None], ...]:
+        """Sign, predicted and re-solved objective of both ends; none for a limit of 0."""
+        if self.limit == 0:
+            return ()
+        return (
+            (1, self.predicted_10, self.resolved_10),
+            (-1, self.predicted_minus10, self.resolved_minus10),
+        )
+
+    @property
+    def one_sided(self) -> bool:
+        """Whether raising and lowering it have different prices."""
+        up, down = self.price_up, self.price_down
+        if up is None or down is None:
+            return up is not down
+        return abs(up - down) > 1e-6 * max(abs(up), abs(down))
+
+    def effect(self, objective: float) -> float:
+        """Largest re-solved change of the objective within ±10 %."""
+        found = [abs(solved - objective) for _, _, solved in self.ends if solved is not None]
+        return max(found, default=0.0)
+
+    def straight(self, objective: float) -> bool:
+        """Whether the price predicts both ends to a quarter of their change."""
+        for _, predicted, solved in self.ends:
+            if predicted is None or solved is None:
+                if predicted is not solved:
+                    return False
+                continue
+            larger = max(abs(solved - objective), abs(predicted - objective))
+            if abs(predicted - solved) > STRAIGHT * larger + 1e-9 * abs(objective):
+                return False
+        return True
+
+    def to_dict(self, objective: float) -> dict[str, Any]:
+        """The row in JSON (SI)."""
+        shown = asdict(self)
+        for name in ("label", "unit", "scale"):
+            del shown[name]
+        return shown | {"kind": self.kind, "straight": self.straight(objective)}
+
+
+def ranked(rows: Sequence[Sensitivity], objective: float) -> tuple[Sensitivity, ...]:
+    """Rows by re-solved effect, the largest first."""
+    return tuple(
+        sorted(rows, key=lambda r: (-r.effect(objective), -abs(r.percent_per_percent or 0.0)))
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Offer:
+    """The better end of a row: gain of a ±10 % change (SI, `gain` > 0 is better)."""
+
+    row: Sensitivity
+    change: float
+    value: float
+    objective: float
+    gain: float
+
+    def to_dict(self) -> dict[str, Any]:
+        """The offer in JSON (SI)."""
+        kept = {name: getattr(self, name) for name in ("change", "value", "objective", "gain")}
+        return {"parameter": self.row.parameter} | kept
+
+
+@dataclass(frozen=True, slots=True)
+class Offers:
+    """The most valuable changes: the best offer of each kind, None without one.
+
+    `no_design` are the requirements that cannot be tightened by 10 %: rows with the sign of the
+    infeasible change.
+    """
+
+    requirement: Offer | None
+    parameter: Offer | None
+    material: Offer | None
+    no_design: tuple[tuple[Sensitivity, int], ...]
+
+    @property
+    def found(self) -> tuple[Offer, ...]:
+        """The existing offers, requirements first."""
+        both = (self.requirement, self.parameter, self.material)
+        return tuple(one for one in both if one is not None)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The "what_buys_most" of `optimise --json` (SI); its sentence is the optimisation's."""
+        kinds = ("requirement", "parameter", "material")
+        found = {name: getattr(self, name) for name in kinds}
+        return {name: None if one is None else one.to_dict() for name, one in found.items()} | {
+            "no_design": [
+                {"parameter": row.parameter, "change": sign * CHANGE}
+                for row, sign in self.no_design
+            ]
+        }
+
+
+def offers(rows: Sequence[Sensitivity], objective: float, *, maximised: bool) -> Offers:
+    """The best re-solved end of each kind of row, if better than the optimum."""
+    wish = 1.0 if maximised else -1.0
+    best: dict[Kind, Offer] = {}
+    lost = []
+    for row in rows:
+        for sign, _, solved in row.ends:
+            if solved is None:
+                if row.kind == "requirement":
+                    lost.append((row, sign))
+                continue
+            gain = wish * (solved - objective)
+            rival = best.get(row.kind)
+            if gain > 1e-6 * abs(objective) and (rival is None or gain > rival.gain):
+                value = row.limit * (1 + sign * CHANGE)
+                best[row.kind] = Offer(row, sign * CHANGE, value, solved, gain)
+    return Offers(best.get("requirement"), best.get("parameter"), best.get("material"), tuple(lost))
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,12 +513,12 @@ def prices(
     point = evaluator.point(evaluator.space.to_z(solution.x))
     evaluator.check_gradients(point)
     quality = kkt.check(evaluator, point)
-    found = movement.optimum(evaluator, point, quality)
+    found = optimum(evaluator, point, quality)
     given = responses(parametric, evaluator, point, found.weights)
     if bounds:
         m = evaluator.constraint_count
         given = with_bounds(given, evaluator, found.multipliers[m:])
-    moves, shifts = movement.movement(found, given)
+    moves, shifts = movement(found, given)
     active = np.flatnonzero(found.margins <= kkt.ACTIVE)
     ends: list[tuple[float | None, float | None]] = [(None, None)] * len(given.values)
     if resolve and change:
@@ -99,11 +532,11 @@ def prices(
         point,
         given,
         change,
-        price=movement.lagrangian_slopes(found, given),
-        sides=movement.one_sided(found, given, active),
+        price=lagrangian_slopes(found, given),
+        sides=one_sided(found, given, active),
         moves=moves,
         ends=ends,
-        reach=movement.reach(found, given, moves, shifts),
+        reach=reach(found, given, moves, shifts),
     )
 
 
@@ -189,3 +622,199 @@ def _rows(
 
 def _finite(value: float) -> float | None:
     return value if np.isfinite(value) else None
+
+
+MOST_PARAMETERS = 10
+"""Parameters (not limits) priced in the sensitivity table, by importance."""
+
+
+LEAST_EFFECT = 1e-3
+"""Smallest elasticity (% per %) for a row in the table."""
+
+
+FREE = 1e-9
+"""Price of a limit of 0, relative to the objective, below which it gets no row."""
+
+
+_NO_PERCENT = ("temperature", "temperature_difference", "angle", "count")
+
+
+def sensitivities(actuator: ActuatorProblem, solution: Solution) -> tuple[Sensitivity, ...]:
+    """Price every limit that could bind and the parameters that matter most."""
+    active = _active_limits(actuator, solution)
+    limits = dict.fromkeys(
+        row.limit_of.path
+        for row in actuator.rows
+        if row.limit_of.path is not None
+        and (row.limit_of.origin in ("requirement", "case") or row.limit_of.path in active)
+    )
+    chosen = (*limits, *_strongest(actuator, solution, set(limits)))
+    numbers = actuator.subject.numbers
+    chosen = tuple(path for path in chosen if path in numbers and (numbers[path] or path in active))
+    found = prices(actuator.parametric(chosen), solution, change=CHANGE, bounds=False)
+    shown = actuator.goal.shown
+    rows = []
+    for price in found:
+        if price.value == 0 and abs(price.price) <= FREE * abs(solution.objective):
+            continue
+        quantity = _quantity(actuator, price.parameter)
+        rows.append(
+            Sensitivity(
+                parameter=price.parameter,
+                label=quantity.label,
+                unit=quantity.unit,
+                scale=unit(quantity.unit, quantity.dimension).scale if quantity.unit else 1.0,
+                limit=price.value,
+                price=shown(price.price),
+                percent_per_percent=price.percent_per_percent,
+                predicted_10=_shown(shown, price.predicted_up),
+                resolved_10=_shown(shown, price.resolved_up),
+                predicted_minus10=_shown(shown, price.predicted_down),
+                resolved_minus10=_shown(shown, price.resolved_down),
+                holds_until=price.holds_until,
+                next_active=price.change,
+                active=price.parameter in active,
+                price_up=_finite_price(shown(price.price_up)),
+                price_down=_finite_price(shown(price.price_down)),
+                movement=dict(zip(actuator.paths, price.movement.tolist(), strict=True)),
+            )
+        )
+    return ranked(rows, shown(solution.objective))
+
+
+def _finite_price(value: float) -> float | None:
+    return value if np.isfinite(value) else None
+
+
+def _shown(shown: Callable[[float], float], value: float | None) -> float | None:
+    return None if value is None else shown(value)
+
+
+def _active_limits(actuator: ActuatorProblem, solution: Solution) -> set[str]:
+    labels = set(solution.kkt.active) if solution.kkt is not None else set()
+    return {
+        row.limit_of.path
+        for row in actuator.rows
+        if row.label in labels and row.limit_of.path is not None
+    }
+
+
+def _quantity(actuator: ActuatorProblem, path: str) -> Quantity:
+    if path.startswith("requirements."):
+        return actuator.subject.quantities[path.split(".")[1]]
+    if path.startswith("materials."):
+        return quantities.MATERIAL_PROPERTIES[path.rpartition(".")[2]]
+    return quantity_of(path, actuator.subject.design)
+
+
+def _strongest(actuator: ActuatorProblem, solution: Solution, known: set[str]) -> tuple[str, ...]:
+    """The parameters with the largest elasticity of the objective, by the Lagrangian."""
+    if solution.kkt is None:
+        return ()
+    numbers = actuator.subject.values(
+        {path: np.array([x]) for path, x in zip(actuator.paths, solution.x, strict=True)}
+    )
+    actuator.subject.touch(numbers)
+    candidates = [
+        path
+        for path in sorted(numbers.read)
+        if path not in known
+        and path not in actuator.paths
+        and actuator.subject.numbers.get(path, 0.0) > 0
+        and not path.startswith("requirements.")
+        and _quantity(actuator, path).dimension not in _NO_PERCENT
+    ]
+    if not candidates:
+        return ()
+    present = np.array([actuator.subject.numbers[path] for path in candidates])
+    varied = np.repeat(present[:, None].astype(complex), len(candidates), axis=1)
+    varied += np.diag(1j * STEP * present)
+    points = np.repeat(solution.x[:, None], len(candidates), axis=1)
+    values = actuator.evaluate(points, dict(zip(candidates, varied, strict=True)))
+    slope = np.imag(values.objective) - solution.kkt.multipliers @ np.imag(values.constraints)
+    elasticity = np.nan_to_num(slope / STEP / abs(solution.objective or 1.0))
+    order = np.argsort(-np.abs(elasticity), kind="stable")
+    return tuple(
+        candidates[i] for i in order[:MOST_PARAMETERS] if abs(elasticity[i]) >= LEAST_EFFECT
+    )
+
+
+PER_CENT = round(100 * CHANGE)
+
+
+def display_of(row: Sensitivity, value: float | None) -> float | None:
+    """A value of the parameter in its display unit; temperatures have an offset."""
+    if value is None:
+        return None
+    offset = 273.15 if row.unit in ("degC", "°C") else 0.0
+    return value / row.scale - offset
+
+
+def short_name(row: Sensitivity) -> str:
+    """A PATH shortened for a sentence: "stiffness_min", "density of ti_6al4v".
+
+    >>> from types import SimpleNamespace as Row
+    >>> short_name(Row(parameter="requirements.stiffness_min.min"))
+    'stiffness_min'
+    >>> short_name(Row(parameter="materials.ti_6al4v.density"))
+    'density of ti_6al4v'
+    """
+    path = row.parameter
+    if path.startswith("requirements."):
+        return path.removeprefix("requirements.").rpartition(".")[0]
+    if path.startswith("materials."):
+        material, _, name = path.removeprefix("materials.").rpartition(".")
+        return f"{name} of {material}"
+    return path
+
+
+def buys_most(
+    found: Offers, quantity: Quantity, objective: float, *, maximised: bool
+) -> tuple[str, ...]:
+    """Sentences on the most valuable changes, and on requirements that cannot be tightened.
+
+    Parameters
+    ----------
+    found : the best offer of each kind
+    quantity, objective : of the objective, and its value at the optimum, SI
+    maximised : whether more of it is better
+    """
+
+    def gain(offer: Offer) -> str:
+        """The gain of an offer: "saves 19.7 g (7.5 %)"."""
+        per_display = quantity.to_display(1.0) - quantity.to_display(0.0)
+        amount = f"{short(offer.gain * per_display, 3, full=True)} {quantity.unit}".rstrip()
+        if objective:
+            amount += f" ({short(100 * offer.gain / abs(objective), 2, full=True)} %)"
+        return f"adds {amount}" if maximised else f"saves {amount}"
+
+    if (best := found.requirement) is not None:
+        parts = [
+            f"Relaxing {short_name(best.row)} by {PER_CENT} % (to {_at(best.row, best.value)}) "
+            f"{gain(best)}, the most of any requirement."
+        ]
+    else:
+        parts = [f"Relaxing a single requirement by {PER_CENT} % gains nothing."]
+    for best, group in (
+        (found.parameter, "Of the design's fixed numbers"),
+        (found.material, "Of the materials"),
+    ):
+        if best is not None:
+            more = "more" if best.change > 0 else "less"
+            name, value = short_name(best.row), _at(best.row, best.value)
+            parts.append(f"{group}, {PER_CENT} % {more} {name} ({value}) {gain(best)}.")
+    if found.no_design:
+        lost = ", ".join(
+            f"{short_name(row)} at {_at(row, row.limit * (1 + sign * CHANGE))}"
+            for row, sign in found.no_design
+        )
+        parts.append(f"No feasible design with {lost}.")
+    return tuple(parts)
+
+
+def _at(row: Sensitivity, value: float) -> str:
+    """A value of the parameter with its unit."""
+    shown = display_of(row, value)
+    assert shown is not None
+    unit = "" if row.unit == "-" else row.unit
+    return f"{short(shown)} {unit}".rstrip()

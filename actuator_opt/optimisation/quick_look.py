@@ -16,16 +16,14 @@ import numpy as np
 from ..design.choice_list import Value
 from ..evaluation import PreparedDesign
 from . import elastic, kkt, nlopt_wrapper
-from .actuator import ActuatorProblem
+from .actuator import ActuatorProblem, Solution
 from .descents import FEASIBLE
 from .evaluator import Evaluator, LimitReached, Point
-from .outcome import Solution
 from .problem import Vector
 from .resolve.boxes import ROUGH, stepped
-from .resolve.hessians import ScaledHessian, hessian_at
+from .resolve.steps import ScaledHessian, hessian_at
 from .result import How
-from .sampling import sweep
-from .solver import solve
+from .solver import solve, sweep
 
 EVALUATIONS = 40
 """Maximum evaluations of one descent; from a nearby design 10 to 30 suffice."""
@@ -127,7 +125,7 @@ def look_quickly(
             if look.feasible or DOUBTFUL < look.violation <= STUCK:
                 break
         if look.feasible and look.x is not None:
-            _settle(look, evaluator, look.x, seed)
+            _settle_quickly(look, evaluator, look.x, seed)
     except LimitReached:
         look.how = "not tried" if look.x is None else "quick"
 
@@ -158,7 +156,7 @@ def hessian_of(look: Look) -> ScaledHessian | None:
     return hessian_at(evaluator, point) if settled else None
 
 
-def _settle(look: Look, evaluator: Evaluator, x: Vector, seed: int) -> None:
+def _settle_quickly(look: Look, evaluator: Evaluator, x: Vector, seed: int) -> None:
     """Solve from a few starts if a descent stopped before an optimum."""
     found = kkt.check(evaluator, evaluator.point(evaluator.space.to_z(x)))
     if found.residual <= SETTLED or not evaluator.space.size:

@@ -23,7 +23,7 @@ from ..design.build import build, to_tree
 from ..design.kinds import Fraction
 from ..evaluation import Evaluation, evaluate, prepare
 from ..evaluation.plugin import Plugin, with_own
-from ..evaluation.reserve import YieldEstimate
+from ..evaluation.result import YieldEstimate
 from .pareto_result import ParetoFront
 from .result import Optimisation
 

@@ -13,9 +13,9 @@ from ..design import choice_list
 from ..design.model import Design
 from ..evaluation.result import Evaluation
 from ..metrics import of_metric
-from . import price_words
-from .robustness import Robust
-from .sensitivity import Offers, Sensitivity, offers
+from . import prices
+from .prices import Offers, Sensitivity, offers
+from .problem import Robust
 
 
 @dataclass(frozen=True, slots=True)
@@ -397,9 +397,7 @@ class Optimisation:
             return ()
         maximised = self.design.objective.maximise is not None
         quantity = of_metric(self.objective_metric)
-        return price_words.buys_most(
-            self.offers, quantity, self.objective_value, maximised=maximised
-        )
+        return prices.buys_most(self.offers, quantity, self.objective_value, maximised=maximised)
 
     def __str__(self) -> str:
         """Outcome, variables and the evaluation of the best design as tables."""

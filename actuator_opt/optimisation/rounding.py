@@ -18,13 +18,12 @@ from ..base.quantities import INPUTS
 from ..design import Design, quantity_of, with_values
 from ..design.material import Material
 from ..design.model import Ply
-from ..design.size_series import WHOLE, along
 from ..design.sizes import groups
+from ..design.standard_sizes import WHOLE, along
 from ..evaluation import Evaluation, evaluate, prepare
-from .actuator import ActuatorProblem, Fault
+from .actuator import ActuatorProblem, Fault, Solution
 from .branch_and_bound import Found, search
 from .listed import SAME, Assignment, Listed
-from .outcome import Solution
 from .problem import Vector
 from .result import Optimisation, RoundedVariable, Rounding, RunnerUp
 from .size_remedies import size_remedies

@@ -20,13 +20,12 @@ from ..base.numeric import Array
 from ..base.progress import tell
 from ..design import quantity_of
 from . import elastic, repairs
-from .actuator import ActuatorProblem
+from .actuator import ActuatorProblem, Solution
 from .branch_and_bound import Found
 from .cures import freed, opened
 from .evaluator import Evaluator
 from .infeasibility_card import change_text, entry_of
 from .listed import Assignment, Listed
-from .outcome import Solution
 from .problem import BoxProblem, Values, Vector
 from .repairs import Relaxation
 from .result import SizeRemedy

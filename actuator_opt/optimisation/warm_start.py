@@ -14,11 +14,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from . import kkt, movement
-from .actuator import ActuatorProblem
+from . import kkt, prices
+from .actuator import ActuatorProblem, Outcome, Responses, Solution, responses
 from .evaluator import Evaluator, LimitReached, Point
-from .outcome import Outcome, Solution
-from .parameters import Responses, responses
 from .problem import BoxProblem, ParametricProblem, Vector
 from .resolve import ladder
 from .resolve.changed import ChangedProblems, applicable
@@ -82,7 +80,7 @@ class WarmStart:
         evaluator.check_gradients(point)
         known = [point, *ladder.other_optima(evaluator, solution)]
         self.valleys = [valley_at(evaluator, one) for one in known]
-        self._optimum: movement.Optimum | None = None
+        self._optimum: prices.Optimum | None = None
         self._responses: dict[str, Responses] = {}
 
     def solve(self, problem: BoxProblem, stop: Stop | None = None) -> Solution:
@@ -174,13 +172,13 @@ class WarmStart:
         """
         found = self.optimum
         given = self._along(changes, size)
-        moves, shifts = movement.movement(found, given)
+        moves, shifts = prices.movement(found, given)
         active = np.flatnonzero(found.margins <= kkt.ACTIVE)
-        below, above = movement.one_sided(found, given, active)[:, 0]
+        below, above = prices.one_sided(found, given, active)[:, 0]
         moved = np.zeros(len(self.point.x))
         slope = self.evaluator.space.slope(self.point.x[:, None])[:, 0]
         moved[self.evaluator.space.free] = slope * moves[:, 0]
-        low, high = movement.ends(found, given, moves, shifts)[0]
+        low, high = prices.ends(found, given, moves, shifts)[0]
         return Line(
             float(below), float(above), moved,
             None if low is None else (float(low.distance), low.text),
@@ -188,11 +186,11 @@ class WarmStart:
         )  # fmt: skip
 
     @property
-    def optimum(self) -> movement.Optimum:
+    def optimum(self) -> prices.Optimum:
         """The linear algebra of the optimum, computed once."""
         if self._optimum is None:
             quality = kkt.check(self.evaluator, self.point)
-            self._optimum = movement.optimum(self.evaluator, self.point, quality)
+            self._optimum = prices.optimum(self.evaluator, self.point, quality)
         return self._optimum
 
     def _along(self, changes: Mapping[str, float], size: float) -> Responses:

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ..base.quantities import INPUTS, Quantity
-from ..evaluation.reserve import count_words
+from ..evaluation.result import count_words
 from ..identification.calibration import Calibration
 from ..identification.points import Point, by_pressure
 from ..optimisation.redesign import Redesign, Shift, solved
@@ -27,7 +27,7 @@ from ..rendering.blocks import (
     Verdict,
     short,
     tile,
-)  # fmt: skip
+)
 from ..rendering.chart import Axis, Chart, Curve, Panel, Points
 from ..rendering.chart_ink import drawn
 from ..rendering.ink import Ink

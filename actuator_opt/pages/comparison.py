@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from ..base.quantities import Quantity
 from ..design.kinds import Fraction
 from ..evaluation.comparison import Change, Comparison, Question, Value
-from ..evaluation.reserve import count_words
+from ..evaluation.result import count_words
 from ..metrics import METRICS, of_metric
 from ..rendering import text
 from ..rendering.axes import AREAS

@@ -15,7 +15,7 @@ from ..base.fitting import Parameter
 from ..base.quantities import Quantity
 from ..design.material_fits import Fit
 from ..identification.coefficient import Coefficient
-from ..identification.lugre_fit import LuGreFit
+from ..identification.lugre import LuGreFit
 from ..identification.record import CHANNELS, Record
 from ..identification.result import Identification
 from ..identification.stribeck_fit import StribeckFit
@@ -34,7 +34,7 @@ from ..rendering.blocks import (
     Tile,
     Verdict,
     tile,
-)  # fmt: skip
+)
 from ..rendering.heights import HALF, height
 from ..rendering.series import Series
 from ..rendering.text import (
@@ -48,7 +48,7 @@ from ..rendering.text import (
     unit_text,
     value_text,
     with_unit,
-)  # fmt: skip
+)
 from .identification_figures import (
     FORCE,
     LEAST,
@@ -57,7 +57,7 @@ from .identification_figures import (
     SPEED,
     STIFFNESS,
     identification_figure,
-)  # fmt: skip
+)
 
 DAMPING = METRICS["damping_seal"]
 MASS = METRICS["mass"]

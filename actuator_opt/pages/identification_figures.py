@@ -15,7 +15,7 @@ from ..base.numeric import Array
 from ..base.quantities import Quantity
 from ..design.material_fits import Fit
 from ..identification.balance import Sliding
-from ..identification.lugre_fit import LuGreFit
+from ..identification.lugre import LuGreFit
 from ..identification.points import Point, by_pressure
 from ..identification.result import Identification
 from ..identification.stribeck_fit import StribeckFit

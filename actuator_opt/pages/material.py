@@ -14,8 +14,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from ..base.quantities import MATERIAL_PROPERTIES
-from ..design.material import Material, Property
-from ..design.material_laws import bulk_modulus_law, viscosity_law
+from ..design.material import Material, Property, bulk_modulus_law, viscosity_law
 from ..design.materials import Library
 from ..evaluation import oil
 from ..models.fluid import LEAST_VISCOSITY

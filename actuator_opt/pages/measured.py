@@ -10,7 +10,7 @@ import numpy as np
 
 from ..base.numeric import Array
 from ..base.quantities import Quantity
-from ..design.scenario.recorded import gaps
+from ..design.scenario.reader import gaps
 from ..rendering.blocks import Block, Column, Drawing, Notes, Table, short
 from ..rendering.ink import Ink
 from ..rendering.strips import LEVEL, MEASURED, STYLES, Curve, Level, Strip, stack

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from ..base.quantities import Quantity
 from ..evaluation.result import Requirement
-from ..optimisation.price_words import PER_CENT, display_of, short_name
+from ..optimisation.prices import PER_CENT, STRAIGHT, Sensitivity, display_of, short_name
 from ..optimisation.result import Optimisation
-from ..optimisation.sensitivity import STRAIGHT, Sensitivity
 from ..rendering import text
 from ..rendering.blocks import Block, Cell, Column, Drawing, Medium, Notes, Reach, Table, soft
 from ..rendering.ink import Ink

@@ -9,7 +9,7 @@ from typing import Any
 
 from ..base.quantities import Quantity
 from ..design.paths import get, quantity_of
-from ..evaluation import reserve
+from ..evaluation import result
 from ..evaluation.result import Check, Evaluation, Requirement
 from ..metrics import METRICS
 from ..metrics.table import ROWS
@@ -52,7 +52,7 @@ KEY_FIGURES = (
 )
 """Five of these, in this order, after the objective; those without a value are passed over."""
 
-NO_RESERVE = f"No reserve: met, with a margin below {100 * reserve.NO_RESERVE:g} %"
+NO_RESERVE = f"No reserve: met, with a margin below {100 * result.NO_RESERVE:g} %"
 FLAG = " (!)"
 """Behind the name of a quantity whose value rests on a model outside its valid range."""
 FLAGGED = "(!) EXTRAPOLATED: a model was used outside its valid range"
@@ -249,7 +249,7 @@ def verdict(subject: Evaluation | Optimisation) -> Verdict:
     elif failed:
         state, words = "checks", "REQUIREMENTS MET, CHECKS MISSED"
     elif tight:
-        state, words = "checks", f"REQUIREMENTS MET, {reserve.count_words(tight).upper()}"
+        state, words = "checks", f"REQUIREMENTS MET, {result.count_words(tight).upper()}"
     else:
         state, words = "met", "REQUIREMENTS MET"
     counts = _counts(evaluation)
@@ -265,7 +265,7 @@ def verdict(subject: Evaluation | Optimisation) -> Verdict:
             *lines,
         ],
         [
-            *([reserve.count_words(tight)] if tight and failed and state == "checks" else []),
+            *([result.count_words(tight)] if tight and failed and state == "checks" else []),
             *cautions,
         ],
     )

@@ -7,30 +7,12 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from ..design.seals import SealElement
-from ..evaluation.contact_elements import closed_form
+from ..evaluation.sealing import closed_form
 from ..metrics import METRICS
-from ..rendering.blocks import (
-    Block,
-    Column,
-    Drawing,
-    Notes,
-    Page,
-    Row,
-    Table,
-    Tile,
-    Verdict,
-    tile,
-)
+from ..rendering.blocks import Block, Column, Drawing, Notes, Page, Row, Table, Tile, Verdict, tile
 from ..rendering.series import Series
 from ..rendering.text import DASH, bars, degrees, number, speed_words, trimmed, value_text
-from ..studies.seal import (
-    HARDNESS_SCATTER,
-    STATED_FACTOR,
-    FilmMap,
-    RingPoint,
-    SealPoint,
-    SealStudy,
-)
+from ..studies.seal import HARDNESS_SCATTER, STATED_FACTOR, FilmMap, RingPoint, SealPoint, SealStudy
 from . import seal_figures as figures
 from .seal_figures import stroke_names, tolerance_text
 

@@ -18,9 +18,9 @@ import numpy as np
 from ..design import paths
 from ..design.model import Design
 from ..design.seals import Guide, Seal, SealElement, Wiper
-from ..evaluation.contact_elements import closed_form, room
 from ..evaluation.grooves import Groove, grooves as cut_grooves
 from ..evaluation.rings import Place, Ring
+from ..evaluation.sealing import closed_form, room
 from ..evaluation.values import Values
 from ..rendering import contours
 from ..rendering.axes import Axes, dot, fitted, legend, level_ticks, ticks

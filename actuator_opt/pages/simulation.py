@@ -14,7 +14,7 @@ from ..base.quantities import INPUTS, RESULTS, SCENARIOS, Quantity
 from ..design.scenario.components import ENDS, FRICTIONS, SUPPLIES
 from ..design.scenario.model import SAMPLES, Scenario
 from ..design.scenario.shapes import SHAPES, height
-from ..evaluation.reserve import count_words
+from ..evaluation.result import count_words
 from ..rendering import text
 from ..rendering.blocks import (
     Bar,
@@ -47,8 +47,7 @@ from ..rendering.text import (
 )
 from ..simulation.assemble import ends_of
 from ..simulation.loops import LOOPS, loop_of
-from ..simulation.reading import EXPECTED
-from ..simulation.result import RequirementResult, Simulation
+from ..simulation.result import EXPECTED, RequirementResult, Simulation
 from .simulation_energy import doubts, table_rows
 from .simulation_figures import LEAST, MOST, Measured, Static, simulation_figure, window
 

@@ -6,9 +6,8 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from ..base.errors import Diagnostic, InputError
+from ..base.errors import Diagnostic, InputError, remedy
 from ..base.quantities import RESULTS
-from ..base.suggest import remedy
 from ..rendering.blocks import (
     Block,
     Cell,
@@ -24,7 +23,7 @@ from ..rendering.blocks import (
     tile,
 )
 from ..rendering.text import DASH, number, pretty, sentence, unit_text, with_unit
-from ..simulation.gains import Tuned
+from ..simulation.linear import Tuned
 from ..simulation.result import Simulation
 from .simulation import known, label, remarks, share_words, sound, tied, what
 from .simulation_comparison_figures import LEAST, MOST, comparison_figure, kind_of

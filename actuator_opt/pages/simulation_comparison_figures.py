@@ -26,9 +26,9 @@ from ..rendering.axes import (
 from ..rendering.ink import GREY, Ink, text_width
 from ..rendering.strips import ASKED, MEASURED, Curve, Strip, stack
 from ..rendering.text import value_text
+from ..simulation.linear import BAND
 from ..simulation.loops import LOOPS
 from ..simulation.result import Simulation
-from ..simulation.step_response import BAND
 from .simulation_energy import ENERGY
 from .simulation_figures import (
     Measured,

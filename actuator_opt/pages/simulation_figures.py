@@ -30,22 +30,12 @@ from ..rendering.axes import (
     x_axis,
 )
 from ..rendering.ink import BLACK, BLUE, OCHRE, WHITE, Ink, text_width
-from ..rendering.strips import (
-    ASKED,
-    LEVEL,
-    LIMIT,
-    MEASURED,
-    STYLES,
-    Curve,
-    Level,
-    Strip,
-    stack,
-)
+from ..rendering.strips import ASKED, LEVEL, LIMIT, MEASURED, STYLES, Curve, Level, Strip, stack
 from ..rendering.text import SENSES, number, trimmed, unit_text
 from ..simulation.harmonic import harmonic_fit
+from ..simulation.linear import BAND
 from ..simulation.loops import LOOPS, Loop, loop_of
 from ..simulation.result import HarmonicLoad, Servo, Simulation, Window
-from ..simulation.step_response import BAND
 from .simulation_energy import ROW, TOP, over_time, share_panel, shares, time_panel
 
 WIDTH = 180.0

@@ -8,19 +8,19 @@ import numpy as np
 
 from ..base.errors import InputError
 from ..base.numeric import Array
-from ..base.plain_json import encoded
 from ..base.quantities import Quantity
+from ..base.tables import encoded
 from ..design.paths import quantity_of
 from ..evaluation import prepare
 from ..evaluation.build import spec_hash
-from ..evaluation.reserve import NO_RESERVE
+from ..evaluation.result import NO_RESERVE
 from ..rendering import text
 from ..rendering.blocks import Block, Column, Notes, Page, Row, Table, Tile, Verdict, tile
 from ..rendering.ink import Ink
 from ..rendering.series import Coded, Field, Values, heading
 from ..sweeps import Swept
-from ..sweeps.axes import Axis
 from ..sweeps.chunk import Chunk, Study
+from ..sweeps.plan import Axis
 from ..version import VERSION
 from .sweep_figures.drawing import chosen
 from .sweep_figures.parallel import parallel_figure

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from ..base.quantities import Quantity
 from ..metrics import of_metric
-from ..optimisation.outcome import MET
+from ..optimisation.actuator import MET
 from ..optimisation.result import Optimisation
 from ..rendering import text
 from ..rendering.axes import Axes, Ticks, fitted, ticks

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from ..evaluation.reserve import count_words, without_reserve
+from ..evaluation.result import count_words, without_reserve
 from ..rendering import text
 from ..rendering.axes import Axes, fitted, ticks
 from ..rendering.blocks import (
@@ -29,8 +29,7 @@ from ..rendering.series import Series
 from ..rendering.text import sentence
 from ..rendering.tornado import LIGHT, MOST, TornadoBar, bars
 from ..uncertainties.estimate import Rate
-from ..uncertainties.inputs import Input
-from ..uncertainties.model import TOLERANCE
+from ..uncertainties.inputs import TOLERANCE, Input
 from ..uncertainties.result import LimitYield, Swing, Uncertainty
 
 SHOWN = 8

@@ -6,8 +6,7 @@ import math
 import re
 
 from ..evaluation.result import Evaluation
-from ..evaluation.wall_alternatives import Difference
-from ..evaluation.wall_result import YIELD, Ratio, WallStudy
+from ..evaluation.wall_study import YIELD, Difference, Ratio, WallStudy
 from ..models.criteria import CRITERIA
 from ..rendering import text
 from ..rendering.blocks import Block, Cell, Column, Drawing, Table, clean, short, soft

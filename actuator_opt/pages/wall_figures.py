@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ..evaluation.wall_result import Profile, WallStudy
+from ..evaluation.wall_study import Profile, WallStudy
 from ..rendering.axes import Axes, fitted, legend
 from ..rendering.ink import (
     BLACK,

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal, TypeAlias
 
-from ..base.suggest import CONTROLS
+from ..base.errors import CONTROLS
 from .chart import Chart
 from .ink import Ink
 from .text import STATUS_WORDS

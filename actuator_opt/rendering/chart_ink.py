@@ -35,7 +35,7 @@ from .ink import (
     hatch,
     spread_within,
     text_width,
-)  # fmt: skip
+)
 
 LINES: tuple[dict[str, Any], ...] = (
     {"stroke": BLUE, "pen": 0.4},

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from ..base.files import write_all
-from ..base.plain_json import encoded
+from ..base.tables import encoded
 from ..version import VERSION
 from .blocks import (
     FARTHEST,

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ..base.extras import library
+from ..base.errors import library
 from ..base.files import aside_bytes, writing
 from .series import Coded, Field, Values
 

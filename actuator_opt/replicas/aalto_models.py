@@ -24,10 +24,10 @@ from ..base.numeric import Array
 from ..design.circuit import Line, Ports, ReducingValve, Throttle
 from ..design.model import Design
 from ..evaluation import oil
-from ..evaluation.allow import MaterialValues
 from ..evaluation.build import prepare
 from ..evaluation.circuit import CHAMBERS, Chamber, Ways
 from ..evaluation.kernel import ModelRun, compute
+from ..evaluation.limits import MaterialValues
 from ..evaluation.springs import Springs
 from ..models import elements, fluid, linear, lines, loop, one_way_valve, orifice, resonators
 from ..models.fluid import ATMOSPHERIC_PRESSURE

@@ -21,7 +21,7 @@ from ..design.model import Design
 from ..design.seals import Seal
 from ..evaluation import Evaluation
 from ..evaluation.build import prepare
-from ..evaluation.film_tables import floats
+from ..evaluation.film import floats
 from ..evaluation.kernel import PreparedDesign, base, compute
 from ..evaluation.rings import Place, Ring
 from ..evaluation.seal_contact import seal_contact

@@ -13,9 +13,9 @@ from ..models import linkage
 from ..models.stiffness import holding_pressures
 from ..models.tuning import ControllerGains
 from ..studies.plant import Plant
+from .components.circuit import Circuit, Start
 from .loops import LOOPS, loop_of
 from .parts import chambers, friction, load_cylinder, motion, motor, ports, signals, valve
-from .parts.circuit import Circuit, Start
 from .parts.control import Feedback, command, inner
 from .parts.signals import Records
 from .parts.supply import Source

@@ -19,7 +19,7 @@ import numpy as np
 from ..base.errors import Diagnostic, InputError
 from ..base.numeric import Array
 from ..base.symbolic import Symbol
-from ..base.symbolic.order import needed
+from ..base.symbolic.expression import needed
 from .methods import CHUNK, Advance
 from .system import Compiled
 

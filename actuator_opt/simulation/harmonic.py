@@ -14,7 +14,7 @@ import numpy as np
 
 from ..base.errors import Diagnostic, InputError
 from ..base.numeric import Array
-from .sampled import sampled
+from .integrate import sampled
 
 FEWEST_SAMPLES = 5
 """Four unknowns and one more sample, to estimate the scatter."""

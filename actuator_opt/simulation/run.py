@@ -14,21 +14,19 @@ import numpy as np
 from ..base.numeric import Array
 from ..base.quantities import INPUTS
 from ..design.scenario.model import SAMPLES, Scenario
-from ..design.scenario.recorded import recorded_notes
+from ..design.scenario.reader import recorded_notes
 from ..evaluation.build import spec_hash
 from ..evaluation.kernel import PreparedDesign
 from ..models.supply import relief_flow
 from ..studies.plant import Plant, plant
-from . import reading
+from . import result as reading
 from .assemble import assemble
-from .balance import balance
-from .failure import failed
-from .gains import CAUSES, UNHELD, Tuned, tune
+from .components.circuit import Circuit
 from .integrate import Trajectory, integrate
+from .linear import CAUSES, UNHELD, Tuned, tune
 from .methods import Method, Stuck
-from .parts.circuit import Circuit
 from .parts.signals import Records
-from .result import Second, Simulation, Told
+from .result import Second, Simulation, Told, balance, failed
 from .system import Compiled
 
 SECOND: Final[dict[Method, Method]] = {"lsoda": "radau", "cvodes": "radau", "radau": "lsoda"}

@@ -12,19 +12,18 @@ from dataclasses import dataclass
 from time import perf_counter
 from typing import Any, Literal, TypeAlias
 
-from ..base.errors import Diagnostic, InputError, Unsolvable
+from ..base.errors import Diagnostic, InputError, Unsolvable, remedy
 from ..base.progress import steps
 from ..base.quantities import RESULTS, Quantity
-from ..base.suggest import remedy
 from ..design import paths
 from ..design.build import with_values
 from ..design.kinds import Fraction, ValueFault
 from ..design.scenario.model import Scenario
-from ..design.structure import Loc, child, child_at, leaves, number_of
+from ..design.walls import Loc, child, child_at, leaves, number_of
 from ..evaluation.build import prepare
 from ..evaluation.kernel import PreparedDesign
 from ..studies.plant import plant
-from .gains import Tuned, tune
+from .linear import Tuned, tune
 from .parts.signals import Records
 from .result import Simulation
 from .run import run

@@ -11,10 +11,10 @@ import numpy as np
 from ..base.numeric import Array
 from ..design.model import Design
 from ..evaluation import oil
-from ..evaluation.allow import MaterialValues
 from ..evaluation.barrel import SEAL_STEP
-from ..evaluation.film_tables import floats
+from ..evaluation.film import floats
 from ..evaluation.kernel import PreparedDesign, compute
+from ..evaluation.limits import MaterialValues
 from ..evaluation.rings import Ring
 from ..evaluation.seal_contact import seal_contact
 from ..evaluation.sealing import WiperFriction, wipers

@@ -11,8 +11,7 @@ import numpy as np
 
 from ..base.numeric import Array
 from ..evaluation.barrel import SEAL_STEP
-from ..evaluation.film import FilmRow, Solved, ring_films, solve
-from ..evaluation.film_tables import floats, of_place
+from ..evaluation.film import FilmRow, Solved, floats, of_place, ring_films, solve
 from ..evaluation.kernel import Base
 from ..evaluation.rings import Place, Ring
 from ..evaluation.seal_contact import seal_contact

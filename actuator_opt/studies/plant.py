@@ -10,9 +10,9 @@ import numpy as np
 from ..base.numeric import Array, absolute, maximum
 from ..design.model import Design
 from ..evaluation import circuit, oil
-from ..evaluation.allow import MaterialValues
 from ..evaluation.circuit import CHAMBERS, Chamber
 from ..evaluation.kernel import ModelRun, PreparedDesign, compute
+from ..evaluation.limits import MaterialValues
 from ..evaluation.rings import Ring
 from ..evaluation.springs import OIL, Give
 from ..evaluation.values import Values

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from .axes import Axis, read_axis
-from .plan import Plan, plan
+from .plan import Axis, Plan, plan, read_axis
 from .run import sweep, swept_again
 from .swept import Best, Swept
 

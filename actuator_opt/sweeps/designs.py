@@ -14,11 +14,10 @@ from ..base.numeric import Array
 from ..design import Design, with_values
 from ..design.paths import quantity_of
 from ..evaluation import PreparedDesign, prepare
-from ..evaluation.allow import extremes
+from ..evaluation.limits import extremes
 from ..evaluation.many import Many, evaluate_many
 from ..evaluation.plugin import Plugin, with_own
-from .axes import Axis
-from .plan import Plan, Points
+from .plan import Axis, Plan, Points
 
 KEPT = 64
 """Prepared designs that a process caches."""

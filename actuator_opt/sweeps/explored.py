@@ -10,8 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..base.database import Rows
-from ..base.database_reader import Reader, StoredRows, reading
+from ..base.database import Reader, Rows, StoredRows, reading
 from ..base.errors import Diagnostic, InputError
 from ..base.numeric import Array
 from ..design import Design, read_design
@@ -22,9 +21,8 @@ from ..evaluation.plugin import Plugin, with_own
 from ..evaluation.shapes import Shapes, same_dimensions, shapes
 from ..metrics import METRICS
 from ..version import VERSION
-from .axes import Axis
 from .chunk import Study, key_head
-from .plan import Plan, Points
+from .plan import Axis, Plan, Points
 
 BEST = 100
 """Number of best feasible designs that thinning always keeps."""

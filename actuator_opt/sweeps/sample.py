@@ -10,7 +10,7 @@ import numpy as np
 from ..base.numeric import Array
 from .chunk import Chunk, Study
 
-MOST = 4096
+MOST_POINTS = 4096
 """Rows kept of the feasible designs, and of the others (a choice: print resolves no more). Beyond
 it every second row is dropped, repeatedly."""
 
@@ -52,7 +52,7 @@ def front(first: Array, second: Array) -> Array:
 
 @dataclass
 class Pool:
-    """Every k-th row of a stream, at most `MOST` in total."""
+    """Every k-th row of a stream, at most `MOST_POINTS` in total."""
 
     seen: int = 0
     step: int = 1
@@ -67,7 +67,7 @@ class Pool:
             return
         self.variants = np.concatenate([self.variants, variants[at]])
         self.rows = np.concatenate([self.rows.reshape(-1, rows.shape[1]), rows[at]])
-        while len(self.rows) > MOST:
+        while len(self.rows) > MOST_POINTS:
             self.step *= 2
             self.variants, self.rows = self.variants[::2], self.rows[::2]
 

@@ -15,14 +15,14 @@ import numpy as np
 from ..base.errors import InputError
 from ..base.numeric import Array
 from ..base.symbolic import Symbol, vectorised
-from ..base.symbolic.order import needed
+from ..base.symbolic.expression import needed
 from ..design import Design
 from ..design.variable import Variable
 from ..evaluation import prepare
 from ..evaluation.build import TOLERANCE
 from ..optimisation.actuator import build
+from ..optimisation.certificate.certify import Claim, trace
 from ..optimisation.certificate.relaxation import Unknown
-from ..optimisation.certificate.trace import Claim, trace
 from .engine import Engine, Scores, array_library, fused
 
 ROOM = 2 * TOLERANCE

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..design.distributions import REACH, limits, log_deviation
+from ..design.uncertain import REACH, limits, log_deviation
 from ..optimisation.problem import Vector
 
 _TAIL = erfc(REACH / sqrt(2)) / 2

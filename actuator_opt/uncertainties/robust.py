@@ -20,11 +20,10 @@ from ..base.progress import whole
 from ..design.model import Design
 from ..evaluation import PreparedDesign, prepare
 from ..metrics import of_metric
+from ..optimisation.problem import Robust, Round
 from ..optimisation.result import Certificate, Optimisation
-from ..optimisation.robustness import Robust, Round
 from .estimate import Rate
-from .inputs import inputs, read_by_models
-from .model import TOLERANCE, Model
+from .inputs import TOLERANCE, Model, inputs, read_by_models
 from .study import draw
 
 Held: TypeAlias = npt.NDArray[Any]

@@ -5,8 +5,6 @@ formula. The expression becomes plain Python (`code`), its exact derivatives (`d
 the input of another engine.
 """
 
-from .code import function, vectorised
-from .derivative import jacobian
-from .expression import Expression, Graph, Namespace, Symbol
+from .expression import Expression, Graph, Namespace, Symbol, function, jacobian, vectorised
 
 __all__ = ["Expression", "Graph", "Namespace", "Symbol", "function", "jacobian", "vectorised"]

@@ -8,13 +8,154 @@ The bounds decide comparisons, so the guards of a model cost nothing where they 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from types import SimpleNamespace
 from typing import Any, Final, TypeAlias
 
-from .bounds import ANY, Bounds, bounds, bounds_of
+import numpy as np
+
+Bounds: TypeAlias = tuple[float, float]
+
+
+ANY: Final[Bounds] = (-math.inf, math.inf)
+
+
+def bounds_of(value: Any) -> Bounds:
+    """Bounds of a symbol or a number; NaN has no bounds."""
+    if hasattr(value, "bounds"):
+        found: Bounds = value.bounds
+        return found
+    return (float(value), float(value)) if value == value else ANY
+
+
+def bounds(op: str, args: tuple[Any, ...]) -> Bounds:
+    """Bounds of a result from those of its operands."""
+    if op == "add":
+        (a, b), (c, d) = bounds_of(args[0]), bounds_of(args[1])
+        return _clean(a + c, b + d)
+    if op == "sub":
+        (a, b), (c, d) = bounds_of(args[0]), bounds_of(args[1])
+        return _clean(a - d, b - c)
+    if op == "neg":
+        a, b = bounds_of(args[0])
+        return -b, -a
+    if op == "mul":
+        if args[0] is args[1]:
+            a, b = bounds_of(args[0])
+            least = 0.0 if a <= 0 <= b else min(a * a, b * b)
+            return least, max(a * a, b * b)
+        (a, b), (c, d) = bounds_of(args[0]), bounds_of(args[1])
+        return _hull(_product(a, c), _product(a, d), _product(b, c), _product(b, d))
+    if op == "div":
+        (a, b), (c, d) = bounds_of(args[0]), bounds_of(args[1])
+        if c > 0:
+            return _hull(a / c, a / d, b / c, b / d)
+        return (0.0, math.inf) if a >= 0 and c >= 0 else ANY
+    if op == "where":
+        return _of_choice(*args)
+    return _of_function(op, args)
+
+
+def _of_function(op: str, args: tuple[Any, ...]) -> Bounds:
+    """Bounds of a function of one variable, or of a power with a constant exponent."""
+    if op in _RISING:
+        domain, function = _RISING[op]
+        low, high = bounds_of(args[0])
+        low, high = at_end(function, max(low, domain)), at_end(function, max(high, domain))
+        if op == "sqrt":  # rounds alike on every system
+            return low, high
+        low, high = _wider(low, high)
+        return max(low, at_end(function, domain)), min(high, at_end(function, math.inf))
+    if op == "pow" and bounds_of(args[0])[0] >= 0:
+        low, high = (at_end(lambda x: x ** args[1], end) for end in bounds_of(args[0]))
+        return _wider(low, high) if args[1] > 0 else _wider(high, low)
+    if op in ("sin", "cos"):
+        return _of_wave(op, *bounds_of(args[0]))
+    return ANY
+
+
+_RISING: Final[dict[str, tuple[float, Callable[[float], float]]]] = {
+    "sqrt": (0.0, math.sqrt),
+    "exp": (-math.inf, math.exp),
+    "expm1": (-math.inf, math.expm1),
+    "log": (0.0, math.log),
+    "log1p": (-1.0, math.log1p),
+    "tanh": (-math.inf, math.tanh),
+}
+"""Increasing functions, with the lower end of their domain."""
+
+
+def at_end(function: Callable[[float], float], value: float) -> float:
+    """A function at an end of its range; infinite where it has no value there.
+
+    Towards the edge of the domain a logarithm tends to -infinity, a negative power to +infinity.
+    """
+    try:
+        return function(value)
+    except (OverflowError, ZeroDivisionError):
+        return math.inf
+    except ValueError:
+        return -math.inf
+
+
+def _wider(low: float, high: float) -> Bounds:
+    """Bounds widened by the rounding errors of functions, which differ between libraries."""
+    return low - ROUNDING * abs(low), high + ROUNDING * abs(high)
+
+
+ROUNDING = 1e-14
+"""Relative allowance for the rounding error of a function."""
+
+
+def _of_wave(op: str, low: float, high: float) -> Bounds:
+    """Bounds of a sine or cosine over an interval."""
+    if not high - low < 2 * math.pi:
+        return -1.0, 1.0
+    wave, crest = (math.cos, 0.0) if op == "cos" else (math.sin, 0.5 * math.pi)
+    ends = (wave(low), wave(high))
+    room = ROUNDING * (1 + max(abs(low), abs(high)))
+
+    def passes(place: float) -> bool:
+        """Whether the interval contains a place, plus a whole number of turns."""
+        turn = 2 * math.pi
+        return math.ceil((low - place) / turn - room) <= math.floor((high - place) / turn + room)
+
+    least = -1.0 if passes(crest + math.pi) else max(min(ends) - room, -1.0)
+    return least, 1.0 if passes(crest) else min(max(ends) + room, 1.0)
+
+
+def _product(a: float, b: float) -> float:
+    return 0.0 if a == 0 or b == 0 else a * b
+
+
+def _clean(low: float, high: float) -> Bounds:
+    return (-math.inf if low != low else low), (math.inf if high != high else high)
+
+
+def _hull(*values: float) -> Bounds:
+    known = [value for value in values if value == value]
+    return (min(known), max(known)) if len(known) == len(values) else ANY
+
+
+def _of_choice(condition: Any, yes: Any, no: Any) -> Bounds:
+    """Bounds of a choice; a value compared with the other branch is limited by it."""
+    (a, b), (c, d) = bounds_of(yes), bounds_of(no)
+    if getattr(condition, "op", None) in ("lt", "le"):
+        less, more = condition.args
+        if _same(less, no) and _same(more, yes):  # the larger of both
+            return max(a, c), max(b, d)
+        if _same(less, yes) and _same(more, no):  # the smaller of both
+            return min(a, c), min(b, d)
+    return min(a, c), max(b, d)
+
+
+def _same(first: Any, second: Any) -> bool:
+    if first is second:
+        return True
+    return isinstance(first, float) and isinstance(second, float) and first == second
+
 
 Expression: TypeAlias = Any
 """A symbol, or its numeric value if known."""
@@ -386,3 +527,241 @@ Namespace = SimpleNamespace(
     **{name: partial(apply, name) for name in _FUNCTIONS},
 )
 """Array-API namespace of symbols: the functions that models use."""
+
+
+_BOOLEAN = {"lt", "le", "and", "or", "not", "flag"}
+
+
+def is_boolean(symbol: Symbol) -> bool:
+    """Whether a symbol is a truth value."""
+    return symbol.op in _BOOLEAN
+
+
+def needed(outputs: Sequence[Any], known: Iterable[Symbol] = ()) -> list[Symbol]:
+    """Nodes that the outputs need, operands first; operands of `known` nodes are left out."""
+    seen: set[int] = {one.index for one in known}
+    found: list[Symbol] = []
+    stack = [out for out in outputs if isinstance(out, Symbol)]
+    while stack:
+        node = stack.pop()
+        if node.index not in seen:
+            seen.add(node.index)
+            found.append(node)
+            stack.extend(node.operands)
+    return sorted(found, key=lambda node: node.index)
+
+
+xp = Namespace
+
+
+Slopes: TypeAlias = dict[int, Any]
+"""Nonzero derivatives by the number of their variable."""
+
+
+def jacobian(outputs: Sequence[Any], variables: Sequence[Symbol]) -> list[list[Any]]:
+    """Derivatives of outputs (rows) by variables (columns); 0.0 where independent.
+
+    A choice has the derivative of the selected branch; flags have none; a tabulated function has
+    its given slope; a root has zero slope at zero, where its true slope is infinite.
+    """
+    known: dict[int, Slopes] = {one.index: {k: 1.0} for k, one in enumerate(variables)}
+    for node in needed(outputs):
+        if node.index not in known and not is_boolean(node):
+            slopes = _slopes(node, known)
+            if slopes:
+                known[node.index] = slopes
+    rows = []
+    for out in outputs:
+        slopes = known.get(out.index, {}) if isinstance(out, Symbol) else {}
+        rows.append([slopes.get(k, 0.0) for k in range(len(variables))])
+    return rows
+
+
+def _slopes(node: Symbol, known: dict[int, Slopes]) -> Slopes:
+    """Derivatives of a node from those of its operands."""
+    inner = [known.get(a.index, {}) if isinstance(a, Symbol) else {} for a in node.args]
+    columns = dict.fromkeys(k for slopes in inner for k in slopes)
+    if not columns:
+        return {}
+    rule = _RULES[node.op](node, *node.args)
+    found = {}
+    for k in columns:
+        slope = rule(*(slopes.get(k, 0.0) for slopes in inner))
+        if isinstance(slope, Symbol) or slope != 0:
+            found[k] = slope
+    return found
+
+
+def _scaled(factor: Any) -> Callable[..., Any]:
+    return lambda da: factor * da
+
+
+def _steep(value: Any) -> Any:
+    """Value of a root for its slope formula: infinite at zero, so that the slope there is zero."""
+    return choose(less(0.0, value), value, math.inf)
+
+
+_RULES: dict[str, Callable[..., Callable[..., Any]]] = {
+    "add": lambda node, a, b: lambda da, db: da + db,
+    "sub": lambda node, a, b: lambda da, db: da - db,
+    "mul": lambda node, a, b: lambda da, db: da * b + a * db,
+    "div": lambda node, a, b: lambda da, db: (da - node * db) / b,
+    "pow": lambda node, a, b: lambda da, db: b * power(_steep(a) if 0 < b < 1 else a, b - 1) * da,
+    "atan2": lambda node, a, b: lambda da, db: (b * da - a * db) / (a * a + b * b),
+    "where": lambda node, c, a, b: lambda dc, da, db: choose(c, da, db),
+    "table": lambda node, k, t: lambda dk, dt: node.graph.slope(k, t) * dt,
+    "neg": lambda node, a: lambda da: -da,
+    "sqrt": lambda node, a: _scaled(0.5 / _steep(node)),
+    "exp": lambda node, a: _scaled(node),
+    "expm1": lambda node, a: _scaled(node + 1.0),
+    "log": lambda node, a: _scaled(1.0 / a),
+    "log1p": lambda node, a: _scaled(1.0 / (1.0 + a)),
+    "tanh": lambda node, a: _scaled(1.0 - node * node),
+    "sin": lambda node, a: _scaled(xp.cos(a)),
+    "cos": lambda node, a: _scaled(-xp.sin(a)),
+}
+"""Derivative of every operation from those of its operands."""
+
+
+DEEPEST = 12
+"""Deepest nesting of operations in a line of code; deeper operations get their own line."""
+
+
+_OPERATORS = {"add": "+", "sub": "-", "mul": "*", "div": "/", "lt": "<", "le": "<="}
+
+
+_LOGIC = {"and": ("and", "&"), "or": ("or", "|")}
+
+
+def function(
+    name: str, arguments: str, unpack: Mapping[str, str], outputs: Sequence[Any]
+) -> Callable[..., Any]:
+    """A Python function of floats that returns the outputs as a list.
+
+    Parameters
+    ----------
+    name : name of the function
+    arguments : arguments of the function, ``"t, y, m"``
+    unpack : code of every variable and flag by name: ``{"x": "y[0]"}``; a key of several names,
+        ``"a, b"``, unpacks them together
+    outputs : expressions
+    """
+    scope: dict[str, Any] = {f"_{key}": getattr(math, key) for key in _MATH}
+    return _compiled(name, arguments, unpack, outputs, scope, {}, many=False)
+
+
+def vectorised(
+    name: str,
+    arguments: str,
+    unpack: Mapping[str, str],
+    outputs: Sequence[Any],
+    known: Mapping[Symbol, str] | None = None,
+    library: Any = np,
+) -> Callable[..., Any]:
+    """As `function`, for arrays; both branches of every choice are computed.
+
+    `known` gives code for expressions that are not to be computed again; `library` is NumPy or a
+    library with the same function names.
+    """
+    scope: dict[str, Any] = {f"_{key}": getattr(library, _NUMPY.get(key, key)) for key in _MATH}
+    scope["_where"], scope["_not"] = library.where, library.logical_not
+    return _compiled(name, arguments, unpack, outputs, scope, known or {}, many=True)
+
+
+_MATH = ("sqrt", "exp", "expm1", "log", "log1p", "tanh", "sin", "cos", "atan2", "pow")
+
+
+_NUMPY = {"pow": "power", "atan2": "arctan2"}
+
+
+def _compiled(
+    name: str,
+    arguments: str,
+    unpack: Mapping[str, str],
+    outputs: Sequence[Any],
+    scope: dict[str, Any],
+    known: Mapping[Symbol, str],
+    *,
+    many: bool,
+) -> Callable[..., Any]:
+    nodes = needed(outputs, known)
+    scope["_nan"], scope["_inf"] = math.nan, math.inf
+    if nodes:
+        scope |= {f"_table{i}": one for i, one in enumerate(nodes[0].graph.tables)}
+    used = {node.args[0] for node in nodes if node.op in ("variable", "flag")}
+    lines = [
+        f" {names} = {code}"
+        for names, code in unpack.items()
+        if any(one.strip() in used for one in names.split(","))
+    ]
+    lines += _lines(nodes, outputs, known, many)
+    source = f"def {name}({arguments}):\n" + "\n".join(lines)
+    exec(compile(source, f"<{name}>", "exec"), scope)  # generated text only: operations and numbers
+    found: Callable[..., Any] = scope[name]
+    return found
+
+
+def _lines(
+    nodes: Sequence[Symbol], outputs: Sequence[Any], known: Mapping[Symbol, str], many: bool
+) -> list[str]:
+    """A line for every node that is used twice or nested deeply, then the return."""
+    uses: dict[int, int] = {}
+    for node in nodes:
+        for operand in node.operands:
+            uses[operand.index] = uses.get(operand.index, 0) + 1
+    for out in outputs:
+        if isinstance(out, Symbol):
+            uses[out.index] = uses.get(out.index, 0) + 1
+    lines: list[str] = []
+    text = {one.index: code for one, code in known.items()}
+    depth = {one.index: 0 for one in known}
+
+    def said(value: Any) -> str:
+        return text[value.index] if isinstance(value, Symbol) else _literal(value)
+
+    for node in nodes:
+        code = _code(node, said, many)
+        deep = 1 + max((depth[o.index] for o in node.operands), default=0)
+        plain = node.op in ("variable", "flag")
+        if plain or (uses[node.index] == 1 and deep < DEEPEST):
+            text[node.index], depth[node.index] = code, 0 if plain else deep
+        else:
+            lines.append(f" _{node.index} = {code}")  # no variable has such a name
+            text[node.index], depth[node.index] = f"_{node.index}", 0
+    lines.append(f" return [{', '.join(said(out) for out in outputs)}]")
+    return lines
+
+
+def _literal(value: Any) -> str:
+    if isinstance(value, bool):
+        return repr(value)
+    if value != value:
+        return "_nan"
+    if math.isinf(value):
+        return "_inf" if value > 0 else "(-_inf)"
+    number = repr(float(value))  # the text of NumPy numbers includes their type
+    return number if value >= 0 else f"({number})"
+
+
+def _code(node: Symbol, said: Callable[[Any], str], many: bool) -> str:
+    op = node.op
+    if op in ("variable", "flag"):
+        return str(node.args[0])
+    if op == "table":
+        return f"_table{node.args[0]}({said(node.args[1])})"
+    args = [said(a) for a in node.args]
+    if op in _OPERATORS:
+        return f"({args[0]} {_OPERATORS[op]} {args[1]})"
+    if op in _LOGIC:
+        return f"({args[0]} {_LOGIC[op][many]} {args[1]})"
+    if op == "where":
+        return (
+            f"_where({args[0]}, {args[1]}, {args[2]})"
+            if many
+            else f"({args[1]} if {args[0]} else {args[2]})"
+        )
+    if op == "not":
+        return f"_not({args[0]})" if many else f"(not {args[0]})"
+    if op == "neg":
+        return f"(-{args[0]})"
+    return f"_{op}({', '.join(args)})"

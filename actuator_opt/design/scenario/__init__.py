@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from .faults import design_faults
 from .model import Scenario
-from .reader import LoadedScenario, read_design_of, read_scenario
-from .recorded import recorded_parts
+from .reader import LoadedScenario, read_design_of, read_scenario, recorded_parts
 
 __all__ = [
     "LoadedScenario",

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import math
+from collections.abc import Callable, Iterator, Mapping
+from functools import cache
 from typing import Any
 
 from ...base import quantities
@@ -10,11 +12,285 @@ from ...base.errors import Fault
 from ..build import how_to_add
 from ..kinds import position_at
 from ..model import Design
-from ..structure import entries
+from ..section import Section
 from ..view import View, length_text, without_effect
-from . import control_faults, signal_faults
-from .components import FRICTIONS, SUPPLIES
-from .model import Friction, Load, Scenario, Supply
+from ..walls import Loc, child_at, entries
+from .components import FRICTIONS, LAWS, SUPPLIES, ControlLaw
+from .model import FEWEST_SAMPLES, MOST_SAMPLES, SAMPLES, Control, Friction, Load, Scenario, Supply
+from .shapes import SHAPES
+from .signals import SignalSegment
+
+_SLACK = 1e-9
+"""Relative tolerance of times."""
+
+
+_time = quantities.SCENARIOS["instant"].text
+
+
+_short = quantities.SCENARIOS["sample_time"].text
+
+
+_hertz = quantities.INPUTS["frequency"].text
+
+
+@cache
+def part_lists(
+    section: type[Section] = Scenario, loc: tuple[str, ...] = ()
+) -> Mapping[tuple[str, ...], type[Section]]:
+    """Places of the signals in a scenario, with the section type of their parts.
+
+    >>> [".".join(loc) for loc in part_lists()][:3]
+    ['motor.torque', 'load.force', 'load.torque']
+    """
+    found: dict[tuple[str, ...], type[Section]] = {}
+    for name, entry in entries(section).items():
+        if entry.section is None:
+            continue
+        if entry.shape == "list" and issubclass(entry.section, SignalSegment):
+            found[*loc, name] = entry.section
+        elif entry.shape == "section":
+            found |= part_lists(entry.section, (*loc, name))
+    return found
+
+
+def _parts(view: View) -> Iterator[tuple[Loc, str, type[Section]]]:
+    """Place, shape and section of every part with a known shape."""
+    for where, section in part_lists().items():
+        for index in range(len(view.items(*where))):
+            shape = view.text(*where, index, "shape")
+            if shape is not None and shape in SHAPES:
+                yield (*where, index), shape, section
+
+
+def shapes(view: View) -> Iterator[Fault]:
+    """Each part has the keys that its shape needs, and no others."""
+    for loc, shape, section in _parts(view):
+        own, known = SHAPES[shape], entries(section)
+        for key in own.needed:
+            if not view.has(*loc, key):
+                how = how_to_add(key, known[key])
+                yield Fault((*loc, key), f"missing: required by a {shape}", how)
+        for key in known:
+            if key == "shape" or key in own.needed or key in own.read:
+                continue
+            other = own.instead.get(key)
+            remedy = "remove the line" + (f', or write "shape: {other}"' if other else "")
+            yield from without_effect(view, loc, [key], f"on a {shape}", remedy)
+
+
+def order(view: View) -> Iterator[Fault]:
+    """Each part ends after its start, and starts before the scenario ends."""
+    duration = view.number("duration")
+    for loc, shape, _ in _parts(view):
+        start, end = view.number(*loc, "start"), view.number(*loc, "end")
+        if start is None:
+            continue
+        reads = (*SHAPES[shape].needed, *SHAPES[shape].read)
+        if end is not None and "end" in reads and end <= start:
+            message = f"{_time(end)}: not after start ({_time(start)})"
+            yield Fault((*loc, "end"), message, f"write more than {_time(start)}")
+        if duration is not None and "start" in reads and start >= duration:
+            message = f"{_time(start)}: not before the scenario ends ({_time(duration)})"
+            remedy = f"write less than {_time(duration)}, or raise duration"
+            yield Fault((*loc, "start"), message, remedy)
+
+
+def sampling(view: View) -> Iterator[Fault]:
+    """The number of samples is reasonable for the run and for each of its sines."""
+    duration, stated = view.number("duration"), view.number("sample_time")
+    if duration is None or (stated is None and view.has("sample_time")):
+        return
+    finest, coarsest = duration / MOST_SAMPLES, duration / FEWEST_SAMPLES
+    sample = duration / SAMPLES if stated is None else stated
+    if sample < finest * (1 - _SLACK):
+        yield Fault(
+            ("sample_time",),
+            f"{_short(sample)}: more than {MOST_SAMPLES / 1e6:g} million samples",
+            f"write at least {_short(_rounded(finest, math.ceil))}, or shorten duration",
+        )
+    elif sample > coarsest * (1 + _SLACK):
+        yield Fault(
+            ("sample_time",),
+            f"{_short(sample)}: fewer than {FEWEST_SAMPLES} samples in {_time(duration)}",
+            f"write at most {_short(_rounded(coarsest, math.floor))}",
+        )
+    else:
+        yield from _sines(view, duration, sample, stated is not None)
+
+
+def _sines(view: View, duration: float, sample: float, stated: bool) -> Iterator[Fault]:
+    """Sines that the sample time cannot resolve; only the fastest of several."""
+    waves: list[tuple[float, Loc]] = []
+    for loc, shape, _ in _parts(view):
+        frequency = view.number(*loc, "frequency")
+        if "frequency" in SHAPES[shape].needed and frequency is not None:
+            waves.append((frequency, (*loc, "frequency")))
+    if not waves:
+        return
+    frequency, loc = max(waves, key=lambda wave: wave[0])
+    needed = 1 / (FEWEST_SAMPLES * frequency)
+    if sample <= needed * (1 + _SLACK):
+        return
+    if needed < duration / MOST_SAMPLES * (1 - _SLACK):
+        message = (
+            f"{_hertz(frequency)} over {_time(duration)}: "
+            f"would need more than {MOST_SAMPLES / 1e6:g} million samples"
+        )
+        yield Fault(loc, message, "lower it, or shorten duration")
+        return
+    good = _short(_rounded(needed, math.floor))
+    message = f"sample time too coarse: {_hertz(frequency)} needs {good} or less"
+    if stated:
+        yield Fault(("sample_time",), message, f"write {good}")
+    else:
+        yield Fault(loc, message, f'add "sample_time: {good}"')
+
+
+def _rounded(value: float, way: Callable[[float], int]) -> float:
+    """A time rounded up or down to three digits."""
+    step = 10.0 ** (math.floor(math.log10(value)) - 2)
+    return way(value / step * (1 + (_SLACK if way is math.floor else -_SLACK))) * step
+
+
+SIGNAL_CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (shapes, order, sampling)
+
+
+REFERENCES: Mapping[str, str] = {
+    "position": "position_gain",
+    "speed": "speed_gain",
+    "shaft_speed": "shaft_speed_gain",
+    "shaft_angle": "shaft_angle_gain",
+}
+"""Every loop by its reference, with its gain."""
+
+
+STEP_RESULTS = ("rise_time", "settling_time", "overshoot", "steady_state_ratio")
+"""Results derived from the response to a single step."""
+
+
+def stated(view: View, *loc: str) -> bool:
+    """Whether the file states this value; empty lists do not count."""
+    return child_at(view.tree, loc) not in (None, [], ())
+
+
+def given(view: View) -> list[str]:
+    """References that the control states."""
+    return [name for name in REFERENCES if stated(view, "control", name)]
+
+
+def drives(view: View) -> Iterator[Fault]:
+    """Either signal or control drives the valve, which must end the lines."""
+    driven = [name for name in ("signal", "control") if stated(view, name)]
+    if len(driven) == 2:
+        message = "a signal beside control: both would drive the valve"
+        yield Fault(("signal",), message, "keep one of them", at_key=True)
+    ends = view.text("ends")
+    if ends == "valve" or ends not in entries(Scenario)["ends"].choices:
+        return
+    if driven:
+        message = f"{ends}: the {driven[0]} would drive a valve that is not connected"
+        yield Fault(("ends",), message, f'write "valve", or remove {driven[0]}')
+    supply = SUPPLIES.get(view.text("supply", "type") or "")
+    if supply is not None and supply.pumps:
+        message = f"{ends}: the pump of the supply is not connected"
+        yield Fault(("ends",), message, 'write "valve", or remove supply')
+
+
+def reference(view: View) -> Iterator[Fault]:
+    """Exactly one reference, of an existing motion."""
+    if not isinstance(child_at(view.tree, ("control",)), dict):
+        return
+    found = given(view)
+    if not found:
+        remedy = f'add a list "position:" (or {", ".join(list(REFERENCES)[1:])})'
+        yield Fault(("control", "position"), "missing: no reference", remedy)
+    for name in found[1:]:
+        message = f"a second reference, beside {found[0]}"
+        yield Fault(("control", name), message, "keep one of them", at_key=True)
+    if not found or found[0].startswith("shaft") == view.has("motor"):
+        return
+    if view.has("motor"):
+        message = "a motor has no rod to move"
+        remedy = "write shaft_speed or shaft_angle, or remove motor"
+    else:
+        message, remedy = "there is no shaft", "add motor, or write position or speed"
+    yield Fault(("control", found[0]), message, remedy, at_key=True)
+
+
+def tuning(view: View) -> Iterator[Fault]:
+    """The gain and times that the tuning needs are stated, and no others."""
+    found, law, way = given(view), view.text("control", "law"), view.text("control", "tuning")
+    if not isinstance(child_at(view.tree, ("control",)), dict):
+        return
+    known = entries(Control)
+    own = LAWS.get(law or "")
+    if own is None or way not in known["tuning"].choices:
+        return
+    loop = found[0] if found else None
+    for name, gain in REFERENCES.items():
+        if not view.has("control", gain):
+            continue
+        if loop is not None and name != loop:
+            message = f"gain of a {name} loop, but the reference is a {loop}"
+            yield Fault(("control", gain), message, f"write {REFERENCES[loop]}", at_key=True)
+        elif way != "stated":
+            message = f"stated, but determined by tuning ({way})"
+            remedy = 'remove it, or write "tuning: stated"'
+            yield Fault(("control", gain), message, remedy, at_key=True)
+    times = [f"{part}_time" for part in own.parts]
+    needed = ([] if loop is None else [REFERENCES[loop]]) + times
+    for key in needed if way == "stated" else ():
+        if not view.has("control", key):
+            what = "stated tuning" if key not in times else f"a stated {law} law"
+            how = how_to_add(key, known[key])
+            yield Fault(("control", key), f"missing: required by {what}", how)
+    yield from _unread(view, own, way)
+
+
+def _unread(view: View, law: ControlLaw, way: str) -> Iterator[Fault]:
+    """Keys without effect under this control law and tuning."""
+    for part in ("integral", "derivative"):
+        if part not in law.parts:
+            keys = [f"{part}_time", f"{part}_factor"]
+            yield from without_effect(view, ("control",), keys, f"on a {law.name} law")
+    if not law.derivative:
+        yield from without_effect(view, ("control",), ["filter_time"], f"on a {law.name} law")
+    if way != "margins":
+        yield from without_effect(view, ("control",), ["margin"], f"where tuning is {way}")
+    if not view.number("control", "pressure_feedback"):
+        keys = ["pressure_time"] if not view.has("control", "pressure_feedback") else []
+        yield from without_effect(view, ("control",), keys, "without pressure_feedback")
+
+
+def step_results(view: View) -> Iterator[Fault]:
+    """Results of a step response need a stepping reference."""
+    asked = [name for name in STEP_RESULTS if view.has("requirements", name)]
+    found = given(view)
+    if not asked or len(found) > 1:
+        return
+    shapes = []
+    for name in found:
+        for index in range(len(view.items("control", name))):
+            shapes.append(view.text("control", name, index, "shape"))
+    known = [SHAPES[shape] for shape in shapes if shape is not None and shape in SHAPES]
+    if len(known) < len(shapes) or (found and not shapes):
+        return
+    if "step" in shapes and all(shape.settles for shape in known):
+        return
+    where = f"control.{found[0]}" if found else "control with a reference"
+    for name in asked:
+        message = "no reference that steps"
+        remedy = f'give {where} a part of "shape: step" and no sine or record, or remove this'
+        yield Fault(("requirements", name), message, remedy, at_key=True)
+
+
+CONTROL_CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
+    drives,
+    reference,
+    tuning,
+    step_results,
+)
+
 
 _force = quantities.SCENARIOS["coulomb_force"].text
 _flow = quantities.INPUTS["rated_flow"].text
@@ -129,8 +405,8 @@ def held_ports(view: View) -> Iterator[Fault]:
 
 
 CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
-    *signal_faults.CHECKS,
-    *control_faults.CHECKS,
+    *SIGNAL_CHECKS,
+    *CONTROL_CHECKS,
     supply,
     cushion,
     load_cylinder,

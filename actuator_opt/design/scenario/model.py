@@ -10,7 +10,7 @@ from ..circuit import Valve
 from ..kinds import Of, Position, Text
 from ..model import Limit
 from ..section import Section
-from . import signals, words
+from . import kinds, signals
 from .kinds import FileName, Label, StartPosition
 
 SAMPLES = 2000
@@ -77,7 +77,7 @@ class SupplyLine(Section):
 class Supply(Section):
     """The supply of the valve; its set pressure is the supply pressure of the design."""
 
-    type: words.Supply = "constant"
+    type: kinds.Supply = "constant"
     volume: Annotated[float | None, Of("oil_volume", "oil volume of the supply line")] = None
     flow: Annotated[
         float | None, Of("rated_flow", "flow of a fixed pump, or largest flow of a controlled pump")
@@ -94,7 +94,7 @@ class Supply(Section):
 class Cushion(Section):
     """A spear that throttles the oil before a stop."""
 
-    ends: words.CushionEnd = "both"
+    ends: kinds.CushionEnd = "both"
     length: Annotated[float, Of("part_length", "length of the cushioned travel")]
     open_area: Annotated[float, Of("orifice_area", "flow area when the spear enters")]
     end_area: Annotated[float, Of("orifice_area", "remaining flow area at the stop")]
@@ -113,7 +113,7 @@ class Stops(Section):
 class Friction(Section):
     """Friction of the seals, from the design or stated here."""
 
-    model: words.Friction = "lugre"
+    model: kinds.Friction = "lugre"
     coulomb: Annotated[float | None, Of("coulomb_force", "F_C; default: from the design")] = None
     static: Annotated[float | None, Of("static_force", "F_S; default: F_C")] = None
     stribeck_speed: Annotated[float | None, Of("stribeck_speed", "v_s")] = None
@@ -194,8 +194,8 @@ class Control(Section):
     speed: Annotated[tuple[signals.Speed, ...], Field(max_length=100)] = ()
     shaft_speed: Annotated[tuple[signals.ShaftSpeed, ...], Field(max_length=100)] = ()
     shaft_angle: Annotated[tuple[signals.ShaftAngle, ...], Field(max_length=100)] = ()
-    law: words.Law = "p"
-    tuning: words.Tuning = "margins"
+    law: kinds.Law = "p"
+    tuning: kinds.Tuning = "margins"
     margin: Annotated[
         float | None, Of("margin", "gain margin of tuning by margins; default: 2, pi: 3")
     ] = None
@@ -248,7 +248,7 @@ class Scenario(Section):
     ] = None
     initial: Initial = Initial()
     supply: Supply = Supply()
-    ends: words.Ends = None
+    ends: kinds.Ends = None
     friction: Friction = Friction()
     stops: Stops = Stops()
     motor: Motor | None = None

@@ -6,14 +6,14 @@ from typing import Annotated
 
 from ..kinds import Of
 from ..section import Section
-from . import words
+from . import kinds
 from .kinds import FileName, Label
 
 
 class SignalSegment(Section):
     """A part of a signal; the parts of a list are added."""
 
-    shape: words.Shape
+    shape: kinds.Shape
     start: Annotated[float, Of("instant", "start time; for a record: time of its zero")] = 0.0
     end: Annotated[float | None, Of("instant", "end time")] = None
     frequency: Annotated[float | None, Of("frequency", "frequency of a sine")] = None

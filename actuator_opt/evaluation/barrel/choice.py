@@ -10,11 +10,11 @@ from collections.abc import Mapping
 
 from ...design.material import Material
 from ...design.model import Design
-from ..allow import MaterialValues
 from ..geometry import Geometry
+from ..limits import MaterialValues
 from ..state import LoadState
 from ..values import Values
-from . import laminate, metal
+from . import laminate, wall
 from .wall import Wall
 
 LAMINATES = ("layered", "thin_laminate")
@@ -38,4 +38,4 @@ def compute(
         exact = model == "layered"
         return laminate.compute(v, design, stock, geometry, state, exact=exact)
     published = model == "as_published"
-    return metal.compute(v, design, stock, geometry, state, as_published=published)
+    return wall.metal_swelling(v, design, stock, geometry, state, as_published=published)

@@ -18,16 +18,15 @@ from ...models import column, liner, ply_discount, rod, tube_burst, yielding
 from ...models.autofrettage import Autofrettage, autofrettage
 from ...models.strength_modes import Stress, load_multiplier
 from .. import plies
-from ..allow import MaterialValues
 from ..distinct import distinct
 from ..geometry import Geometry
+from ..limits import MaterialValues
 from ..plies import Climate, Layer
 from ..state import LoadState
 from ..values import Values
 from . import load_path
-from .answer import FORCE, PRESSURE, WARMTH, WallSolution, exact_answer, thin_answer
 from .load_path import LoadPath, Swelling
-from .wall import Cycle, Wall
+from .wall import FORCE, PRESSURE, WARMTH, Cycle, Wall, WallSolution, exact_answer, thin_answer
 
 
 def compute(

@@ -14,8 +14,8 @@ from ...base.numeric import Array, maximum
 from ...design.model import Design
 from ...joints.joint import Clamp
 from ...models import barrel_ends
-from ..allow import MaterialValues
 from ..geometry import Geometry, end_at
+from ..limits import MaterialValues
 from ..retention import Numbers, clamped, joint_of
 from ..state import LoadState
 from ..values import Values

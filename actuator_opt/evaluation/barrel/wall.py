@@ -2,10 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from math import pi
 
-from ...base.numeric import Array
+import numpy as np
+
+from ...base.numeric import Array, maximum
+from ...design.model import Design
+from ...models import barrel, barrel_ends, column, laminate, ply, rod, yielding
 from ...models.autofrettage import Autofrettage
+from ...models.layered_tube import layered_tube, ply_stresses_at_faces, tube_state
+from ...models.strength_modes import Stress
+from ..geometry import Geometry
+from ..limits import MaterialValues
+from ..plies import Layer
+from ..state import LoadState
+from ..values import Values
+from . import load_path
 from .load_path import LoadPath, Swelling
 
 SEAL_STEP = 0.5
@@ -54,3 +68,204 @@ class Wall:
     autofrettage: Autofrettage | None = None
     why_no_mismatch: str = "the wall has a single material"
     missing: list[str] = field(default_factory=list)
+
+
+def metal_swelling(
+    v: Values,
+    design: Design,
+    stock: MaterialValues,
+    g: Geometry,
+    state: LoadState,
+    *,
+    as_published: bool,
+) -> Wall:
+    """Wall of a single isotropic layer."""
+    name = design.barrel.layup[0].material
+    modulus = stock.get(name, "youngs_modulus", "youngs_modulus_2")
+    ratio = stock.get(name, "poissons_ratio", "poissons_ratio_12")
+    size = {"inner_radius": g.inner_radius, "outer_radius": g.outer_radius}
+    elastic = {"youngs_modulus": modulus, "poissons_ratio": ratio}
+    area = pi * (g.outer_radius * g.outer_radius - g.inner_radius * g.inner_radius)
+    shortening = -barrel_ends.pressure_shortening(pressure=1.0, length=1.0, **size, **elastic)
+    swelling = Swelling(
+        growth=barrel.bore_growth(pressure=1.0, axial_force=0.0, **size, **elastic),
+        shortening=shortening,
+        stretch=1 / (modulus * area),
+        growth_by_force=shortening / (2 * pi * g.inner_radius),
+    )
+    path = load_path.derive(v, design, stock, g, state, swelling)
+    supply = v["supply.pressure"]
+    free = supply * swelling.growth
+    if as_published:
+        growth = barrel.bore_growth_as_published(pressure=supply, **size, **elastic)
+    else:
+        growth = maximum(free + swelling.growth_by_force * path.cases, free)
+    driven = state.driven_pressure
+    own = swelling.growth * driven
+    outer, inner = 2 * g.outer_radius, 2 * g.inner_radius
+    shear = modulus / (2 * (1 + ratio)) * area
+    wall = Wall(
+        swelling=swelling,
+        path=path,
+        growth=growth,
+        case_growth=growth * (driven / supply)
+        if as_published
+        else maximum(own + swelling.growth_by_force * path.cases, own),
+        bending_stiffness=modulus * rod.second_moment(outer_diameter=outer, inner_diameter=inner),
+        shear_stiffness=shear
+        * column.cowper_tube(poissons_ratio=ratio, radius_ratio=inner / outer),
+        thin_ratio=(g.outer_radius - g.inner_radius) / g.inner_radius,
+        layered=False,
+        axial_line_stiffness=modulus * (g.outer_radius - g.inner_radius),
+    )
+    alpha = stock.get(name, "thermal_expansion", "thermal_expansion_2")
+    if alpha is not None:
+        wall.expansion = (alpha, alpha)
+    _strengths(stock, name, g, path, supply, wall)
+    return wall
+
+
+def _strengths(
+    stock: MaterialValues, name: str, g: Geometry, path: LoadPath, supply: Array, wall: Wall
+) -> None:
+    """Yield and burst pressures of every load path, and the stress of a pressure pulse."""
+    size = {"inner_radius": g.inner_radius, "outer_radius": g.outer_radius}
+    strength = stock.allowable(name, "yield_strength", "strength_1_tension")
+    ultimate = stock.allowable(name, "ultimate_strength", "strength_1_tension")
+    if strength is None:
+        wall.missing.append(f"{name} has no yield or fibre strength")
+        return
+    for place, axial in path.per_pressure.items():
+        used = _used(axial, path, size, strength)
+        wall.yield_pressure[f"barrel, {place}"] = 1 / used
+        span = supply * strength * _used(axial, path, size, strength, clamped=False)
+        wall.cycles[f"barrel, {place}"] = Cycle(name, span, span / 2)
+        if ultimate is not None:
+            wall.burst_pressure[place] = barrel.burst_pressure_thick(
+                **size,
+                yield_strength=strength,
+                ultimate_strength=ultimate,
+                axial_force_ratio=axial / (pi * g.inner_radius * g.inner_radius),
+            )
+
+
+def _used(
+    axial: Array,
+    path: LoadPath,
+    size: dict[str, Array],
+    strength: Array,
+    *,
+    clamped: bool = True,
+) -> Array:
+    """1/yield pressure at the bore; with preload the stress at zero pressure is not zero."""
+    hoop, radial, along = barrel.bore_stresses(pressure=1.0, axial_force=axial, **size)
+    none = 0.0 * hoop
+    residual = None
+    if clamped and path.clamp is not None:
+        _, _, clamp = barrel.bore_stresses(pressure=0.0, axial_force=path.held, **size)
+        residual = (none, none, clamp, none)
+    stress = (hoop, radial, along, none)
+    return yielding.yield_utilisation(stress=stress, yield_strength=strength, residual=residual)
+
+
+PRESSURE, FORCE, WARMTH = range(3)
+"""Unit loads of a `WallSolution`."""
+
+
+@dataclass(frozen=True, slots=True)
+class WallSolution:
+    """Response to unit loads: ply stresses (faces, layers, loads, designs) and stiffness.
+
+    `walls` are the layer stiffnesses in tube axes, as input of `rod.layered_section`.
+    """
+
+    stress: Stress
+    growth: Array
+    axial: Array
+    warm_hoop: Array
+    walls: Sequence[Sequence[Array]]
+
+
+def exact_answer(layers: Sequence[Layer], g: Geometry) -> WallSolution:
+    """The layered tube under its three unit loads."""
+    tube = layered_tube(layers=[layer.as_tube() for layer in layers], inner_radius=g.inner_radius)
+    unit = np.eye(3)
+    state = tube_state(
+        tube=tube,
+        inner_pressure=unit[PRESSURE][:, None],
+        axial_force=unit[FORCE][:, None],
+        temperature_change=unit[WARMTH][:, None],
+    )
+    stress = ply_stresses_at_faces(tube=tube, state=state)
+    if tube.twisting:  # the plies of a pair then differ
+        other = ply_stresses_at_faces(tube=tube, state=state, opposite=True)
+        one, two, three, slip = (np.concatenate([a, b]) for a, b in zip(stress, other, strict=True))
+        stress = (one, two, three, slip)
+    return WallSolution(
+        stress=stress,
+        growth=state.bore_displacement,
+        axial=state.axial_strain,
+        warm_hoop=state.hoop_strain[0, 0, WARMTH],
+        walls=[[part[i] for part in tube.wall] for i in range(len(layers))],
+    )
+
+
+def thin_answer(layers: Sequence[Layer], g: Geometry) -> WallSolution:
+    """The membrane: stresses at mid-radius, growth at the bore."""
+    reduced, turned, loads = [], [], []
+    for layer in layers:
+        c = layer.constants
+        stiffness = ply.ply_stiffness(
+            youngs_modulus_1=c["youngs_modulus_1"],
+            youngs_modulus_2=c["youngs_modulus_2"],
+            poissons_ratio_12=c["poissons_ratio_12"],
+            shear_modulus_12=c["shear_modulus_12"],
+        )
+        first, second = layer.expansions or (0.0, 0.0)
+        reduced.append(stiffness)
+        turned.append(ply.rotated(stiffness=stiffness, angle=layer.angle))
+        loads.append(
+            ply.thermal_ply_load(
+                stiffness=stiffness, angle=layer.angle, expansion_1=first, expansion_2=second
+            )
+        )
+    thicknesses = [layer.thickness for layer in layers]
+    sheet = laminate.membrane(plies=turned, thicknesses=thicknesses)
+    warm = laminate.thermal_line_forces(
+        loads=loads, thicknesses=thicknesses, temperature_change=1.0
+    )
+    middle, none = (g.inner_radius + g.outer_radius) / 2, 0.0 * np.atleast_1d(g.inner_radius)
+
+    def strains(radius: Array) -> tuple[Array, Array]:
+        return laminate.strains(
+            membrane=sheet,
+            axial_line_force=np.stack([none, none + 1 / (2 * pi * radius), none + warm[0]]),
+            hoop_line_force=np.stack([none + radius, none, none + warm[1]]),
+        )
+
+    axial, hoop = strains(middle)
+    unit = np.array([0.0, 0.0, 1.0])[:, None]
+    rows = []
+    for layer, stiffness in zip(layers, reduced, strict=True):
+        first, second = layer.expansions or (0.0, 0.0)
+        one, two, slip = ply.ply_stresses(
+            stiffness=stiffness,
+            angle=layer.angle,
+            axial_strain=axial,
+            hoop_strain=hoop,
+            free_strain_1=first * unit,
+            free_strain_2=second * unit,
+        )
+        pressed = 0.0 * one
+        if layer.isotropic:  # the pressure itself is exact at the liner's bore
+            pressed = pressed - np.array([1.0, 0.0, 0.0])[:, None]
+        rows.append(np.stack(np.broadcast_arrays(one, two, pressed, slip)))
+    stress = np.stack(rows, axis=1)[:, None]
+    near_axial, near_hoop = strains(g.inner_radius)
+    return WallSolution(
+        stress=(stress[0], stress[1], stress[2], stress[3]),
+        growth=g.inner_radius * near_hoop,
+        axial=near_axial,
+        warm_hoop=hoop[WARMTH],
+        walls=[(q[0], q[1], 0.0, q[2], 0.0, 1.0, q[5]) for q in turned],
+    )

@@ -8,18 +8,95 @@ The bound is computed from the multipliers alone, so it holds whatever the solve
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import highspy
 import numpy as np
 import scipy.sparse as sp
 
+from ...base.symbolic import Symbol, vectorised
 from ..problem import Vector
 from .box import ROOM, Box, Layout
-from .lines import Lines, Seen
-from .products import Products
-from .shapes import FAR
-from .signomial import Form
+from .relaxation import FAR, ConstraintRow, Curve, Form, Link, Powers, Product, Relaxation, Table
+
+
+class Products:
+    """Rows -inf or low <= w + a x + b y <= high or inf of products w = k x y, from row `first` on.
+
+    Two planes lie below and two above, through the corners of both factors' ranges.
+    """
+
+    def __init__(self, products: Sequence[Product], first: int, columns: int) -> None:
+        self.first, self.rows = first, 4 * len(products)
+        atoms = [(one.first, one.second, one.out) for one in products]
+        self.atoms = np.array(atoms, dtype=np.int32).reshape(-1, 3)
+        self.level = np.exp([one.level for one in products])
+        self.columns = np.repeat(self.atoms, 4, axis=0)
+        """Columns (rows, 3) of x, y and w."""
+        starts, shape = 3 * np.arange(self.rows + 1), (self.rows, columns)
+        ones = np.ones(3 * self.rows)
+        self.matrix = sp.csr_matrix((ones, self.columns.ravel(), starts), shape=shape)
+
+    def planes(self, lower: Vector, upper: Vector) -> tuple[Vector, Vector, Vector]:
+        """Coefficients (rows, 3) and ends of the rows, for ranges of all columns.
+
+        w >= k (x_l y + y_l x - x_l y_l), w >= k (x_u y + y_u x - x_u y_u),
+        w <= k (x_u y + y_l x - x_u y_l), w <= k (x_l y + y_u x - x_l y_u).
+        """
+        x, y, _ = self.atoms.T
+        sides = (lower, lower), (upper, upper), (upper, lower), (lower, upper)
+        corners = np.stack([(one[x], two[y]) for one, two in sides])  # (4, 2, products)
+        scaled = -self.level * corners
+        planes = np.ones((len(self.atoms), 4, 3))
+        planes[:, :, 0], planes[:, :, 1] = scaled[:, 1].T, scaled[:, 0].T
+        level = (scaled[:, 0] * corners[:, 1]).T
+        low, high = level - ROOM, level + ROOM
+        low[:, 2:], high[:, :2] = -np.inf, np.inf
+        return planes.reshape(-1, 3), low.ravel(), high.ravel()
+
+    def torn(self, x: Vector, dual: Vector) -> Vector:
+        """Error of every product at a point, times its multipliers."""
+        first, second, out = self.atoms.T
+        price = np.abs(dual[self.first : self.first + self.rows]).reshape(-1, 4).sum(axis=1)
+        found: Vector = np.abs(x[out] - self.level * x[first] * x[second]) * price
+        return found
+
+
+class Lines(NamedTuple):
+    """low <= out + coefficient * ratio <= high, by columns of curve and direction."""
+
+    ratio: Any
+    coefficient: Vector
+    out: Any
+    low: Vector
+    high: Vector
+
+    def joined(self, more: Lines) -> Lines:
+        """These lines followed by others."""
+        return Lines(*(np.concatenate(pair) for pair in zip(self, more, strict=True)))
+
+    def put(self, solver: Any) -> None:
+        """Add the lines to a programme as rows."""
+        count = len(self.low)
+        indices = np.stack([self.ratio, self.out], axis=1).ravel().astype(np.int32)
+        data = np.stack([self.coefficient, np.ones(count)], axis=1).ravel()
+        starts = 2 * np.arange(count, dtype=np.int32)
+        solver.addRows(count, self.low, self.high, 2 * count, starts, indices, data)
+
+
+class Seen:
+    """Least and largest value of every direction over known points of the relaxation."""
+
+    def __init__(self, directions: Vector) -> None:
+        self.ends = directions.copy(), directions.copy()
+
+    def add(self, directions: Vector) -> None:
+        """Include another point."""
+        np.minimum(self.ends[0], directions, out=self.ends[0])
+        np.maximum(self.ends[1], directions, out=self.ends[1])
+
 
 WIDEST = 40.0
 """Widest argument range that gets a chord; a wider chord carries no information."""
@@ -390,3 +467,138 @@ _OPTIONS = {
     "threads": 1,
     "simplex_scale_strategy": 0,
 }
+
+
+SAMPLES = 1001
+"""Number of samples over the range of the argument."""
+
+
+CAUTION = 1.5
+"""Safety factor on the second derivative of the samples."""
+
+
+_LOGIC = ("lt", "le", "and", "or", "not")
+
+
+class Leads:
+    """The lead of each value: the one value through which it depends on all variables."""
+
+    def __init__(self) -> None:
+        self._known: dict[int, Symbol] = {}
+
+    def of(self, node: Symbol) -> Symbol:
+        """The lead of a value."""
+        if node.index not in self._known:
+            under = {self.of(one) for one in node.operands}
+            self._known[node.index] = under.pop() if len(under) == 1 else node
+        return self._known[node.index]
+
+
+def function(nodes: Sequence[Symbol], lead: Symbol) -> Callable[[Vector], Vector]:
+    """A function for values (nodes, n) of nodes with one lead, from its logarithms (n,)."""
+    code = vectorised("lone", "value", {}, nodes, known={lead: "value"})
+
+    def values(t: Vector) -> Vector:
+        with np.errstate(all="ignore"):
+            rows = code(np.exp(t))
+        return np.stack([np.broadcast_to(np.asarray(row, dtype=float), t.shape) for row in rows])
+
+    return values
+
+
+def samples(lead: Symbol) -> Vector:
+    """Sampled logarithms over the range of a positive value."""
+    low, high = np.log(lead.bounds)
+    return np.linspace(low, high, SAMPLES)
+
+
+def ranges(nodes: Sequence[Symbol]) -> dict[Symbol, tuple[float, float]]:
+    """Ranges of all values with a positive lead, if finite."""
+    leads = Leads()
+    groups: dict[Symbol, list[Symbol]] = {}
+    for node in nodes:
+        lead = leads.of(node)
+        if lead is node or node.op in _LOGIC:
+            continue
+        if 0 < lead.bounds[0] < lead.bounds[1] < np.inf:
+            groups.setdefault(lead, []).append(node)
+    found = {}
+    for lead, some in groups.items():
+        for node, row in zip(some, function(some, lead)(samples(lead)), strict=True):
+            if np.isfinite(row).all():
+                room = CAUTION * float(np.abs(np.diff(row, 2)).max()) / 8
+                found[node] = (float(row.min()) - room, float(row.max()) + room)
+    return found
+
+
+WIDE = 0.3
+"""Least range of the ratio of a sum's parts for which plain numbers are added."""
+
+
+class _Plain:
+    """Plain atoms of a relaxation with known ranges."""
+
+    def __init__(self, found: Relaxation) -> None:
+        self.found = found
+        self.known: dict[Powers, int] = {}
+        self.tops: dict[int, float] = {}
+        self.tables = {
+            curve.out.powers[0][0]: curve for curve in found.curves if isinstance(curve.kind, Table)
+        }
+
+    def width(self, form: Form) -> float:
+        """Range of a monomial's logarithm."""
+        low, high = self.found.reach(form)
+        return high - low
+
+    def atom(self, powers: Powers) -> int:
+        """The plain atom of a monomial, relative to its largest value."""
+        if powers not in self.known:
+            found, form = self.found, Form(0.0, powers)
+            low, high = found.reach(form)
+            argument = Form(-high, powers)
+            found.lower.append(math.exp(low - high))
+            found.upper.append(1.0)
+            found.makers.append(lambda y: math.exp(argument.at(y)))
+            self.known[powers] = number = len(found.lower) - 1
+            self.tops[number] = high
+            found.curves.append(Curve("exp", argument, Form(0.0, ((number, 1.0),))))
+            self._tie(form, number)
+        return self.known[powers]
+
+    def term(self, form: Form, scale: float) -> Form:
+        """A monomial divided by e^scale, linear in its plain atom."""
+        if not form.powers:
+            return Form(math.exp(form.constant - scale))
+        number = self.atom(form.powers)
+        return Form(0.0, ((number, math.exp(form.constant + self.tops[number] - scale)),))
+
+    def _tie(self, form: Form, number: int) -> None:
+        """Tie a plain atom to those of its factors, or to its argument."""
+        lone = [i for i, power in form.powers if power == 1.0]
+        if not lone:
+            return
+        widest = max(lone, key=lambda i: self.width(Form(0.0, ((i, 1.0),))))
+        base = Form(0.0, ((widest, 1.0),))
+        rest = form - base
+        if rest.powers:
+            first, second = self.atom(base.powers), self.atom(rest.powers)
+            level = self.tops[first] + self.tops[second] - self.tops[number]
+            self.found.products.append(Product(number, first, second, level))
+        elif widest in self.tables:
+            curve = self.tables[widest]
+            under = self.atom(curve.argument.powers)
+            level = curve.argument.constant + self.tops[under] - self.tops[number]
+            self.found.links.append(Link(number, under, level, curve))
+
+
+def straighten(found: Relaxation) -> None:
+    """Add plain numbers for the wide sums of a relaxation."""
+    plain = _Plain(found)
+    for whole, part, rest in list(found.splits):
+        if plain.width(part - rest) < WIDE:
+            continue
+        scale = found.reach(whole)[1]
+        own = plain.term(whole, scale)
+        sums = plain.term(part, scale) + plain.term(rest, scale)
+        found.rows += [ConstraintRow(own, sums), ConstraintRow(sums, own)]

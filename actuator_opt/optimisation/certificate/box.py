@@ -8,9 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from ..problem import Vector
-from .relaxation import Relaxation
-from .shapes import FAR, Mixed, Table, Tables
-from .signomial import Form, Powers
+from .relaxation import FAR, Form, Mixed, Powers, Relaxation, Table, Tables
 
 ROUNDS = 20
 """Maximum passes of the propagation in one box."""

@@ -10,11 +10,20 @@ from typing import Any
 import numpy as np
 
 from ...base.symbolic import Symbol
+from .bounding import CAUTION, SAMPLES, Leads, function
 from .intervals import branch, extreme
-from .lone import CAUTION, SAMPLES, Leads, function
-from .relaxation import ConstraintRow, Curve, Relaxation, Unknown
-from .shapes import FAR, Kind, Mixed, Table
-from .signomial import Form, Signomial
+from .relaxation import (
+    FAR,
+    ConstraintRow,
+    Curve,
+    Form,
+    Kind,
+    Mixed,
+    Relaxation,
+    Signomial,
+    Table,
+    Unknown,
+)
 
 WIDEST = 20.0
 """Widest logarithmic range that is sampled."""

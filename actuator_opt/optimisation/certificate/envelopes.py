@@ -11,17 +11,16 @@ import numpy as np
 
 from ...base.numeric import Array, maximum
 from ...base.symbolic import Symbol
-from ...base.symbolic.bounds import bounds_of
+from ...base.symbolic.expression import bounds_of
 from ...design.model import Design
 from ...evaluation import PreparedDesign, beam, plies
-from ...evaluation.allow import MaterialValues
 from ...evaluation.barrel import LAMINATES, Swelling, Wall, compute, kind, load_path
 from ...evaluation.barrel.load_path import LoadPath
 from ...evaluation.geometry import Geometry
 from ...evaluation.kernel import Implicit, ModelRun, Statics
+from ...evaluation.limits import MaterialValues, MetricArrays
 from ...evaluation.retention import clamped
 from ...evaluation.rods import Rod
-from ...evaluation.rows import MetricArrays
 from ...evaluation.springs import Springs
 from ...evaluation.state import LoadState
 from ...evaluation.values import Values

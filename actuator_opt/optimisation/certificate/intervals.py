@@ -12,8 +12,8 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from ...base.symbolic import Symbol
-from ...base.symbolic.bounds import Bounds, at_end, bounds, bounds_of
-from .signomial import ROUNDING, Form, Signomial
+from ...base.symbolic.expression import Bounds, at_end, bounds, bounds_of
+from .relaxation import ROUNDING, Form, Signomial
 
 ROUNDS = 30
 """Maximum passes over all values."""

@@ -8,20 +8,380 @@ levels then check whether a better one was overlooked.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
+from ...base.numeric import Array
 from ...base.progress import tell
-from ..problem import Vector
-from . import dominance, even
-from .ends import Effort, NoEnd, ends, normalised
-from .line import fill_line
+from ..actuator import Solution
+from ..descents import FEASIBLE, RESIDUAL
+from ..evaluator import Evaluator, Point
+from ..problem import Values, Vector
+from ..resolve.parallel_descents import converged_from, descents_from, distinct_ends
+from ..solver import KEEP, Halton, Sweep, distinct, solve, sweep
+from . import dominance, plane
 from .objectives import Conditions, Objectives
-from .overlooked import OVERLOOKED, better
-from .plane import fill_plane
-from .search import FrontSearch
-from .tracer import Tracer
+from .plane import between_on_line, fill_line, fill_plane
+from .tracer import Design, FrontSearch, Start, Tracer
+
+HOLD = 1e-10
+"""Share of its range by which an anchor's objective may worsen while the others improve."""
+
+
+GAINED = 1e-3
+"""Normalised gain of the others that justifies this."""
+
+
+CONFLICT = 1e-6
+"""Range below this share of the magnitude means that the objective does not vary."""
+
+
+ROUGH = 16
+"""Points of an SLSQP run after which steps with the Hessian take over."""
+
+
+@dataclass(frozen=True)
+class Effort:
+    """Search effort: starts and sweep samples per objective, and the seed."""
+
+    starts: int
+    samples: int
+    seed: int
+
+
+@dataclass(frozen=True)
+class Ends:
+    """The anchors (n, objectives), and all feasible local optima (n, k)."""
+
+    x: Vector
+    others: Vector
+
+
+class NoEnd(NamedTuple):
+    """A failed search for the best of one objective, and the objective's number."""
+
+    objective: int
+    solution: Solution
+
+
+def ends(objectives: Objectives, checked: Evaluator, effort: Effort) -> Ends | NoEnd:
+    """The best design of each objective; the failed search if there is none."""
+    optima = [[] for _ in range(objectives.count)] if not checked.exact else _together(
+        objectives, checked, effort
+    )  # fmt: skip
+    known = [x for found in optima for x in found]
+    values = objectives.values(np.stack(known, axis=1)) if known else np.empty((len(optima), 0))
+    best: list[Vector] = []
+    for index, found in enumerate(optima):
+        own, first = values[index], sum(len(some) for some in optima[:index])
+        size = CONFLICT * np.abs(own).max(initial=0.0)
+        if found and own[first] <= own.min() + size:
+            best.append(found[0])
+            continue
+        alone = solve(
+            objectives.alone(index),
+            starts=effort.starts, samples=effort.samples, seed=effort.seed, more_starts=known,
+        )  # fmt: skip
+        if alone.violation > FEASIBLE or alone.kkt is None or alone.kkt.residual > RESIDUAL:
+            return NoEnd(index, alone)
+        best.append(alone.x)
+        known += [one.x for one in alone.optima if one.violation <= FEASIBLE]
+    return Ends(np.stack(best, axis=1), np.stack(known, axis=1))
+
+
+def _together(objectives: Objectives, checked: Evaluator, effort: Effort) -> list[list[Vector]]:
+    """Local optima of each objective, best first, from simultaneous runs."""
+    objectives = replace(objectives, evaluate=_remembering(objectives.evaluate))
+    evaluators = [objectives.like(checked, k) for k in range(objectives.count)]
+    swept = [sweep(one, effort.samples, effort.seed) for one in evaluators]
+    starts = [_starts(*pair, effort.starts) for pair in zip(evaluators, swept, strict=True)]
+    which = np.arange(objectives.count, dtype=float)[None]
+    picked = objectives.picked()
+    ended = descents_from(picked, evaluators, which, starts, effort.seed, rounds=ROUGH)
+    ended = [distinct_ends(points) for points in ended]
+    settled = converged_from(picked, evaluators, which, ended)
+    return [_optima(*pair) for pair in zip(ended, settled, strict=True)]
+
+
+def _remembering(evaluate: Callable[[Array], Values]) -> Callable[[Array], Values]:
+    """The same function with the last real points cached, as all objectives sweep the same ones."""
+    last: dict[bytes, Values] = {}
+
+    def remembered(points: Array) -> Values:
+        if np.iscomplexobj(points):
+            return evaluate(points)
+        key = np.asarray(points).tobytes()
+        if key not in last:
+            values = evaluate(points)
+            last.clear()
+            last[key] = values
+        return last[key]
+
+    return remembered
+
+
+def _starts(evaluator: Evaluator, swept: Sweep, wanted: int) -> list[Vector]:
+    """Coordinates of the problem's own start and of the best distinct points of the sweep."""
+    own = evaluator.problem.start
+    given = [] if own is None else [evaluator.space.to_z(own)]
+    return given + distinct(evaluator, swept.z, max(wanted - len(given), 1))
+
+
+def _optima(ended: Sequence[Point], settled: Sequence[Point | None]) -> list[Vector]:
+    """Distinct optima, best first; empty if an unfinished run may be better."""
+    good = sorted((one for one in settled if one is not None), key=lambda one: one.objective)
+    open_ = [
+        p.objective for p, one in zip(ended, settled, strict=True)
+        if one is None and p.violation <= FEASIBLE
+    ]  # fmt: skip
+    if not good or min(open_, default=np.inf) < good[0].objective:
+        return []
+    return [one.x for one in distinct_ends(good)]
+
+
+def normalised(objectives: Objectives, checked: Evaluator, found: Ends) -> tuple[Tracer, Vector]:
+    """The anchors (n, k) with their normalisation; a single one without a conflict."""
+    x = found.x
+    every = objectives.values(np.concatenate([found.others, x], axis=1))
+    values, magnitude = every[:, -x.shape[1] :], np.abs(every).max(axis=1)
+    magnitude = np.where(magnitude > 0, magnitude, 1.0)
+    tracer: Tracer | None = None
+    while True:
+        ideal, width = values.min(axis=1), np.ptp(values, axis=1)
+        best = (values - ideal[:, None] <= (CONFLICT * magnitude)[:, None]).all(axis=0)
+        if best.any():
+            x, width = x[:, [int(np.argmax(best))]], magnitude
+        width = np.where(width <= CONFLICT * magnitude, magnitude, width)
+        if tracer is not None or best.any():
+            break
+        tracer = Tracer(objectives, ideal, width, checked)
+        x = _sharpened(tracer, x, tracer.normal(values))
+        values = objectives.values(x)
+    if tracer is None:
+        tracer = Tracer(objectives, ideal, width, checked)
+    else:
+        tracer.rescale(ideal, width)
+    return tracer, x
+
+
+def _sharpened(tracer: Tracer, x: Vector, units: Vector) -> Vector:
+    """The anchors (n, k), moved where others improve without a loss of their own objective."""
+    count = len(x.T)
+    starts = []
+    for k in range(count):
+        level, way = np.zeros(count), np.ones(count)
+        level[k], way[k] = units[k, k] + HOLD, 0.0
+        z = tracer.from_x(x[:, k], float(np.delete(units[:, k], k).max()))
+        starts.append(Start(level, way, z, np.eye(len(z))))
+    moved = x.copy()
+    for k, (one, start) in enumerate(zip(tracer.solve(starts), starts, strict=True)):
+        before = start.z[-1] * tracer.scale
+        if one is not None and one.point.objective < before - GAINED:
+            moved[:, k] = one.point.x[:-1]
+    return moved
+
+
+OVERLOOKED = 1e-6
+"""Normalised level by which a search must improve."""
+
+
+TOLERANCE = 1e-7
+"""Relative change of level and variables that ends a run."""
+
+
+ROUNDS = 24
+"""Maximum points of a run; if no design is feasible by then, other steps take over."""
+
+
+def better(tracer: Tracer, designs: Sequence[Design], effort: Effort) -> list[Vector]:
+    """Variables (n,) of better designs at the levels of some designs on the front."""
+    reached: list[list[Point]] = [[] for _ in designs]
+    if tracer.exact and designs:
+        reached = _reached(tracer, designs, effort)
+    found = []
+    for number, (one, points) in enumerate(zip(designs, reached, strict=True)):
+        ends = [(point.objective, point.x) for point in points]
+        if not ends:
+            best = solve(
+                tracer.at(one.level, one.way),
+                starts=effort.starts, samples=effort.samples, seed=effort.seed + number,
+            )  # fmt: skip
+            ends = [(best.objective, best.x)] if best.violation <= FEASIBLE else []
+        level, x = min(ends, key=lambda pair: pair[0], default=(np.inf, one.point.x))
+        if level < one.point.objective - OVERLOOKED:
+            found.append(x[:-1])
+    return found
+
+
+def _reached(tracer: Tracer, designs: Sequence[Design], effort: Effort) -> list[list[Point]]:
+    """Feasible points reached by runs, separately for each level."""
+    evaluators = [tracer.like(tracer.at(one.level, one.way)) for one in designs]
+    parameters = np.stack([np.concatenate([one.level, one.way]) for one in designs], axis=1)
+    given = tracer.parametric, evaluators, parameters
+    starts = _overlooked_starts(tracer, designs, effort)
+    ended = descents_from(*given, starts, effort.seed, tolerance=TOLERANCE, rounds=ROUNDS)
+    met = [[point for point in points if point.violation <= FEASIBLE] for points in ended]
+    rest = [[] if good else distinct_ends(points) for good, points in zip(met, ended, strict=True)]
+    settled = converged_from(*given, rest)
+    return [
+        [*good, *(point for point in more if point is not None)]
+        for good, more in zip(met, settled, strict=True)
+    ]
+
+
+def _overlooked_starts(
+    tracer: Tracer, designs: Sequence[Design], effort: Effort
+) -> list[list[Vector]]:
+    """Coordinates for each level: the problem's own start, and the best of one shared sweep."""
+    inner = Evaluator(tracer.objectives.alone(0))
+    space, own = inner.space, tracer.objectives.problem.start
+    cube = Halton(space.size, effort.seed, most=max(2, effort.samples)).points(0, effort.samples)
+    z = space.lower[:, None] + (space.upper - space.lower)[:, None] * cube
+    if own is not None:
+        z = np.concatenate([space.to_z(own)[:, None], z], axis=1)
+    rows = tracer.evaluator.batch(np.concatenate([z, np.zeros((1, z.shape[1]))]))
+    first = 1 + len(tracer.objectives.problem.constraint_names)
+    units = -rows[first : first + tracer.objectives.count]
+    margins = np.delete(rows, range(first, first + tracer.objectives.count), axis=0)
+    missed = inner.violations(margins, "sum")
+    missed = np.where(np.isfinite(units).all(axis=0), missed, np.inf)
+    result = []
+    for one in designs:
+        t = ((units - one.level[:, None]) / one.way[:, None]).max(axis=0)
+        order = np.lexsort((t, missed))
+        order = order[np.isfinite(missed[order]) & (order >= (own is not None))][:KEEP]
+        begun = [] if own is None else [tracer.to_t(np.append(z[:, 0], 0.0), float(t[0]))]
+        places = {z[:, k].tobytes(): float(t[k]) for k in order}
+        for at in distinct(inner, z[:, order], max(effort.starts - len(begun), 1)):
+            begun.append(tracer.to_t(np.append(at, 0.0), places[at.tobytes()]))
+        result.append(begun)
+    return result
+
+
+WIDEST = 3.0
+"""Largest gap between neighbours, relative to the median gap."""
+
+
+MOST_ROUNDS = 6
+"""Maximum rounds of adding designs in wide gaps."""
+
+
+PIECES = 8
+"""Maximum number of pieces per split of a gap."""
+
+
+@dataclass(frozen=True)
+class Gap:
+    """A wide gap between neighbours of a front, in normalised objectives.
+
+    Parameters
+    ----------
+    after : index of the design before it
+    size : distance of its two designs
+    reach : upper limit of the front's length between them, from the levels tried
+    jump : whether that is at most a median gap, so that the front is discontinuous here
+    """
+
+    after: int
+    size: float
+    reach: float
+    jump: bool
+
+
+def chosen(search: FrontSearch, count: int) -> dominance.Indices:
+    """The requested number of designs, farthest apart, along the first objective."""
+    kept = np.array([k for k in search.chosen() if search.residual(k) <= RESIDUAL], dtype=np.intp)
+    units = search.units[:, kept]
+    order = np.lexsort(units[::-1])
+    kept, units = kept[order], units[:, order]
+    if len(kept) <= count:
+        return kept
+    firm = [*np.argmin(units, axis=1).tolist(), *np.argmax(units, axis=1).tolist()]
+    if len(units) == 2:
+        jumps = [gap.after for gap in wide(search, kept) if gap.jump]
+        firm += [k + side for k in jumps for side in (0, 1)]
+    first = np.array(list(dict.fromkeys(firm))[:count], dtype=np.intp)
+    return kept[dominance.thinned(units, first, count)]
+
+
+def wide(search: FrontSearch, kept: dominance.Indices) -> list[Gap]:
+    """The wide gaps between designs of two objectives, in order."""
+    units = search.units[:, kept]
+    sizes = np.sqrt((np.diff(units, axis=1) ** 2).sum(axis=0))
+    reaches = np.array([float(_pieces(search, *two).sum()) for two in _pairs(kept)])
+    middle = float(np.median(np.minimum(sizes, reaches))) if len(sizes) else 0.0
+    return [
+        Gap(k, float(sizes[k]), float(reaches[k]), bool(reaches[k] <= middle))
+        for k in np.flatnonzero(sizes > WIDEST * middle).tolist()
+    ]
+
+
+def close(search: FrontSearch, count: int) -> None:
+    """Add designs of two objectives in wide gaps until only jumps remain."""
+    for number in range(MOST_ROUNDS):
+        kept = chosen(search, count)
+        open_ = [gap for gap in wide(search, kept) if not gap.jump]
+        if not open_:
+            return
+        tell("closing gaps of the front", number / MOST_ROUNDS)
+        places = []
+        for gap in open_:
+            among = _among(search, kept[gap.after], kept[gap.after + 1])
+            levels = np.array([search.designs[k].level[0] for k in among])
+            more = plane.between(levels, search.units[:, among], PIECES - 1)
+            places += more.tolist()
+        if not search.solve(between_on_line(search, places)):
+            return
+
+
+def middles(search: FrontSearch, count: int) -> list[int]:
+    """Add a design at the middle level of each wide gap, widest first."""
+    kept, found = chosen(search, count), []
+    for gap in sorted(wide(search, kept), key=lambda one: -one.size):
+        among = _among(search, kept[gap.after], kept[gap.after + 1])
+        levels = [search.designs[k].level[0] for k in among]
+        middle = (levels[0] + levels[-1]) / 2
+        found.append(int(among[int(np.argmin(np.abs(np.subtract(levels, middle))))]))
+    return found
+
+
+def lost(search: FrontSearch, kept: dominance.Indices) -> int:
+    """Number of levels without a design in or near them, in gaps that are not jumps."""
+    units = search.units[:, kept]
+    if len(units) > 2:
+        widest = dominance.nearest(units).max(initial=0.0)
+        plane = search.plane[:, kept]
+        levels = [level - level.mean() for level in search.lost]
+        return sum(bool(dominance.distances(plane, one).min() > widest) for one in levels)
+    ranges = [
+        sorted(search.designs[kept[gap.after + side]].level[0] for side in (0, 1))
+        for gap in wide(search, kept)
+        if not gap.jump
+    ]
+    return sum(any(low < a[0] < high for low, high in ranges) for a in search.lost)
+
+
+def _pairs(kept: dominance.Indices) -> Iterator[tuple[int, int]]:
+    return zip(kept[:-1].tolist(), kept[1:].tolist(), strict=True)
+
+
+def _among(search: FrontSearch, left: int, right: int) -> dominance.Indices:
+    """Designs at levels between two given ones, in order."""
+    levels = np.array([one.level[0] for one in search.designs])
+    low, high = sorted((levels[left], levels[right]))
+    order = np.argsort(levels, kind="stable")
+    within = (levels[order] >= low) & (levels[order] <= high)
+    return np.asarray(order[within], dtype=np.intp)
+
+
+def _pieces(search: FrontSearch, left: int, right: int) -> Vector:
+    """Upper limits of the front's length between neighbouring levels of a section."""
+    among = _among(search, left, right)
+    levels = np.array([search.designs[k].level[0] for k in among])
+    return plane.lengths(levels, search.units[:, among])
 
 
 @dataclass(frozen=True)
@@ -69,7 +429,7 @@ class Front:
     checked: int = 0
     improved: int = 0
     failed: int = 0
-    wide: tuple[even.Gap, ...] = ()
+    wide: tuple[Gap, ...] = ()
     warnings: tuple[str, ...] = ()
 
     @property
@@ -120,7 +480,7 @@ def _fill(search: FrontSearch, count: int) -> None:
     """Find the requested number of designs, evenly spread."""
     if len(search.tracer.ideal) == 2:
         fill_line(search, count)
-        even.close(search, count)
+        close(search, count)
     else:
         fill_plane(search, count)
 
@@ -131,7 +491,7 @@ def _places(search: FrontSearch, settings: Settings) -> list[int]:
     picked = np.linspace(0, len(inner) - 1, settings.checks + 2)[1:-1].round().astype(int)
     places = {inner[k] for k in picked.tolist()} if inner else set()
     if len(search.tracer.ideal) == 2:
-        places |= set(even.middles(search, settings.count)[: settings.checks])
+        places |= set(middles(search, settings.count)[: settings.checks])
     return sorted(places)
 
 
@@ -139,22 +499,22 @@ def _finished(
     search: FrontSearch, count: int, warnings: tuple[str, ...], checked: int, improved: int
 ) -> Front:
     """The final designs, with the designs they dominate and their spacing."""
-    tracer, kept = search.tracer, even.chosen(search, count)
+    tracer, kept = search.tracer, chosen(search, count)
     units = search.units[:, kept]
     replaced = np.stack(search.passed, axis=1) if search.passed else np.empty((len(units), 0))
     everything = np.concatenate([search.units, search.rest, tracer.normal(replaced)], axis=1)
-    lost = ~dominance.nondominated(np.concatenate([units, everything], axis=1))[len(kept) :]
+    dominated = ~dominance.nondominated(np.concatenate([units, everything], axis=1))[len(kept) :]
     return Front(
         x=np.stack([search.designs[k].point.x[:-1] for k in kept], axis=1),
         values=tracer.values(units),
         units=units,
         residuals=np.array([search.residual(k) for k in kept]),
         knee=dominance.knee(units),
-        passed=tracer.values(everything[:, lost]),
+        passed=tracer.values(everything[:, dominated]),
         checked=checked,
         improved=improved,
-        failed=even.lost(search, kept),
-        wide=tuple(even.wide(search, kept)) if len(units) == 2 else (),
+        failed=lost(search, kept),
+        wide=tuple(wide(search, kept)) if len(units) == 2 else (),
         warnings=warnings,
     )
 

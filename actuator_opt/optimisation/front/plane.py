@@ -8,16 +8,86 @@ improved. Finally, wide holes where the front is steep are filled.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import permutations, product
 
 import numpy as np
 import numpy.typing as npt
 
 from ...base.progress import tell
 from ..problem import Vector
-from . import dominance, references
+from . import dominance, plane
 from .dominance import Indices, distances
-from .search import JUMP, FrontSearch
-from .tracer import BETTER, HELD, Design, Start
+from .tracer import BETTER, HELD, JUMP, Design, FrontSearch, Start
+
+STEEPEST = 2.0
+"""Maximum length of a two-objective front per unit of u."""
+
+
+def on_line(places: Vector) -> Vector:
+    """Levels (2, k) at places u (k,) between the anchors of the first and the second objective."""
+    return np.stack([places, 1.0 - places])
+
+
+def lengths(places: Vector, units: Vector) -> Vector:
+    """Length of the front between neighbours (k - 1,), jumps excluded.
+
+    Parameters
+    ----------
+    places : u (k,), ascending
+    units : normalised objectives (2, k) there
+    """
+    way = np.sqrt((np.diff(units, axis=1) ** 2).sum(axis=0))
+    return np.asarray(np.minimum(way, STEEPEST * np.diff(places)))
+
+
+def between(places: Vector, units: Vector, count: int) -> Vector:
+    """The requested number of new places u, where the front is longest between neighbours."""
+    way = lengths(places, units)
+    pieces = np.ones(len(way), dtype=int)
+    for _ in range(count):
+        longest = int(np.argmax(way / pieces))
+        if not way[longest] > 0:
+            break
+        pieces[longest] += 1
+    parts = [
+        places[k] + (places[k + 1] - places[k]) * np.arange(1, n) / n for k, n in enumerate(pieces)
+    ]
+    return np.concatenate(parts) if parts else np.empty(0)
+
+
+def places(objectives: int, steps: int) -> list[tuple[int, ...]]:
+    """Places of a lattice, in steps from the middle, whose lines meet the unit box.
+
+    >>> len(places(3, 1)), len(places(3, 2))
+    (1, 7)
+    """
+    axis = range(-steps, steps + 1)
+    return [
+        (*most, last)
+        for most in product(axis, repeat=objectives - 1)
+        if (last := -sum(most)) in axis and max(*most, last) - min(*most, last) <= steps
+    ]
+
+
+def around(place: tuple[int, ...]) -> list[tuple[int, ...]]:
+    """The neighbours of a place.
+
+    >>> around((0, 0))
+    [(-1, 1), (1, -1)]
+    """
+    found = []
+    for up, down in permutations(range(len(place)), 2):
+        near = list(place)
+        near[up] += 1
+        near[down] -= 1
+        found.append(tuple(near))
+    return sorted(found)
+
+
+def level(place: Sequence[int], steps: int) -> Vector:
+    """Levels (objectives,) at a place."""
+    return 1.0 / len(place) + np.array(place, dtype=float) / steps
+
 
 Place = tuple[int, ...]
 """Lattice steps from the middle, one number per objective, of sum 0."""
@@ -64,15 +134,15 @@ def fill_plane(search: FrontSearch, count: int) -> None:
     objectives, most = search.tracer.objectives.count, RESERVE * count + 60
     if len(search.designs) == objectives:
         steps = COARSE if objectives == 3 else COARSE // 2
-        lattice = references.places(objectives, steps)
+        lattice = places(objectives, steps)
         for _ in range(1 + RESCALES):
             _flooded(search, lattice, steps, most)
             if not _renormalised(search):
                 break
             lattice = _nearest(search, steps)
-        while len(references.places(objectives, steps + 1)) <= SURPLUS * count:
+        while len(places(objectives, steps + 1)) <= SURPLUS * count:
             steps += 1
-        held = _flooded(search, references.places(objectives, steps), steps, most)
+        held = _flooded(search, places(objectives, steps), steps, most)
         missing = SURPLUS * count / max(held, 1)
         if len(search.chosen()) < count:
             finer = round(steps * missing ** (1 / (objectives - 1)))
@@ -101,12 +171,12 @@ def _flooded(search: FrontSearch, begun: Iterable[Place], steps: int, most: int)
     while waiting and len(tried) < most:
         tell("covering the front", min(len(tried) / most, 1.0))
         tried |= set(waiting)
-        starts = [_beside(search, references.level(place, steps)) for place in waiting]
+        starts = [_beside(search, level(place, steps)) for place in waiting]
         found = search.compared(starts)
         there = [p for p, one in zip(waiting, found, strict=True) if one is not None and one.held]
         held += len(there)
         search.take(_all_bettered(search, found))
-        following = {near for place in there for near in references.around(place)}
+        following = {near for place in there for near in around(place)}
         waiting = sorted(following - tried)
     return held
 
@@ -259,3 +329,68 @@ def _doubtful(search: FrontSearch, chosen: Indices) -> list[tuple[int, int]]:
         if behind.min() <= near:
             pairs.append((i, int(np.argmin(behind))))
     return pairs
+
+
+GROWTH = 10
+"""Maximum new designs per round, relative to the known ones."""
+
+
+MOST_ROUNDS = 12
+"""Maximum rounds: a continuous front takes two or three."""
+
+
+def fill_line(search: FrontSearch, count: int) -> None:
+    """Add designs between two anchors, wherever the front is longest."""
+    for number in range(MOST_ROUNDS):
+        missing = count - len(search.chosen())
+        if missing <= 0:
+            break
+        tell("following the front", 1 - missing / count)
+        search.sort()
+        places = np.array([one.level[0] for one in search.designs])
+        more = plane.between(places, search.units, min(missing, GROWTH * (len(places) - 1) - 1))
+        if not len(more):
+            break
+        search.solve(between_on_line(search, more), firmly=number > 0)
+    search.cross()
+
+
+def between_on_line(search: FrontSearch, places: Sequence[float] | Vector) -> list[Start]:
+    """Starts at places u between the known designs, from their neighbours."""
+    search.sort()
+    known = [one.level[0] for one in search.designs]
+    return [
+        _between(search.designs, int(np.searchsorted(known, u)), float(u), np.ones(2))
+        for u in places
+    ]
+
+
+def _between(designs: Sequence[Design], k: int, u: float, way: Vector) -> Start:
+    """A start before design k by interpolation; from the nearer neighbour if the front jumps."""
+    left, right = designs[k - 1], designs[k]
+    low, high = left.level[0], right.level[0]
+    near = left if u - low < high - u else right
+    z = near.point.z
+    if not _jumps(left, right):
+        some = [left, right]
+        if k > 1 and not _jumps(designs[k - 2], left):
+            some.insert(0, designs[k - 2])
+        if k + 1 < len(designs) and not _jumps(right, designs[k + 1]):
+            some.append(designs[k + 1])
+        places = np.array([one.level[0] for one in some])
+        z = np.stack([one.point.z for one in some], axis=1) @ _weights(places, u)
+    return Start(plane.on_line(np.array([u]))[:, 0], way, z, near.hessian)
+
+
+def _jumps(left: Design, right: Design) -> bool:
+    """Whether two designs are farther apart than on a continuous front."""
+    wide = right.level[0] - left.level[0]
+    return bool(np.linalg.norm(right.unit - left.unit) >= plane.STEEPEST * wide)
+
+
+def _weights(places: Vector, u: float) -> Vector:
+    """Weights for interpolating values at places (k,) at u, by the polynomial through all."""
+    apart = places[:, None] - places + np.eye(len(places))
+    to = u - places + np.zeros((len(places), 1))
+    np.fill_diagonal(to, 1.0)
+    return np.asarray((to / apart - np.eye(len(places)) * (1 / np.diag(apart) - 1)).prod(axis=1))

@@ -13,13 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import elastic, kkt, newton, nlopt_wrapper
+from .. import elastic, kkt, nlopt_wrapper
 from ..descents import FEASIBLE, RESIDUAL
 from ..evaluator import Evaluator, Point, points_together
 from ..problem import Vector
 from .batch import Steps, run_batch
-from .hessians import ScaledHessian
-from .steps import PATIENCE, SETTLED, restoring_steps
+from .steps import PATIENCE, SETTLED, ScaledHessian, restoring_steps
 
 STEPS = 14
 """Maximum steps with the Hessian of the other optimum."""
@@ -103,7 +102,7 @@ def _finished(task: BoxTask, end: Nearest) -> Nearest:
     if end.optimum is None or end.followed:
         return end
     found = nlopt_wrapper.run(task.evaluator, end.optimum, "LD_SLSQP", most=MOST_STEPS).point
-    found = newton.polish(task.evaluator, found, iterations=8, tolerance=1e-10)
+    found = kkt.polish(task.evaluator, found, iterations=8, tolerance=1e-10)
     return Nearest(found if _met(found) else end.optimum)
 
 
@@ -152,12 +151,12 @@ def fixed_hessian_steps(
             return point if kkt.check(evaluator, point).residual <= criteria.residual else None
         if last <= NEAR.step and point.violation <= NEAR.violation and point.objective > clearly:
             return point
-        step, _ = newton.quadratic_step(evaluator, point, known.scale, hessian, free)
+        step, _ = kkt.quadratic_step(evaluator, point, known.scale, hessian, free)
         longest = float(np.abs(step).max(initial=0.0))
         if not np.isfinite(longest) or longest > 4 * max(last, 1e-3):
             return None
         last = longest
-        share = min(1.0, newton.RADIUS / max(longest, 1e-300))
+        share = min(1.0, kkt.RADIUS / max(longest, 1e-300))
         point = yield np.clip(point.z + share * step, space.lower, space.upper)
     return None
 

@@ -16,9 +16,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .. import elastic, kkt
+from ..actuator import Solution
 from ..evaluator import Evaluator, Point
-from ..newton import polish
-from ..outcome import Solution
+from ..kkt import polish
 from ..problem import BoxProblem, ParametricProblem, Vector
 from ..solver import solve
 from . import steps

@@ -22,8 +22,7 @@ from ..nlopt_wrapper import ARRIVAL
 from ..problem import ParametricProblem, Vector
 from .batch import Batch, Steps
 from .changed import ChangedProblems
-from .hessians import free_hessians
-from .steps import Descent
+from .steps import Descent, free_hessians
 
 ROUNDS = 60
 """Maximum points of a run computed in advance; from a sweep start 10 to 60 suffice."""

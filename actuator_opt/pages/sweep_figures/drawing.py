@@ -7,9 +7,8 @@ from importlib import import_module
 from pathlib import Path
 
 from ...base.bounds import SWEEP_FIGURES
-from ...base.errors import Diagnostic, UsageError
+from ...base.errors import Diagnostic, UsageError, remedy, shown
 from ...base.files import write_all
-from ...base.suggest import remedy, shown
 from ...rendering.image import images
 from ...rendering.ink import Ink
 from ...sweeps import Swept

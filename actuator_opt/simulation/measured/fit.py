@@ -10,21 +10,20 @@ from typing import Any, Final, Literal
 
 import numpy as np
 
+from ...base.errors import shown
 from ...base.fitting import WEAK, Known, Parameter, rated
 from ...base.numeric import Array
 from ...base.progress import whole
-from ...base.suggest import shown
 from ...design.scenario.model import Scenario
 from ...studies.plant import Plant
-from ..gains import Tuned, tune
+from ..linear import Tuned, tune
 from ..methods import Method
 from ..parts.signals import Records
 from ..run import run
 from .bounds import bounds
-from .file import Measured
 from .parameters import Entry, entries
 from .problem import RecordFitProblem
-from .record import Overlay, overlay
+from .record import Measured, Overlay, overlay
 
 MISFIT: Final = 2.0
 """Residual relative to noise above which the model misses the record (a choice)."""

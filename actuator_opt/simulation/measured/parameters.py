@@ -6,9 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
-from ...base.errors import Diagnostic, InputError
+from ...base.errors import Diagnostic, InputError, remedy, shown
 from ...base.quantities import INPUTS, MATERIAL_PROPERTIES, RECORDS, SCENARIOS, Quantity
-from ...base.suggest import remedy, shown
 from ...design.scenario.model import Scenario
 from ...design.scenario.signals import Force
 from ...studies.plant import LEAST_AIR, Plane, Plant

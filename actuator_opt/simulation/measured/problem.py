@@ -15,12 +15,11 @@ from ...base.numeric import Array
 from ...design.scenario.model import Scenario
 from ...studies.plant import Plant
 from ..assemble import assemble
-from ..gains import Tuned
 from ..integrate import integrate
+from ..linear import Tuned
 from ..parts.signals import Records
-from .file import FEWEST, Measured, named
 from .parameters import PARAMETERS, Case, Entry
-from .record import Course, beside, inside, noise
+from .record import FEWEST, Course, Measured, beside, inside, named, noise
 
 MOST: Final = 4000
 """Maximum samples of a channel in a fit (a choice: denser records are thinned evenly)."""

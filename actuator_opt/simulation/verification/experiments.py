@@ -6,16 +6,293 @@ friction all figures depend on them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from math import cos, exp, inf, log, pi, sqrt
-from typing import NamedTuple
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import cos, exp, inf, isfinite, log, nan, pi, sqrt
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...base.numeric import Array
-from ...design.scenario.signals import Force, Position
+from ...base.polynomial import at_frequency
+from ...design.scenario.model import Control, Initial, Load, Scenario
+from ...design.scenario.signals import Force, Position, Signal
+from ...evaluation.kernel import ModelRun, PreparedDesign, compute
+from ...evaluation.result import Requirement
+from ...evaluation.values import of_case
+from ...models import linear, loop
+from ...models.tuning import ControllerGains
+from ...studies.plant import Plant, plant
+from ..assemble import assemble
 from ..harmonic import dynamic_stiffness_of_record, harmonic_fit
-from .stand import Measured, Record, Stand
+from ..integrate import integrate
+
+RELATIVE = 1e-7
+"""Relative tolerance of a step for a full-size oscillation; small ones need a smaller one."""
+
+
+FINEST = 1e-9
+"""Least relative tolerance of a step: 0.1 nm beside a position of 100 mm."""
+
+
+SETTLED = 3.0
+"""Periods of the bandwidth after which a loop is at rest (a choice: e^(-6 pi) remains)."""
+
+
+@dataclass(slots=True)
+class Tally:
+    """Counts the runs."""
+
+    runs: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """Signals of a run, and its final states by name."""
+
+    time: Array
+    signals: Mapping[str, Array]
+    last: Mapping[str, float]
+
+    def within(self, begin: float, end: float = inf) -> Record:
+        """The samples between two times; of a doubled instant the later one."""
+        later = np.append(np.diff(self.time) > 0, True)
+        kept = (self.time >= begin) & (self.time <= end) & later
+        signals = {name: values[kept] for name, values in self.signals.items()}
+        return Record(self.time[kept], signals, self.last)
+
+
+@dataclass(frozen=True, slots=True)
+class Facts:
+    """Further facts about a record."""
+
+    swing: float
+    """Amplitude of the position without drift [m]."""
+    travel: float
+    """Bristle travel before the seals slip [m]; 0 without sticking friction."""
+    saturated: float
+    """Share of the time with the valve's signal at its limit."""
+    spool: tuple[float, float] | None
+    """Least and largest position of the spool [V]."""
+    pressures: tuple[float, float]
+    """Means of the chambers A and B [Pa]."""
+    pulse: float
+    """Amplitude of the pressure in chamber A [Pa]."""
+    lowest: float
+    """Lowest chamber pressure [Pa]."""
+    stopped: bool
+    """Whether the piston reached a stop."""
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """Results of an experiment, None with a reason if it gives none."""
+
+    values: Mapping[str, float | None]
+    how: str
+    facts: Facts | None = None
+    why: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Stand:
+    """A plant at a position, with chamber pressures in balance with a constant force."""
+
+    plant: Plant
+    scenario: Scenario
+    position: float
+    pressure_a: float
+    pressure_b: float
+    gain: float = 0.0
+    """Gain of the design's proportional position loop [V/m]; 0 without one."""
+    steady_gain: float = 0.0
+    """Gain that brings the loop to rest where the design's own oscillates [V/m]."""
+    bandwidth: float = 1.0
+    """Expected bandwidth of the loop, which sets its time to rest [Hz]."""
+    scale: float = 1.0
+    """Factor on all amplitudes."""
+    tally: Tally = field(default_factory=Tally)
+    rested: dict[str, float] = field(default_factory=dict)
+    """Equilibrium states of the loop, once computed."""
+
+    def but(self, **changes: Any) -> Stand:
+        """A copy with some changes, whose equilibrium is not computed yet."""
+        return replace(self, rested={}, **changes)
+
+    def bare(self) -> Stand:
+        """A copy without sticking friction."""
+        free = self.scenario.friction.model_copy(update={"model": "none"})
+        return self.but(scenario=self.scenario.model_copy(update={"friction": free}))
+
+    @property
+    def force(self) -> float:
+        """External force that balances the pressures [N], positive against extension."""
+        return self.pressure_a * self.plant.area_a - self.pressure_b * self.plant.area_b
+
+    @property
+    def full_force(self) -> float:
+        """Force of the supply pressure on the whole piston [N]."""
+        return self.plant.supply_pressure * self.plant.area_a
+
+    def run(
+        self,
+        *,
+        duration: float,
+        sample_time: float,
+        gain: float | None = None,
+        ends: str | None = None,
+        signal: float = 0.0,
+        reference: Sequence[Position] = (),
+        force: Sequence[Force] = (),
+        start: Mapping[str, float] | None = None,
+    ) -> Record:
+        """One run: closed with a gain, or open with the ports terminated.
+
+        Parameters
+        ----------
+        duration, sample_time : [s]
+        gain : of a proportional position loop [V/m]; None: no loop
+        ends : what the ports lead to; None: the valve
+        signal : of the valve without a loop [V]
+        reference : relative to the stand's position
+        force : in addition to the balancing one
+        start : states by name that replace those of the stand
+        """
+        self.tally.runs += 1
+        scenario = self.scenario.model_copy(
+            update={
+                "duration": duration,
+                "sample_time": sample_time,
+                "initial": Initial(
+                    position=self.position, pressure_a=self.pressure_a, pressure_b=self.pressure_b
+                ),
+                "ends": ends,
+                "motor": None,
+                "held_ports": None,
+                "load": Load(force=(Force(shape="constant", value=self.force), *force)),
+                "signal": (Signal(shape="constant", value=signal),) if signal else (),
+                "control": None if gain is None else self._control(gain, reference),
+                "requirements": {},
+            }
+        )
+        gains = None if gain is None else ControllerGains(gain, inf, 0.0)
+        circuit = assemble(scenario, self.plant, {}, gains)
+        system = circuit.system
+        system.states = [one for one in system.states if not one.integral]
+        compiled = system.compiled()
+        names = [one.name for one in system.states]
+        if start is not None:
+            own = dict(zip(names, compiled.initial.tolist(), strict=True))
+            begin = np.array([start.get(name, value) for name, value in own.items()])
+            compiled = replace(compiled, initial=begin)
+        relative = max(RELATIVE * min(self.scale, 1.0), FINEST)
+        found = integrate(compiled, duration=duration, sample_time=sample_time, relative=relative)
+        signals = compiled.signals(found.time, found.states, found.flags)
+        last = dict(zip(names, found.states[:, -1].tolist(), strict=True))
+        return Record(found.time, signals, last)
+
+    def _control(self, gain: float, reference: Sequence[Position]) -> Control:
+        """A proportional position loop, with the rate limit of the scenario."""
+        stated = self.scenario.control
+        return Control(
+            position=(*reference, Position(shape="constant", value=0.0)),
+            tuning="stated",
+            position_gain=gain,
+            rate_limit=None if stated is None else stated.rate_limit,
+        )
+
+    @property
+    def opening(self) -> float:
+        """Rest position of the spool, from its centre [V]; positive extends."""
+        assert self.plant.valve is not None
+        return self.rest()["spool"] - self.plant.valve.offset
+
+    def rest(self) -> Mapping[str, float]:
+        """States in which the loop holds the force at the stand's position; computed once.
+
+        The valve feeds its own leakage and the piston's. The first run, at mid-stroke, measures the
+        resulting error, and the second one compensates it.
+        """
+        if not self.rested:
+            duration = SETTLED / self.bandwidth * self.gain / self.steady_gain
+
+            def held(stand: Stand, error: float) -> Mapping[str, float]:
+                part = Position(shape="constant", value=error)
+                return stand.run(
+                    duration=duration,
+                    sample_time=duration / 20,
+                    gain=self.steady_gain,
+                    reference=(part,),
+                ).last
+
+            middle = held(replace(self, position=0.5 * self.plant.stroke), 0.0)
+            self.rested.update(held(self, middle["spool"] / self.steady_gain))
+        return self.rested
+
+    def held(
+        self, *, ends: str, duration: float, sample_time: float, force: Sequence[Force] = ()
+    ) -> Record:
+        """A run with terminated ports; a valve stays where it held the force."""
+        if ends != "valve" or not self.steady_gain:
+            return self.run(duration=duration, sample_time=sample_time, ends=ends, force=force)
+        state = self.rest()
+        return self.run(
+            duration=duration,
+            sample_time=sample_time,
+            signal=state["spool"],
+            force=force,
+            start=state,
+        )
+
+    def closed(
+        self,
+        *,
+        gain: float,
+        duration: float,
+        sample_time: float,
+        reference: Sequence[Position] = (),
+        force: Sequence[Force] = (),
+    ) -> Record:
+        """A closed-loop run from rest; a new gain is inserted without a jump of the signal."""
+        state = self.rest()
+        shift = state["position"] + state["spool"] / gain - self.position
+        held = Position(shape="constant", value=shift)
+        return self.run(
+            duration=duration,
+            sample_time=sample_time,
+            gain=gain,
+            reference=(held, *reference),
+            force=force,
+            start=state,
+        )
+
+    def facts(self, record: Record) -> Facts:
+        """Further facts about a record."""
+        t, signals = record.time, record.signals
+        position = signals["position"]
+        straight = np.polynomial.polynomial.polyfit(t - t[0], position, 1)
+        swing = position - np.polynomial.polynomial.polyval(t - t[0], straight)
+        spool = signals.get("spool")
+        signal = signals.get("signal")
+        valve = self.plant.valve
+        full = inf if valve is None else valve.signal
+        chambers = signals["pressure_a"], signals["pressure_b"]
+        return Facts(
+            swing=0.5 * float(np.ptp(swing)),
+            travel=self.travel if "bristles" in signals else 0.0,
+            saturated=0.0 if signal is None else float(np.mean(np.abs(signal) > 0.999 * full)),
+            spool=None if spool is None else (float(np.min(spool)), float(np.max(spool))),
+            pressures=(float(np.mean(chambers[0])), float(np.mean(chambers[1]))),
+            pulse=0.5 * float(np.ptp(chambers[0])),
+            lowest=float(min(np.min(one) for one in chambers)),
+            stopped=bool(np.any(signals["stop_force"] != 0)),
+        )
+
+    @property
+    def travel(self) -> float:
+        """Bristle travel before the seals slip [m]."""
+        return self.scenario.friction.bristle_travel or self.plant.seals.bristle_travel
+
 
 STROKE_SHARE = 0.05
 """Amplitude of a sine relative to the stroke (a choice: small)."""
@@ -363,3 +640,252 @@ def _extremes(time: Array, values: Array) -> tuple[Array, Array]:
     off = np.where(bend != 0, 0.5 * (left - right) / np.where(bend != 0, bend, 1.0), 0.0)
     step = time[at + 1] - time[at]
     return time[at] + off * step, here - 0.25 * (left - right) * off
+
+
+WEAKEST = "weakest position"
+
+
+STEADY_STEP = 0.4
+"""Gain relative to the ultimate one that brings an oscillating loop to rest (a choice)."""
+
+
+SLOW = 0.05
+"""Bandwidth relative to the resonance if the loop's is unknown (a choice)."""
+
+
+PEAK = 0.5
+"""Magnitude above which an open-loop resonance may cause a crossover (a choice)."""
+
+
+class Spot(NamedTuple):
+    """Where a figure of the linear tier is the worst."""
+
+    case: int
+    position: float
+    extending: bool | None
+    """Direction of the spool; None if irrelevant."""
+    words: str
+
+
+class LoopFigures(NamedTuple):
+    """Figures of the position loop for one spool direction."""
+
+    ultimate_gain: float
+    frequency: float
+    """Frequency of oscillation there [Hz]."""
+    phase_margin: float
+    bandwidth: float
+
+
+@dataclass(frozen=True, slots=True)
+class LinearTier:
+    """The linear model of a design, at any position of the stroke."""
+
+    subject: PreparedDesign
+    done: ModelRun
+
+    @classmethod
+    def of(cls, subject: PreparedDesign) -> LinearTier:
+        """Build by one evaluation of the models."""
+        return cls(subject, compute(subject, subject.values()))
+
+    def spot(self, row: Requirement) -> Spot:
+        """The governing load case and position of a requirement."""
+        cases = self.subject.cases
+        case = cases.index(row.case) if row.case in cases else 0
+        place = row.place or WEAKEST
+        extending: bool | None = None
+        words = [row.case or "", row.place or WEAKEST]
+        if place.startswith(("extending, ", "retracting, ")):
+            way, _, place = place.partition(", ")
+            extending = way == "extending"
+        position = self.done.places.get(place, self.done.places[WEAKEST])
+        return Spot(case, of_case(position, case), extending, ", ".join(filter(None, words)))
+
+    def plant(self, case: int) -> Plant:
+        """The plant with the oil of a load case."""
+        subject = self.subject
+        order = [case, *(k for k in range(len(subject.cases)) if k != case)]
+        cases = tuple(subject.design.load_cases[k] for k in order)
+        films = {(p, order.index(k), way): t for (p, k, way), t in subject.films.items()}
+        design = subject.design.model_copy(update={"load_cases": cases})
+        return plant(replace(subject, design=design, films=films))
+
+    def stand(self, scenario: Scenario, spot: Spot, tally: Tally, scale: float) -> Stand:
+        """The design held at a spot, with the pressures of the load case."""
+        own = self.plant(spot.case)
+        state = self.done.state
+        stand = Stand(
+            plant=own,
+            scenario=scenario,
+            position=spot.position,
+            pressure_a=of_case(state.holding_a, spot.case),
+            pressure_b=of_case(state.holding_b, spot.case),
+            tally=tally,
+            scale=scale,
+        )
+        if own.valve is None:
+            return stand
+        gain = self._gain(spot.case)
+        both = [self.figures(spot.case, spot.position, way) for way in (True, False)]
+        least = min(one.ultimate_gain for one in both)
+        known = [one.bandwidth for one in both if one.bandwidth > 0]
+        slow = min(known, default=SLOW * self.resonance(spot.case, spot.position))
+        return stand.but(gain=gain, steady_gain=min(gain, STEADY_STEP * least), bandwidth=slow)
+
+    def _open_loop(self, position: float, extending: bool) -> loop.OpenLoop:
+        place = np.array([[position]])
+        return self.done.motion.position_loop(place, extending=np.array(extending))
+
+    def _gain(self, case: int) -> float:
+        return of_case(self.done.computed.metrics["position_gain"][""], case)
+
+    def figures(self, case: int, position: float, extending: bool) -> LoopFigures:
+        """Figures of the position loop, with margins at the design's gain."""
+        one, gain = self._open_loop(position, extending), self._gain(case)
+        limit = loop.ultimate_gain(loop=one)
+        found = loop.margins(loop=one, gain=gain)
+        return LoopFigures(
+            of_case(limit.gain, case),
+            of_case(limit.frequency, case),
+            of_case(found.phase_margin, case),
+            of_case(found.bandwidth, case),
+        )
+
+    def response(
+        self, case: int, position: float, extending: bool
+    ) -> Callable[[float | Array], Array]:
+        """The open loop over frequency [Hz], its gain included."""
+        one, gain = self._open_loop(position, extending), self._gain(case)
+
+        def at(frequency: float | Array) -> Array:
+            omega = 2 * pi * np.asarray(frequency, dtype=float).reshape(-1, 1, 1)
+            top, low = at_frequency(one.numerator, omega), at_frequency(one.denominator, omega)
+            value = gain * np.asarray(top.complex / low.complex)
+            value = value[:, min(case, value.shape[1] - 1), 0]
+            return value if np.ndim(frequency) else complex(value[0])
+
+        return at
+
+    def crossings(
+        self, case: int, position: float, extending: bool
+    ) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Crossovers and resonances of the open loop [Hz]."""
+        figures = self.figures(case, position, extending)
+        resonance = self.resonance(case, position)
+        low = 0.2 * min(figures.bandwidth or resonance, resonance)
+        grid = np.geomspace(low, 5 * resonance, 4000)
+        size = np.abs(self.response(case, position, extending)(grid))
+        crossed = np.flatnonzero((size[:-1] > 1) != (size[1:] > 1))
+        inner = size[1:-1]
+        peaks = np.flatnonzero((inner > size[:-2]) & (inner > size[2:]) & (inner > PEAK)) + 1
+        return tuple(grid[crossed].tolist()), tuple(grid[peaks].tolist())
+
+    def resonance(self, case: int, position: float) -> float:
+        """Natural frequency with closed ports [Hz]."""
+        return of_case(self.done.motion.closed_frequency(np.array([[position]])), case)
+
+    def held(self, case: int, position: float) -> dict[str, float]:
+        """Figures of the actuator with held ports: oscillation and dynamic stiffness."""
+        place = np.array([[position]])
+        motion = self.done.motion
+        model = motion.model(place)
+        found = {
+            "natural_frequency": self.resonance(case, position),
+            "damping_ratio": of_case(motion.mode(model, place).damping_ratio, case),
+        }
+        frequency = self.subject.design.load_cases[case].frequency
+        if frequency is None:
+            return found | dict.fromkeys(("dynamic_stiffness", "dynamic_phase"), nan)
+        parts = linear.dynamic_stiffness(model=model, frequency=frequency)
+        value = complex(of_case(parts.real, case), of_case(parts.imaginary, case))
+        return found | {
+            "dynamic_stiffness": abs(value),
+            "dynamic_phase": float(np.angle(value)),
+        }
+
+    def closed(self, metric: str, case: int, position: float, extending: bool) -> float:
+        """A figure of the closed loop for one spool direction."""
+        figures = self.figures(case, position, extending)
+        if metric == "gain_margin":
+            return figures.ultimate_gain / self._gain(case)
+        return float(getattr(figures, metric))
+
+    def stated(self, case: int) -> tuple[float, float]:
+        """Chamber pressures assumed by the linear tier [Pa]."""
+        state = self.done.state
+        return of_case(state.holding_a, case), of_case(state.holding_b, case)
+
+    def unsimulated(self) -> str:
+        """Parts of the design that no experiment covers; empty if none."""
+        if self.subject.design.ports.accumulators:
+            return "accumulators at the ports are not simulated"
+        return ""
+
+
+MANY = 9.0
+"""Change above which a factor is clearer than per cent (a choice)."""
+
+
+STILL = 0.01
+"""Spool motion, as a share of its opening, that counts as held (a choice)."""
+
+
+def apart(value: float | None, other: float | None) -> float | None:
+    """Relative difference, or None.
+
+    >>> apart(1.5, 2.0), apart(None, 2.0), apart(1.0, 0.0)
+    (-0.25, None, None)
+    """
+    if value is None or other is None or not isfinite(value) or not isfinite(other) or not other:
+        return None
+    return value / other - 1
+
+
+def percent(share: float) -> str:
+    """A relative change in per cent.
+
+    >>> percent(0.031), percent(-0.5), percent(19.0), percent(-1.2)
+    ('+3.1 %', '-50 %', 'x 20', 'changes its sign')
+    """
+    if share < -1:
+        return "changes its sign"
+    if share >= MANY:
+        return f"x {1 + share:.3g}"
+    return f"{100 * share:+.{0 if abs(share) >= 0.095 else 1}f} %"
+
+
+def seen(facts: Facts | None, cause: str) -> str:
+    """Evidence in a record for a cause: friction, or the size of the oscillation."""
+    if facts is None:
+        return "no record"
+    if cause == "friction":
+        return _seals(facts)
+    words = []
+    if facts.saturated > 0:
+        words.append(f"the signal is at its limit {100 * facts.saturated:.0f} % of the time")
+    if facts.lowest < 0:
+        words.append(f"a chamber falls to {1e-5 * facts.lowest:.2g} bar")
+    low, high = (0.0, 0.0) if facts.spool is None else facts.spool
+    if high - low > STILL * max(abs(low), abs(high)):
+        words.append(f"the spool oscillates between {low:.2g} and {high:.2g} V")
+    return "; ".join(words) or f"the pressure in A oscillates by {1e-05 * facts.pulse:.2g} bar"
+
+
+def _seals(facts: Facts) -> str:
+    swing, travel = 1e3 * facts.swing, 1e3 * facts.travel
+    if not travel:
+        return f"the seals slide over {swing:.2g} mm"
+    word = "stick" if swing < travel else "slip"
+    return f"the seals {word}: amplitude {swing:.2g} mm, bristle travel {travel:.2g} mm"
+
+
+def point(facts: Facts | None, held: tuple[float, float]) -> str:
+    """Operating point of the loop, beside the pressures assumed by the linear tier."""
+    if facts is None:
+        return "no record"
+    (a, b), (taken_a, taken_b) = ([1e-5 * one for one in pair] for pair in (facts.pressures, held))
+    words = f"chambers at {a:.0f} and {b:.0f} bar, linear tier {taken_a:.0f} and {taken_b:.0f}"
+    if facts.spool is not None:
+        words += f"; spool about {0.5 * sum(facts.spool):.2g} V"
+    return words

@@ -26,9 +26,7 @@ from ..parts.signals import Records
 from ..result import Simulation
 from ..run import simulate
 from . import experiments
-from .linear_tier import LinearTier, Spot
-from .reasons import apart, percent, point, seen
-from .stand import Measured, Stand, Tally
+from .experiments import LinearTier, Measured, Spot, Stand, Tally, apart, percent, point, seen
 
 LOOPS = ("ultimate_gain", "gain_margin", "phase_margin", "bandwidth")
 HELD = ("dynamic_stiffness", "dynamic_phase", "damping_ratio", "natural_frequency")

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from ..base import quantities, suggest
+from ..base import errors, quantities
 from ..base.errors import Fault
 from ..base.quantities import Quantity
 from . import sizes, uncertain_faults
@@ -18,7 +18,7 @@ from .kinds import ValueFault, example, read_quantity, what
 from .model import Design
 from .paths import Target, resolve
 from .section import Section
-from .structure import Loc, entries, number_of, value_at
+from .walls import Loc, entries, number_of, value_at
 
 _LARGEST = {
     "ratio": 1e12, "length": 1e3, "mass": 1e7, "force": 1e9, "stiffness": 1e13, "pressure": 1e12,
@@ -53,13 +53,13 @@ def requirements(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Itera
     for metric, limit in block.items() if isinstance(block, dict) else ():
         loc = ("requirements", metric)
         if metric not in metrics:
-            message = f'"{suggest.shown(metric)}" is not a metric'
-            yield Fault(loc, message, suggest.remedy(metric, metrics), at_key=True)
+            message = f'"{errors.shown(metric)}" is not a metric'
+            yield Fault(loc, message, errors.remedy(metric, metrics), at_key=True)
             continue
         quantity = limit_quantity(metrics[metric])
         if not isinstance(limit, dict):
             if limit is not None:
-                good = suggest.shown(limit) if isinstance(limit, str) else example(quantity)
+                good = errors.shown(limit) if isinstance(limit, str) else example(quantity)
                 yield Fault(
                     loc, f"need limits, not {what(limit)}", f'write "min: {good}" or "max: {good}"'
                 )
@@ -240,8 +240,8 @@ def objective(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Iterator
         loc = ("objective", key)
         if isinstance(terms, str):
             if terms not in metrics:
-                message = f'"{suggest.shown(terms)}" is not a metric'
-                yield Fault(loc, message, suggest.remedy(terms, metrics))
+                message = f'"{errors.shown(terms)}" is not a metric'
+                yield Fault(loc, message, errors.remedy(terms, metrics))
         elif isinstance(terms, dict):
             yield from _weights(loc, terms, metrics)
 
@@ -253,8 +253,8 @@ def _weights(
     for metric in terms:
         fault = _number(terms, (*loc, metric), weight)
         if metric not in metrics:
-            message = f'"{suggest.shown(metric)}" is not a metric'
-            fault = Fault((*loc, metric), message, suggest.remedy(metric, metrics), at_key=True)
+            message = f'"{errors.shown(metric)}" is not a metric'
+            fault = Fault((*loc, metric), message, errors.remedy(metric, metrics), at_key=True)
         elif terms[metric] == 0:
             fault = Fault((*loc, metric), "0: must be > 0", "write a weight, or remove the line")
         if fault is not None:
@@ -267,8 +267,8 @@ def waivers(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Iterator[F
     block = tree.get("waivers")
     for metric in block if isinstance(block, dict) else ():
         if metric not in metrics:
-            message = f'"{suggest.shown(metric)}" is not a metric'
-            yield Fault(("waivers", metric), message, suggest.remedy(metric, metrics), at_key=True)
+            message = f'"{errors.shown(metric)}" is not a metric'
+            yield Fault(("waivers", metric), message, errors.remedy(metric, metrics), at_key=True)
 
 
 def materials(tree: dict[str, Any]) -> Iterator[Fault]:
@@ -285,8 +285,8 @@ def materials(tree: dict[str, Any]) -> Iterator[Fault]:
             continue
         for name in properties:
             if name not in known:
-                message = f'"{suggest.shown(name)}" is not a material property'
-                yield Fault((*loc, name), message, suggest.remedy(name, known), at_key=True)
+                message = f'"{errors.shown(name)}" is not a material property'
+                yield Fault((*loc, name), message, errors.remedy(name, known), at_key=True)
                 continue
             fault = _number(properties, (*loc, name), known[name])
             if fault is not None:

@@ -1,0 +1,461 @@
+"""Doubts about a result: exceeded ranges, unverified data, and the model of each number."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from functools import cache
+from importlib import import_module
+from typing import cast
+
+import numpy as np
+
+from .. import models as formulas
+from ..design.material import compatible
+from ..design.model import PLAIN_CAP
+from ..design.paths import quantity_of
+from ..metrics import METRICS
+from ..metrics.metric import CRITERION
+from ..metrics.table import OWN, ROWS, WALL_FED
+from ..models import contact_profile, extrusion, laminate, rough_surface, seals
+from ..models.criteria import CRITERIA
+from . import joints as joint, motion, oil, oil_range, proportions, springs
+from .barrel import LAMINATES, kind
+from .beam import NEAR
+from .film import Table
+from .gland_check import extrusion_end
+from .kernel import ModelRun, PreparedDesign
+from .result import Metric, ModelUse, Unverified
+from .rings import Ring
+from .seal_contact import seal_contact
+from .values import Values
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """A model function with the contents of its docstring."""
+
+    name: str
+    summary: str
+    reference: str
+    valid: str
+
+
+_VALID = re.compile(r"^\s*Valid: (.*?)(?:\n\s*\n|\Z)", re.DOTALL | re.MULTILINE)
+
+
+_REFERENCES = re.compile(r"References\n\s*-+\n(.*?)(?:\n\s*\n|\Z)", re.DOTALL)
+
+
+@cache
+def describe(function: Callable[..., object]) -> Model:
+    """Name, first sentence, source and valid range of a model function."""
+    doc = function.__doc__ or ""
+    valid = _VALID.search(doc)
+    reference = _REFERENCES.search(doc)
+
+    def flat(match: re.Match[str] | None) -> str:
+        return " ".join(match[1].split()) if match else ""
+
+    module = function.__module__.rpartition(".")[2]
+    return Model(
+        name=f"{module}.{function.__name__}",
+        summary=doc.strip().partition("\n")[0].rstrip("."),
+        reference=flat(reference),
+        valid=flat(valid),
+    )
+
+
+@cache
+def function_of(name: str) -> Callable[..., object]:
+    """Model function of a name in the table of metrics, ``"forces.push_force"``."""
+    module, _, function = name.partition(".")
+    found: Callable[..., object] = getattr(import_module(f"{formulas.__name__}.{module}"), function)
+    return found
+
+
+def model_of(
+    metric: str, *, wall: str, criterion: str = "max_stress", place: str | None = None
+) -> Model | None:
+    """Model of a metric at its governing place; None for plain geometry and inputs.
+
+    `wall` is the barrel's model, `criterion` that of its plies.
+    """
+    row = ROWS.get(metric)
+    if row is None:  # a user's own
+        return None
+    name = row.by_wall.get(wall) or row.model  # type: ignore[call-overload]
+    for pattern, other in row.at.items():
+        if place is not None and fnmatchcase(place, pattern):
+            name = other
+    if name == CRITERION:
+        return describe(cast(Callable[..., object], CRITERIA[criterion].modes))
+    return None if name is None else describe(function_of(name))
+
+
+FILM_ERROR = 0.02
+"""Relative error of a film surrogate from which a warning is given."""
+
+
+_SURROGATES = {
+    "friction": "friction_running",
+    "flow": "rod_leakage",
+    "thickness": "film_thickness",
+}
+
+
+def seal_warnings(subject: PreparedDesign, v: Values, done: ModelRun) -> Iterable[tuple[str, str]]:
+    """(metric, text) of all doubts about the seals."""
+    for ring in done.rings:
+        yield from _contact(subject, ring)
+        yield from _limits(subject, done, ring, float(v["supply.pressure"]))
+    if "rod_leakage" in done.computed.metrics:
+        yield from _leak_at_rest(subject)
+    for (place, case, stroke), table in subject.films.items():
+        yield from _film(f"film of the {place} seals ({v.cases[case]}, {stroke})", table)
+
+
+def _contact(subject: PreparedDesign, ring: Ring) -> Iterable[tuple[str, str]]:
+    """Laws out of range, a compound that the fluid attacks, or a lost contact."""
+    liquid, compound = subject.design.fluid.material, ring.element.compound
+    if not ring.element.contact:
+        for text in ring.element.seal_type.warnings(ring.sizes):
+            yield "friction_running", f"{ring.label}: {text}"
+    else:
+        yield (
+            "friction_running",
+            f"{ring.label}: stated contact profiles are used unchanged, even if bore "
+            "growth reduces the squeeze",
+        )
+    if compatible(subject.materials[liquid], subject.materials[compound]) is False:
+        yield "", f"{ring.label}: {compound} does not withstand {liquid}"
+    if np.any(np.real(ring["squeeze_left"]) <= 0):
+        yield (
+            "friction_running",
+            f"{ring.label}: bore growth uses up the whole squeeze, there is no contact",
+        )
+    elif not np.all(np.real(seal_contact(ring).excess) > 0):
+        yield (
+            "friction_running",
+            f"{ring.label}: the sealed pressure would open the contact; its contact load is "
+            "too small",
+        )
+
+
+def _leak_at_rest(subject: PreparedDesign) -> Iterable[tuple[str, str]]:
+    """The averaged film of a rod seal also leaks on the instroke."""
+    if any(
+        place == "rod" and not table.row.outward and table.flow > 0
+        for (place, _, _), table in subject.films.items()
+    ):
+        yield (
+            "rod_leakage",
+            "the film of the rod seals also leaks on the instroke: an averaged film passes "
+            "oil at any "
+            "gap, even at rest, where a real elastomer seal is tight; rod_leakage is too high",
+        )
+
+
+def _film(name: str, table: Table) -> Iterable[tuple[str, str]]:
+    """A surrogate with a large error, beyond its box, or with points without solution."""
+    for what, metric in _SURROGATES.items():
+        if table.errors[what] > FILM_ERROR:
+            yield (
+                metric,
+                f"{name}: the surrogate's {what} is up to {100 * table.errors[what]:.1f} % from "
+                "the solved films within the bounds",
+            )
+    if not table.surrogate.covers(table.row.inputs()):
+        yield "friction_running", f"{name}: the design is outside the surrogate's box"
+    if table.surrogate.failed:
+        count = len(table.surrogate.failed)
+        yield (
+            "friction_running",
+            f"{name}: {count} of its points have no solution ({table.surrogate.failed[0]})",
+        )
+
+
+def _limits(
+    subject: PreparedDesign, done: ModelRun, ring: Ring, supply: float
+) -> Iterable[tuple[str, str]]:
+    """Pressure and speed beyond the limits of the compound, extrusion beyond its data."""
+    compound = subject.materials[ring.element.compound]
+    known = compound.numbers
+    fastest = float(np.max(np.real(done.state.speed)))
+    if not ring.element.back_ups and supply > known.get("pressure_max", np.inf):
+        yield (
+            "",
+            f"{ring.label}: {supply / 1e5:.0f} bar, but {compound.name} allows "
+            f"{known['pressure_max'] / 1e5:.0f} bar without a back-up ring",
+        )
+    if fastest > known.get("speed_max", np.inf):
+        yield (
+            "",
+            f"{ring.label}: {fastest:.2g} m/s, but {compound.name} allows "
+            f"{known['speed_max']:.2g} m/s",
+        )
+    end = extrusion_end(ring, subject.materials)
+    if supply > end * (1 + 1e-9):
+        yield (
+            "extrusion_factor",
+            f"{ring.label}: limits of the extrusion gap are known up to {end / 1e5:.0f} bar "
+            "and assumed constant beyond; use a back-up ring",
+        )
+
+
+def seal_models(
+    rings: Iterable[Ring], subject: PreparedDesign, said: Iterable[str]
+) -> Iterable[ModelUse]:
+    """Models of all sealing rings; `said` are the texts of the warnings."""
+    said = tuple(said)
+    for ring in rings:
+        doubted = any(text.startswith(ring.label) for text in said)
+        yield _contact_model(ring, doubted=doubted)
+    if subject.films:
+        worst = max(table.errors["friction"] for table in subject.films.values())
+        yield _use(
+            rough_surface.asperity_pressure,
+            "mean-film Reynolds equation with cavitation, rough and elastic contact; "
+            f"surrogate within {100 * worst:.2g} %",
+            doubted=worst > FILM_ERROR,
+        )
+    if any("extrusion_gap_max" not in subject.materials[r.element.compound].numbers for r in rings):
+        yield _use(extrusion.extrusion_gap_limit, "gap over hardness and pressure", doubted=False)
+
+
+def _contact_model(ring: Ring, *, doubted: bool) -> ModelUse:
+    """Contact model of a ring, with its O-ring law if it has one."""
+    element = ring.element
+    at = f"squeeze {100 * element.squeeze:.4g} %"
+    if element.contact:
+        reach = element.contact[-1].pressure / 1e5
+        return _use(
+            contact_profile.table_profile,
+            f"{ring.label}, stated profiles up to {reach:.0f} bar",
+            doubted=doubted,
+        )
+    if element.seal_type.model is None:
+        law = seals.LAWS[element.law]
+        low, high = law.squeeze_range
+        return ModelUse(
+            f"seals.{law.name}",
+            f"O-ring contact law of the {ring.label}, modulus by {element.hardness_model}",
+            law.reference,
+            f"squeeze {100 * low:.0f} to {100 * high:.0f} %, p/E up to {law.pressure_range[1]:g}",
+            at,
+            not doubted,
+        )
+    return _use(element.seal_type.model, f"{ring.label}, {at}", doubted=doubted)
+
+
+def _use(function: Callable[..., object], used_at: str, *, doubted: bool) -> ModelUse:
+    model = describe(function)
+    return ModelUse(model.name, model.summary, model.reference, model.valid, used_at, not doubted)
+
+
+LONGEST_LIFE = 1e9
+"""Cycles up to which stress-life curves have data [Shigley2011]."""
+
+
+def kind_of(subject: PreparedDesign) -> str:
+    """Wall model of a design."""
+    return kind(subject.design, subject.materials)
+
+
+def warnings(subject: PreparedDesign, v: Values, done: ModelRun) -> Iterable[tuple[str, str]]:
+    """(metric, sentence) for everything outside its range or doubtful."""
+    g = done.geometry
+    thin = float(np.max(done.wall.thin_ratio))
+    if kind_of(subject) == "thin_laminate" and thin > laminate.THIN_WALL_LIMIT:
+        text = (
+            f"thin-laminate barrel at t/r = {thin:.3f} (reliable to {laminate.THIN_WALL_LIMIT}): "
+            "bore growth is too low by 10 to 25 %, and so are gap, squeeze loss and "
+            "compliance; first ply and burst of plies are conservative"
+        )
+        for metric in WALL_FED:
+            yield metric, text
+    yield from (("", text) for text in proportions.warnings(subject, v, g))
+    yield from _wall_warnings(subject, done)
+    if done.held is not None:
+        yield from done.held.joint.warnings(done.held.loaded, METRICS)
+    yield from _rod_warnings(subject, done)
+    yield from _bond_warnings(done)
+    for part, what in (
+        ("head", "material and length of the piston"),
+        ("caps", f"the piston's material, thickness {PLAIN_CAP:g} bore"),
+    ):
+        if part not in subject.design.model_fields_set:
+            yield "", f"no {part} stated: assumed {what}"
+    lives = [np.min(np.real(x)) for x in done.computed.metrics.get("cycle_life", {}).values()]
+    if lives and np.isfinite(min(lives)) and min(lives) > LONGEST_LIFE:
+        yield (
+            "cycle_life",
+            f"pressure-cycle life beyond {LONGEST_LIFE / 1e6:.0f} million cycles is extrapolated: "
+            "treat it as a lower bound; adhesive and plies are not included",
+        )
+    section = subject.design.fluid
+    yield from oil_range.warnings(section, subject.materials[section.material], v.cases, done.state)
+    yield from seal_warnings(subject, v, done)
+    yield from springs.warnings(done.springs)
+    yield from joint.warnings(subject.design, done.state.joint)
+    yield from motion.warnings(v, subject.design, done.motion, done.state, done.computed)
+    if done.wall.missing:
+        yield "burst_factor", f"barrel: {done.wall.missing[0]}"
+    yield from _measured(subject, v)
+    for material in subject.materials.values():
+        if material.warning:
+            yield "", f"{material.name}: {material.warning}"
+    if float(np.max(np.abs(v.case("side_load")))) > 0:
+        yield (
+            "",
+            (
+                "side load displaces the piston: on one side the extrusion gap is larger by the "
+                f"clearance, {1e6 * float(np.max(g.piston_clearance)):.0f} um"
+            ),
+        )
+
+
+def _measured(subject: PreparedDesign, v: Values) -> Iterable[tuple[str, str]]:
+    """Values outside the bounds of their test record."""
+    for path, known in subject.design.measured.items():
+        value = float(np.real(np.squeeze(v[path]))) if path in v else None
+        if value is not None and not known.lower <= value <= known.upper:
+            text = quantity_of(path, subject.design).text
+            yield (
+                "",
+                f"{path}: {text(value)} is outside the bounds from {known.record}, "
+                f"{text(known.lower)} to {text(known.upper)}: the record does not support it",
+            )
+
+
+def _wall_warnings(subject: PreparedDesign, done: ModelRun) -> Iterable[tuple[str, str]]:
+    """Effects that the wall model leaves out."""
+    laminated = kind_of(subject) in LAMINATES
+    environment = subject.design.environment
+    if laminated and (environment is None or environment.cure_temperature is None):
+        yield (
+            "",
+            "no cure temperature stated: first ply and yield exclude cooling stresses",
+        )
+    elif laminated and done.wall.expansion is None:
+        yield (
+            "",
+            f"first ply and yield exclude cooling stresses: {done.wall.why_no_mismatch}",
+        )
+    if laminated and not all(ply.balanced for ply in subject.design.barrel.layup):
+        yield "", "bending and buckling treat single plies of the wall as balanced pairs"
+    worked = done.wall.autofrettage
+    if subject.design.barrel.autofrettage_pressure is not None:
+        if worked is None:
+            yield (
+                "",
+                "autofrettage is ignored: it needs the exact tube, a metal liner and "
+                "balanced pairs",
+            )
+        elif float(np.min(np.real(worked.axial_margin))) < 0:
+            yield (
+                "reverse_yield_factor",
+                "autofrettage also yields the liner axially: the axial residual strain is "
+                "too low by up to a third; hoop residual stresses are accurate",
+            )
+
+
+def _rod_warnings(subject: PreparedDesign, done: ModelRun) -> Iterable[tuple[str, str]]:
+    """Effects that the strength of the rod leaves out."""
+    rod = done.rod
+    if rod.layers and not rod.cured:
+        why = "no cure temperature stated"
+        if rod.expansion is None:
+            name = next(layer.name for layer in rod.layers if layer.expansions is None)
+            why = f"{name} has no thermal expansion"
+        yield "rod_factor", f"the rod's layers exclude cooling stresses: {why}"
+    if rod.missing:
+        yield "rod_factor", f"rod: {rod.missing[0]}"
+    factors = done.computed.metrics["buckling_factor"][""]
+    if float(np.min(np.real(factors))) < 1 / NEAR:
+        for metric in ("yield_factor", "rod_factor", "local_buckling_factor"):
+            yield (
+                metric,
+                f"the push is above {NEAR:.0%} of the buckling load: bending of the rod is "
+                "extrapolated beyond it",
+            )
+
+
+def _bond_warnings(done: ModelRun) -> Iterable[tuple[str, str]]:
+    """The bond with the highest combined shear of force and temperature, if above its strength."""
+    metrics = done.computed.metrics
+    sums = {}
+    for place, metric in (("caps", "retention_factor"), ("rod fittings", "fitting_factor")):
+        heat = [x for at, x in metrics.get("bond_thermal_factor", {}).items() if place in at]
+        force = list(metrics.get(metric, {}).values())
+        if heat and force:
+            sums[place] = sum(
+                max(float(np.max(1 / np.real(row))) for row in rows) for rows in (heat, force)
+            )
+    if sums and max(sums.values()) > 1:
+        place = max(sums, key=lambda name: sums[name])
+        yield (
+            "",
+            f"bond of the {place}: the elastic edge shears of force and of temperature add up to "
+            f"{sums[place]:.2f} times the strength; each is checked alone, because a ductile "
+            "adhesive "
+            "yields and relieves both",
+        )
+
+
+def models(
+    metrics: dict[str, Metric],
+    subject: PreparedDesign,
+    rings: tuple[Ring, ...],
+    outside: set[str],
+    said: Iterable[str],
+) -> Iterable[ModelUse]:
+    """All models of computed metrics, with their values.
+
+    A model is extrapolated if used outside its own range; a metric that only inherits such a value
+    is marked in its own row, not here. `said` are the texts of the warnings.
+    """
+    said = tuple(said)
+    wall, criterion = kind_of(subject), subject.design.barrel.criterion
+    seen: dict[str, ModelUse] = {}
+    for name, metric in metrics.items():
+        model = model_of(name, wall=wall, criterion=criterion, place=metric.place)
+        if model is None or metric.value is None:
+            continue
+        used = metric.quantity.text(metric.value)
+        at = f"{name} = {used}" + (f" ({metric.case})" if metric.case else "")
+        if model.name in seen:
+            old = seen[model.name]
+            at = f"{old.used_at}; {at}"
+        seen[model.name] = ModelUse(
+            model.name,
+            model.summary,
+            model.reference,
+            model.valid,
+            at,
+            name not in (outside & OWN) and (model.name not in seen or seen[model.name].in_range),
+        )
+    yield from seen.values()
+    yield from seal_models(rings, subject, said)
+    liquid = subject.design.fluid
+    for function, what in oil.laws(liquid, subject.materials[liquid.material]):
+        model = describe(function)
+        yield ModelUse(
+            model.name,
+            model.summary,
+            model.reference,
+            model.valid,
+            f"{liquid.material}, chambers up to {subject.design.supply.pressure / 1e5:.0f} bar",
+            not any(text.startswith(f"{what}:") for text in said),
+        )
+
+
+def unverified(subject: PreparedDesign, v: Values) -> Iterable[Unverified]:
+    """Library values of this design that nobody has checked against their source."""
+    for name, material in subject.materials.items():
+        for key in material.unverified:
+            if f"materials.{name}.{key}" in v.read or key == "kinematic_viscosity":
+                entry = material.properties[key]
+                yield Unverified(name, key, entry.text, entry.source, entry.note)
