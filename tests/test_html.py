@@ -2,9 +2,15 @@
 
 import re
 from html.parser import HTMLParser
+from importlib import import_module
+from pathlib import Path
 
 import pytest
+from cli_runner import run
 
+import actuator_opt as ao
+from actuator_opt.api import results
+from actuator_opt.base.display import Displayed
 from actuator_opt.rendering import html
 from actuator_opt.rendering.blocks import (
     Bar,
@@ -164,3 +170,38 @@ def test_files_are_whole(tmp_path):
     (file,) = html.write(page(), origin(), folder=tmp_path / "new", stem="knee")
     assert file.path == tmp_path / "new" / "knee.html"
     assert file.path.read_text("utf-8") == html.document(page(), origin())
+
+
+KNEE = Path(__file__).parents[1] / "designs" / "knee.yaml"
+
+
+def test_every_result_is_shown_in_a_notebook():
+    """Each type of result says how a notebook shows it."""
+    for name in results.KINDS:
+        module, _, cls = name.partition(":")
+        assert issubclass(getattr(import_module(f"actuator_opt.{module}"), cls), Displayed), name
+
+
+def test_a_notebook_shows_the_page():
+    """A result with a page shows it; a result that is text alone shows the text, escaped."""
+    seen = Balance()
+    seen.feed(ao.evaluate(KNEE)._repr_html_())
+    assert not seen.open
+    assert {"robot knee", "Requirements"} <= set(seen.words)
+    assert ao.doctor()._repr_html_().startswith("<")
+
+
+def test_the_report_is_written_as_asked(tmp_path):
+    """PDF by default; HTML alone, or both, by `--format`; another word is refused at once."""
+    for form, names in (
+        ("pdf", {"knee.pdf", "knee.png"}),
+        ("html", {"knee.html"}),
+        ("both", {"knee.pdf", "knee.png", "knee.html"}),
+    ):
+        out = tmp_path / form
+        assert run("report", KNEE, "--format", form, "--out", out).code in (0, 1)
+        assert {path.name for path in out.iterdir()} == names
+    done = run("report", KNEE, "--format", "docx", "--out", tmp_path / "none")
+    assert done.code == 2
+    assert "use one of pdf, html, both" in done.err
+    assert not (tmp_path / "none" / "knee.html").exists()

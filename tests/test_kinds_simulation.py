@@ -10,9 +10,9 @@ from actuator_opt.design.scenario.components import ENDS, FRICTIONS, LAWS, SUPPL
 from actuator_opt.design.scenario.shapes import SHAPES
 from actuator_opt.design.walls import entries
 from actuator_opt.models.tuning import ziegler_nichols
-from actuator_opt.simulation.parts.friction import FORCES
-from actuator_opt.simulation.parts.ports import FEEDS
-from actuator_opt.simulation.parts.supply import DELIVERIES
+from actuator_opt.simulation.components.friction import FORCES
+from actuator_opt.simulation.components.ports import FEEDS
+from actuator_opt.simulation.components.supply import DELIVERIES
 
 CHOICES = {
     ("supply", "type"): SUPPLIES,

@@ -13,7 +13,7 @@ from simulation_case import AREA_A, AREA_B, BALANCED, BAR, OIL, plant, run, scen
 
 import actuator_opt as ao
 from actuator_opt.models.cavity import cavity
-from actuator_opt.simulation.parts.chambers import oil_at
+from actuator_opt.simulation.components.chambers import oil_at
 from actuator_opt.studies import plant as plants
 
 CAVITY = {"content": 1e-4, "polytropic_index": 1.4}

@@ -81,7 +81,7 @@ def test_without_a_search_there_is_no_optimum():
     titles = [block["title"] for block in page(found)["blocks"]]
     assert titles == [
         "Values measured, 95 % bounds",
-        "Requirements that move",
+        "Requirements that change",
         "Changes, and the basis of these results",
     ]
 
@@ -144,5 +144,5 @@ def test_where_nothing_moves_it_says_so():
     still = replace(found, redesign=replace(found.redesign, shifts=()))
     assert still.redesign.moved is None
     said = document.remarks(still.calibration, still.redesign)
-    assert said[0] == "No requirement moves."
-    assert "No requirement moved." in json.dumps(page(still), allow_nan=False)
+    assert said[0] == "No requirement changes."
+    assert "No requirement changes." in json.dumps(page(still), allow_nan=False)

@@ -62,7 +62,7 @@ def test_what_was_put_in_is_found():
 
 
 def test_the_script_tells_the_story(ran):
-    """The requirement that moved, the best knee, the truth beside what was found, two pages.
+    """The requirement that changes most, the best knee, the truth beside what was found, two pages.
 
     Friction stays below its limit at the optimum before and after: the best design is the same.
     """

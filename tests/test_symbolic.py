@@ -12,7 +12,7 @@ from hypothesis import assume, example, given, settings, strategies as st
 from model_samples import cases, leaves, public_functions
 from test_models_laws import called
 
-import actuator_opt.simulation.parts
+import actuator_opt.simulation.components
 from actuator_opt.base import numeric
 from actuator_opt.base.symbolic import Graph, Namespace, Symbol, function, jacobian, vectorised
 
@@ -71,7 +71,7 @@ def unpacked(inputs):
 def models_of_the_parts():
     """Models that the parts of a circuit call, by ``module.name``."""
     found = set()
-    for path in Path(actuator_opt.simulation.parts.__path__[0]).glob("*.py"):
+    for path in Path(actuator_opt.simulation.components.__path__[0]).glob("*.py"):
         tree = ast.parse(path.read_text(encoding="utf-8"))
         modules = {}
         for node in ast.walk(tree):

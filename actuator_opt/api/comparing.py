@@ -141,7 +141,14 @@ def comparison_json(comparison: Comparison) -> dict[str, Any]:
 
 def report_comparison(comparison: Comparison, **paper: Unpack[Paper]) -> list[ReportFile]:
     """Draw a comparison as its report: PNG and SVG carry no title block."""
-    return report_files(draw_comparison(comparison, paper.get("folder", "reports")))
+    folder, form = Path(paper.get("folder", "reports")), paper.get("format", "pdf")
+    files = [] if form == "html" else report_files(draw_comparison(comparison, folder))
+    if form == "pdf":
+        return files
+    from ..pages.comparison import page
+    from ..rendering import html
+
+    return files + html.write(page(comparison), None, folder=folder, stem="comparison")
 
 
 def draw_comparison(comparison: Comparison, folder: str | Path = "reports") -> list[Path]:

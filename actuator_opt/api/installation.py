@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, Unpack
 
 from ..base import files as store
+from ..base.display import Displayed
 from ..base.errors import InputError
 from ..version import VERSION
 
@@ -44,7 +45,7 @@ class Finding:
 
 
 @dataclass(frozen=True, slots=True)
-class Installation:
+class Installation(Displayed):
     """Items examined; `ok` if no command will fail."""
 
     findings: tuple[Finding, ...]

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
+from ..base.display import Displayed
 from ..base.errors import Diagnostic, InputError, UsageError
 from .actuator import Actuator
 from .recorded_runs import Run
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class KeptSweep:
+class KeptSweep(Displayed):
     """A sweep from its record: the study, and the run with the location of its rows."""
 
     run: Run

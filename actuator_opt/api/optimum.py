@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..base.display import Displayed
 from ..design import Design
 from ..evaluation import Evaluation, PreparedDesign, evaluate as evaluate_subject, prepare
 from ..evaluation.plugin import Plugin
@@ -132,7 +133,7 @@ def sensitivity(
 
 
 @dataclass(frozen=True, slots=True)
-class Prices:
+class Prices(Displayed):
     """The prices of an optimum, as shown by `sensitivity`."""
 
     optimisation: Optimisation

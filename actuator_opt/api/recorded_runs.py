@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Unpack
 
 from ..base import runs as run_store
+from ..base.display import Displayed
 from ..base.errors import Diagnostic, InputError
 from ..evaluation.plugin import Plugin
 from ..optimisation.pareto_result import ParetoFront
@@ -224,7 +225,7 @@ CLOSE = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class Run(Displayed):
     """A recorded run: `head` is shown in lists, `body` has input, versions and result."""
 
     id: str

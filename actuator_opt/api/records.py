@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
+from ..base.display import Displayed
 from ..base.errors import Diagnostic, InputError
 from ..design import Design
 from .actuator import Actuator, as_actuator
@@ -192,7 +193,7 @@ def bending(
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Calibrated:
+class Calibrated(Displayed):
     """A design with measured seal friction, and the effect on its requirements.
 
     Parameters

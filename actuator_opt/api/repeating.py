@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, Unpack
 
 from ..base.bounds import CHECKS, FRONT, SEED, STARTS, Bounds
+from ..base.display import Displayed
 from ..base.errors import Diagnostic, InputError, shown
 from ..evaluation import Evaluation
 from ..version import VERSION
@@ -37,7 +38,7 @@ _LONGEST = 100_000
 
 
 @dataclass(frozen=True, slots=True)
-class Rerun:
+class Rerun(Displayed):
     """The repeated result of a report's command, compared with the original.
 
     `repeats` is None if the report has no result to compare; `differences` maps what has changed to

@@ -10,7 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Required, TypedDict, Unpack
 
-from ..base.errors import Diagnostic, UsageError
+from ..base.errors import Diagnostic, UsageError, remedy, shown
 from ..design import Design, Source
 from ..evaluation import Evaluation, PreparedDesign, prepare
 from ..evaluation.plugin import with_own
@@ -32,6 +32,8 @@ ABSENT = (
     "Caution: the tables that compare this design with {paper} are not part of this installation. "
     "The source distribution and the repository contain them, in actuator_opt/replicas."
 )
+FORMATS = ("pdf", "html", "both")
+"""Formats of a report; PDF comes with PNG."""
 _LAST_SECOND = 253_402_300_799
 """End of the year 9999, the latest date."""
 
@@ -55,14 +57,16 @@ class Paper(TypedDict, total=False):
     command: str
     date: str | None
     all_pages: bool
+    format: str
 
 
 class Target(TypedDict, total=False):
-    """Folder and name of the files of a page, without suffix; which sheets are images."""
+    """Folder and name of the files of a page, without suffix; which files."""
 
     folder: Required[Path]
     stem: Required[str]
     all_pages: bool
+    format: str
 
 
 def page_of(
@@ -76,6 +80,7 @@ def page_of(
     command: str = "",
     date: str | None = None,
     all_pages: bool = False,
+    format: str = "pdf",
 ) -> tuple[Origin, Target]:
     """Title block of a page, and its target.
 
@@ -84,12 +89,13 @@ def page_of(
     design : subject of the page
     tail : added to the name of the design's file
     beside : another file that gives the name
-    folder, stem, actuator, command, date, all_pages : as `report`
+    folder, stem, actuator, command, date, all_pages, format : as `report`
 
     Raises
     ------
-    UsageError : not an ISO date
+    UsageError : not an ISO date, an unknown format
     """
+    require_format(format)
     if date is not None:
         require_date(date)
     source = None if actuator is None else actuator.source
@@ -98,7 +104,16 @@ def page_of(
     place: Target = {"folder": Path(folder), "stem": stem or named}
     if all_pages:
         place["all_pages"] = True
+    if format != "pdf":
+        place["format"] = format
     return page, place
+
+
+def require_format(format: str, option: str = "format") -> None:
+    """Refuse an unknown format of a report; raises `UsageError`."""
+    if format not in FORMATS:
+        message = f'{option} "{shown(format)}" is not a format of reports'
+        raise UsageError(Diagnostic(message, remedy(format, FORMATS)))
 
 
 def report_design(

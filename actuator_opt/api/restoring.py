@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
+from ..base.display import Displayed
 from ..base.errors import Diagnostic, InputError
 from ..version import VERSION
 from .actuator import Actuator, Plugins, plugins_of, read_as
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Restored:
+class Restored(Displayed):
     """A result from its record, with differences between the models then and now."""
 
     run: Run

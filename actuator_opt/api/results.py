@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from ..base import runs as run_store
+from ..base.display import show_by
 from ..base.errors import Diagnostic, ExitCode, UsageError
 from ..design import Design
 from ..evaluation import Evaluation
@@ -22,6 +23,7 @@ from ..evaluation.result import UNKNOWN
 from .actuator import Actuator, Plugins, as_actuator
 from .optimum import evaluate, with_yield
 from .recorded_runs import Run
+from .reports import require_format
 
 if TYPE_CHECKING:
     from ..pages import ReportFile
@@ -243,6 +245,22 @@ def text(result: object, **style: Unpack[Style]) -> str:
     return "" if kind.text is None else str(piece(kind.text, result)(**style))
 
 
+def html(result: object) -> str:
+    """A result as a piece of HTML, for notebooks; "" for a result without text."""
+    from ..rendering import html as markup
+
+    kind = kind_of(result)
+    if kind.page is not None:
+        return markup.fragment(piece(kind.page, result)())
+    if kind.blocks is not None:
+        return markup.pieces(piece(kind.blocks, result)())
+    words = text(result, colour=False, unicode=True, width=100)
+    return markup.listing(words) if words else ""
+
+
+show_by(html)
+
+
 def data(result: object) -> dict[str, Any]:
     """A result as plain data for JSON, SI."""
     name = kind_of(result).data
@@ -285,6 +303,7 @@ def report(
     command: str = "",
     date: str | None = None,
     all_pages: bool = False,
+    format: str = "pdf",
     seed: int = 0,
     plugins: Plugins = (),
     **more: Any,
@@ -304,6 +323,7 @@ def report(
     command : command that made the report, printed on it
     date : ISO date; default: SOURCE_DATE_EPOCH, else none
     all_pages : an image of every sheet, not of the first alone
+    format : "pdf" (with PNG), "html" (one file that needs no network), or "both"
     seed : of the draws of the estimate
     plugins : the user's metrics and constraints, for a design that is not an `Actuator` yet, or a
         run
@@ -322,7 +342,9 @@ def report(
     InputError : the folder cannot be written; no partial file is left
     """
     paper: dict[str, Any] = {"folder": folder, "stem": stem, "command": command, "date": date}
+    require_format(format)
     paper |= {"all_pages": True} if all_pages else {}
+    paper |= {"format": format} if format != "pdf" else {}
     if isinstance(subject, Run) or (
         isinstance(subject, str | Path) and run_store.is_name(str(subject))
     ):

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
+from ..base.display import Displayed
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..base.numeric import Array
 from ..design import Design
@@ -190,7 +191,7 @@ def write_signals(simulation: Simulation, path: str | Path) -> ReportFile:
 
 
 @dataclass(frozen=True, slots=True)
-class Compared:
+class Compared(Displayed):
     """A simulation compared with a measured record, and the parameters fitted to it."""
 
     overlay: Overlay

@@ -19,6 +19,7 @@ from .options import (
     AllPages,
     Date,
     DesignFile,
+    Format,
     Json,
     Out,
     PluginFile,
@@ -146,6 +147,7 @@ def evaluate(
     out: Out = REPORTS,
     date: Date = None,
     all_pages: AllPages = False,
+    format: Format = "pdf",
     seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -155,7 +157,8 @@ def evaluate(
 
     job = Job(
         design, sets=sets, plugins=plugin, report=report, out=out, date=date,
-        all_pages=all_pages, as_json=as_json, quiet=quiet,
+        all_pages=all_pages, format=format,
+        as_json=as_json, quiet=quiet,
     )  # fmt: skip
     return job.deliver(job.run(verbs.evaluate, seed=seed if report else None))
 
@@ -169,6 +172,7 @@ def report(
     out: Out = REPORTS,
     date: Date = None,
     all_pages: AllPages = False,
+    format: Format = "pdf",
     seed: Seed = 0,
     plugin: PluginFile = None,
     as_json: Json = False,
@@ -179,7 +183,8 @@ def report(
 
     job = Job(
         design, sets=sets, plugins=plugin, report=True, out=out, date=date,
-        all_pages=all_pages, as_json=as_json, quiet=quiet,
+        all_pages=all_pages, format=format,
+        as_json=as_json, quiet=quiet,
     )  # fmt: skip
     recorded = run_store.is_name(design)
     result: Any = _restored(job) if recorded else job.run(verbs.evaluate, seed=seed)

@@ -35,7 +35,7 @@ class Job:
     others : further files that are read
     sets, plugins : of the design
     csv, write : files to write; neither may be one that is read, but `write` may be the design
-    report : whether to write the report into `out`, with `date`; `all_pages`: all as images
+    report : whether to write the report to `out`, with `date`, as `format`; `all_pages` as images
     as_json, quiet : how to answer
     record : whether to keep a record of the run
     paper : keywords of the report besides those that every report takes
@@ -51,6 +51,7 @@ class Job:
     out: Path = REPORTS
     date: str | None = None
     all_pages: bool = False
+    format: str = "pdf"
     as_json: bool = False
     quiet: bool = False
     record: bool = False
@@ -60,9 +61,10 @@ class Job:
         for path in filter(None, (self.csv, self.write)):
             store.require_writable(path)
         if self.report:
-            from ..api.reports import date_from_environment, require_date
+            from ..api.reports import date_from_environment, require_date, require_format
 
             store.require_folder(self.out)
+            require_format(self.format, "--format")
             if self.date is not None:
                 require_date(self.date, "--date")
             date_from_environment()
@@ -141,7 +143,11 @@ class Job:
             return []
         files = [] if self.csv is None else [results.write_csv(result, self.csv)]
         if self.report:
-            paper = self.paper | {"folder": self.out, "all_pages": self.all_pages}
+            paper = self.paper | {
+                "folder": self.out,
+                "all_pages": self.all_pages,
+                "format": self.format,
+            }
             files += verbs.report(result, **self._origin(), **paper, **also)
         return [file.to_dict() for file in files]
 
@@ -185,7 +191,7 @@ class Job:
             streams.err(str(fault))
 
 
-_TARGETS = ("--out", "--write", "--csv", "--parquet")
+_TARGETS = ("--out", "--write", "--csv", "--parquet", "--format")
 """Options of output files and folders."""
 
 _SILENT = ("--json", "--report", "--all-pages", "--quiet", "-q", "--no-record", "--debug")

@@ -17,6 +17,7 @@ from .options import (
     Certify,
     Date,
     DesignFile,
+    Format,
     Json,
     NoRecord,
     Out,
@@ -55,6 +56,7 @@ def optimise(
     ] = False,
     date: Date = None,
     all_pages: AllPages = False,
+    format: Format = "pdf",
     seed: Seed = 0,
     plugin: PluginFile = None,
     no_record: NoRecord = False,
@@ -66,7 +68,8 @@ def optimise(
 
     job = Job(
         design, sets=sets, plugins=plugin, write=write, report=report or not as_json, out=out,
-        date=date, all_pages=all_pages, as_json=as_json, quiet=quiet, record=not no_record,
+        date=date, all_pages=all_pages, format=format,
+        as_json=as_json, quiet=quiet, record=not no_record,
     )  # fmt: skip
     trial = None if verify is None else _scenario(verify, job.actuator)
     result = job.run(
@@ -126,6 +129,7 @@ def sensitivity(
     out: Out = REPORTS,
     date: Date = None,
     all_pages: AllPages = False,
+    format: Format = "pdf",
     seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -135,7 +139,8 @@ def sensitivity(
 
     job = Job(
         design, sets=sets, plugins=plugin, report=report, out=out, date=date,
-        all_pages=all_pages, as_json=as_json, quiet=quiet,
+        all_pages=all_pages, format=format,
+        as_json=as_json, quiet=quiet,
     )  # fmt: skip
     return job.deliver(verbs.Prices(job.run(verbs.optimise, seed=seed)))
 
@@ -170,6 +175,7 @@ def pareto(
     out: Out = REPORTS,
     date: Date = None,
     all_pages: AllPages = False,
+    format: Format = "pdf",
     seed: Seed = 0,
     no_record: NoRecord = False,
     as_json: Json = False,
@@ -180,7 +186,8 @@ def pareto(
 
     job = Job(
         design, sets=sets, plugins=plugin, csv=csv, report=report, out=out, date=date,
-        all_pages=all_pages, as_json=as_json, quiet=quiet, record=not no_record,
+        all_pages=all_pages, format=format,
+        as_json=as_json, quiet=quiet, record=not no_record,
     )  # fmt: skip
     return job.deliver(
         job.run(verbs.pareto, objectives=objectives or [], n=n, seed=seed, checks=checks)

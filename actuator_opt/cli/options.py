@@ -123,6 +123,14 @@ AllPages = Annotated[
     bool,
     typer.Option("--all-pages", help="An image (PNG) of every sheet of the report, not of one."),
 ]
+Format = Annotated[
+    str,
+    typer.Option(
+        "--format",
+        metavar="FORMAT",
+        help="Format of the report: pdf (with PNG), html (needs no network), or both.",
+    ),
+]
 REPORTS = Path("reports")
 
 

@@ -15,6 +15,7 @@ from .options import (
     REPORTS,
     AllPages,
     Date,
+    Format,
     Json,
     Out,
     PluginFile,
@@ -141,6 +142,7 @@ def identify(
     out: Out = REPORTS,
     date: Date = None,
     all_pages: AllPages = False,
+    format: Format = "pdf",
     seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -150,7 +152,8 @@ def identify(
 
     job = Job(
         design, [record, *file_of_units(units)], sets=sets, plugins=plugin, csv=csv,
-        report=report, out=out, date=date, all_pages=all_pages, as_json=as_json, quiet=quiet,
+        report=report, out=out, date=date, all_pages=all_pages, format=format,
+        as_json=as_json, quiet=quiet,
     )  # fmt: skip
     _check_bootstrap(bootstrap)
     reading = {"columns": named_columns(columns), "units": units}
@@ -189,6 +192,7 @@ def calibrate(
     out: Out = REPORTS,
     date: Date = None,
     all_pages: AllPages = False,
+    format: Format = "pdf",
     seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -198,7 +202,8 @@ def calibrate(
 
     job = Job(
         design, [record, *file_of_units(units)], sets=sets, plugins=plugin, write=write,
-        report=report, out=out, date=date, all_pages=all_pages, as_json=as_json, quiet=quiet,
+        report=report, out=out, date=date, all_pages=all_pages, format=format,
+        as_json=as_json, quiet=quiet,
     )  # fmt: skip
     _check_bootstrap(bootstrap)
     settings = _settings(cutoff, order, uncompensated, mass, load_force, pressure_lag)

@@ -11,7 +11,7 @@ from ..base import files as store, runs as run_store
 from ..base.errors import Diagnostic, ExitCode, UsageError
 from . import streams
 from .job import Job
-from .options import REPORTS, AllPages, Json, NoRecord, PluginFile, Quiet
+from .options import REPORTS, AllPages, Format, Json, NoRecord, PluginFile, Quiet
 
 runs = typer.Typer(
     help="Recorded runs: list, show, delete, prune. Each optimise, pareto and sweep is recorded.",
@@ -128,6 +128,7 @@ def rerun(
         typer.Option("--out", metavar="DIR", help="Write the report again, to this folder."),
     ] = None,
     all_pages: AllPages = False,
+    format: Format = "pdf",
     no_record: NoRecord = False,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -136,7 +137,7 @@ def rerun(
     from .. import api as verbs
 
     job = Job(
-        report=out is not None, out=out or REPORTS, all_pages=all_pages,
+        report=out is not None, out=out or REPORTS, all_pages=all_pages, format=format,
         as_json=as_json, quiet=quiet, record=not no_record,
     )  # fmt: skip
     if out is not None:

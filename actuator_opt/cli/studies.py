@@ -16,6 +16,7 @@ from .options import (
     AllPages,
     Date,
     DesignFile,
+    Format,
     Json,
     Out,
     PluginFile,
@@ -75,6 +76,7 @@ def uncertainty(
     out: Out = REPORTS,
     date: Date = None,
     all_pages: AllPages = False,
+    format: Format = "pdf",
     seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -84,7 +86,8 @@ def uncertainty(
 
     job = Job(
         design, sets=sets, plugins=plugin, csv=csv, report=report, out=out, date=date,
-        all_pages=all_pages, as_json=as_json, quiet=quiet,
+        all_pages=all_pages, format=format,
+        as_json=as_json, quiet=quiet,
     )  # fmt: skip
     how = {"count": count, "seed": seed, "quasi_random": quasi, "rows": rows}
     return job.deliver(job.run(verbs.uncertainty, metrics=metric or [], **how))
@@ -131,6 +134,7 @@ def seal(
     out: Out = REPORTS,
     date: Date = None,
     all_pages: AllPages = False,
+    format: Format = "pdf",
     seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -142,7 +146,8 @@ def seal(
         raise UsageError(Diagnostic(f'--seal "{place}"', "write piston or rod"))
     job = Job(
         design, sets=sets, plugins=plugin, write=write, report=report or mapped, out=out,
-        date=date, all_pages=all_pages, as_json=as_json, quiet=quiet, paper={"sheet": report},
+        date=date, all_pages=all_pages, format=format,
+        as_json=as_json, quiet=quiet, paper={"sheet": report},
     )  # fmt: skip
     study = job.run(
         verbs.seal,
@@ -214,6 +219,7 @@ def simulate(
     out: Out = REPORTS,
     date: Date = None,
     all_pages: AllPages = False,
+    format: Format = "pdf",
     as_json: Json = False,
     quiet: Quiet = False,
     seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
@@ -226,7 +232,8 @@ def simulate(
             raise UsageError(Diagnostic(f"{name}: only with --measured", "name the record"))
     job = Job(
         scenario, [*filter(None, [measured]), *file_of_units(units)], sets=sets, csv=csv,
-        report=report, out=out, date=date, all_pages=all_pages, as_json=as_json, quiet=quiet,
+        report=report, out=out, date=date, all_pages=all_pages, format=format,
+        as_json=as_json, quiet=quiet,
     )  # fmt: skip
     trial = verbs.read_scenario(scenario, set=job.set, units=units)
     if units is not None and measured is None and not trial.records:

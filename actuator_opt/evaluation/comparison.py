@@ -13,6 +13,7 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
+from ..base.display import Displayed
 from ..base.errors import InputError
 from ..base.quantities import Quantity, Sense
 from ..design import Design
@@ -95,7 +96,7 @@ class DesignState:
 
 
 @dataclass(frozen=True, slots=True)
-class Comparison:
+class Comparison(Displayed):
     """Designs side by side; the first design is the reference."""
 
     labels: tuple[str, ...]

@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any, Literal, TypeAlias
 
 from ..base import quantities
+from ..base.display import Displayed
 from ..base.numeric import Array
 from ..base.tables import aligned
 from ..design.model import Design
@@ -273,7 +274,7 @@ class Outline:
 
 
 @dataclass(frozen=True, slots=True)
-class Evaluation:
+class Evaluation(Displayed):
     """Complete results of a design: metrics, requirements, checks, drawing, provenance."""
 
     name: str

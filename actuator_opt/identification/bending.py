@@ -14,6 +14,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from ..base.display import Displayed
 from ..base.errors import Diagnostic, InputError
 from ..base.fitting import WEAK, Parameter, quantile
 from ..evaluation import PreparedDesign, compute
@@ -173,7 +174,7 @@ error of the span counts three times, one of the diameter four)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class BendingResult:
+class BendingResult(Displayed):
     """Results of a bending test, SI; bounds cover the record only.
 
     In addition, an error of the span counts three times, of a solid bar's diameter four times.

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..base.display import Displayed
 from ..base.fitting import Parameter
 from ..base.numeric import Array
 from ..design.material_fits import Fit
@@ -58,7 +59,7 @@ class Mean:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Identification:
+class Identification(Displayed):
     """Friction and damping of a test record, SI.
 
     Parameters

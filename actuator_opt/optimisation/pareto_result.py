@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass
 from statistics import median
 from typing import Any, Literal
 
+from ..base.display import Displayed
 from ..base.quantities import Quantity
 from ..design import Design
 from ..evaluation import Evaluation
@@ -49,7 +50,7 @@ class Knee:
 
 
 @dataclass(frozen=True, slots=True)
-class ParetoFront:
+class ParetoFront(Displayed):
     """The Pareto front of a design.
 
     Parameters

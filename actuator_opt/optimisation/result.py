@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, field, replace
 from math import isfinite
 from typing import Any, Literal, TypeAlias
 
+from ..base.display import Displayed
 from ..base.quantities import INPUTS
 from ..base.tables import aligned
 from ..design import choice_list
@@ -292,7 +293,7 @@ class Choices:
 
 
 @dataclass(frozen=True, slots=True)
-class Optimisation:
+class Optimisation(Displayed):
     """The best design, its quality, and the price of each requirement."""
 
     status: str

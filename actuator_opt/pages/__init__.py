@@ -4,6 +4,6 @@ from __future__ import annotations
 
 from ..rendering.attachments import Attachment, read_attachment
 from ..rendering.blocks import Table
-from ..rendering.paper import ReportFile
+from ..rendering.origin import ReportFile
 
 __all__ = ["Attachment", "ReportFile", "Table", "read_attachment"]

@@ -97,7 +97,7 @@ def _blocks(bending: BendingResult) -> Iterator[Block]:
 
 
 def _basis(bending: BendingResult) -> list[str]:
-    """What the bounds hold, the work lost, and the share of shear."""
+    """The scope of the bounds, the work lost, and the share of shear."""
     section = (
         "the second moment once"
         if bending.specimen.outer_diameter is None

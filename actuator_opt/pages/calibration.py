@@ -1,4 +1,4 @@
-"""The page of a calibration: values measured, requirements that move, the best design."""
+"""The page of a calibration: measured values, requirements that change, the best design."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def _sentence(calibration: Calibration) -> str:
 
 
 def _tiles(calibration: Calibration, redesign: Redesign) -> list[Tile]:
-    """Coulomb friction, the requirement that moved most, and the objective."""
+    """Coulomb friction, the requirement that changed most, and the objective."""
     ratio = calibration.coulomb / calibration.stated
     stated = f"stated {force(calibration.stated)}"
     largest = force(calibration.identification.largest)
@@ -157,7 +157,7 @@ def _values(calibration: Calibration) -> Table:
 
 
 def _shifts(redesign: Redesign) -> Table:
-    """Requirements that move, before and after, the largest move first."""
+    """Requirements that change, before and after, the largest change first."""
     columns = [
         Column("requirement", "left", 1.0, breaks=60, mono=True, least=20),
         Column("limit", "right", drop=2),
@@ -172,12 +172,12 @@ def _shifts(redesign: Redesign) -> Table:
     note = f"{len(still)} more do not depend on the measured values" if still else ""
     if missed := ", ".join(row.name for row in still if not row.met):
         note += f"; missed among them: {missed}"
-    title = "Requirements that move"
+    title = "Requirements that change"
     return Table(title, columns, rows, note=f"{note}." if note else "")
 
 
 def _moved(redesign: Redesign) -> list[Shift]:
-    """Requirements that depend on the measured values, the largest move first."""
+    """Requirements that depend on the measured values, the largest change first."""
     moved = [shift for shift in redesign.shifts if shift.move != 0]
     return sorted(moved, key=lambda shift: -abs(shift.move))
 
@@ -306,11 +306,11 @@ def _against(point: Point) -> tuple[float, float]:
 
 
 def _margins(redesign: Redesign) -> Panel:
-    """Margins of the requirements that moved, before and after, with bounds."""
+    """Margins of the requirements that change, before and after, with bounds."""
     moved = _moved(redesign)[:MOST_ROWS]
     title = "Margin of requirements, as tested, %"
     if not moved:
-        return Panel(title, note="No requirement moved.")
+        return Panel(title, note="No requirement changes.")
     rows = range(len(moved))
     before, after, low, high = zip(*(_span(shift) for shift in moved), strict=True)
     links = joined([((a, b), (k, k)) for a, b, k in zip(before, after, rows, strict=True)])

@@ -20,7 +20,7 @@ from ..identification.record import CHANNELS, Record
 from ..identification.result import Identification
 from ..identification.stribeck_fit import StribeckFit
 from ..metrics import METRICS
-from ..rendering.blocks import (
+from ..rendering.blocks import (  # fmt: skip
     Block,
     Column,
     Notes,
@@ -35,7 +35,7 @@ from ..rendering.blocks import (
     Verdict,
     tile,
 )
-from ..rendering.heights import HALF, height
+from ..rendering.heights import HALF, SPARE, height
 from ..rendering.series import Series
 from ..rendering.text import (
     DASH,
@@ -83,7 +83,7 @@ def page(identification: Identification) -> Page:
         sentence=subject(identification),
         tiles=_tiles(identification),
         hero=lambda room: identification_figure(identification, min(room, MOST)),
-        least=LEAST,
+        least=LEAST - SPARE,  # the heights of the blocks are estimated too high by it
         blocks=list(_blocks(identification)),
     )
 
@@ -265,7 +265,7 @@ def _curve(identification: Identification) -> list[Block]:
 
 
 class Shown(NamedTuple):
-    """How a parameter is printed: display value = SI value x scale."""
+    """Label, symbol and unit of a parameter; display value = SI value x scale."""
 
     label: str
     symbol: str
@@ -528,7 +528,7 @@ def conditioning(identification: Identification) -> str:
 
 
 def _lag(identification: Identification) -> str:
-    """The lag taken off the pressures, or why there is none."""
+    """The lag taken off the pressures, or the reason for none."""
     taken, seen = identification.pressure_lag, identification.lag_seen
     if identification.settings.pressure_lag is not None:
         return f"{number(1e3 * taken, 3)} ms of lag taken off the pressures, as stated"

@@ -32,7 +32,7 @@ STIFFNESS, GROWTH = METRICS["stiffness_min"], METRICS["growth_at_seal"]
 LEAST, MOST = 64.0, 140.0
 """Heights of the whole figure [mm]."""
 NEAREST = 1.5
-"""How far towards rest a Stribeck curve goes on below the least speed, as a ratio."""
+"""Ratio of the least measured speed to the least speed of a drawn Stribeck curve."""
 LEAST_SPEEDS = 3
 """Speeds at a level of pressure from which on a map shows more than a curve (a choice)."""
 DAMPING = "Secant damping F/v, kN·s/m"

@@ -14,7 +14,6 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from ..base.numeric import Array
-from .heights import wrap
 from .ink import BLACK, BLUE, GREEN, GREY, OCHRE, PALE, RED, WHITE, Ink, Point, text_width
 from .text import MINUS, SUPERSCRIPTS, fixed, number, trimmed
 
@@ -252,7 +251,7 @@ def even_ticks(low: float, high: float, count: int) -> Ticks:
     [(54.95, '54.95'), (55.0, '55.00'), (55.05, '55.05')]
     """
     values = ticks(low, high, count)
-    while len(values) < 2 and count < 9:  # one tick tells no scale
+    while len(values) < 2 and count < 9:  # a single tick shows no scale
         count += 1
         values = ticks(low, high, count)
     step = values[1] - values[0] if len(values) > 1 else abs(high) or 1.0
@@ -271,19 +270,6 @@ def spaced(found: Iterable[tuple[float, str, int]], axes: Axes) -> Ticks:
         if all(abs(x - axes.x(v)) > half + text_width(w, 6.5) / 2 + 1.0 for v, w in kept):
             kept.append((value, words))
     return sorted(kept)
-
-
-def log_ticks(low: float, high: float) -> Ticks:
-    """Ticks of a logarithmic axis (log10): as `level_ticks`, or even ones where those are few.
-
-    >>> log_ticks(0.5, 0.9)
-    [(0.6020599913279624, '4'), (0.7781512503836436, '6')]
-    """
-    found = level_ticks(low, high)
-    if len(found) > 1:
-        return found
-    values = even_ticks(10.0**low, 10.0**high, 3)
-    return [(math.log10(v), words) for v, words in values if v > 0]
 
 
 def log_range(values: Sequence[float], least: float = 0.5) -> tuple[float, float]:
@@ -321,25 +307,6 @@ def error_bar(axes: Axes, x: float, low: float, high: float, color: str) -> None
         if bottom <= level <= top:
             y = axes.y(level)
             axes.ink.line((at - 0.7, y), (at + 0.7, y), pen=0.2, stroke=color)
-
-
-def reason(ink: Ink, box: Box, words: str) -> Box:
-    """Why something is missing, above a frame; what is left of its box."""
-    lines = wrap(words, box[2], 6.2)
-    for k, line in enumerate(lines):
-        ink.text(box[0], box[1] - 1.0 + 2.9 * k, line, size=6.2, color=GREY)
-    used = 2.9 * len(lines) + 1.0
-    return box[0], box[1] + used, box[2], max(box[3] - used, 6.0)
-
-
-def empty(ink: Ink, box: Box, title: str, words: str) -> None:
-    """A frame that holds the reason why there is nothing in it."""
-    ink.text(box[0] - 1.4, box[1] - 3.6, title, size=7.0, bold=True)
-    ink.box(*box, stroke=PALE, pen=0.13)
-    lines = wrap(words, box[2] - 6.0, 6.5)
-    first = box[1] + box[3] / 2 - 3.1 * (len(lines) - 1) / 2
-    for k, line in enumerate(lines):
-        ink.text(box[0] + box[2] / 2, first + 3.1 * k, line, anchor="center", color=GREY)
 
 
 def band(axes: Axes, xs: Sequence[float], low: Sequence[float], high: Sequence[float]) -> None:

@@ -16,7 +16,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from . import contours
-from .axes import Axes, Box, Ticks, band, error_bar, fitted, thinned
+from .axes import Axes, Box, Ticks, band, fitted, thinned
 from .chart import Chart, Curve, Level, Panel, Points, Values
 from .chart_scale import Scale, known, scale
 from .heights import wrap
@@ -157,11 +157,11 @@ class _Column:
 
     @property
     def head(self) -> float:
-        """Of the first panel."""
+        """Height of the words above the first frame."""
         return self.frames[0].head
 
     def fit(self, room: float, height: float, head: float) -> None:
-        """Places of the frames in a room [mm]; the first one begins below `head`."""
+        """Places of the frames in a room [mm]; the first frame begins below `head`."""
         ticks = [words for frame in self.frames for _, words in _y_ticks(frame)]
         self.left = min(max([text_width(w, SIZE) for w in ticks], default=0.0), NAMES) + 2.0
         self.right = max(_right_room(frame) for frame in self.frames)
@@ -190,7 +190,7 @@ class _Column:
 
 
 def _overhang(frame: _Frame, wide: float) -> tuple[float, float]:
-    """How far the numbers of x reach beyond both ends of a frame."""
+    """Lengths by which the numbers of x reach beyond both ends of a frame."""
     low, high = frame.x.range
     before = after = 0.0
     for place, words in frame.x.ticks(wide, across=True) if frame.label else ():
@@ -241,11 +241,10 @@ def _frame(panel: Panel, x: Scale) -> _Frame:
     if panel.surface is not None and not ends:
         ends += known(panel.surface.ys, log=log)
     levels = known([level.value for level in panel.levels], log=log)
-    limits = known([level.value for level in panel.levels if level.sense], log=log)
     why = "" if ends or levels else _why(panel)
     if ends:
         levels = _near(ends, levels, log, 3.0, cut=False)
-    return _Frame(panel, x, scale(panel.y, [*ends, *(levels or limits)]), why)
+    return _Frame(panel, x, scale(panel.y, [*ends, *levels]), why)
 
 
 def _seen(curve: Curve, values: Values, x: Scale, log: bool) -> list[float]:
@@ -268,7 +267,7 @@ def _near(
     """Values at most so many spans beyond the ends; farther ones are cut there, or left out."""
     low, high = (math.log10(f(ends)) if log else f(ends) for f in (min, max))
     spare = most * ((high - low) or max(abs(high), 1.0))
-    low, high = (10.0**v if log else v for v in (low - spare, high + spare))
+    low, high = (10.0 ** min(max(v, -100), 150) if log else v for v in (low - spare, high + spare))
     if not cut:
         return [v for v in values if low <= v <= high]
     return [min(max(v, low), high) for v in values]
@@ -382,9 +381,7 @@ def _draw(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
         bounds = []
         for curve in panel.curves:
             if len(curve.low):
-                xs = x.at(curve.xs)
-                low, high = (frame.y.at(v) for v in (curve.low, curve.high))
-                band(axes, xs.tolist(), low.tolist(), high.tolist())
+                _band(axes, curve, frame.y, x)
         axes.frame_at("", label, x_ticks, y_ticks, upright=True)
         _zero_lines(axes, frame, x)
     lines = [_curve(axes, curve, k, frame.y, x) for k, curve in enumerate(panel.curves)]
@@ -397,6 +394,15 @@ def _draw(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
     for level in panel.levels:
         if level.between is not None and level.words:
             _beside(axes, level, frame.y, x, taken)
+
+
+def _band(axes: Axes, curve: Curve, y: Scale, x: Scale) -> None:
+    """The band around a curve; on a logarithmic axis it goes down to the frame."""
+    xs, low, high = x.at(curve.xs), y.at(curve.low), y.at(curve.high)
+    low = np.where(np.asarray(curve.low) <= 0, np.fmax(low, axes.y_range[0]), low)
+    inside = (xs >= axes.x_range[0]) & (xs <= axes.x_range[1])
+    places = np.where(inside, xs, axes.x_range[0])
+    band(axes, places.tolist(), np.where(inside, low, np.nan).tolist(), high.tolist())
 
 
 def _head(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
@@ -511,13 +517,14 @@ def _spots(
     good = np.flatnonzero(np.isfinite(xs) & np.isfinite(ys))
     places = [(axes.x(float(xs[k])), axes.y(float(ys[k]))) for k in good]
     inside = [n for n, at in enumerate(places) if _inside(axes, at)]
+    bars: list[Point] = []
     if len(inside) > 400:
         cells = {(round(places[n][0] * 2), round(places[n][1] * 2)): n for n in inside}
         inside = sorted(cells.values())
     for n in inside:
         at, k = places[n], int(good[n])
         if len(points.low):
-            _bar(axes, points, k, at, y, x, color)
+            bars += _bar(axes, points, k, at, y, x, color)
         if points.small:
             _small(axes.ink, *at, style)
         elif len(points.shades) and bounds:
@@ -527,31 +534,34 @@ def _spots(
             axes.ink.circle(*at, 0.9, fill=paints[shade], stroke=BLACK, pen=0.18)
         else:
             axes.ink.circle(*at, 0.75, fill=fill, stroke=edge, pen=0.3)
-    return [places[n] for n in inside]
+    return [*(places[n] for n in inside), *bars]
 
 
-def _bar(axes: Axes, points: Points, k: int, at: Point, y: Scale, x: Scale, color: str) -> None:
-    """An error bar; an end without a place lies beyond the frame."""
-    along = x if points.across else y
-    ends = along.at([points.low[k], points.high[k]])
-    low, high = (float(end) for end in ends)
+def _bar(axes: Axes, points: Points, k: int, at: Point, y: Scale, x: Scale, color: str) -> Line:
+    """An error bar, cut at the frame, with feet where it ends inside; points along it."""
+    along, on_paper = (x, axes.x) if points.across else (y, axes.y)
     bottom, top = along.range
-    low = low if math.isfinite(low) else bottom - 1.0
+    given = (points.low[k], points.high[k])
+    if any(math.isnan(end) for end in given):
+        return []
+    low, high = (float(end) for end in along.at(given))
+    low = low if math.isfinite(low) else bottom - 1.0  # without a place: beyond the frame
     high = high if math.isfinite(high) else top + 1.0
-    if not points.across:
-        place = axes.x_range[0] + (at[0] - axes.left) / axes.width * (
-            axes.x_range[1] - axes.x_range[0]
-        )
-        error_bar(axes, place, low, high, color)
-        return
-    first, last = axes.x(max(low, bottom)), axes.x(min(high, top))
-    if last - first < 2.0:  # it lies behind its point
-        return
-    axes.ink.line((first, at[1]), (last, at[1]), pen=0.4, stroke=color)
-    for end in (low, high):
+    if high < bottom or low > top:
+        return []
+
+    def spot(place: float, aside: float = 0.0) -> Point:
+        return (place, at[1] + aside) if points.across else (at[0] + aside, place)
+
+    first, last = on_paper(max(low, bottom)), on_paper(min(high, top))
+    pen, foot = (0.4, 0.9) if points.across else (0.2, 0.7)
+    if points.across and last - first < 2.0:  # it lies behind its point
+        return []
+    axes.ink.line(spot(first), spot(last), pen=pen, stroke=color)
+    for end, place in ((low, first), (high, last)):
         if bottom <= end <= top:
-            foot = axes.x(end)
-            axes.ink.line((foot, at[1] - 0.9), (foot, at[1] + 0.9), pen=0.4, stroke=color)
+            axes.ink.line(spot(place, -foot), spot(place, foot), pen=pen, stroke=color)
+    return list(_dotted([spot(first), spot(last)]))
 
 
 def _small(ink: Ink, x: float, y: float, style: int) -> None:
@@ -571,14 +581,20 @@ def _level(axes: Axes, level: Level, y: Scale, x: Scale) -> None:
         return
     at, left, right = axes.y(place), axes.left, axes.left + axes.width
     if level.between is not None:
-        ends = (axes.x(float(v)) for v in x.at(level.between))
-        left, right = (min(max(end, left), right) for end in sorted(ends))
+        left, right = sorted(_ends(axes, level.between, x))
     axes.ink.line((left, at), (right, at), **_level_style(level))
     if level.sense:
         side = 1.3 if level.sense == "min" else -1.3
         edge = min(max(at + side, axes.top), axes.top + axes.height)
         strip = [(left, at), (right, at), (right, edge), (left, edge)]
         axes.ink.path(hatch([strip], angle=45.0, spacing=0.9), pen=0.1, stroke=RED)
+
+
+def _ends(axes: Axes, between: tuple[float, float], x: Scale) -> tuple[float, float]:
+    """Ends of a short level inside the frame [mm]; one without a place lies at the left."""
+    low, high = axes.x_range
+    start, end = np.clip(np.nan_to_num(x.at(between), nan=low), low, high)
+    return axes.x(float(start)), axes.x(float(end))
 
 
 def _right_words(axes: Axes, frame: _Frame, lines: Sequence[Sequence[Line]]) -> None:
@@ -616,7 +632,7 @@ def _beside(axes: Axes, level: Level, y: Scale, x: Scale, taken: Sequence[Point]
     place = y.place(level.value)
     if level.between is None or not axes.y_range[0] <= place <= axes.y_range[1]:
         return
-    start, end = (axes.x(float(v)) for v in x.at(level.between))
+    start, end = _ends(axes, level.between, x)
     way = 1.0 if end >= start else -1.0
     before: Anchor = "right" if way > 0 else "left"
     beyond: Anchor = "left" if way > 0 else "right"

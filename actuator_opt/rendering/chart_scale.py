@@ -10,7 +10,7 @@ from typing import TypeAlias
 import numpy as np
 
 from ..base.numeric import Array
-from .axes import Ticks, even_range, even_ticks, level_ticks, log_range, log_ticks
+from .axes import Ticks, even_range, even_ticks, level_ticks, log_range, ticks
 from .chart import Axis, Values
 from .ink import text_width
 from .text import MINUS, number
@@ -19,10 +19,8 @@ CORE = 0.35
 """Decades of the straight core about zero (a choice: nothing is measured there)."""
 DECADE = 8.0
 """Ratio of the ends from which an axis both ways is logarithmic (a choice: nearly a decade)."""
-LARGEST = 1e150
-"""Values beyond it have no place: their differences overflow."""
-LONGEST = 18.0
-"""Widest words of a tick; longer numbers are rounded [mm]."""
+LARGEST, SMALLEST = 1e150, 1e-100
+"""Larger values have no place (their differences overflow); smaller ones count as zero."""
 SIZE = 6.5
 """Type size of ticks [pt]."""
 Ranked: TypeAlias = list[tuple[float, str, int]]
@@ -32,11 +30,16 @@ Ranked: TypeAlias = list[tuple[float, str, int]]
 def known(values: Iterable[float], *, log: bool = False) -> list[float]:
     """The values that an axis can show."""
     array = np.asarray(list(values), dtype=float)
-    good = np.abs(array) <= LARGEST  # False for NaN
-    if log:
-        good &= array > 0
+    array = _sized(array)
+    good = array > 0 if log else np.isfinite(array)
     found: list[float] = array[good].tolist()
     return found
+
+
+def _sized(values: Array) -> Array:
+    """Values of a size that an axis can show; others are zero, or not a number."""
+    sizes = np.abs(values)
+    return np.where(sizes <= LARGEST, np.where(sizes < SMALLEST, 0.0, values), np.nan)
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +52,7 @@ class Scale:
 
     def at(self, values: Values) -> Array:
         """Places of values; not a number where a value has none."""
-        return self.places(np.asarray(values, dtype=float))
+        return self.places(_sized(np.asarray(values, dtype=float)))
 
     def place(self, value: float) -> float:
         """Place of a value."""
@@ -57,7 +60,7 @@ class Scale:
 
     def ticks(self, room: float, *, across: bool) -> Ticks:
         """Ticks for an axis of so many millimetres whose words do not touch."""
-        count = max(2, int(room / 9.0)) if across else min(max(2, round(room / 8.0)), 6)
+        count = min(max(2, int(room / 9.0)), 10) if across else min(max(2, round(room / 8.0)), 6)
         low, high = self.range
         found = [tick for tick in self.candidates(count) if low - 1e-9 <= tick[0] <= high + 1e-9]
         kept = self._spaced(sorted(found, key=lambda tick: (tick[2], abs(tick[0]))), room, across)
@@ -118,16 +121,23 @@ def _straight(axis: Axis, ends: tuple[float, float]) -> Scale:
     def candidates(count: int) -> Ranked:
         if axis.ticks is not None:
             return _stated(axis, float)
-        found = even_ticks(*ends, count)
-        return [(value, _shorter(value, words), 1) for value, words in found]
+        return [(value, words, 1) for value, words in _even(*ends, count)]
 
-    return Scale(
-        lambda values: np.where(np.abs(values) <= LARGEST, values, np.nan), ends, candidates
-    )
+    return Scale(lambda values: values, ends, candidates)
 
 
-def _shorter(value: float, words: str) -> str:
-    return words if text_width(words, SIZE) <= LONGEST else number(value)
+def _even(low: float, high: float, count: int) -> Ticks:
+    """Round ticks; very large and very small ones with a power of ten."""
+    size = max(abs(low), abs(high))
+    if 1e-3 <= size < 1e6:
+        return even_ticks(low, high, count)
+    power = 10.0 ** math.floor(math.log10(size))
+    values = [power * value for value in ticks(low / power, high / power, count)]
+    for digits in range(2, 9):
+        words = [number(value, digits) for value in values]
+        if len({*words}) == len(words):
+            break
+    return list(zip(values, words, strict=True))
 
 
 def _logarithmic(axis: Axis, shown: Sequence[float], exact: bool) -> Scale:
@@ -140,13 +150,15 @@ def _logarithmic(axis: Axis, shown: Sequence[float], exact: bool) -> Scale:
         ends = log_range(shown or [1.0])
 
     def at(values: Array) -> Array:
-        good = (values > 0) & (values <= LARGEST)
-        return np.log10(np.where(good, values, np.nan))
+        return np.log10(np.where(values > 0, values, np.nan))
 
     def candidates(count: int) -> Ranked:
         if axis.ticks is not None:
             return _stated(axis, math.log10)
-        found = log_ticks(*ends)
+        found = level_ticks(*ends)
+        if len(found) < 2:
+            even = _even(10.0 ** ends[0], 10.0 ** ends[1], 3)
+            found = [(math.log10(value), words) for value, words in even if value > 0]
         return [(place, words, int(abs(place - round(place)) > 1e-9)) for place, words in found]
 
     return Scale(at, ends, candidates)
@@ -156,12 +168,9 @@ def _both_ways(low: float, high: float, ways: Sequence[int]) -> Scale:
     """Logarithmic both ways about zero; straight within the core, below the least value."""
 
     def at(values: Array) -> Array:
-        size = np.abs(values)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            outside = np.copysign(CORE + np.log10(size / low), values)
-        return np.where(
-            size <= low, CORE * values / low, np.where(size <= LARGEST, outside, np.nan)
-        )
+        size = np.maximum(np.abs(values), low)  # NaN stays
+        outside = np.copysign(CORE + np.log10(size) - math.log10(low), values)
+        return np.where(size <= low, CORE * values / low, outside)
 
     end = CORE + math.log10(high / low)
     ends = (-end if -1 in ways else 0.0, end if 1 in ways else 0.0)

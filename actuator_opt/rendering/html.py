@@ -40,8 +40,7 @@ from .chart import Chart
 from .chart_ink import drawn
 from .heights import cells_of, joined
 from .ink import POINT, Ink, PathMark, TextMark
-from .origin import Origin
-from .paper import ReportFile, with_input
+from .origin import Origin, ReportFile, with_input
 
 HERO = 110.0
 """Height of a large figure that fits its room [mm] (a choice: it is seen whole on a laptop)."""
@@ -104,7 +103,7 @@ padding:0}.ao svg.drawing{filter:none}.ao tr,.ao svg,.ao .tile{break-inside:avoi
 """
 
 
-def write(page: Page, origin: Origin, *, folder: Path, stem: str) -> list[ReportFile]:
+def write(page: Page, origin: Origin | None, *, folder: Path, stem: str) -> list[ReportFile]:
     """Write ``STEM.html`` into a folder, whole or not at all.
 
     Raises
@@ -117,7 +116,7 @@ def write(page: Page, origin: Origin, *, folder: Path, stem: str) -> list[Report
     return [ReportFile(folder / name, hashlib.sha256(content).hexdigest(), 1)]
 
 
-def document(page: Page, origin: Origin) -> str:
+def document(page: Page, origin: Origin | None) -> str:
     """A page as an HTML document of its own; equal input gives equal text."""
     return (
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
@@ -177,6 +176,16 @@ def _footer(page: Page, origin: Origin | None) -> Iterator[str]:
 
 
 # ---- blocks ----
+
+
+def pieces(blocks: Iterable[Block]) -> str:
+    """Blocks without a page as a piece of HTML."""
+    return "\n".join([f"<style>{_STYLE}</style>", '<div class="ao">', *_blocks(blocks), "</div>"])
+
+
+def listing(words: str) -> str:
+    """Text of a terminal as a piece of HTML."""
+    return f"<pre>{_say(words)}</pre>"
 
 
 def _block(block: Block) -> list[str]:

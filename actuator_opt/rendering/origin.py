@@ -1,10 +1,12 @@
-"""Where a page comes from: the design as read, the command, the date."""
+"""Where a page comes from: the design as read, the command, the date; and its files."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 from ..version import VERSION
+from .blocks import Block, Listing, Page
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,3 +35,24 @@ class Origin:
             "source_name": self.source_name,
             "spec_hash": self.spec_hash,
         } | ({} if self.date is None else {"date": self.date})
+
+
+@dataclass(frozen=True, slots=True)
+class ReportFile:
+    """A file of a report, with its hash and how many sheets it holds."""
+
+    path: Path
+    sha256: str
+    pages: int
+
+    def to_dict(self) -> dict[str, object]:
+        """The JSON form."""
+        return {"path": str(self.path), "sha256": self.sha256, "pages": self.pages}
+
+
+def with_input(page: Page, origin: Origin | None) -> list[Block]:
+    """The blocks of a page, the design file listed at the end where the page lists it."""
+    blocks = [*page.blocks]
+    if page.lists_input and origin is not None:
+        blocks.append(Listing(f"Input: {origin.source_name}", origin.source_text))
+    return blocks

@@ -11,7 +11,6 @@ import importlib.util
 import json
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -19,6 +18,7 @@ from typing import Any
 from ..base.files import write_all
 from ..base.tables import encoded
 from ..version import VERSION
+from . import html
 from .blocks import (
     FARTHEST,
     Bar,
@@ -44,25 +44,12 @@ from .chart import Chart
 from .chart_ink import drawn
 from .heights import FULL, HALF, cells_of, fitting, room
 from .ink import Ink
-from .origin import Origin
+from .origin import Origin, ReportFile, with_input
 
 PIXELS_PER_INCH = 150.0
 _SUSPECTS = b"/Suspects false"
 """What Typst writes by default; Poppler warns of it. Blanks of the same length keep every place."""
 TEMPLATE = Path(__file__).with_name("template.typ")
-
-
-@dataclass(frozen=True, slots=True)
-class ReportFile:
-    """A file of a report, with its hash and how many sheets it holds."""
-
-    path: Path
-    sha256: str
-    pages: int
-
-    def to_dict(self) -> dict[str, object]:
-        """The JSON form."""
-        return {"path": str(self.path), "sha256": self.sha256, "pages": self.pages}
 
 
 def write(
@@ -72,9 +59,10 @@ def write(
     folder: Path,
     stem: str,
     all_pages: bool = False,
+    format: str = "pdf",
     **run: Any,
 ) -> list[ReportFile]:
-    """Write ``STEM.pdf`` and ``STEM.png`` (first sheet) into a folder.
+    """Write a page into a folder: ``STEM.pdf`` and ``STEM.png`` (first sheet), or ``STEM.html``.
 
     Parameters
     ----------
@@ -82,6 +70,7 @@ def write(
     origin : its source, as it is, and how it was made: both are attached to the PDF
     folder, stem : where to; the folder is made if missing
     all_pages : also ``STEM-page-N.png`` of the later sheets
+    format : "pdf" (with PNG), "html", or "both"
     run : more of how it was made, attached
 
     Returns
@@ -92,6 +81,9 @@ def write(
     ------
     InputError : when the folder cannot be written; no partial file is left
     """
+    web = html.write(page, origin, folder=folder, stem=stem) if format in ("html", "both") else []
+    if format == "html":
+        return web
     data = _printable(plain(page, origin)) | {
         "title": _encodable(page.name),
         "source": _encodable(origin.source_text),
@@ -111,7 +103,7 @@ def write(
             len(images) if name.endswith(".pdf") else 1,
         )
         for name, content in contents.items()
-    ]
+    ] + web
 
 
 # ---- pages as plain data for the template ----
@@ -155,14 +147,6 @@ def plain(page: Page, origin: Origin) -> dict[str, object]:
         ],
         "blocks": plain_blocks(with_input(page, origin)),
     }
-
-
-def with_input(page: Page, origin: Origin | None) -> list[Block]:
-    """The blocks of a page, the design file listed at the end where the page lists it."""
-    blocks = [*page.blocks]
-    if page.lists_input and origin is not None:
-        blocks.append(Listing(f"Input: {origin.source_name}", origin.source_text))
-    return blocks
 
 
 def plain_blocks(blocks: Sequence[Block], width: float = FULL) -> list[dict[str, object]]:

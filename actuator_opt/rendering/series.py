@@ -15,7 +15,7 @@ from typing import Any, Literal, NamedTuple, TypeAlias
 
 from ..base.files import aside, write_text, writing
 from ..base.numeric import Array
-from .paper import ReportFile
+from .origin import ReportFile
 
 
 @dataclass(frozen=True, slots=True)

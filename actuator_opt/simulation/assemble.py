@@ -13,12 +13,12 @@ from ..models import linkage
 from ..models.stiffness import holding_pressures
 from ..models.tuning import ControllerGains
 from ..studies.plant import Plant
+from .components import chambers, friction, load_cylinder, motion, motor, ports, signals, valve
 from .components.circuit import Circuit, Start
+from .components.control import Feedback, command, inner
+from .components.signals import Records
+from .components.supply import Source
 from .loops import LOOPS, loop_of
-from .parts import chambers, friction, load_cylinder, motion, motor, ports, signals, valve
-from .parts.control import Feedback, command, inner
-from .parts.signals import Records
-from .parts.supply import Source
 from .system import System
 
 PRESSURES = INPUTS["pressure"]

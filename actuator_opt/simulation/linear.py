@@ -19,9 +19,9 @@ from ..models.tuning import ControllerGains, margin_rules, ziegler_nichols
 from ..studies.plant import Plant
 from .assemble import assemble
 from .components.circuit import Circuit
+from .components.signals import Records, steady_value
 from .integrate import LAST, last_mean, sampled
 from .loops import LOOPS, Loop, loop_of
-from .parts.signals import Records, steady_value
 
 TOUCH = 1e-9
 """Spool offset from its centre [V], which selects the open pair of edges."""

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..base.display import Displayed
 from ..base.errors import Diagnostic, InputError, Unsolvable
 from ..base.numeric import Array
 from ..base.quantities import RESULTS, Quantity
@@ -19,12 +20,12 @@ from ..evaluation.result import State, without_reserve
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..studies.plant import Plant
 from .components.circuit import Circuit
+from .components.signals import Records, acts_after, frequencies
 from .harmonic import dynamic_stiffness_of_record, windows
 from .integrate import Event, Trajectory
 from .linear import StepMetrics, Tuned, step_metrics
 from .loops import Loop, loop_of
 from .methods import Stuck
-from .parts.signals import Records, acts_after, frequencies
 from .system import Compiled, System
 
 
@@ -124,7 +125,7 @@ class Told:
 
 
 @dataclass(frozen=True, slots=True)
-class Simulation:
+class Simulation(Displayed):
     """Results of a simulated scenario.
 
     `time` may contain an instant twice: before and after a jump. `values` are results by the names

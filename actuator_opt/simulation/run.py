@@ -22,10 +22,10 @@ from ..studies.plant import Plant, plant
 from . import result as reading
 from .assemble import assemble
 from .components.circuit import Circuit
+from .components.signals import Records
 from .integrate import Trajectory, integrate
 from .linear import CAUSES, UNHELD, Tuned, tune
 from .methods import Method, Stuck
-from .parts.signals import Records
 from .result import Second, Simulation, Told, balance, failed
 from .system import Compiled
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from time import perf_counter
 from typing import Any, Literal, TypeAlias
 
+from ..base.display import Displayed
 from ..base.errors import Diagnostic, InputError, Unsolvable, remedy
 from ..base.progress import steps
 from ..base.quantities import RESULTS, Quantity
@@ -23,8 +24,8 @@ from ..design.walls import Loc, child, child_at, leaves, number_of
 from ..evaluation.build import prepare
 from ..evaluation.kernel import PreparedDesign
 from ..studies.plant import plant
+from .components.signals import Records
 from .linear import Tuned, tune
-from .parts.signals import Records
 from .result import Simulation
 from .run import run
 
@@ -81,7 +82,7 @@ class Parameter:
 
 
 @dataclass(frozen=True, slots=True)
-class Sensitivities:
+class Sensitivities(Displayed):
     """All parameters, the most effective first."""
 
     name: str

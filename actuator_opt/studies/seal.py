@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..base.display import Displayed
 from ..base.errors import Diagnostic, InputError
 from ..design.model import Design
 from ..evaluation import gland_check, sealing as contacts_of_seals
@@ -164,7 +165,7 @@ class LuGre(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class SealStudy:
+class SealStudy(Displayed):
     """Results of a seal study of piston or rod.
 
     Parameters

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..base.display import Displayed
 from ..version import VERSION
 from .chunk import Chunk, Study
 from .sample import Sample
@@ -28,7 +29,7 @@ class Best:
 
 
 @dataclass
-class Swept:
+class Swept(Displayed):
     """Results of a sweep."""
 
     study: Study

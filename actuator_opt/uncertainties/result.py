@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..base.display import Displayed
 from ..base.tables import aligned
 from ..optimisation.problem import Vector
 from .estimate import Rate
@@ -112,7 +113,7 @@ LEAST = "least margin"
 
 
 @dataclass(frozen=True)
-class Uncertainty:
+class Uncertainty(Displayed):
     """Yield, sensitivity indices and tornado of a design with uncertain inputs.
 
     Parameters

@@ -11,8 +11,8 @@ from ...design.scenario.signals import SignalSegment
 from ...models.tuning import ControllerGains
 from ...studies.plant import Plant
 from ..loops import Loop
-from ..parts import signals
 from ..system import System
+from . import signals
 
 FLOW = 1e-4
 """Flow whose power at supply pressure scales energies [m^3/s], 6 l/min (a choice)."""

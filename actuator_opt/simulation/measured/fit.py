@@ -16,9 +16,9 @@ from ...base.numeric import Array
 from ...base.progress import whole
 from ...design.scenario.model import Scenario
 from ...studies.plant import Plant
+from ..components.signals import Records
 from ..linear import Tuned, tune
 from ..methods import Method
-from ..parts.signals import Records
 from ..run import run
 from .bounds import bounds
 from .parameters import Entry, entries

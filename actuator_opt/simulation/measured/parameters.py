@@ -12,7 +12,7 @@ from ...design.scenario.model import Scenario
 from ...design.scenario.signals import Force
 from ...studies.plant import LEAST_AIR, Plane, Plant
 from ..assemble import ends_of, start_of
-from ..parts.chambers import LEAST_DEAD
+from ..components.chambers import LEAST_DEAD
 
 Case: TypeAlias = tuple[Scenario, Plant]
 Put: TypeAlias = Callable[[Scenario, Plant, float], Case]

@@ -15,9 +15,9 @@ from ...base.numeric import Array
 from ...design.scenario.model import Scenario
 from ...studies.plant import Plant
 from ..assemble import assemble
+from ..components.signals import Records
 from ..integrate import integrate
 from ..linear import Tuned
-from ..parts.signals import Records
 from .parameters import PARAMETERS, Case, Entry
 from .record import FEWEST, Course, Measured, beside, inside, named, noise
 

@@ -14,6 +14,7 @@ from math import inf, isfinite, isnan
 from time import perf_counter
 from typing import Any, Final, Literal
 
+from ...base.display import Displayed
 from ...base.errors import InputError, Unsolvable
 from ...base.progress import steps
 from ...design.scenario.model import Load, Scenario
@@ -21,8 +22,8 @@ from ...evaluation.build import evaluate
 from ...evaluation.kernel import PreparedDesign
 from ...evaluation.result import Requirement
 from ...metrics import METRICS
+from ..components.signals import Records
 from ..loops import loop_of
-from ..parts.signals import Records
 from ..result import Simulation
 from ..run import simulate
 from . import experiments
@@ -69,7 +70,7 @@ class VerifiedRequirement:
 
 
 @dataclass(frozen=True, slots=True)
-class Verification:
+class Verification(Displayed):
     """All requirements of a design and a scenario, verified in time."""
 
     name: str

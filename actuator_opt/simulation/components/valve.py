@@ -10,7 +10,7 @@ from ...base.symbolic import Expression
 from ...models import valve
 from ...models.spool import spool_acceleration
 from ...studies.plant import ValveData
-from ..components.circuit import Circuit
+from .circuit import Circuit
 
 SPOOL = 1e-7
 """Error tolerance of the spool position [V]."""

@@ -10,8 +10,8 @@ from ...base.quantities import INPUTS, SCENARIOS
 from ...base.symbolic import Expression, Symbol
 from ...design.scenario.components import SUPPLIES
 from ...models import accumulator, elements, lines, supply, wilson
-from ..components.circuit import Circuit
 from .chambers import node
+from .circuit import Circuit
 
 RATE_BAND = 1e-3
 """Share of the largest flow over which the swash plate stops at its ends (a choice)."""

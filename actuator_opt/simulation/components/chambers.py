@@ -11,7 +11,7 @@ from ...models import chamber, oil_energy
 from ...models.cavity import cavity
 from ...models.fluid import ATMOSPHERIC_PRESSURE
 from ...studies.plant import Oil
-from ..components.circuit import Circuit
+from .circuit import Circuit
 
 DEEPEST = -12.0
 """Travel into a stop, relative to half the dead volume's length, that leaves 6e-6 of it (a

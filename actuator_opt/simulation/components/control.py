@@ -7,7 +7,7 @@ from math import inf
 
 from ...base.numeric import clip, where
 from ...base.symbolic import Expression
-from ..components.circuit import Circuit
+from .circuit import Circuit
 
 HOLD_BAND = 1e-3
 """Share of the full signal over which the integral part stops before the limit (a choice: the

@@ -9,8 +9,8 @@ from ...evaluation.springs import Give
 from ...models import forces
 from ...models.valve import edge_coefficient, viscosity_corrected
 from ...studies.plant import ValveData
-from ..components.circuit import Circuit
 from . import chambers, valve
+from .circuit import Circuit
 
 WHOSE = "load_"
 

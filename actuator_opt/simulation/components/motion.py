@@ -6,7 +6,7 @@ from ...base.numeric import where
 from ...base.quantities import INPUTS, SCENARIOS
 from ...base.symbolic import Expression, Symbol
 from ...models import end_stop, linkage
-from ..components.circuit import Circuit
+from .circuit import Circuit
 from .signals import rate
 
 POSITION = 1e-10

@@ -10,8 +10,8 @@ from ...base.symbolic import Expression, Symbol
 from ...design.scenario.components import ENDS
 from ...evaluation.circuit import Chamber
 from ...models import one_way_valve, reducing_valve
-from ..components.circuit import Circuit
 from .chambers import node
+from .circuit import Circuit
 
 FLOW = 1e-12
 """Error tolerance of a flow [m^3/s]."""

@@ -7,9 +7,9 @@ from typing import NamedTuple
 from ...base.quantities import SCENARIOS
 from ...base.symbolic import Expression, Symbol
 from ...models import wilson
-from ..components.circuit import Circuit
 from ..system import System
 from .chambers import node
+from .circuit import Circuit
 
 SPEED = 1e-8
 ANGLE = 1e-9

@@ -12,7 +12,7 @@ from ...design.scenario.components import FRICTIONS
 from ...design.scenario.model import Friction as Stated
 from ...models import friction, lugre
 from ...studies.plant import Plane, Plant
-from ..components.circuit import Circuit, Start
+from .circuit import Circuit, Start
 
 LEAST = 1e-3
 """Least friction level [N]: bristles need a positive one."""
