@@ -411,4 +411,4 @@ def ultimate_gain_by_swinging(
             gain = float(brentq(lambda k: last(k).real, low, high, rtol=1e-12))
             return gain, 2 * math.pi / abs(last(gain).imag)
         low = high
-    raise ValueError(f"no swinging up to {gains[1]}")
+    raise ValueError(f"no oscillation up to {gains[1]}")

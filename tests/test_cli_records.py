@@ -197,7 +197,7 @@ def test_constant_velocity_gives_no_stribeck_curve(tmp_path):
         (["--cutoff", "30 mm"], 2, "--cutoff"),
         (["--cutoff", "400 Hz"], 3, "too few for a cut-off"),
         (["--column", "p1"], 2, "CHANNEL=NAME"),
-        (["--column", "p9=a"], 3, "no channel"),
+        (["--column", "p9=a"], 3, "not a channel"),
         (["--mass", "-1 kg"], 2, "--mass"),
         (["--order", "0"], 2, "order"),
         (["--span", "0 mm"], 2, "--span"),

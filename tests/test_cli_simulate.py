@@ -260,7 +260,7 @@ def test_a_load_that_no_pressure_holds_is_named(short):
     assert run("simulate", str(motor), "--set=motor.torque[0].value=20 N*m").code in (0, 1)
     short.write_text(SHORT + "load: {force: [{shape: constant, value: 12 kN}]}\n")
     result = run("simulate", str(short))
-    assert "margins of the linear loop say nothing" in " ".join(result.out.split())
+    assert "margins of the linear loop are meaningless" in " ".join(result.out.split())
 
 
 def test_a_run_that_ends_says_where_the_actuator_was(tmp_path):
@@ -284,7 +284,7 @@ def test_a_run_that_ends_says_where_the_actuator_was(tmp_path):
     place = re.match(r"at 0\.1\d+ s: .*position of the piston (-[\d.]+) mm, speed", result.err)
     assert -2.0 < float(place[1]) < -1.95
     assert "pressure in chamber B -1.0" in result.err
-    assert "the joint comes to its dead point" in result.err
+    assert "the joint reaches its dead centre" in result.err
 
 
 @pytest.mark.parametrize("name", sorted(one.name for one in DESIGNS.glob("*.yaml")))
@@ -352,14 +352,14 @@ def test_a_relief_valve_takes_the_pumps_flow(short):
         "supply.relief.rated_flow: 20 l/min: less than the pump delivers (30 l/min)" in result.err
     )
     said = " ".join(run("simulate", str(short)).out.split())
-    assert "begins at 210 bar (supply.pressure), pump and relief valve come to rest near" in said
+    assert "starts at 210 bar (supply.pressure), but pump and relief valve settle near" in said
 
 
 def test_pressure_beyond_proof_and_coarse_samples_are_told(short):
     """Above the proof pressure a note says so; a rise within four samples has no figures."""
     short.write_text(SHORT, encoding="utf-8")
     said = " ".join(run("simulate", str(short), "--set=initial.pressure_a=350 bar").out.split())
-    assert "The pressure in chamber A peaks at 350 bar, beyond the proof of 315 bar" in said
+    assert "The pressure in chamber A peaks at 350 bar, above the proof pressure of 315 bar" in said
     coarse = run("simulate", str(short), "--set=sample_time=15 ms", "--json")
     assert coarse.code == 1
     rise = json.loads(coarse.out)["results"]["rise_time"]

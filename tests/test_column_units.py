@@ -34,7 +34,7 @@ def test_si_is_m_s_pa_n_and_kelvin():
     for name, values in {"p1": (2e6, 3e6), "x": (0.05, 0.06), "F_L": (-70, 80)}.items():
         np.testing.assert_array_equal(record[name], values)
     np.testing.assert_array_equal(record["T"], [313.15, 314.15])
-    assert 'SI units, the header states none: "t", "p1", "x", "F_L", "T"' in record.notes
+    assert 'SI units used, as the header states none: "t", "p1", "x", "F_L", "T"' in record.notes
 
 
 def test_a_unit_in_the_header_wins_over_si():
@@ -67,7 +67,7 @@ def test_a_file_names_units_by_column(name, text, tmp_path):
 @pytest.mark.parametrize(
     ("name", "text", "says"),
     [
-        ("u.csv", "t,s\np1\n", ':2: "p1" is no column with its unit; write the column'),
+        ("u.csv", "t,s\np1\n", ':2: "p1" is not a column with its unit; write the column'),
         ("u.csv", "t,s\nt,ms\n", ':2: column "t" is named twice; delete one line'),
         ("u.yaml", "t: s\np1:\n", ':2:1: column "p1" has no unit; write e.g. p1: bar'),
         ("u.yaml", "t: s\nt: ms\n", ":2"),
@@ -90,7 +90,7 @@ def test_a_contradiction_is_a_fault():
     """A file that states bar where the header states psi; one unit by two names is none."""
     text = "t [s],p1 [psi],T [°C]\n0,1,20\n1,2,20\n"
     (line,) = refused(text, units=column_units({"p1": "bar"}))
-    assert 'column "p1" is in psi by the header, not bar; correct one of them' in line
+    assert 'column "p1" is in psi according to the header, not bar; correct one of them' in line
     same = parse_record(text, units=column_units({"p1": "psi", "T": "degC"}))
     assert same["T"][0] == pytest.approx(293.15)
     absolute = "t [s],p1 [bara]\n0,1\n1,2\n"

@@ -402,7 +402,7 @@ def test_missing_samples_of_what_is_not_needed_break_nothing():
     motion = condition(but(record, T=half, v=half))
     assert len(motion.pieces) == 1
     motion = condition(but(record, T=np.nan * half))
-    assert "T has no sample: left out" in motion.notes
+    assert "T has no samples: left out" in motion.notes
     assert "T" not in motion.quality
 
 
@@ -473,11 +473,14 @@ def test_constant_channels_and_coarse_sensors():
             lambda t: t[:150],
             "the record lasts 0.149 s, too short for a filter at 30 Hz; give 0.2 s",
         ),
-        (lambda t: np.where(t == t[7], np.nan, t), "r.csv:9: no time; give every sample its time"),
+        (
+            lambda t: np.where(t == t[7], np.nan, t),
+            "r.csv:9: missing time; give a time",
+        ),
         (lambda t: np.where(t == t[7], t[6], t), "r.csv:9: time stands still at 0.006 s; write"),
-        (lambda t: np.floor(t * 500) / 500, "stands still at 0 s, 5000 times in all; write time"),
+        (lambda t: np.floor(t * 500) / 500, "stands still at 0 s, 5000 times in total; write time"),
         (lambda t: np.where(t > 5, t - 3, t), "r.csv:5003: time runs backwards at 2.001 s; sort"),
-        (lambda t: t[::-1], "runs backwards at 9.998 s, 9999 times in all; sort the lines by"),
+        (lambda t: t[::-1], "runs backwards at 9.998 s, 9999 times in total; sort the lines by"),
         (lambda t: 1e3 * t, "1 samples per second are too few for a cut-off of 30 Hz; sample fast"),
         (lambda t: 1e3 * t, '--cutoff "0.333 Hz" at most; or is t in ms?'),
         (
@@ -538,14 +541,14 @@ def test_broken_channels_are_named():
     """A needed channel without samples, or torn to shreds, is named as the cause."""
     record, _ = made()
     none = np.full(record.time.size, np.nan)
-    assert "p2 has no sample; mend the sensor, or leave the column out" in refusal(
+    assert "p2 has no samples; repair the sensor, or leave the column out" in refusal(
         but(record, p2=none)
     )
     torn = np.where(np.arange(record.time.size) % 100 < 20, np.nan, record["p1"])
     line = refusal(but(record, p1=torn))
-    assert "no stretch of 0.2 s is unbroken: p1 has 2000 missing, 0 stray and 0 clipped" in line
+    assert "no section of 0.2 s is uninterrupted: p1 has 2000 missing, 0 stray" in line
     gaps = np.flatnonzero(np.arange(record.time.size) % 100 >= 20)
-    assert "no stretch of 0.2 s is unbroken: gaps in time" in refusal(kept(record, gaps))
+    assert "no section of 0.2 s is uninterrupted: gaps in time" in refusal(kept(record, gaps))
 
 
 def test_times_that_come_in_bunches_are_refused():
@@ -554,7 +557,7 @@ def test_times_that_come_in_bunches_are_refused():
     bunched = np.sort(np.concatenate([record.time, record.time + 1e-9, record.time + 2e-9]))
     tripled = {name: np.repeat(one, 3) for name, one in record.channels.items()}
     line = refusal(Record(bunched, tripled, "r.csv", first_line=2))
-    assert "r.csv:2: sample times are too uneven: most are 1e-09 s apart, the mean is" in line
+    assert "r.csv:2: sample times are too uneven: most are 1e-09 s apart, but the mean is" in line
 
 
 def test_a_record_without_position_is_refused():

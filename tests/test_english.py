@@ -16,6 +16,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1] / "actuator_opt"
 
 PACKAGES = (
+    "api",
     "base",
     "cli",
     "design",
@@ -24,10 +25,16 @@ PACKAGES = (
     "exports",
     "finite_elements",
     "friction",
+    "identification",
     "joints",
     "lubrication",
     "metrics",
+    "optimisation",
     "seals",
+    "simulation",
+    "studies",
+    "sweeps",
+    "uncertainties",
 )
 """Packages whose English is plain."""
 

@@ -137,7 +137,7 @@ def test_knee_with_thick_rings():
     result = run("optimise", KNEE, "--json", "--starts", "1", *words)
     assert result.code == 1
     card = result.json["infeasibility"]
-    assert card["sentence"].startswith("nothing fits: the smallest change")
+    assert card["sentence"].startswith("infeasible: the smallest change")
     assert "315 N -> " in card["sentence"]
     assert "evidence, not proof" in card["evidence"]
     relaxed = sets | {row["parameter"]: row["needed_text"] for row in card["joint"]}
@@ -168,7 +168,7 @@ def test_a_fixed_dimension_that_alone_is_enough_comes_first(path, now):
     result = solved(actuator)
     card, first = result.infeasibility, result.infeasibility.cures[0]
     assert (first["kind"], first["parameter"]) == ("dimension", path)
-    assert card.sentence.startswith(f"nothing fits: free {path} {now} -> {first['needed_text']} (")
+    assert card.sentence.startswith(f"infeasible: free {path} {now} -> {first['needed_text']} (")
     ranks = [KINDS.index(cure["kind"]) for cure in card.cures]
     assert ranks == sorted(ranks)
     assert all(cure["advised"] is (cure["kind"] != "safety factor") for cure in card.cures)

@@ -221,7 +221,7 @@ def test_what_a_report_needs_is_asked_for_in_one_line():
         ao.report(ao.simulate(SCENARIO))
     with pytest.raises(UsageError, match="BendingResult has no report"):
         ao.report(object.__new__(ao.BendingResult))
-    with pytest.raises(UsageError, match='date "today" is no date'):
+    with pytest.raises(UsageError, match='date "today" is not a date'):
         ao.report(actuator, date="today")
     with pytest.raises(TypeError, match="float is no result"):
         ao.report(1.0)

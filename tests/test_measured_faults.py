@@ -94,7 +94,7 @@ def test_an_input_that_ends_early_is_held_and_told(replay):
     moving = [f"{k / 1e3:.3f},{0.01 * k}" for k in range(191)]
     found = ao.simulate(replay(moving))
     assert found.values["hold_drift"] is None
-    assert found.why["hold_drift"].endswith("still moves it in the last tenth")
+    assert found.why["hold_drift"].endswith("still cause motion in the last tenth")
 
 
 def test_an_input_that_begins_late_is_told(replay):
@@ -123,9 +123,9 @@ def test_a_record_acts_until_its_last_change():
     [
         ("t [s],U [V],U [V]\n0,1,1\n1,2,2\n", '2 columns are called "U"', 1),
         ("t [s],V [V]\n0,1\n1,2\n", 'no column "U"', 1),
-        ("t [s],U [V]\n", 'column "U" holds no course', 1),
-        ("t [s],U [V]\n0,nan\n1,2\n", 'column "U" holds no course', 1),
-        ("t [s],U [V]\n0,1\n,2\n2,1\n", "no time", 3),
+        ("t [s],U [V]\n", 'column "U" has fewer than two samples', 1),
+        ("t [s],U [V]\n0,nan\n1,2\n", 'column "U" has fewer than two samples', 1),
+        ("t [s],U [V]\n0,1\n,2\n2,1\n", "missing time", 3),
         ("t [s],U [V]\n0,1\n2,2\n1,1\n", "time does not increase", 4),
         ("t [s],U [mm]\n0,1\n2,2\n", 'column "U": ', 1),
         ("t [s],U [V]\n0,1\n2,x\n", '"x" is not a number', 3),
@@ -203,8 +203,8 @@ def test_a_record_that_ends_early_is_compared_while_it_lasts():
     found = overlay(ao.simulate(trial()), record())
     assert found.residuals["position"].count == 181 - 21
     assert (
-        "all channels: measured from 0 to 0.09 s, simulated from 0 to 0.1 s: compared where both "
-        "are" in found.notes
+        "all channels: measured from 0 to 0.09 s, simulated from 0 to 0.1 s: only the overlap "
+        "is compared" in found.notes
     )
     late = Measured({"position": tuple(one[40:] for one in record().channels["position"])})
     notes = overlay(ao.simulate(trial()), late).notes
@@ -292,12 +292,16 @@ def of_lines(head, count=30, cells="{k},{k}.5"):
         (of_lines("t [s],p1 [bar]", cells="{k},1e300"), "fewer than 10 numbers in p1", None),
         (of_lines("t [s],p1 [bar],p1 [bar]", cells="{k},1,1"), 'columns "p1 [bar]" and', 1),
         (of_lines("t [s],time [s],x [mm]", cells="{k},{k},1"), 'columns "t [s]" and "time', 1),
-        (of_lines("t [s],presure_1 [bar]"), "no channel that a simulation tells", None),
+        (of_lines("t [s],presure_1 [bar]"), "no channel matches a simulated signal", None),
         (of_lines("t [s],p1 [mm]"), 'column "p1": mm is a length', 1),
         (of_lines("t [s],p1"), 'column "p1" states no unit', 1),
-        (of_lines("t [s],p1 [bar]", cells="{k},5,{k},5"), "4 cells, the header has 2 columns", 2),
-        (of_lines("t [s],p1 [bar]") + "\n3,1", "time does not rise at 3 s", 32),
-        (of_lines("t [s],p1 [bar]", cells="1,{k}"), "time does not rise at 1 s", 3),
+        (
+            of_lines("t [s],p1 [bar]", cells="{k},5,{k},5"),
+            "4 cells, but the header has 2",
+            2,
+        ),
+        (of_lines("t [s],p1 [bar]") + "\n3,1", "time does not increase at 3 s", 32),
+        (of_lines("t [s],p1 [bar]", cells="1,{k}"), "time does not increase at 1 s", 3),
     ],
 )
 def test_bad_records_are_told_in_one_line(text, message, line):
@@ -336,7 +340,7 @@ def test_a_record_of_a_million_samples_is_thinned_for_a_fit():
     assert overlay(made, wide).residuals["pressure_a"].count == 1_000_000
     own = plant(trial().actuator.subject())
     found = fit(trial().scenario, own, {}, wide, ("air_content",))
-    assert "pressure_a: one of 250 samples is fitted to, 4000 at most" in found.doubts
+    assert "pressure_a: the fit uses one of 250 samples, 4000 at most" in found.doubts
     assert found.values["air_content"] == pytest.approx(0.005, rel=0.1)
 
 
@@ -344,7 +348,7 @@ def test_a_record_that_stands_still_is_not_fitted_to():
     """No channel that moves: one line, not a search."""
     still = Measured({"position": (np.linspace(0, 0.1, 50), np.full(50, 0.055))})
     own = plant(trial().actuator.subject())
-    with pytest.raises(InputError, match="every channel stands still; fit to a record that moves"):
+    with pytest.raises(InputError, match="every channel is constant; fit to a record with motion"):
         fit(trial().scenario, own, {}, still, ("air_content",))
 
 
@@ -359,7 +363,7 @@ def test_a_fit_at_the_end_of_a_range_says_which_way():
     own = plant(trial().actuator.subject())
     found = fit(trial().scenario, own, {}, Measured({"pressure_a": (time, more)}), ("air_content",))
     assert found.parameters["air_content"].at_bound == "upper"
-    assert any("upper end of its range, 20 %: the record asks for more" in o for o in found.doubts)
+    assert any("upper end of its range, 20 %: the record suggests more" in o for o in found.doubts)
 
 
 @pytest.mark.parametrize("kind", case.KINDS)

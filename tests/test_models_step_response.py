@@ -111,12 +111,12 @@ def test_a_wider_band_settles_sooner():
 @pytest.mark.parametrize(
     ("changes", "line"),
     [
-        ({"target": 0.0}, "a step from 0 to 0; give a start and a target that differ"),
+        ({"target": 0.0}, "a step from 0 to 0; give different values for start and target"),
         ({"band": 0.0}, "band 0 of the step; give one between 0 and 1"),
         ({"response": [0.0, 1.0]}, r"response has shape \(2,\), time \(3,\)"),
-        ({"response": [0.0, math.nan, 1.0]}, "response of sample 1 is nan; leave the sample out"),
-        ({"time": [0.0, 2.0, 1.0]}, "time falls from sample 1 to the next; sort the samples"),
-        ({"time": [1.0, 1.0, 1.0]}, "time stands still; give samples of a longer time"),
+        ({"response": [0.0, math.nan, 1.0]}, "response of sample 1 is nan; remove the sample"),
+        ({"time": [0.0, 2.0, 1.0]}, "time decreases after sample 1; sort the samples"),
+        ({"time": [1.0, 1.0, 1.0]}, "time does not advance; give samples over a longer time"),
         ({"time": [1.0], "response": [1.0]}, "1 samples; give 2 or more"),
     ],
 )
@@ -219,9 +219,12 @@ def test_standard_error_of_the_stiffness_is_its_scatter():
 @pytest.mark.parametrize(
     ("changes", "line"),
     [
-        ({"position": np.full(101, 0.08)}, "the position does not swing at 5 Hz; give the freq"),
-        ({"frequency": 0.4}, "1 s hold less than one cycle of 0.4 Hz; give a longer record"),
-        ({"frequency": -5.0}, "1 s hold less than one cycle of -5 Hz; give a longer record"),
+        (
+            {"position": np.full(101, 0.08)},
+            "the position does not oscillate at 5 Hz; give",
+        ),
+        ({"frequency": 0.4}, "1 s are less than one cycle of 0.4 Hz; give a longer record"),
+        ({"frequency": -5.0}, "1 s are less than one cycle of -5 Hz; give a longer record"),
         ({"frequency": 50.0}, "samples every 0.01 s do not show 50 Hz; give more than two samples"),
         ({"force": np.zeros(100)}, r"force has shape \(100,\), time \(101,\); give one number"),
     ],
@@ -263,7 +266,7 @@ def test_windows_of_a_stroke_show_its_stiffness():
 @pytest.mark.parametrize(
     ("frequency", "cycles", "line"),
     [
-        (1.0, 5, "2 s hold no 5 cycles of 1 Hz; take fewer cycles"),
+        (1.0, 5, "2 s are shorter than 5 cycles of 1 Hz; take fewer cycles"),
         (1.0, 0, "windows of 0 cycles at 1 Hz; give a positive frequency and 1 cycle or more"),
         (40.0, 1, "a window of 0.025 s holds fewer than 5 samples; take more cycles"),
     ],

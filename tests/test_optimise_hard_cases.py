@@ -130,7 +130,7 @@ def test_a_metric_that_raises_somewhere(plain):
     found = best(required("min: 0.5"), own=raises)
     assert found.status == "optimal"
     assert found.objective_value == pytest.approx(plain.objective_value, rel=1e-9)
-    (told,) = [w for w in found.warnings if "own gave no number at" in w]
+    (told,) = [w for w in found.warnings if "own gave no value at" in w]
     assert "ValueError: too big" in told
     share = float(told.split("at ")[1].split(" %")[0])
     # log(30/25)/log(30/20) of the sweep; the local run adds few points
@@ -182,7 +182,7 @@ def test_a_metric_that_is_nan_somewhere(plain):
     found = best(required("min: 0.5"), own=lambda v: 100 * np.sqrt(0.025 - v["cylinder.bore"]))
     assert found.status == "optimal"
     assert found.objective_value == pytest.approx(plain.objective_value, rel=1e-9)
-    assert any("own gave no number at" in w for w in found.warnings)
+    assert any("own gave no value at" in w for w in found.warnings)
 
 
 @pytest.mark.parametrize("change", [required(), AIMED])
@@ -190,7 +190,7 @@ def test_a_metric_that_is_nan_everywhere(change):
     """The outcome is undefined, the culprit named, and the design as it stands handed back."""
     found = best(change, own=lambda v: np.nan * v["cylinder.bore"])
     assert found.status == "undefined"
-    assert any(w == "own gave no number at 100 % of the points tried, which count as not allowed"
+    assert any(w == "own gave no value at 100 % of the points tried, which count as infeasible"
                for w in found.warnings)  # fmt: skip
     assert {v.path: v.value for v in found.variables}["cylinder.bore"] == pytest.approx(0.022)
 

@@ -101,8 +101,8 @@ def test_nan_in_the_box_is_screened(algorithm):
         ("G_MLSL_LDS", r"takes no constraints.*write AUGLAG\+LD_LBFGS"),
         ("AUGLAG_EQ+LD_LBFGS", r"leaves the inequalities to LD_LBFGS.*write AUGLAG\+LD_LBFGS"),
         ("LD_SLSPQ", r'no algorithm "LD_SLSPQ".*did you mean LD_SLSQP'),
-        ("LD_SLSQP+LD_MMA", "takes no algorithm inside"),
-        ("AUGLAG+AUGLAG", "cannot stand inside"),
+        ("LD_SLSQP+LD_MMA", "takes no inner algorithm"),
+        ("AUGLAG+AUGLAG", "cannot be the inner algorithm of"),
         ("", "no algorithm"),
     ],
 )
@@ -114,7 +114,7 @@ def test_unsuitable_algorithms_are_refused(algorithm, message):
 
 def test_too_many_variables_are_refused():
     """AGS is for at most 10 variables."""
-    with pytest.raises(UsageError, match="GN_AGS is for at most 10 variables, not 11"):
+    with pytest.raises(UsageError, match="GN_AGS supports at most 10 variables, not 11"):
         solve(easy(11), algorithm="GN_AGS")
 
 

@@ -130,7 +130,7 @@ def test_sizes_a_front_does_not_keep_are_told():
     bore = "  cylinder.bore:\n    lower: 20 mm\n"
     actuator = ao.read(bench((bore, bore + "    sizes: iso_3320\n")))
     found = ao.pareto(actuator, ["mass:min", "stiffness_min:max"], n=3, checks=0)
-    told = "sizes are not kept, the front is of free dimensions: cylinder.bore"
+    told = "listed sizes are ignored, as the front uses continuous dimensions: cylinder.bore"
     assert told in found.to_dict()["warnings"]
     assert any(told in remark for remark in remarks(found))
 
@@ -163,4 +163,4 @@ def test_an_end_that_is_not_found_is_named(tmp_path):
     asked = ["--objective", "mass:min", "--objective", "own:max", "--plugin", plugin]
     result = run("pareto", "-", *asked, "-n", "5", "--checks", "0", stdin=bench().encode())
     assert result.code == 4
-    assert "not found, own:max: every requirement is met" in " ".join(result.out.split())
+    assert "failed, own:max: all requirements are met" in " ".join(result.out.split())

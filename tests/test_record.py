@@ -135,7 +135,9 @@ def test_absolute_pressures_become_gauge_and_say_so(unit, factor):
     record = parse_record(f"t [s],p1 [{unit}]\n0,200\n1,300\n")
     expected = [200 * factor - ATMOSPHERE, 300 * factor - ATMOSPHERE]
     np.testing.assert_allclose(record["p1"], expected, rtol=1e-13)
-    assert record.notes == ("p1: absolute pressure, less the standard atmosphere of 1.01325 bar",)
+    assert record.notes == (
+        "p1: absolute pressure, converted to gauge with the standard atmosphere of 1.01325 bar",
+    )
 
 
 @pytest.mark.parametrize(
@@ -185,7 +187,7 @@ def test_huge_and_negative_numbers_stay():
 def test_unused_columns_are_noted():
     """Columns that are no channel are named once, text among them read without harm."""
     record = parse_record("t [s],state,x [mm],,valve [V]\n0,run;go,1,,2\n1,#,2,,\n")
-    assert record.notes == ('columns that are no channel: "state", "valve [V]"',)
+    assert record.notes == ('columns that are not channels: "state", "valve [V]"',)
 
 
 @pytest.mark.parametrize(
@@ -229,8 +231,8 @@ def test_columns_named_by_the_caller(header, columns):
         ("t [s],p1 [baz]\n0,1\n", {}, 'column "p1": unknown unit "baz"; use one of'),
         ("t [s],p1 [bar],p1 [bar]\n0,1,2\n", {}, "are both p1; rename or delete one"),
         ("t [s],p1 [bar],PA [bar]\n0,1,2\n", {}, 'both p1; say which with --column "p1=NAME"'),
-        ("t [s],x [mm]\n0,1\n\n1\n", {}, "r.csv:4: 1 cells, the header has 2 columns"),
-        ("t [s],x [mm]\n0,1\n1,2,3\n", {}, "r.csv:3: 3 cells, the header has 2 columns"),
+        ("t [s],x [mm]\n0,1\n\n1\n", {}, "r.csv:4: 1 cells, but the header has 2 columns"),
+        ("t [s],x [mm]\n0,1\n1,2,3\n", {}, "r.csv:3: 3 cells, but the header has 2 columns"),
         ("t [s],x [mm]\n0,0,1\n1,0,2\n", {}, "r.csv:2: 3 cells"),
         ("t [s],x [mm]\n0,1,5\n1,0,2\n", {}, "separate columns by semicolons"),
         ("t [s],x [mm]\n0,1\n1,0x1F\n", {}, 'r.csv:3: "0x1F" is not a number; write a number, or'),
@@ -238,12 +240,12 @@ def test_columns_named_by_the_caller(header, columns):
         ("t [s];x [mm]\n0;1.234,5\n", {}, 'r.csv:2: "1.234.5" is not a number'),
         ("t [s],x [mm]\n12:00:01.5,1\n12:00:02,2\n", {}, "is a clock time or a date; write the"),
         ("t [s],x [mm]\n2024-05-01,1\n", {}, "is a clock time or a date; write the time as"),
-        ("t [s],x [mm]\n0,\x1b[31mred\n", {}, "r.csv:2: no text: byte 0x1b"),
-        ("t [s],x [mm]\n0,\x00\n", {}, "r.csv:2: no text: byte 0x00; export the record as CSV"),
-        (PLAIN, {"q": "x"}, 'r.csv:1: "q" is no channel; use one of t, p1, p2, x, v, F_L, T, w'),
+        ("t [s],x [mm]\n0,\x1b[31mred\n", {}, "r.csv:2: not text: byte 0x1b"),
+        ("t [s],x [mm]\n0,\x00\n", {}, "r.csv:2: not text: byte 0x00; export the record as CSV"),
+        (PLAIN, {"q": "x"}, 'r.csv:1: "q" is not a channel; use one of t, p1, p2, x, v, F_L, T, w'),
         (PLAIN, {"v": "p11"}, 'no column "p11" for v; did you mean "p1"?'),
         (PLAIN, {"v": ""}, 'no column "" for v'),
-        (PLAIN, {"p1": "p2", "p2": "p2"}, 'column "p2 [bar]" is named for p1 and p2'),
+        (PLAIN, {"p1": "p2", "p2": "p2"}, 'column "p2 [bar]" is given for both p1 and p2'),
         ("t [s],a [mm],a [mm]\n0,1,1\n", {"x": "a"}, '2 columns are called "a"; rename all but'),
     ],
 )
@@ -265,7 +267,9 @@ def test_bytes_of_a_file_become_text():
         record = parse_record(decode_record(text.encode(encoding), "r.csv"))
         np.testing.assert_allclose(record["x"], [1e-6, 2e-6])
         np.testing.assert_allclose(record["T"], [293.15, 294.15])
-    with pytest.raises(InputError, match=r"r\.csv: a workbook or an archive, not text; save the"):
+    with pytest.raises(
+        InputError, match=r"r\.csv: the file is a workbook or an archive, not text; save"
+    ):
         decode_record(b"PK\x03\x04\x14\x00", "r.csv")
     with pytest.raises(InputError, match=r"r\.csv: the file is larger than 1 MB; leave out"):
         decode_record(b"0" * 1_000_001, "r.csv", most=1_000_000)

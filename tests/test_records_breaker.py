@@ -74,7 +74,7 @@ def test_a_value_no_design_can_state_is_left_with_its_reason():
     high["static"] = static._replace(**{k: 4 * v for k, v in static._asdict().items()
                                         if k not in ("identifiable",)})  # fmt: skip
     other = calibration(replace(whole, stribeck=replace(whole.stribeck, parameters=high)))
-    assert "a design takes 1 to 5" in other.left["breakaway_ratio"]
+    assert "a design accepts 1 to 5" in other.left["breakaway_ratio"]
     for path in found.values():
         if not path.endswith("breakaway_ratio"):
             assert other.values()[path] == pytest.approx(found.values()[path])
@@ -230,5 +230,5 @@ def test_other_compounds_take_the_measured_friction_over_and_it_is_said():
     found = ao.calibrate(identified("plateaus"), design=ao.read(text), search=False)
     assert set(found.actuator.design.choices) == {"seals.rod.compound"}
     said = " ".join(found.calibration.doubts)
-    assert "choices of seals.rod.compound take it over" in said
+    assert "choices of seals.rod.compound use it too" in said
     assert "fixed as measured: seals.rod.friction_coefficient" in said

@@ -72,7 +72,7 @@ def test_numbers_are_those_of_the_json(width):
             value = size * plain[key][bound]
             assert any(one == pytest.approx(value, rel=1e-3) for one in shown)
     assert f"{plain['cycles']} cycles lose {100 * plain['hysteresis']:.1f} %" in words
-    assert f"shear deflects {100 * plain['shear_share']:.1f} %" in words.lower()
+    assert f"shear deflection is {100 * plain['shear_share']:.1f} %" in words.lower()
     assert f"{plain['samples']} samples" in words
     for doubt in plain["doubts"]:
         assert doubt.lower() in words.lower()

@@ -69,7 +69,7 @@ def test_a_design_that_cannot_meet_its_limits_says_so():
     data = page(found)
     assert data["verdict"]["state"] == "infeasible"
     said = document.remarks(found.calibration, found.redesign)
-    assert any("no design meets every requirement" in words for words in said)
+    assert any("no design meets all requirements" in words for words in said)
     assert any("smallest change of limits" in words for words in said)
     assert not any("at its limit" in words for words in said)
 

@@ -262,8 +262,8 @@ def test_held_values_are_named():
 
 def test_channel_names_keep_their_letter():
     """A note about x begins with x; another note begins with a capital."""
-    found = replace(case.identified("sine"), notes=("x runs from -3.0 to 5 mm", "2 gaps", "late"))
-    assert rows.remarks(found) == ["x runs from −3.0 to 5 mm.", "2 gaps.", "Late."]
+    found = replace(case.identified("sine"), notes=("x ranges from -3.0 to 5 mm", "2 gaps", "late"))
+    assert rows.remarks(found) == ["x ranges from −3.0 to 5 mm.", "2 gaps.", "Late."]
 
 
 # ---- figures ----

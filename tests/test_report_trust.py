@@ -18,12 +18,12 @@ from actuator_opt.pages import trust
 from actuator_opt.rendering.blocks import Notes
 
 PROVEN = Certificate(
-    sentence="no design that meets the covered limits has less than 195 g: within 4.9 %",
+    sentence="no design that meets the covered limits has a mass below 195 g: within 4.9 %",
     evidence="6 of 6 starts led to this optimum",
     lower_bound=0.195,
     gap=0.049,
     covers=("stiffness_min", "seal_gap"),
-    dropped={"first-ply (leak) pressure": "its model is no closed expression"},
+    dropped={"first-ply (leak) pressure": "its model is not a closed expression"},
     boxes=12,
 )
 
@@ -34,7 +34,7 @@ def test_the_page_tells_what_is_proven_and_what_is_not():
     said = trust.proof(replace(best, certificate=PROVEN))
     assert said[0].endswith("within 4.9 %.")
     assert "stiffness_min, seal_gap" in said[1]
-    assert "first-ply (leak) pressure (its model is no closed expression)" in said[2]
+    assert "first-ply (leak) pressure (its model is not a closed expression)" in said[2]
     assert "6 of 6" in said[3]
     short = trust.proof(replace(best, certificate=PROVEN), shortened=True)
     assert "It covers 2 limits" in short[1]

@@ -124,8 +124,8 @@ FACTS = {"actuator_opt": "0.6.0", "command": "actuator-opt evaluate a.yaml", "so
         ({"command": "actuator-opt evaluate a --plugin own.py"}, "which is a program"),
         ({"command": "actuator-opt evaluate a --set bore"}, "PATH=VALUE"),
         ({"command": "actuator-opt optimise a --verify-dynamics no.yaml"}, "no such file"),
-        ({"command": 3}, "does not say its command"),
-        ({"source_name": None}, "does not say its source_name"),
+        ({"command": 3}, "does not state its command"),
+        ({"source_name": None}, "does not state its source_name"),
     ],
 )
 def test_commands_that_cannot_be_run_again(tmp_path, facts, words):

@@ -92,7 +92,7 @@ def test_no_room_for_the_reserve_is_infeasible_in_words():
     """The rod may not grow as far as the yield asks: infeasible, with the limit named."""
     found = optimum(0.99, upper="15.1 mm")
     assert found.status == "infeasible"
-    assert "no design was found that keeps the reserves" in found.robust.sentence
+    assert "no design meets the reserves" in found.robust.sentence
     assert "thick_rod" in found.robust.sentence
     assert found.infeasibility is not None
     assert not found.robust.reached
@@ -115,7 +115,7 @@ def test_no_size_with_enough_yield_saves_nothing(tmp_path):
     found = optimum(0.99, sizes=sizes)
     assert found.rounding is not None
     assert not found.rounding.met
-    assert found.robust.sentence.startswith("no design of standard sizes was found that keeps")
+    assert found.robust.sentence.startswith("no design of standard sizes meets")
     assert found.robust.nominal_objective == pytest.approx(plain_mass(sizes), rel=1e-9)
     file, plugin, saved = tmp_path / "d.yaml", tmp_path / "p.py", tmp_path / "saved.yaml"
     file.write_text(one_wish(sizes=sizes), encoding="utf-8")
@@ -137,8 +137,8 @@ def test_choices_are_those_of_the_plain_optimum_and_said_so():
     )
     assert found.choices.best == plain.choices.best
     assert found.best.rod.material == found.choices.best["rod.material"].split()[0]
-    assert found.choices.sentence.endswith("without the reserves of the yield")
-    assert "the choices are those of the optimum without reserves" in found.robust.sentence
+    assert found.choices.sentence.endswith("without yield reserves")
+    assert "choices come from the optimum without reserves" in found.robust.sentence
     assert found.robust.reached
 
 
@@ -161,7 +161,7 @@ def test_the_certificate_speaks_of_limits_without_reserves():
     assert found.certificate is not None
     if found.certificate.lower_bound is not None:
         assert found.certificate.lower_bound <= found.robust.nominal_objective * (1 + 1e-6)
-        assert "without the reserves of the yield" in found.certificate.sentence
+        assert "without yield reserves" in found.certificate.sentence
 
 
 def test_reserves_refused_are_those_of_the_yield():
@@ -208,7 +208,7 @@ def test_impossible_targets_are_one_line(target, tmp_path):
     result = run("optimise", file, "--yield", target, "--json")
     assert result.code == 2
     (fault,) = result.json["errors"]
-    assert "cannot be asked for" in fault["message"]
+    assert "is outside the valid range" in fault["message"]
 
 
 def test_the_report_tells_of_it(tmp_path):

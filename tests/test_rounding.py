@@ -209,7 +209,7 @@ def test_choices_are_the_whole_plies_within_bounds(one, lower, room, balanced, a
     room += 1e-9 * step
     wanted = [k * step for k in range(1, 100) if lower - 1e-9 * step <= k * step <= lower + room]
     if not wanted:
-        with pytest.raises(InputError, match="no whole number of"):
+        with pytest.raises(InputError, match="not a whole number of"):
             sizes_of(changed, PLIES, MATERIALS)
         return
     (listed,) = sizes_of(changed, PLIES, MATERIALS).listed
@@ -380,7 +380,7 @@ HALF = two_layers((FREE_AXIAL, ""), (AXIAL + PLY, AXIAL.replace("1.6", "1.7") + 
 @pytest.mark.parametrize(("text", "said"), [
     (NO_PLY, {"barrel.layup[1].thickness": "ply_thickness", "barrel.layup[2].thickness": "ply_t"}),
     (ONE_PLY, {"barrel.layup[2].thickness": "states no ply_thickness"}),
-    (HALF, {"barrel.layup[2].thickness": "no whole number of pairs of plies of 0.2 mm"}),
+    (HALF, {"barrel.layup[2].thickness": "not a whole number of pairs of plies of 0.2 mm"}),
 ])  # fmt: skip
 def test_layers_whose_plies_cannot_be_whole_are_refused(text, said, words):
     """However whole plies are asked: by layer, with its line and a remedy; metal has no plies."""
@@ -402,15 +402,15 @@ def test_a_bore_of_standard_size_alone_is_no_design_to_build():
     assert loose.rounding.met
     assert path in misfits(loose.best)
     assert path in loose.rounding.unmade
-    assert "not one to build yet" in loose.shown
+    assert "not to be built yet" in loose.shown
     assert any(path in note for note in loose.rounding.notes)
     fibres = ao.optimise(ao.read(bench((BORE, block))), starts=1, prices=False)
     assert fibres.rounding.unmade == (path, "barrel.layup[2].thickness")
-    assert "the one to build" not in fibres.shown
+    assert "the design to build" not in fibres.shown
     whole = ao.optimise(ao.read(two_layers((BORE, block))), starts=1, prices=False,
                         whole_plies=True)  # fmt: skip
     assert whole.rounding.unmade == ()
-    assert "the one to build" in whole.shown
+    assert "the design to build" in whole.shown
 
 
 def asked(text, *words, code=0):
@@ -473,7 +473,7 @@ def test_terminal(tmp_path):
     [
         (two_layers((FREE_HOOP + FREE_AXIAL, "")), "variables", "nothing to round"),
         (two_layers((PLY, PLY.replace("0.2", "3"))), "barrel.layup[1].thickness",
-         "no whole number of pairs of plies of 3 mm lies between 0.5 mm and 4 mm"),
+         "not a whole number of pairs of plies of 3 mm lies between 0.5 mm and 4 mm"),
         (with_angle(("lower: 15 deg\n    upper: 60", "lower: 22 deg\n    upper: 40")),
          "barrel.layup[2].angle", "no allowed angle lies between 22 deg and 40 deg"),
     ],
@@ -554,7 +554,7 @@ def test_page_one_is_the_design_that_is_built(simple):
     assert data["verdict"]["lines"][0].startswith("whole plies: ")
     said = "".join(data["sentence"])
     assert "design of whole plies" in said.replace("\u200b", "")
-    assert "the one to build" in said
+    assert "the design to build" in said
     assert "before rounding" in quality(simple)
 
 

@@ -128,7 +128,7 @@ def test_own_metrics_come_back_where_their_file_is_named(folder, design, tmp_pat
     plugin.write_text(text + "\n")
     named = run("report", "last", "--out", tmp_path / "c", "--plugin", plugin)
     assert named.code == 0
-    assert f"was made with another {plugin} (its SHA-256 differs)" in named.err
+    assert f"was made with another version of {plugin} (its SHA-256 differs)" in named.err
     assert files(tmp_path / "a") == files(tmp_path / "c")
 
 

@@ -135,7 +135,7 @@ def test_channels_are_read_with_their_units():
         "shaft_speed": pytest.approx(2 * np.pi), "shaft_angle": pytest.approx(np.pi),
     }  # fmt: skip
     unknown, still = found.notes
-    assert unknown.startswith('columns that are no channel: "note"; channels are p1, p2, x')
+    assert unknown.startswith('columns that are not channels: "note"; channels are p1, p2, x')
     assert still == (
         "pressure_b, position, signal, flow_a, shaft_speed, shaft_angle: one value all the time in "
         "the record"
@@ -149,7 +149,7 @@ def test_missing_samples_are_left_out_channel_by_channel():
     assert found.channels["pressure_a"][0].tolist() == [0, 1, 2, *range(6, 20)]
     assert list(found.channels) == ["pressure_a"]
     assert found.notes[:2] == (
-        "position: 4 samples, left out: 10 tell something",
+        "position: 4 samples, left out: at least 10 are needed",
         "pressure_a: 3 samples are missing from 3 to 5 s, left out",
     )
 
@@ -166,16 +166,16 @@ def test_what_is_missing_is_told_with_its_place():
         "pressure_a: 3 samples are missing from 0.03 to 0.032 s, left out",
         "position: 6 samples are missing in 3 places, first at 0.005 s, last from 0.03 to 0.032 s, "
         "left out",
-        "position: one value all the time in the record",
+        "position: constant throughout the record",
     )
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("t [s],T [degC]\n0,20\n1,20\n", "no channel that a simulation tells"),
+        ("t [s],T [degC]\n0,20\n1,20\n", "no channel matches a simulated signal"),
         ("t [s],x [bar]\n0,1\n1,2\n", 'column "x"'),
-        ("t [s],x [mm]\n0,1\n2,2\n1,3\n", "time does not rise at 1 s"),
+        ("t [s],x [mm]\n0,1\n2,2\n1,3\n", "time does not increase at 1 s"),
         ("t [s],x [mm]\n0,1\n,2\n1,3\n", "no time"),
         ("x [mm]\n1\n", "no column t"),
     ],
@@ -248,10 +248,10 @@ def test_overlay_says_where_record_and_scenario_do_not_meet():
         "pressure_b": (time + 5, signals["pressure_b"]),
     })  # fmt: skip
     notes = overlay(run(scene, own, {}, None), record).notes
-    assert any("position begins at 90 mm in the record, at 80 mm" in one for one in notes)
+    assert any("position starts at 90 mm in the record, but at 80 mm" in one for one in notes)
     assert any("state sample_time" in one for one in notes)
     assert "not simulated here: shaft_speed" in notes
-    assert "no time in common: pressure_b" in notes
+    assert "no overlap in time: pressure_b" in notes
 
 
 def test_overlay_refuses_what_has_nothing_in_common():
@@ -347,7 +347,7 @@ def test_friction_over_the_pressures_keeps_its_shape():
     ("names", "message"),
     [
         ((), "no parameter to fit"),
-        (("air",), '"air" is no parameter'),
+        (("air",), '"air" is not a parameter'),
         (("mass", "mass"), "mass is named twice"),
         (("bristle_travel",), "bristle_travel has no effect: friction.model is stribeck"),
     ],
@@ -373,7 +373,7 @@ def test_parameters_without_effect_are_told():
     for name, there, body, why in (
         ("stribeck_speed", even, own, "static and Coulomb friction are alike; fit static with it"),
         ("valve_offset", scene, replace(own, valve=None), "the design has no valve"),
-        ("mass", held, own, "the ports of the valve are held"),
+        ("mass", held, own, "the ports of the valve are blocked"),
         ("valve_leakage", scene, tight, "it is a factor"),
     ):
         with pytest.raises(InputError, match=why):
@@ -463,7 +463,7 @@ def test_a_channel_that_stands_still_is_left_out():
     record = Measured({"pressure_a": whole["pressure_a"], "position": (time, 0 * values + 0.08)})
     found = fit(*case(air_content=0.005), {}, record, ("air_content",))
     assert found.values["air_content"] == pytest.approx(0.01, rel=0.05)
-    assert "position stands still in the record: not fitted to" in found.doubts
+    assert "position is constant in the record: not used in the fit" in found.doubts
 
 
 def test_a_leakage_that_is_not_there_is_bounded_from_zero():
@@ -493,7 +493,7 @@ def test_pairs_that_hide_in_each_other_are_named():
     assert found.correlations["coulomb", "load_offset"] < -0.9
     assert found.parameters["coulomb"].parameter.verdict == "not identifiable"
     assert any(
-        one.startswith("errors go together: coulomb with load_offset") for one in found.doubts
+        one.startswith("correlated errors: coulomb with load_offset") for one in found.doubts
     )
 
 

@@ -212,7 +212,7 @@ def test_without_scatter_the_yield_is_the_verdict():
         found = ao.uncertainty(actuator, count=50)
         assert (found.rate.value, found.met) == (rate, rate == 1.0)
         assert (found.inputs, found.indices, found.swings) == ((), (), ())
-        assert any("nothing scatters" in words for words in found.notes)
+        assert any("no input is uncertain" in words for words in found.notes)
 
 
 def test_same_seed_same_result():
@@ -304,7 +304,7 @@ def test_strengths_stand_at_their_allowables_unless_stated():
         exact = factor / knocked if own else factor
         assert changed.factors[name, key, cold] == pytest.approx(exact, rel=1e-14)
     notes = ao.uncertainty(ao.read(case.block(stated)), count=20, rows=0).notes
-    assert any("without the knock-down" in words for words in notes)
+    assert any("without their basis knock-down" in words for words in notes)
 
 
 def test_what_is_taken_at_its_worst_is_not_drawn_twice():

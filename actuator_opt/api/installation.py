@@ -65,7 +65,7 @@ class Installation(Displayed):
         }
 
     def text(self, **style: Unpack[Style]) -> str:
-        """What the terminal shows."""
+        """Return the terminal text."""
         from ..pages.installation import findings
         from ..rendering.terminal import blocks_text
 

@@ -239,7 +239,7 @@ class Run(Displayed):
         return {"id": self.id, "path": str(self.path)} | dict(self.head) | kept
 
     def text(self, **style: Unpack[Style]) -> str:
-        """What the terminal shows."""
+        """Return the terminal text."""
         from ..pages.runs import blocks
         from ..rendering.terminal import blocks_text
 

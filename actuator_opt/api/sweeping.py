@@ -129,7 +129,7 @@ def sweep(
 def writing(
     study: Study, csv: str | Path | None, parquet: str | Path | None
 ) -> Iterator[Callable[[Chunk], None]]:
-    """What writes a chunk into every file asked for, all in place once the last is complete."""
+    """Write chunks to all requested files, which appear once all are complete."""
     from ..pages.sweep import SweepColumns, about
     from ..rendering.parquet import ParquetFile
     from ..rendering.series import CsvFile

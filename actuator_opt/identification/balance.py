@@ -134,8 +134,8 @@ def check_signs(slidings: Sequence[Sliding], bench: Bench, *, mass: float, name:
     Raises
     ------
     InputError
-        names the single change that helps, if any: the one with least friction, x last, as its sign
-        does not change the size of the friction
+        names the single change that helps, if any: the change with least friction, x last, as its
+        sign does not change the size of the friction
     """
     share = opposed(slidings)
     slid = any(_slides(one) for one in slidings)

@@ -425,7 +425,7 @@ def _doubts_of_specimen(result: BendingResult) -> list[str]:
     if stated is not None and abs(ratio - 1) > STATED:
         part = _percent(ratio) if ratio <= 10 else "more than 1000 %"
         part = "less than 1 %" if ratio < 0.01 else part
-        words = f"the modulus is {part} the material's value, {1e-09 * stated:.4g} GPa"
+        words = f"the modulus is {part} of the material's value, {1e-09 * stated:.4g} GPa"
         found.append(f"{words}: check part, span and units")
     if share is None:
         found.append(

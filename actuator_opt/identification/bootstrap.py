@@ -95,7 +95,7 @@ def resampled(
     Parameters
     ----------
     slidings, motion, points : data of both fits
-    stribeck, lugre : the fits, or the reason why there is none
+    stribeck, lugre : the fits, or the reason for a missing fit
     count : of resamples
     seed : of the draws; the same seed gives the same bounds
     settling : distance after a reversal from which sliding is steady [m], as in the fits

@@ -28,7 +28,7 @@ SHORTEST = 6.0
 third)."""
 EDGE = 2.0
 """Periods of the cut-off at both ends of a section where the filter is inaccurate (a choice: there
-a step has settled within 0.2 %)."""
+a step response is within 0.2 %)."""
 BRIDGE = 5
 """Missing samples that are interpolated linearly; more if they last less than a quarter of a period
 of the cut-off (choices: 5 ms at 1 kHz; such a chord misses a sine at a tenth of the cut-off by 0.3
@@ -255,7 +255,7 @@ def _time(record: Record) -> Array:
     back = np.flatnonzero(np.diff(time) <= 0)
     if back.size:
         at = int(back[0]) + 1
-        times = f", {back.size} times in all" if back.size > 1 else ""
+        times = f", {back.size} times in total" if back.size > 1 else ""
         if time[at] == time[at - 1]:
             word, remedy = "stands still", "write time with more digits, one line per time"
         else:
@@ -385,14 +385,14 @@ allowed (a choice: 1 if only errors are removed)."""
 
 
 PADDING = 1.5
-"""Periods of a lower cut-off beside a section that affect its filter (a choice: a step has settled
+"""Periods of a lower cut-off beside a section that affect its filter (a choice: a step response is
 within 0.5 % there)."""
 
 
 def velocities(piece: Piece, motion: Motion, first: int, last: int) -> Array:
     """Velocity along a section at the record's cut-off and at lower ones.
 
-    A cut-off that moves the position by more than the sensor's errors is replaced by the one
+    A cut-off that moves the position by more than the sensor's errors is replaced by the cut-off
     before.
 
     Parameters

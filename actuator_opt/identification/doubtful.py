@@ -21,8 +21,8 @@ UNEQUAL = 2e-3
 """Area error, as a share, that is reported (a choice: below it, seals with a direction-dependent
 pressure effect of a fifth look alike)."""
 MISSED, BEYOND = 0.3, 5.0
-"""Misfit of a curve, as a share of friction and a multiple of errors, that is reported (choices:
-the share by which a parameter is known, `WEAK`, and more than errors too small by half explain)."""
+"""Misfit of a curve, as a share of friction and a multiple of errors, that is reported. Choices:
+the share by which a parameter is known, `WEAK`, and more than errors too small by half explain."""
 SIGNED = ("offset", "pressure_slope")
 """Parameters that may be 0."""
 PARTED = ("coulomb", "viscous", "stribeck_speed", "exponent")
@@ -218,7 +218,7 @@ def ways(parameters: Mapping[str, Parameter], even: Unequal | None) -> Iterator[
     if even is None:
         yield (
             "an offset between both directions: sensor zeros, areas, or direction-dependent "
-            "seals; the record cannot tell which"
+            "seals; the record cannot show which"
         )
     else:
         yield (

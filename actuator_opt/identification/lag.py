@@ -53,7 +53,7 @@ def taken_off(found: Parameter | None) -> tuple[float, str]:
     if upper < 0:
         return 0.0, (
             f"friction leads the motion by {-value:.2f} ms ({-upper:.2f} to {-lower:.2f}): due "
-            "to σ₁/σ₀, or a lagging position; the record cannot tell which. No lag is "
+            "to σ₁/σ₀, or a lagging position; the record cannot show which. No lag is "
             f"corrected, {STATE}"
         )
     if lower > 0 and found.value > LEAST_LAG:

@@ -227,7 +227,7 @@ def windows(
     ----------
     slidings, motion : friction along the record, and its filter
     reference : pressure from which changes are counted [Pa]
-    slowest : speed above which points of steady sliding cover settled sliding [m/s]
+    slowest : speed above which points of steady sliding cover steady motion [m/s]
     settling : distance after a reversal from which sliding is steady [m]
 
     Returns
@@ -343,7 +343,7 @@ def _lanes(
 
 
 def _settled_above(sliding: Sliding, slowest: float, settling: float) -> Array:
-    """Samples of settled sliding above a speed."""
+    """Samples of steady sliding above a speed."""
     found = np.zeros(sliding.piece.time.size, dtype=bool)
     found[settled(sliding, settling)] = True
     return found & (np.abs(sliding.piece.velocity) >= slowest)
@@ -744,7 +744,7 @@ class LugreProblem:
     def _lag_error(self, x: Array, chain: Array, scatter: float) -> float:
         """Standard error of the lag from scatter, position, velocity and sampling [s].
 
-        Resolution of the position sensor shifts all reversals alike, its white noise each one
+        Resolution of the position sensor shifts all reversals alike, its white noise each reversal
         separately. A velocity with a lower cut-off than the pressures' starts early, which looks
         like a lag; the velocity at the record's own cut-off shows the difference.
         """

@@ -26,7 +26,7 @@ PER_DECADE = 8
 falls within a decade shows in several)."""
 BLURRED = 1.0
 """Least periods of the cut-off at both ends of a plateau that the filter mixes with the adjacent
-ramps (a choice: there a step has settled within 2 %)."""
+ramps (a choice: there a step response is within 2 %)."""
 SETTLED = 5e-4
 """Distance after a reversal from which sliding is steady [m] (a choice: ten breakaway travels of 50
 um); with known bristles `SETTLING` of the record's own."""

@@ -251,7 +251,7 @@ def _commented(lines: Sequence[str], at: int, name: str) -> tuple[int, str, int]
 
 
 def _separator(header: str, following: str) -> str:
-    """The column separator: the one that splits the header and the next line alike."""
+    """The column separator, which splits the header and the next line alike."""
     found = [one for one in "\t;," if one in header]
     for one in found:
         if len(_cells(header, one)) == len(_cells(following, one)):

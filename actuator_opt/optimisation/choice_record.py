@@ -49,7 +49,7 @@ def record(found: ChoiceSearch, design: Design) -> Choices:
 
 
 def _status(look: Look, mendable: frozenset[str], sized: bool) -> str:
-    """How a combination was searched, and its outcome."""
+    """Return the search of a combination and its outcome, in words."""
     if look.fault:
         return f"not possible: {look.fault}"
     if look.how == "not tried":
@@ -87,7 +87,7 @@ _WAYS: dict[How, str] = {"multistart": "many starts: ", "quick": "quick look: ",
 
 
 def _sentence(made: Choices) -> str:
-    """How many combinations exist, how many are feasible, and how they were searched."""
+    """Count the combinations, the feasible ones, and those of each search, in words."""
     total, fit = len(made.combinations), made.feasible
     first = f"none of {total} combinations meets all requirements; the nearest one is shown"
     if fit:

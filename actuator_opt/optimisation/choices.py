@@ -246,8 +246,8 @@ def _starts(found: ChoiceSearch, look: Look) -> list[Start]:
     """Starts from the combinations that differ in the fewest values.
 
     A feasible neighbour is a start for a descent. An infeasible one shows best how close this
-    combination comes to feasibility. The last one, which changes least, may be followed step by
-    step.
+    combination comes to feasibility. The last neighbour, which changes least, may be followed step
+    by step.
     """
     known = [other for other in found.looks if other.x is not None and other is not look]
 

@@ -100,7 +100,7 @@ class Cures:
 
 
 def cures(actuator: ActuatorProblem, found: Infeasibility) -> Cures:
-    """The fixed dimensions and choices of which one alone is enough.
+    """The fixed dimensions and choices that are enough alone.
 
     Parameters
     ----------

@@ -233,7 +233,7 @@ def _sentence(
             f"({', '.join(laws)})"
         )
     if not joint:
-        return "infeasible, and no sufficient relaxation was found"
+        return "infeasible, and the search gave no sufficient relaxation"
     first = enough[0] if enough else None
     if first is not None and first["kind"] in _ACTS:
         enough_text = "together are enough" if "together" in first else "alone is enough"

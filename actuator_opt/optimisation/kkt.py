@@ -341,7 +341,7 @@ def polish(
 ) -> Point:
     """Improve a point towards the optimality conditions; never worse than the start.
 
-    Returns the start itself if no better point is found.
+    Returns the start itself without a better point.
     """
     if not start.valid or evaluator.space.size == 0:
         return start

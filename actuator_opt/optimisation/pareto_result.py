@@ -123,7 +123,7 @@ class ParetoFront(Displayed):
             why = "" if self.infeasibility is None else f" {self.infeasibility.sentence}"
             return f"no front: no design meets all requirements.{why}"
         if len(self.points) == 1:
-            return "the objectives do not conflict: one design is best in all of them"
+            return "the objectives do not conflict: one design is best in every objective"
         told = f"{len(self.points)} non-dominated designs; "
         told += f"{self.checked} independent searches replaced {self.improved} merely local designs"
         if self.failed:

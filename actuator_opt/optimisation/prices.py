@@ -794,7 +794,7 @@ def buys_most(
             f"{gain(best)}, the most of any requirement."
         ]
     else:
-        parts = [f"Relaxing any one requirement by {PER_CENT} % gains nothing."]
+        parts = [f"Relaxing a single requirement by {PER_CENT} % gains nothing."]
     for best, group in (
         (found.parameter, "Of the design's fixed numbers"),
         (found.material, "Of the materials"),
@@ -808,7 +808,7 @@ def buys_most(
             f"{short_name(row)} at {_at(row, row.limit * (1 + sign * CHANGE))}"
             for row, sign in found.no_design
         )
-        parts.append(f"No design was found with {lost}.")
+        parts.append(f"No feasible design with {lost}.")
     return tuple(parts)
 
 

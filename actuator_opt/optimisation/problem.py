@@ -253,7 +253,7 @@ class Robust:
     target : requested probability
     rate, lower, upper : of meeting all covered limits, in an independent sample; 95 % bounds
     samples : draws of that sample
-    converged : whether the reserves settled
+    converged : whether the reserves converged
     nominal_objective, nominal_rate : of the optimum without reserves
     reserves : extra margin a robust search requires, by limit
     rounds : the sequence of optima, the one without reserves first

@@ -1,7 +1,7 @@
 """Single changes that make an infeasible problem feasible: one requirement, or one bound.
 
-First, shortest steps to the linearised rows look for a point that meets everything but the one
-requirement (or lies beyond the one bound), for all candidates at once. If they fail, the worst
+First, shortest steps to the linearised rows look for a point that meets everything but this
+requirement (or lies beyond this bound), for all candidates at once. If they fail, the worst
 violation is minimised from several points. From there the least sufficient change follows.
 """
 
@@ -61,7 +61,7 @@ class Opening:
     ----------
     variable, index, side, value : the bound
     gain : fall of the total relaxation per unit of relative change of the bound (0.01 = 1 %)
-    needed : value of the bound that is enough alone; None if none was found up to `WIDEST`
+    needed : value of the bound that is enough alone; None if no bound is enough up to `WIDEST`
     """
 
     variable: str

@@ -63,7 +63,7 @@ class Infeasibility:
 
     `bounds` entries contain variable, parameter (PATH), quantity, bound (side), value, gain (fall
     of `total` per unit of relative change: 0.01 of it for 1 %), needed (the bound that is enough
-    alone, None if none was found), change and texts.
+    alone, None if no bound is), change and texts.
 
     `cures` lists sufficient single changes, the most advisable first: kind (dimension, choice,
     bound, requirement, safety factor), parameter (PATH), now and needed (SI, or a word), change,
@@ -218,7 +218,7 @@ class Rounding:
 
 
 How: TypeAlias = Literal["multistart", "quick", "evaluated", "not possible", "not tried"]
-"""How thoroughly a combination was searched."""
+"""Depth of the search of a combination."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -302,7 +302,7 @@ def _rounding(
 
 
 def _nearest(actuator: ActuatorProblem, sizes: Sizes, found: Found) -> str:
-    """What the nearest sizes miss, if none is feasible."""
+    """Describe the limits that the nearest sizes miss, if none is feasible."""
     if found.nearest is None or found.missed is None or found.missed.violation <= 0:
         return ""
     margins = found.missed.rows[1 : 1 + len(actuator.problem.constraint_names)]

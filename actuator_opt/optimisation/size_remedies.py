@@ -77,7 +77,7 @@ def size_remedies(
 
 
 def _smaller(listed: Sequence[Listed], x: Vector, found: Found) -> list[Assignment]:
-    """Combinations of sizes with the one that moved most at its other neighbour.
+    """Combinations of sizes with the most rounded size at its other neighbour.
 
     The least infeasible sizes if no sized design is feasible.
     """

@@ -25,7 +25,7 @@ PRESSURES = INPUTS["pressure"]
 
 
 def ends_of(scenario: Scenario, plant: Plant) -> str:
-    """What the lines at the ports end at."""
+    """Kind of end of the lines at the ports."""
     if scenario.ends is not None:
         return scenario.ends
     return "valve" if plant.valve is not None else plant.design.ports.end

@@ -34,7 +34,7 @@ class HarmonicFit(NamedTuple):
     residual: float
     """Residual standard deviation: root of the squared residuals over n - 4."""
     standard_error: float
-    """Of each part of the amplitude, for independent residuals; harmonics increase it."""
+    """Error of each part of the amplitude, for independent residuals; harmonics increase it."""
 
 
 def harmonic_fit(*, time: Array, values: Array, frequency: float) -> HarmonicFit:
@@ -79,7 +79,7 @@ class Stiffness(NamedTuple):
     stiffness: complex
     """Force over position [N/m]; for a positive phase the force leads."""
     standard_error: float
-    """Of each part [N/m], for independent residuals."""
+    """Standard error of each part [N/m], for independent residuals."""
 
 
 def dynamic_stiffness_of_record(

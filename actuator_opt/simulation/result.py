@@ -90,7 +90,7 @@ class Servo:
 
     loop: Loop
     time: float
-    """Of the step [s]."""
+    """Time of the step [s]."""
     start: float
     target: float
     metrics: StepMetrics

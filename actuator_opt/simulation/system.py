@@ -57,7 +57,7 @@ class Switch:
 
 @dataclass(frozen=True, slots=True)
 class Instant:
-    """A flag that is true from an instant on."""
+    """A flag that is true after an instant."""
 
     flag: str
     time: float
@@ -131,7 +131,7 @@ class System:
         return symbol
 
     def after(self, time: float) -> Any:
-        """A flag that is true from an instant on; the integration restarts there."""
+        """A flag that is true after an instant; the integration restarts there."""
         if time <= 0:
             return True
         known = next((one for one in self.instants if one.time == time), None)
@@ -157,7 +157,7 @@ class System:
         return [one.flag for one in self.instants] + [one.flag for one in self.switches]
 
     def unpack(self, symbols: Sequence[Symbol], states: str) -> dict[str, str]:
-        """How generated code reads the states from an argument, and the flags from ``m``."""
+        """Generated code that reads the states from an argument, and the flags from ``m``."""
         names = ", ".join(str(symbol.args[0]) for symbol in symbols)
         flags = ", ".join(self.flags)
         return ({f"{names},": states} if names else {}) | ({f"{flags},": "m"} if flags else {})

@@ -195,7 +195,7 @@ class Bench:
 
 
 def _leads(ring: Ring) -> bool:
-    """Whether a ring is the one of its row that seals the pressure."""
+    """Whether a ring seals the pressure of its row."""
     return ring.groove.path == f"seals.{ring.name}."
 
 

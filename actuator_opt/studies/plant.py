@@ -135,7 +135,7 @@ class Plant:
     dead_b: float
     walls: Give
     flexibility: float
-    """Of rod and mount in series [m/N]."""
+    """Compliance of rod and mount in series [m/N]."""
     mass: float
     """Mass of load, rod, piston and fastening, without a joint's inertia."""
     leakage: float

@@ -19,7 +19,7 @@ PATIENCE = "10s"
 """Time limit for a scheduler to answer."""
 
 AGAIN = 5
-"""How often a task restarts after its worker is lost."""
+"""Maximum restarts of a task after its worker is lost."""
 
 WAITING = 3
 """Tasks queued for each thread of the cluster."""

@@ -94,7 +94,7 @@ class Axis:
 def read_axis(text: str, design: Design, metrics: Metrics = None) -> Axis:
     """Return the axis for a user's text: ``PATH=A..B:N`` or ``PATH=a,b,c``.
 
-    Numbers without a unit take the unit of the last one; without any unit they are SI. `metrics`
+    Numbers without a unit take the unit of the last number; without any unit they are SI. `metrics`
     are the names that the design may use; they include the user's own.
 
     Raises
@@ -135,7 +135,7 @@ def _steps(text: str, count: str | None) -> int | None:
 
 
 def _with_unit(texts: list[str]) -> list[str]:
-    """Return the values; bare numbers take the unit of the last one."""
+    """Return the values; bare numbers take the unit of the last value."""
     try:
         unit = units.split(texts[-1])[1]
     except units.UnitError:
@@ -272,7 +272,7 @@ class Plan:
         return dict(reversed(found.items()))
 
     def points(self, first: int, count: int) -> Points:
-        """Return points `first` to `first + count`, up to the last one."""
+        """Return points `first` to `first + count`, up to the last point."""
         index = np.arange(first, min(first + count, self.count), dtype=np.int64)
         places = self._grid(index) if self.method == "grid" else self._sampled(index)
         variant = np.zeros(len(index), dtype=np.int64)

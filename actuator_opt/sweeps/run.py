@@ -263,7 +263,7 @@ def _end_with_parent() -> None:
 
     Waits for the end of a pipe that only the parent keeps open, which works without system signals.
     A forked process also inherits the pipes of those before it: they end one after the other, the
-    last one first.
+    last process first.
     """
     parent = multiprocessing.parent_process()
     if parent is not None:

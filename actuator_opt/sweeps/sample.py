@@ -52,7 +52,7 @@ def front(first: Array, second: Array) -> Array:
 
 @dataclass
 class Pool:
-    """Every k-th row of a stream, at most `MOST_POINTS` in all."""
+    """Every k-th row of a stream, at most `MOST_POINTS` in total."""
 
     seen: int = 0
     step: int = 1

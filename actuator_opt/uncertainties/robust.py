@@ -35,9 +35,9 @@ LEAST, MOST = 0.5, 0.9999
 ROUNDS = 12
 """Maximum number of optimisation rounds."""
 REFUSALS = 3
-"""How often infeasible reserves are reduced to those of the nearest design."""
+"""Maximum reductions of infeasible reserves to those of the nearest design."""
 STILL = 2e-3
-"""Relative change of the objective that counts as settled."""
+"""Relative change of the objective that counts as converged."""
 FAR = 1.0
 """Drawn margin above which a limit needs no reserve, as it is far from active. Its reserve, of a
 life say, could exceed what any other design can meet."""

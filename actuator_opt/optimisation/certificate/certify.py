@@ -206,7 +206,7 @@ def _applying(out: MetricArrays, metric: str, case: str) -> Iterator[tuple[str, 
 
 
 def _positions(there: ModelRun) -> tuple[float, ...]:
-    """Positions of least stiffness in all load cases, as shares of the stroke."""
+    """Positions of least stiffness over the load cases, as shares of the stroke."""
     shares = np.ravel(there.weakest / there.geometry.stroke)
     return tuple(sorted({round(float(share), 6) for share in shares if np.isfinite(share)}))
 
@@ -228,7 +228,7 @@ WORTH = 1e-9
 
 
 FAR_OFF = 0.2
-"""Excess above which further splits of a curve gain little; the first one gains most."""
+"""Excess above which further splits of a curve gain little; the first split gains most."""
 
 
 FLOOR = 0.003

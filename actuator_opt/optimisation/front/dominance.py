@@ -17,7 +17,7 @@ SAME = 1e-6
 
 
 def nondominated(values: Vector, equal: float = 0.0) -> npt.NDArray[np.bool_]:
-    """Which designs no other one dominates: no worse in every objective, better in one.
+    """Which designs no other design dominates: no worse in every objective, better in one.
 
     Parameters
     ----------

@@ -26,10 +26,10 @@ HELD = 1e-6
 """Normalised shortfall that still counts as at the level."""
 
 ROUNDS = 4
-"""Maximum exchanges of results; each follows only if the last one improved."""
+"""Maximum exchanges of results; each follows only if the last exchange improved."""
 
 CURVED = 2
-"""How often the curvature is recomputed where full steps do not converge."""
+"""Maximum recomputations of the curvature where full steps do not converge."""
 
 
 @dataclass(frozen=True)
@@ -161,7 +161,7 @@ class Tracer:
         return every[m : m + count]
 
     def solve(self, starts: Sequence[Start], known: Sequence[Design] = ()) -> list[Design | None]:
-        """The design at the levels of each start; None where none is found.
+        """The design at the levels of each start, or None.
 
         Where the starts fail, descents start from the `known` designs.
         """
@@ -177,7 +177,7 @@ class Tracer:
         return [self._alone(start) for start in starts]
 
     def exchange(self, designs: list[Design], others: Vector, rest: Vector) -> list[Design]:
-        """The designs, each replaced where another one's variables are better.
+        """The designs, each replaced where another design's variables are better.
 
         Parameters
         ----------

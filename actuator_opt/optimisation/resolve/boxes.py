@@ -85,7 +85,7 @@ class BoxTask:
 
 
 def resolve_boxes(tasks: Sequence[BoxTask]) -> list[Nearest]:
-    """The optimum of every task; none where no feasible point is found near it.
+    """The optimum of every task; None without a feasible point near it.
 
     The problems differ only in their bounds, so that one model call serves a step of all.
     """

@@ -35,10 +35,10 @@ BETTER = 1e-8
 """Relative improvement of the objective that indicates another valley."""
 
 ROUNDS = 3
-"""Maximum exchanges of optima; each follows only if the last one improved."""
+"""Maximum exchanges of optima; each follows only if the last exchange improved."""
 
 BEYOND = 1.0
-"""How far beyond another valley its descents start, as a share of the distance from the best: the
+"""Start of descents beyond another valley, as a share of the distance from the best: the
 ridge between the two often moves as fast as they do."""
 
 SAMPLES = 1024

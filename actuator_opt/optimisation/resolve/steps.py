@@ -211,7 +211,7 @@ def full_steps(
     Parameters
     ----------
     evaluator : of the problem, or of one with the same rows and box
-    descent : a new one, with the Hessian to begin with
+    descent : a fresh descent with its initial Hessian
     start : coordinates (nf,), or the evaluated point
     """
     space = evaluator.space

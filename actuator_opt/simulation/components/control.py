@@ -21,7 +21,7 @@ class Feedback:
     """Feedback signals of the controller."""
 
     value: Expression
-    """Of the loop: position, speed, shaft speed or angle."""
+    """Measured value of the loop: position, speed, shaft speed or angle."""
     speed: Expression
     load_pressure: Expression
     """Load pressure: pressure force over area A [Pa]."""

@@ -48,7 +48,7 @@ PASSES: Final = 40
 ROUNDS: Final = 4
 """Maximum searches with new weights (a choice)."""
 SETTLED: Final = 0.1
-"""Relative change of the weights that counts as settled (a choice)."""
+"""Relative change of the weights that counts as converged (a choice)."""
 ROUGH, SHARP = 1e-4, 1e-8
 """Relative change of cost and step that ends a search, intermediate and final (choices)."""
 
