@@ -7,13 +7,13 @@ import zipfile
 from dataclasses import replace
 
 import pytest
-from actuator_opt.pages.drawing import section
 from cli_runner import bench
 from formula_reader import Workbook
 from test_export_step import SHIPPED
 
 import actuator_opt as ao
 from actuator_opt.exports.xlsx import xlsx
+from actuator_opt.pages.section import section
 from actuator_opt.rendering.image import images
 
 openpyxl = pytest.importorskip("openpyxl")

@@ -9,7 +9,6 @@ import math
 import jsonschema
 import pytest
 import scatter_case as case
-from actuator_opt.pages.uncertainty_figures import margins_figure, tornado
 from cli_runner import KNEE, run
 
 import actuator_opt as ao
@@ -19,7 +18,9 @@ from actuator_opt.design.schema import json_schema
 from actuator_opt.design.standard_sizes import tables
 from actuator_opt.design.uncertain import class_limits
 from actuator_opt.design.writer import to_yaml
-from actuator_opt.pages import uncertainty_document as document
+from actuator_opt.pages import uncertainty as document
+from actuator_opt.pages.uncertainty import margins_figure, tornado
+from actuator_opt.rendering import paper, terminal
 from actuator_opt.rendering.origin import Origin
 
 BORE, AIR = "cylinder.bore", "fluid.air_content"
@@ -226,10 +227,8 @@ def test_bad_options_are_one_line(options, code, words):
 
 def test_text_in_ascii_and_narrow():
     """Plain ASCII on a narrow terminal: no line beyond it."""
-    from actuator_opt.pages.uncertainty_text import uncertainty_text
-
     found = ao.uncertainty(case.KNEE, count=100, rows=64)
-    said = uncertainty_text(found, unicode=False, width=60)
+    said = terminal.text(document.page(found), colour=False, unicode=False, width=60)
     assert said.isascii()
     assert max(map(len, said.splitlines())) <= 60
 
@@ -262,6 +261,6 @@ def test_figures_have_no_overlapping_words():
 def test_a_page_without_scatter_or_requirements():
     """Nothing to draw and nothing to hold: still a page."""
     found = ao.uncertainty(case.only({}), count=20)
-    origin = Origin("", "x.yaml", "", found.spec_hash)
-    page = document.document(found, origin)
-    assert [one["title"] for one in page["blocks"]][-1] == "What the yield means"
+    page = document.page(found)
+    assert page.blocks[-1].title == "What the yield means"
+    assert paper.plain(page, Origin("", "x.yaml", "", found.spec_hash))["blocks"]
