@@ -122,13 +122,13 @@ def test_the_schema_knows_the_block():
     [
         ("cylinder.bor", {"tolerance": "H8"}, "unknown PATH", BORE),
         ("seals.rod.count", {"distribution": "normal", "cv": "1 %"}, "is a count", "remove"),
-        ("cylinder.mount", {"distribution": "fixed"}, "is no number", "remove"),
+        ("cylinder.mount", {"distribution": "fixed"}, "is not a number of the actuator", "remove"),
         ("cylinder.mount_stiffness", {"distribution": "normal", "cv": "1 %"}, "not set", "write"),
-        ("stiffness.seal_deflection", {"distribution": "normal", "cv": "1 %"}, "no model reads",
+        ("stiffness.seal_deflection", {"distribution": "normal", "cv": "1 %"}, "no model of this design reads",
          "remove"),
-        ("materials.peek.density", {"distribution": "normal", "cv": "1 %"}, "no model reads",
+        ("materials.peek.density", {"distribution": "normal", "cv": "1 %"}, "no model of this design reads",
          "remove"),
-        (BORE, {"tolerance": "Z99"}, "not a tolerance class", "H8"),
+        (BORE, {"tolerance": "Z99"}, "not a supported tolerance class", "H8"),
         (BORE, {"distribution": "gauss", "cv": "1 %"}, "is not a distribution", "normal"),
         (BORE, {"distribution": "normal"}, "has no parameters", "deviation, or cv"),
         (BORE, {"distribution": "normal", "cv": "1 %", "deviation": "1 mm"}, "has deviation and cv",
@@ -212,8 +212,8 @@ def test_the_command_writes_draws_and_pages(tmp_path):
     ("options", "code", "words"),
     [
         (["-n", "3"], 2, "3 draws"),
-        (["--metric", "no_such"], 3, "no_such cannot be followed"),
-        (["--set", "uncertainty.cylinder.bore.tolerance=Z99"], 3, "not a tolerance class"),
+        (["--metric", "no_such"], 3, "no_such cannot be evaluated"),
+        (["--set", "uncertainty.cylinder.bore.tolerance=Z99"], 3, "not a supported tolerance class"),
         (["--csv", "/no/such/folder/x.csv"], 3, "folder"),
     ],
 )

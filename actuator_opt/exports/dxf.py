@@ -126,7 +126,7 @@ STYLE = "TRUE"
 
 
 _COLOUR, _BY_LAYER, _BLACK_OR_WHITE = 153, 256, 7
-"""Of the lines, which show on black and on white; letters take the colour that the ground lacks."""
+"""Colours of lines, readable on black and on white; text takes the colour the ground lacks."""
 
 
 _SMALLEST = 1e-6

@@ -285,7 +285,7 @@ def _share(index: float | None, half: float | None) -> str:
 def _inputs(study: Uncertainty) -> Table:
     """All uncertain inputs."""
     columns = [
-        Column("input", "left", 1.3, breaks=30, mono=True, least=34, wraps=True),
+        Column("input", "left", 1.3, breaks=30, mono=True, least=14, wraps=True),
         *(Column(head, "right") for head in ("value", "5 %", "95 %")),
         Column("distribution", drop=2),
         Column("from", "left", 1.2, breaks=30, drop=1, least=16, wraps=True),
