@@ -1,4 +1,10 @@
-"""A design as read, with its faults."""
+"""A design as read, with its faults.
+
+The first line of a saved optimum: the hash of the optimised design.
+
+The hash covers the design, its material values and the version. After any change it no longer
+matches, and the file is an ordinary design.
+"""
 
 from __future__ import annotations
 

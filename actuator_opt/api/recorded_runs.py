@@ -1,4 +1,9 @@
-"""Run records: input and outcome of runs, listed and read back."""
+"""Run records: input and outcome of runs, listed and read back.
+
+Required form of the fields of a run record and of a report's attachment.
+
+Either may be damaged, or written by someone else.
+"""
 
 from __future__ import annotations
 

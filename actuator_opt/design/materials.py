@@ -1,4 +1,10 @@
-"""Material libraries: shipped entries, overridden by the user's files; look-up by name."""
+"""Material libraries: shipped entries, overridden by the user's files; look-up by name.
+
+Library files: YAML entries to `Material`, each fault with file and line.
+
+A file maps names to entries. It is split at its top-level keys and only requested entries are
+parsed, so a large library does not slow the start.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,11 @@
 """Standard sizes as data: ISO 3320 bores and rods, ISO 6020-2/6022 pairs, O-rings and glands.
 
 Lengths are in m, pressures in Pa. Every row states source and confidence.
+
+Series for the `sizes` of a variable: standards, whole plies, feasible angles.
+
+A series states its PATHs, whether it applies to a design, the variable its sizes depend on, and the
+sizes themselves. Tables and their sources are in `standards`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,9 @@
-"""Faults of the walls of barrel and rod: impossible layers, unsuitable materials."""
+"""Faults of the walls of barrel and rod: impossible layers, unsuitable materials.
+
+Faults of `retention`: missing or unused keys, and faults that the joint reports.
+
+Each joint declares its keys and checks in its module in `joints`.
+"""
 
 from __future__ import annotations
 

@@ -2,6 +2,12 @@
 
 Two elements with a film share the oil: at the pressure between them both have the same flow
 ([Huang2017] eq. 17).
+
+Film tables of a design: one per place with a film, load case and stroke.
+
+Each table is a surrogate of solved films. Its axes are the inputs that the design variables change
+most; other inputs enter to first order, by the exact slopes of the films. The tables are made once
+per design and bounds of its variables, so a single evaluation and the optimiser use the same film.
 """
 
 from __future__ import annotations

@@ -2,6 +2,10 @@
 
 Between the dead points the lever arm rises to a maximum and falls, so over the stroke it is least
 at a stop. Each stop has its own row: the optimiser sees no kink.
+
+Bonds in an evaluation: metal fittings of a laminated rod, and all bonds without load.
+
+The joint module covers the bonds of the caps.
 """
 
 from __future__ import annotations

@@ -1,4 +1,10 @@
-"""The Evaluation: all metrics of a design with its requirements, for printing and export."""
+"""The Evaluation: all metrics of a design with its requirements, for printing and export.
+
+Reserve of a design: limits met without reserve, and the expected yield.
+
+An optimum lies on its limits and meets them at nominal dimensions; many actuators built to it
+violate a limit.
+"""
 
 from __future__ import annotations
 

@@ -3,6 +3,10 @@
 Layers with their allowables, stresses at eleven points of every layer, strength ratios by every
 criterion, the failure sequence to burst, and alternative walls (`alternatives`). Stresses are
 those of the exact tube, even if the design uses another model. For a single design; floats only.
+
+Alternatives to the barrel wall: other thickness, thin-wall theory, or metal.
+
+Also the decay of bore growth beside the pressure step under the piston seal. Floats only.
 """
 
 from __future__ import annotations

@@ -1,4 +1,13 @@
-"""The longitudinal section as DXF: true lengths in mm, hatched, dimensioned, one layer per part."""
+"""The longitudinal section as DXF: true lengths in mm, hatched, dimensioned, one layer per part.
+
+Dimensions of the section as DIMENSION entities: diameters above the parts, lengths below.
+
+They measure the drawing itself (DIMLFAC 1): if a line is moved in CAD, its dimension follows.
+
+Layout of the section's dimensions without overlaps, independent of the file format.
+
+All lengths are in mm of the drawing; `Paper` gives the size of letters and gaps.
+"""
 
 from __future__ import annotations
 

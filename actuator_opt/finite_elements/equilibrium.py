@@ -4,6 +4,12 @@ A wall parallel to an axis bounds one displacement component of every boundary n
 bound stays there as long as the wall pushes it; the force is the reaction of the wall. The fluid
 reaches all boundary nodes from the sealed side up to the first node whose contact pressure exceeds
 the fluid pressure.
+
+Frictionless contact of two bodies: nodes of the upper body on the surface of the lower body.
+
+The gap is measured along direction 2, g = y_node - y_surface(x_node). The force is normal to the
+surface. Its slope is made continuous from edge to edge, since a node that slides over the corner
+between two edges would otherwise oscillate.
 """
 
 from __future__ import annotations

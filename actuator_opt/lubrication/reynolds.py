@@ -8,6 +8,10 @@ M = r phi_x h^3/(12 eta), T = h_T + sigma phi_s, r the density over that at zero
 cavitated fraction: the rest of a ruptured film moves with the rod, so mass is conserved where
 the film ruptures and where it forms again. Everything is scaled: pressure by `pressure_scale` above
 the cavitation pressure, film by `film_scale`, length by the width.
+
+Inputs of a lubricated contact: oil, two rough surfaces, an elastic seal, operating conditions.
+
+Every number is a Python float or, inside `sensitivities`, has a complex step.
 """
 
 from __future__ import annotations

@@ -1,4 +1,12 @@
-"""The actuator as an optimisation problem: variables by PATH, one margin per limit, case, place."""
+"""The actuator as an optimisation problem: variables by PATH, one margin per limit, case, place.
+
+Response of an evaluated point to parameters, exact where the model allows, always checked.
+
+Derivatives of values use the complex step in the parameter; derivatives of gradients use central
+differences of complex-step gradients. A parameter whose complex step disagrees with a finite
+difference (a look-up table, say) falls back to differences. Bounds of variables count as
+parameters.
+"""
 
 from __future__ import annotations
 

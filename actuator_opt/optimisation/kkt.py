@@ -3,6 +3,14 @@
 The residual is the contract's: the norm of grad f - sum(multiplier * grad g) over that of
 grad f, in solver coordinates, multipliers at least 0, over the constraints and bounds active
 within 1e-6. Multipliers are non-negative least squares [LawsonHanson1974].
+
+Active-set Newton steps: the exact-Hessian polish that first-order solvers lack.
+
+Sequential quadratic programming with the Hessian of the Lagrangian from exact gradients
+[NocedalWright2006] ch. 18. Each quadratic programme is a least-distance problem, solved by
+non-negative least squares [LawsonHanson1974] ch. 23. This identifies the active set and copes with
+dependent rows and overdetermined vertices. Converges quadratically near the optimum; also re-solves
+a slightly changed problem.
 """
 
 from __future__ import annotations

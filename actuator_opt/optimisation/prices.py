@@ -4,6 +4,12 @@ The price of a parameter is the derivative of the Lagrangian [Fiacco1983]: exact
 material data, pressures and bounds, whatever algebraic form the constraints take. Its range of
 validity follows from the derivative of the optimum. Re-solving at plus and minus 10 % shows the
 error of the straight line.
+
+Movement of an optimum with a parameter, validity of its active set, and one-sided prices.
+
+The derivative of the optimum solves the linearised optimality conditions [Fiacco1983]. At a
+degenerate vertex the multipliers form a polytope; the prices upwards and downwards are the
+largest and smallest over it [Gauvin1982].
 """
 
 from __future__ import annotations

@@ -4,6 +4,12 @@ Default path: a low-discrepancy sweep suggests starts. SLSQP runs from each in l
 variables, and again in linear ones if it failed. An augmented Lagrangian around LBFGS takes over if
 nothing worked. Active-set Newton steps polish the result to rounding. Feasibility and optimality
 are then verified here, whatever a solver claims.
+
+The global phase: a low-discrepancy sweep of the box, and its best starts.
+
+A scrambled Halton sequence [Halton1960] [Owen2017]: the radical inverse of the index in one
+prime base per variable, with seeded random digit permutations. It costs microseconds per
+thousand points and needs neither tables nor SciPy.
 """
 
 from __future__ import annotations

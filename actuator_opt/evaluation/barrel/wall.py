@@ -1,4 +1,9 @@
-"""Results of a barrel wall, for every wall model."""
+"""Results of a barrel wall, for every wall model.
+
+Response of a laminated wall to unit pressure, unit axial force and unit temperature change.
+
+From the exact layered tube, or the fast thin laminate; both give stresses at the layer faces.
+"""
 
 from __future__ import annotations
 

@@ -4,6 +4,12 @@ A linear programme. The convex side of every curve is a set of tangents, valid i
 added where the solution misses the curve [Kelley1960]. The other side is the chord over the box.
 The bound is computed from the multipliers alone, so it holds whatever the solver's tolerances
 [Neumaier2004].
+
+Sums in plain numbers beside their logarithms, so that linear relations stay linear.
+
+A lower bound on a sum is loose in logarithms where its terms range widely, but exact in plain
+numbers. There a monomial is tied to its widest factor and the rest by the planes of their product
+[McCormick1976]: mass and stiffness of a layer both follow its thickness.
 """
 
 from __future__ import annotations

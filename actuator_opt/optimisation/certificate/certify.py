@@ -1,4 +1,11 @@
-"""Distance of a design from the best possible: a lower bound on the objective, and the gap."""
+"""Distance of a design from the best possible: a lower bound on the objective, and the gap.
+
+The problem as expressions of its variables, from the models that evaluate a design.
+
+One load case is traced at a time. A model without a closed expression becomes an unknown with an
+envelope around its exact value, so that limits on either side stay valid. Limits that cannot be
+traced are dropped and listed by name.
+"""
 
 from __future__ import annotations
 

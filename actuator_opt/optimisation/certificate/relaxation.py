@@ -4,6 +4,11 @@ Every traced value of known sign is a monomial of atoms. A sum s = p + q makes a
 - log q = softplus(log p - log q), a curve of the log ratio of its terms. The curve is convex on one
 side and is relaxed by its chord on the other; a shorter range of the ratio gives a tighter chord.
 This is the log-log convex relaxation of a signomial programme [Maranas1997], applied to every sum.
+
+Signomials: sums of signed monomials, and the logarithms of monomials.
+
+A monomial is a positive number times powers of atoms (positive unknowns); its logarithm is affine
+in the atoms' logarithms. Products, quotients and powers of monomials are monomials.
 """
 
 from __future__ import annotations

@@ -4,6 +4,16 @@ The best design of each objective alone is searched for like any optimum. Design
 these anchors are found from their neighbours, in shared steps. Each is compared with all others at
 its own levels, which reveals and replaces merely local designs. Independent full searches at some
 levels then check whether a better one was overlooked.
+
+The final designs of a front: evenly spread, with wide gaps closed or explained.
+
+The levels limit the length of a continuous front between two designs. If close levels lead to
+distant designs, the front jumps and no design lies between.
+
+The ends of a front: the best design of each objective alone.
+
+All objectives are searched together: one sweep of the box, and one model call per step of all runs.
+Ties are resolved in favour of the other objectives.
 """
 
 from __future__ import annotations

@@ -2,6 +2,11 @@
 
 Amplitudes are small against stroke, signal and pressure, and stated with every figure, as with
 friction all figures depend on them.
+
+A design on a stand: held at a position under a force, for small experiments.
+
+Plant, friction, valve, supply and stops are those of the scenario; excitation and loop closure are
+the experiment's own.
 """
 
 from __future__ import annotations
