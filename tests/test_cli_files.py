@@ -87,7 +87,7 @@ def test_places_that_cannot_be_written(verb, design, tmp_path):
 def test_a_folder_in_the_way_of_a_page(design, tmp_path):
     """Where one file of a report cannot be written, none of them is."""
     out = tmp_path / "out"
-    (out / "bench-page-2.png").mkdir(parents=True)
+    (out / "bench.png").mkdir(parents=True)
     result = run("report", design, "--out", out)
     assert result.code == 3
     assert "Traceback" not in result.err

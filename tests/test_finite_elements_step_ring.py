@@ -11,8 +11,9 @@ from actuator_opt.base.errors import ActuatorError
 from actuator_opt.finite_elements import fluid, mesh
 from actuator_opt.finite_elements.equilibrium import Pair
 from actuator_opt.finite_elements.material import MooneyRivlin
-from actuator_opt.finite_elements.mesh import Body, Section, SlideRing
+from actuator_opt.finite_elements.mesh import SlideRing
 from actuator_opt.finite_elements.o_ring import squeezed_ring
+from actuator_opt.finite_elements.section import Body, Section
 from actuator_opt.finite_elements.step_ring import squeezed_step_ring
 
 SECTION, SQUEEZE, MODULUS = 2.62e-3, 0.15, 8e6

@@ -213,7 +213,11 @@ def test_the_command_writes_draws_and_pages(tmp_path):
     [
         (["-n", "3"], 2, "3 draws"),
         (["--metric", "no_such"], 3, "no_such cannot be evaluated"),
-        (["--set", "uncertainty.cylinder.bore.tolerance=Z99"], 3, "not a supported tolerance class"),
+        (
+            ["--set", "uncertainty.cylinder.bore.tolerance=Z99"],
+            3,
+            "not a supported tolerance class",
+        ),
         (["--csv", "/no/such/folder/x.csv"], 3, "folder"),
     ],
 )

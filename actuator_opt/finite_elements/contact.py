@@ -7,8 +7,9 @@ import numpy as np
 from . import fluid
 from .equilibrium import Booleans, ElementState, NotConverged
 from .material import Floats
-from .mesh import Integers, Section
+from .mesh import Integers
 from .result import contact_end
+from .section import Section
 
 HOLDING = 0.05
 """Share of the fluid pressure by which contact pressure may fall below it and still seal."""

@@ -27,8 +27,9 @@ from ..base.errors import ActuatorError, Diagnostic
 from . import fluid
 from .fluid import SLOPES
 from .material import Floats, MooneyRivlin
-from .mesh import Integers, Section
+from .mesh import Integers
 from .result import Contact, SealSolution
+from .section import Section
 
 Booleans = npt.NDArray[np.bool_]
 

@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from .material import Floats
-from .mesh import Integers, Section
+from .mesh import Integers
+from .section import Section
 
 SLOPES = np.array([[-1.5, 2.0, -0.5], [-0.5, 0.0, 0.5], [0.5, -2.0, 1.5]])
 """d(position)/d(xi) at the three nodes of an edge from their positions, xi from -1 to 1."""

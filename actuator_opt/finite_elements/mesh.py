@@ -7,16 +7,13 @@ from the sliding face.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import csc_matrix
 
-from . import material
 from .library import finite_element_library
-from .material import Floats, MooneyRivlin
+from .material import Floats
 
 Integers = npt.NDArray[np.int64]
 ORDER = 4
@@ -222,161 +219,3 @@ def slide_ring(shape: SlideRing, *, fine: float, coarse: float) -> Mesh:
     c, d = corner[1:, 1:].ravel(), corner[:-1, 1:].ravel()
     triangles = np.concatenate((np.stack((a, b, c), axis=1), np.stack((a, c, d), axis=1)))
     return meshed(points, triangles)
-
-
-@dataclass(frozen=True, slots=True)
-class Body:
-    """A mesh with its material and position.
-
-    Parameters
-    ----------
-    mesh : its nodes and elements
-    rubber : its strain energy
-    place : position of the mesh origin [m]
-    """
-
-    mesh: Mesh
-    rubber: MooneyRivlin
-    place: tuple[float, float] = (0.0, 0.0)
-
-
-class Section:
-    """All bodies with a common vector of unknowns: displacements 2 i, 2 i + 1 of node i, then q.
-
-    Parameters
-    ----------
-    bodies : meshes with their materials
-    sliding_radius : radius at zero of direction 2 [m]; None: plane strain
-    outward : 1 if direction 2 points away from the axis (rod), -1 towards it (bore)
-    """
-
-    def __init__(
-        self,
-        bodies: Sequence[Body],
-        sliding_radius: float | None = None,
-        outward: int = 1,
-    ) -> None:
-        nodes, triangles, corners, self.edges = [], [], [], []
-        self.first_node = [0]
-        corner_total = 0
-        for body in bodies:
-            nodes.append(body.mesh.nodes + np.asarray(body.place))
-            triangles.append(body.mesh.triangles + self.first_node[-1])
-            corners.append(body.mesh.corners + corner_total)
-            self.edges.append(body.mesh.edges + self.first_node[-1])
-            self.first_node.append(self.first_node[-1] + len(body.mesh.nodes))
-            corner_total += body.mesh.corner_count
-        self.nodes: Floats = np.concatenate(nodes)
-        self.triangles: Integers = np.concatenate(triangles)
-        self.corners: Integers = np.concatenate(corners)
-        self.displacements = 2 * len(self.nodes)
-        self.unknowns = self.displacements + corner_total
-        self.sliding_radius, self.outward = sliding_radius, outward
-        each = [np.full(len(body.mesh.triangles), k) for k, body in enumerate(bodies)]
-        owner = np.concatenate(each)
-        c10, c01, softness = (
-            np.array(values)[owner][:, None]
-            for values in zip(
-                *((b.rubber.c10, b.rubber.c01, 1 / b.rubber.volume_stiffness) for b in bodies),
-                strict=True,
-            )
-        )
-        self.c10: Floats = c10
-        self.c01: Floats = c01
-        self.softness: Floats = softness
-        self._shape(bodies)
-        self._pattern()
-
-    def _shape(self, bodies: Sequence[Body]) -> None:
-        """Derivative of the five components by the twelve displacements; weights."""
-        gradients = np.concatenate([b.mesh.gradients for b in bodies])
-        self.weights: Floats = np.concatenate([b.mesh.weights for b in bodies])
-        values = bodies[0].mesh.values
-        self.corner_values: Floats = bodies[0].mesh.corner_values
-        count, points = self.weights.shape
-        shape = np.zeros((count, points, 5, 6, 2))
-        for component, (i, j) in enumerate(material.COMPONENTS[:4]):
-            shape[:, :, component, :, i] = gradients[..., j]
-        if self.sliding_radius is not None:
-            radius = np.einsum("pa,ea->ep", values, self.radii(self.nodes)[self.triangles])
-            hoop = self.outward / (self.sliding_radius * radius[..., None])
-            shape[:, :, 4, :, 1] = values * hoop
-            self.weights = self.weights * radius
-        self.shape: Floats = shape.reshape(count, points, 5, 12)
-        self.flat_shape: Floats = self.shape.reshape(count, points * 5, 12)
-
-    def _pattern(self) -> None:
-        """Positions of all element and edge entries in a sparse matrix."""
-        own = (2 * self.triangles[:, :, None] + np.arange(2)).reshape(len(self.triangles), 12)
-        self.element_unknowns = np.concatenate((own, self.displacements + self.corners), axis=1)
-        chain = np.concatenate(self.edges)
-        self.edge_unknowns = (2 * chain[:, :, None] + np.arange(2)).reshape(len(chain), 6)
-        rows, columns = [], []
-        for dofs in (self.element_unknowns, self.edge_unknowns):
-            width = dofs.shape[1]
-            rows.append(np.repeat(dofs, width, axis=1).ravel())
-            columns.append(np.tile(dofs, (1, width)).ravel())
-        row, column = np.concatenate(rows), np.concatenate(columns)
-        keys, self._slot = np.unique(column * self.unknowns + row, return_inverse=True)
-        self._indices = keys % self.unknowns
-        self._pointers = np.searchsorted(keys // self.unknowns, np.arange(self.unknowns + 1))
-
-    def gradient(self, state: Floats) -> tuple[Floats, Floats]:
-        """Deformation gradient and multiplier at the integration points."""
-        unknown = state[self.element_unknowns]
-        identity = np.array([1.0, 0.0, 0.0, 1.0, 1.0])
-        moved = np.einsum("epck,ek->epc", self.shape, unknown[:, :12], optimize=True)
-        return identity + moved, unknown[:, 12:] @ self.corner_values.T
-
-    def smallest_volume(self, state: Floats) -> float:
-        """Smallest J of all integration points; it must stay positive."""
-        gradient, _ = self.gradient(state)
-        return float(np.min(material.inverse_transpose(gradient)[1]))
-
-    def internal(self, state: Floats) -> Floats:
-        """Internal forces, and volume errors in the rows of the multiplier."""
-        gradient, multiplier = self.gradient(state)
-        nominal = material.stress(gradient, multiplier, self.c10, self.c01)
-        _, volume = material.inverse_transpose(gradient)
-        weighted = (nominal * self.weights[..., None]).reshape(len(self.triangles), 1, -1)
-        error = (volume - 1 - multiplier * self.softness) * self.weights
-        entries = np.concatenate(
-            ((weighted @ self.flat_shape)[:, 0], error @ self.corner_values), axis=1
-        )
-        total = np.bincount(self.element_unknowns.ravel(), entries.ravel(), minlength=self.unknowns)
-        return np.asarray(total)
-
-    def stiffness(self, state: Floats, edge_blocks: Floats) -> csc_matrix:
-        """Derivative of the internal forces, plus the 6 x 6 block of the fluid for every edge."""
-        gradient, multiplier = self.gradient(state)
-        count, points = self.weights.shape
-        slope = material.tangent(gradient, multiplier, self.c10, self.c01)
-        weighted = (slope * self.weights[..., None, None]) @ self.shape
-        block = np.zeros((count, 15, 15))
-        flat = np.swapaxes(self.flat_shape, 1, 2)
-        block[:, :12, :12] = flat @ weighted.reshape(count, points * 5, 12)
-        inverse, volume = material.inverse_transpose(gradient)
-        hold = (inverse * (volume * self.weights)[..., None])[..., None]
-        hold = (hold * self.corner_values[None, :, None, :]).reshape(count, points * 5, 3)
-        block[:, :12, 12:] = flat @ hold
-        block[:, 12:, :12] = np.swapaxes(block[:, :12, 12:], 1, 2)
-        soft = np.einsum("ep,pa,pb->eab", self.weights, self.corner_values, self.corner_values)
-        block[:, 12:, 12:] = -soft * self.softness[:, :, None]
-        data = np.bincount(
-            self._slot,
-            np.concatenate((block.ravel(), edge_blocks.ravel())),
-            minlength=len(self._indices),
-        )
-        return csc_matrix(
-            (data, self._indices, self._pointers), shape=(self.unknowns, self.unknowns)
-        )
-
-    def radii(self, places: Floats) -> Floats:
-        """Circumference at every node over that of the sliding face; 1 in plane strain."""
-        if self.sliding_radius is None:
-            return np.ones(len(places))
-        return np.asarray(1 + self.outward * places[:, 1] / self.sliding_radius)
-
-    def places(self, state: Floats) -> Floats:
-        """Current positions of the nodes, n x 2 [m]."""
-        return np.asarray(self.nodes + state[: self.displacements].reshape(-1, 2))

@@ -28,8 +28,9 @@ from .equilibrium import (
     follow,
 )
 from .material import Floats, MooneyRivlin
-from .mesh import Body, Section, disc
+from .mesh import disc
 from .result import Contact, SealSolution, stress_field
+from .section import Body, Section
 
 MOST_FILL = 0.98
 """Largest fill of the groove by an incompressible section: corners stay open."""

@@ -8,7 +8,8 @@ import numpy as np
 
 from . import material
 from .material import Floats
-from .mesh import Integers, Section
+from .mesh import Integers
+from .section import Section
 
 
 @dataclass(frozen=True, slots=True)

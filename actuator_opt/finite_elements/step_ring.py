@@ -29,8 +29,9 @@ from .equilibrium import (
     follow,
 )
 from .material import Floats, MooneyRivlin
-from .mesh import Body, Section, SlideRing, disc, slide_ring
+from .mesh import SlideRing, disc, slide_ring
 from .result import Contact, SealSolution, stress_field
+from .section import Body, Section
 
 COARSE = 0.12
 """Largest element size of the slide ring, over the section of the rubber ring."""

@@ -11,7 +11,7 @@ from ..base.display import Displayed
 from ..base.quantities import Quantity
 from ..design import Design
 from ..evaluation import Evaluation
-from .front.front import Gap
+from .front.even import Gap
 from .result import Infeasibility
 
 
