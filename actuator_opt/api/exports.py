@@ -11,8 +11,6 @@ from ..base import files as files, runs as run_store
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..design import Design
 from ..evaluation import Evaluation
-from ..explorer import ExplorerFile
-from ..sweeps.explored import Explored
 from .actuator import Actuator, Plugins, as_actuator, plugins_of
 from .kept_sweeps import store_of
 from .optimum import evaluate
@@ -22,8 +20,10 @@ from .restoring import changed_plugins, named_plugins, restore
 from .sweeping import free
 
 if TYPE_CHECKING:
+    from ..explorer import ExplorerFile
     from ..exports import ExportFile
     from ..optimisation.result import Optimisation
+    from ..sweeps.explored import Explored
 
 
 def export(

@@ -23,17 +23,17 @@ from ..base import runs as run_store
 from ..base.display import Displayed
 from ..base.errors import Diagnostic, InputError
 from ..evaluation.plugin import Plugin
-from ..optimisation.pareto_result import ParetoFront
-from ..optimisation.result import Optimisation
-from ..pages import Table
-from ..simulation.verification import Verification
-from ..sweeps import Swept
 from ..version import VERSION
 from .actuator import Actuator
 from .reports import date_from_environment, file_name, verification_tables
 
 if TYPE_CHECKING:
+    from ..optimisation.pareto_result import ParetoFront
+    from ..optimisation.result import Optimisation
+    from ..pages import Table
     from ..rendering.console import Style
+    from ..simulation.verification import Verification
+    from ..sweeps import Swept
 
 
 Form = Any

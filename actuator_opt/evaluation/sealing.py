@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -12,7 +12,6 @@ from ..base.errors import ActuatorError, Diagnostic, Unsolvable, article
 from ..base.numeric import Array, absolute, maximum, real, where
 from ..design.model import Design
 from ..design.seals import ContactProfile, Wiper
-from ..finite_elements.result import Contact
 from ..friction.law import Friction
 from ..models import damping, friction, gland, lip_seal, retention, wear
 from ..models.fluid import ATMOSPHERIC_PRESSURE
@@ -28,6 +27,9 @@ from .rings import INCOMPRESSIBLE, Place, Ring, face_modulus, places
 from .seal_contact import seal_contact
 from .state import LoadState, side_reactions
 from .values import Values
+
+if TYPE_CHECKING:
+    from ..finite_elements.result import Contact
 
 
 def compute(

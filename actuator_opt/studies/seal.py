@@ -22,7 +22,6 @@ from ..evaluation.kernel import Base, PreparedDesign, base
 from ..evaluation.rings import Place, Ring
 from ..evaluation.seal_contact import seal_contact
 from ..evaluation.values import of_case
-from ..finite_elements.result import Contact
 from ..models import damping, elastomer, lugre
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..seals.contact import SealContact
