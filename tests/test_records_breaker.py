@@ -148,7 +148,7 @@ def test_few_resamples_are_a_usage_error():
     """Fewer than have a tail: said before the work."""
     result = run("identify", str(RECORD), "--design", str(KNEE), "--bootstrap", "10")
     assert result.code == 2
-    assert "take 80 or more" in result.err
+    assert "use 80 or more" in result.err
 
 
 def test_a_load_stated_twice_is_refused():

@@ -63,7 +63,7 @@ def test_it_never_writes_over_what_it_reads(reports):
     before = reports["e"].read_bytes()
     refused = run("rerun", reports["e"], "--out", reports["e"].parent, "--json")
     assert refused.code == 3
-    assert "over what is read" in refused.errors[0]["message"]
+    assert "is an input and would be overwritten" in refused.errors[0]["message"]
     assert reports["e"].read_bytes() == before
 
 
@@ -229,7 +229,7 @@ def test_the_parser_knows_every_option_of_the_commands():
     known = {word for action in repeating.parser()._actions for word in action.option_strings}
     idle = {
         "--out", "--json", "--quiet", "-q", "--report", "--write", "--no-record", "--help", "-h",
-        "--csv", "--debug",
+        "--csv", "--debug", "--format", "--all-pages",
     }  # fmt: skip
     commands = cli.command_line().commands
     for verb in repeating.OPTIMISED + repeating.EVALUATED + repeating.FRONTS:

@@ -116,7 +116,7 @@ def test_without_draws_the_reason_and_the_way_on_are_said(wide):
     reasons = {
         "oil films": quick_yield(films, replace(wide, requirements=())),
         "does not sample": wide.yield_estimate,
-        "own metrics": quick_yield(
+        "custom metrics": quick_yield(
             ao.read(case.PLAIN).subject(),
             replace(wide, requirements=(replace(wide.requirements[0], metric="mine"),)),
         ),
@@ -384,5 +384,5 @@ def test_the_estimate_is_the_same_for_the_same_seed(optimum):
     assert first.yield_estimate != other.yield_estimate
     assert YieldEstimate(value=0.5, lower=0.4, upper=0.6, draws=9).sentence == (
         "About 50 % of the actuators built to this design would meet every requirement "
-        "(40 to 60 %, 9 draws)."
+        "(40 to 60 %, 9 samples)."
     )

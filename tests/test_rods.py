@@ -1,4 +1,4 @@
-"""Rods in the evaluation, of layers and of one metal: section, strength, buckling, ends, weight.
+"""Rods in the evaluation, of layers and of a single metal: section, strength, buckling, ends, weight.
 
 Expected values are closed forms, the independent tube of `tube_oracle`, or arithmetic written out
 here; nothing of `evaluation` is called to get them.
@@ -135,7 +135,7 @@ def lined_tube():
 
 @pytest.mark.parametrize("parts", [(3.5,), (1.0, 2.1, 0.4)])
 def test_a_rod_of_steel_layers_is_the_steel_rod(parts):
-    """Layers of one metal, however many, give the closed forms of the hollow metal rod."""
+    """Layers of a single metal, however many, give the closed forms of the hollow metal rod."""
     layered = passed(knee(layers(*(("steel_42crmo4", 0, part) for part in parts)), set=PLAIN))
     plain = passed(knee(set=PLAIN))
     for field in (
@@ -745,7 +745,7 @@ def test_the_process_sets_least_angle_and_thickness():
 def test_what_does_not_apply_says_why():
     """A metal rod has no plies and no fittings; a rod without temperatures no thermal shear."""
     metrics = verbs.evaluate(knee()).metrics
-    assert "one metal" in metrics["rod_factor"].why
+    assert "a single metal" in metrics["rod_factor"].why
     assert "no bonded fittings" in metrics["fitting_factor"].why
     first, last = KNEE.index("environment:"), KNEE.index("cylinder:\n")
     bare = verbs.evaluate(verbs.read(KNEE[:first] + KNEE[last:]))

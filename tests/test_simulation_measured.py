@@ -176,7 +176,7 @@ def test_what_is_missing_is_told_with_its_place():
         ("t [s],T [degC]\n0,20\n1,20\n", "no channel matches a simulated signal"),
         ("t [s],x [bar]\n0,1\n1,2\n", 'column "x"'),
         ("t [s],x [mm]\n0,1\n2,2\n1,3\n", "time does not increase at 1 s"),
-        ("t [s],x [mm]\n0,1\n,2\n1,3\n", "no time"),
+        ("t [s],x [mm]\n0,1\n,2\n1,3\n", "missing time"),
         ("x [mm]\n1\n", "no column t"),
     ],
 )
@@ -259,7 +259,7 @@ def test_overlay_refuses_what_has_nothing_in_common():
     scene, own = case()
     made = run(scene, own, {}, None)
     late = Measured({name: (t + 9.0, y) for name, (t, y) in bench(1).channels.items()})
-    with pytest.raises(InputError, match=r"from 9 to 9\.5 s, the scenario from 0 to 0\.5 s"):
+    with pytest.raises(InputError, match=r"covers 9 to 9\.5 s, the scenario 0 to 0\.5 s"):
         overlay(made, late)
     time, signals = measured_signals()
     with pytest.raises(InputError, match="none of its channels is simulated"):
@@ -371,7 +371,7 @@ def test_parameters_without_effect_are_told():
     even = case(static=TRUE["coulomb"])[0]
     assert entries(["stribeck_speed", "static"], even, own)
     for name, there, body, why in (
-        ("stribeck_speed", even, own, "static and Coulomb friction are alike; fit static with it"),
+        ("stribeck_speed", even, own, "static and Coulomb friction are equal: fit static too"),
         ("valve_offset", scene, replace(own, valve=None), "the design has no valve"),
         ("mass", held, own, "the ports of the valve are blocked"),
         ("valve_leakage", scene, tight, "it is a factor"),

@@ -191,7 +191,7 @@ def test_sticking_friction_raises_the_ultimate_gain():
     assert found.shares["friction"] > 0.5
     assert found.value > 1.5 * found.linear
     assert "the seals" in found.why
-    assert "swing of" in found.how
+    assert "push of" in found.how
 
 
 def test_the_bristles_of_sticking_seals_are_a_spring_beside_the_oil():
@@ -381,7 +381,7 @@ def test_what_is_left_out_of_the_experiments_is_named():
     }  # fmt: skip
     part = [{"shape": "constant", "value": 5.0}]
     full = {"force": part, "torque": part, "stiffness": 1.0, "damping": 1.0, "drive": drive}
-    words = ("force of the load", "torque on the joint", "spring", "damper", "machine outside",
+    words = ("force of the load", "torque on the joint", "spring", "damper", "external machine",
              "load cylinder")  # fmt: skip
     for (name, value), word in zip((full | {"cylinder": rig}).items(), words, strict=True):
         assert _left_out(Load.model_validate({name: value})) == word

@@ -330,7 +330,7 @@ def test_a_store_that_cannot_be_used_is_said_in_one_line(tmp_path):
         (foreign, "another program's"),
         (browser, "another program's"),
         (old, "has rows of model version 0.1"),
-        (tmp_path / "no" / "where.db", "name a file in a folder that is there"),
+        (tmp_path / "no" / "where.db", "name a file in an existing, writable folder"),
         (tmp_path, "cannot be written"),
     ):
         before = path.read_bytes() if path.is_file() else None

@@ -174,7 +174,7 @@ def test_the_pareto_line_is_of_every_feasible_design(knee, monkeypatch):
         for m, s in zip(mass, stiffness, strict=True)
         if not ((mass <= m) & (stiffness >= s) & ((mass < m) | (stiffness > s))).any()
     }
-    monkeypatch.setattr(sample, "MOST", 8)
+    monkeypatch.setattr(sample, "MOST_POINTS", 8)
     few = ao.sweep(knee, WAYS, method="lhs", n=300, figures=["scatter"], show=PAIR)
     assert len(few.sample.feasible.rows) <= 8
     for pair in (PAIR, PAIR[::-1]):
@@ -249,7 +249,7 @@ def test_same_sweep_same_bytes(knee, tmp_path):
         (WAYS, {"method": "lhs", "n": 4}, ["contour"], [], "needs a grid, not --method lhs"),
         ([*GRID, "caps.thickness=4..5 mm:2"], {}, ["contour"], [], "exactly two --vary, not 3"),
         ([GRID[0], "rod.material=steel_42crmo4,ti_6al4v"], {}, ["contour"], [], "takes names"),
-        ([GRID[0], "caps.thickness=5 mm"], {}, ["contour"], [], "two values or more of caps"),
+        ([GRID[0], "caps.thickness=5 mm"], {}, ["contour"], [], "at least two values of caps"),
         (GRID, {}, ["scatter"], ["mas"], 'did you mean "mass"'),
         (GRID, {}, ["scatter"], ["mass"], "two metrics or more"),
         (GRID, {}, ["pie"], [], "--figure pie: unknown"),

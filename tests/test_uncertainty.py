@@ -312,4 +312,4 @@ def test_what_is_taken_at_its_worst_is_not_drawn_twice():
     assert not any(one.endswith((".section", ".squeeze", "tolerance")) for one in found_inputs())
     text = case.block({"seals.rod.squeeze": {"distribution": "normal", "deviation": "0.5 %"}})
     notes = ao.uncertainty(ao.read(text), count=20, rows=0).notes
-    assert any("seals.rod.tolerance is taken at its worst too" in words for words in notes)
+    assert any("seals.rod.tolerance is applied at its worst too" in words for words in notes)
