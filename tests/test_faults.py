@@ -340,7 +340,8 @@ def test_the_library_takes_a_design_where_the_terminal_does(tmp_path):
     file = tmp_path / "bench.yaml"
     file.write_text(BENCH)
     actuator = ao.read(file)
-    images = [x.path for x in ao.report(actuator, folder=tmp_path, all_pages=True) if x.path.suffix == ".png"]
+    written = ao.report(actuator, folder=tmp_path, all_pages=True)
+    images = [x.path for x in written if x.path.suffix == ".png"]
     ours = [image.read_bytes() for image in images]
     assert run("report", file, "--out", tmp_path, "--all-pages").code == 0
     differing = [k for k, image in enumerate(images) if image.read_bytes() != ours[k]]

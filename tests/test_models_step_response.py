@@ -225,7 +225,10 @@ def test_standard_error_of_the_stiffness_is_its_scatter():
         ),
         ({"frequency": 0.4}, "1 s are less than one cycle of 0.4 Hz; give a longer record"),
         ({"frequency": -5.0}, "1 s are less than one cycle of -5 Hz; give a longer record"),
-        ({"frequency": 50.0}, "samples every 0.01 s do not resolve 50 Hz; give more than two samples"),
+        (
+            {"frequency": 50.0},
+            "samples every 0.01 s do not resolve 50 Hz; give more than two samples",
+        ),
         ({"force": np.zeros(100)}, r"force has shape \(100,\), but time \(101,\); give one number"),
     ],
 )

@@ -1,4 +1,4 @@
-"""Rods in the evaluation, of layers and of a single metal: section, strength, buckling, ends, weight.
+"""Rods in the evaluation, of layers and of one metal: section, strength, buckling, ends, weight.
 
 Expected values are closed forms, the independent tube of `tube_oracle`, or arithmetic written out
 here; nothing of `evaluation` is called to get them.
@@ -753,7 +753,7 @@ def test_what_does_not_apply_says_why():
     warned = verbs.evaluate(
         knee(ROD + FITTING, replace=[("  cure_temperature: 120 degC\n", "")])
     ).warnings
-    assert any("left out of the rod's layers" in text for text in warned)
+    assert any("the rod's layers exclude cooling stresses" in text for text in warned)
 
 
 # --- in the optimiser ----------------------------------------------------------------------------

@@ -137,8 +137,8 @@ def test_channels_are_read_with_their_units():
     unknown, still = found.notes
     assert unknown.startswith('columns that are not channels: "note"; channels are p1, p2, x')
     assert still == (
-        "pressure_b, position, signal, flow_a, shaft_speed, shaft_angle: one value all the time in "
-        "the record"
+        "pressure_b, position, signal, flow_a, shaft_speed, shaft_angle: constant throughout the "
+        "record"
     )
 
 
@@ -371,7 +371,7 @@ def test_parameters_without_effect_are_told():
     even = case(static=TRUE["coulomb"])[0]
     assert entries(["stribeck_speed", "static"], even, own)
     for name, there, body, why in (
-        ("stribeck_speed", even, own, "static and Coulomb friction are equal: fit static too"),
+        ("stribeck_speed", even, own, "static and Coulomb friction are equal; fit static too"),
         ("valve_offset", scene, replace(own, valve=None), "the design has no valve"),
         ("mass", held, own, "the ports of the valve are blocked"),
         ("valve_leakage", scene, tight, "it is a factor"),
