@@ -195,7 +195,7 @@ def test_faults_during_the_search(plugin, tmp_path, body, code, status, told):
         shown = run(*arguments, "--out", tmp_path / "r", stdin=WANTED.encode())
         assert shown.code == code
         assert "no usable answer" in shown.out
-        assert "Narrow the bounds to where the model is valid" in " ".join(shown.out.split())
+        assert "Narrow the bounds to the valid range of the model" in " ".join(shown.out.split())
         assert all(path.stat().st_size > 0 for path in (tmp_path / "r").iterdir())
 
 
@@ -212,5 +212,6 @@ def test_an_interrupt_during_the_search(plugin, tmp_path, words):
         assert result.json["status"] == "interrupted"
         assert result.json["sensitivities"] == []
     else:
-        assert "Interrupted; the best point so far meets every requirement." in result.out
+        said = " ".join(result.out.split())
+        assert "Interrupted; the best point so far meets" in said
     assert run("evaluate", file, "-q", "--plugin", path).code == 0

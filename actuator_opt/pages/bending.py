@@ -9,8 +9,8 @@ from ..base.quantities import MATERIAL_PROPERTIES
 from ..identification.bending import BendingResult
 from ..metrics import METRICS
 from ..rendering import text
-from ..rendering.blocks import Block, Column, Notes, Page, State, Table, Tile, Verdict, tile
-from ..rendering.chart import Axis, Chart, Curve, Panel
+from ..rendering.blocks import Block, Chart, Column, Notes, Page, State, Table, Tile, Verdict, tile
+from ..rendering.chart import Axis, Curve, Panel
 from ..rendering.chart_ink import drawn
 from ..rendering.ink import Ink
 from ..rendering.text import sentence

@@ -15,6 +15,7 @@ from ..optimisation.redesign import Redesign, Shift, solved
 from ..rendering import text
 from ..rendering.blocks import (
     Block,
+    Chart,
     Column,
     Notes,
     Page,
@@ -28,7 +29,7 @@ from ..rendering.blocks import (
     short,
     tile,
 )
-from ..rendering.chart import Axis, Chart, Curve, Panel, Points
+from ..rendering.chart import Axis, Curve, Panel, Points
 from ..rendering.chart_ink import drawn
 from ..rendering.ink import Ink
 from ..rendering.text import sentence

@@ -21,7 +21,8 @@ from ..identification.result import Identification
 from ..identification.stribeck_fit import StribeckFit
 from ..metrics import METRICS
 from ..rendering.axes import even_range, log_range
-from ..rendering.chart import Axis, Chart, Curve, Level, Panel, Points, Surface, Values
+from ..rendering.blocks import Chart
+from ..rendering.chart import Axis, Curve, Level, Panel, Points, Surface, Values
 from ..rendering.chart_ink import drawn
 from ..rendering.ink import Ink
 from ..rendering.text import number, sentence, trimmed, unit_text

@@ -12,9 +12,37 @@ from dataclasses import dataclass, field, replace
 from typing import Literal, TypeAlias
 
 from ..base.errors import CONTROLS
-from .chart import Chart
+from .chart import Panel
 from .ink import Ink
 from .text import STATUS_WORDS
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Chart:
+    """Panels side by side; a sequence of panels is a column.
+
+    Parameters
+    ----------
+    title : of the block
+    panels : panels and columns of panels, from the left
+    note : below the chart
+    instead : what the terminal shows
+    height : on paper [mm]
+    widths : of the columns, relative; default: equal
+    """
+
+    title: str
+    panels: Sequence[Panel | Sequence[Panel]]
+    note: str = ""
+    instead: Table | TerminalFigure | None = None
+    height: float = 64.0
+    widths: Sequence[float] = ()
+
+    @property
+    def columns(self) -> list[list[Panel]]:
+        """The panels by column."""
+        return [[part] if isinstance(part, Panel) else [*part] for part in self.panels]
+
 
 State: TypeAlias = Literal["", "met", "no_reserve", "missed", "not_checked", "checks", "infeasible"]
 """How a requirement, a check or a whole page fares; empty where nothing is judged."""

@@ -7,12 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import Literal, TypeAlias
 
 from ..base.numeric import Array
-
-if TYPE_CHECKING:
-    from .blocks import Table, TerminalFigure
 
 Values: TypeAlias = Sequence[float] | Array
 Weight: TypeAlias = Literal["normal", "thin", "guide"]
@@ -145,30 +142,3 @@ class Panel:
     surface: Surface | None = None
     note: str = ""
     share: float = 1.0
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Chart:
-    """Panels side by side; a sequence of panels is a column.
-
-    Parameters
-    ----------
-    title : of the block
-    panels : panels and columns of panels, from the left
-    note : below the chart
-    instead : what the terminal shows
-    height : on paper [mm]
-    widths : of the columns, relative; default: equal
-    """
-
-    title: str
-    panels: Sequence[Panel | Sequence[Panel]]
-    note: str = ""
-    instead: Table | TerminalFigure | None = None
-    height: float = 64.0
-    widths: Sequence[float] = ()
-
-    @property
-    def columns(self) -> list[list[Panel]]:
-        """The panels by column."""
-        return [[part] if isinstance(part, Panel) else [*part] for part in self.panels]

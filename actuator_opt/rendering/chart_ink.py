@@ -17,7 +17,8 @@ import numpy as np
 
 from . import contours
 from .axes import Axes, Box, Ticks, band, fitted, thinned
-from .chart import Chart, Curve, Level, Panel, Points, Values
+from .blocks import Chart
+from .chart import Curve, Level, Panel, Points, Values
 from .chart_scale import Scale, known, scale
 from .heights import wrap
 from .ink import (

@@ -14,6 +14,7 @@ from .blocks import (
     Bar,
     Block,
     Cell,
+    Chart,
     Drawing,
     Flag,
     Listing,
@@ -28,7 +29,6 @@ from .blocks import (
     Table,
     soft,
 )
-from .chart import Chart
 from .ink import text_width
 
 SHEET, TILES, FOOT, HEAD = 265.0, 23.0, 24.5, 8.2

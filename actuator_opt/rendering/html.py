@@ -20,6 +20,7 @@ from .blocks import (
     Bar,
     Block,
     Cell,
+    Chart,
     Column,
     Drawing,
     Flag,
@@ -36,7 +37,6 @@ from .blocks import (
     Tile,
     clean,
 )
-from .chart import Chart
 from .chart_ink import drawn
 from .heights import cells_of, joined
 from .ink import POINT, Ink, PathMark, TextMark

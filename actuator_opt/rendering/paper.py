@@ -24,6 +24,7 @@ from .blocks import (
     Bar,
     Block,
     Cell,
+    Chart,
     Drawing,
     Flag,
     Listing,
@@ -40,7 +41,6 @@ from .blocks import (
     short,
     soft,
 )
-from .chart import Chart
 from .chart_ink import drawn
 from .heights import FULL, HALF, cells_of, fitting, room
 from .ink import Ink

@@ -12,6 +12,7 @@ from .blocks import (
     Bar,
     Block,
     Cell,
+    Chart,
     Column,
     Drawing,
     Flag,
@@ -27,7 +28,6 @@ from .blocks import (
     TerminalFigure,
     Verdict,
 )
-from .chart import Chart
 from .console import GAP, Console, Style, visible
 from .heights import cells_of, joined
 from .terminal_curve import curve
