@@ -213,5 +213,5 @@ def test_an_interrupt_during_the_search(plugin, tmp_path, words):
         assert result.json["sensitivities"] == []
     else:
         said = " ".join(result.out.split())
-        assert "Interrupted; the best point so far meets" in said
+        assert "Interrupted; the best feasible design so far is kept." in said
     assert run("evaluate", file, "-q", "--plugin", path).code == 0

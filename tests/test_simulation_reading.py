@@ -87,7 +87,7 @@ def test_creep_is_told_only_where_nothing_asks_for_motion(moved):
     """A valve that is open, a speed or a ramp asked for, a load that jumps: no creep."""
     run = ao.simulate(KNEE + moved)
     assert run.values["hold_drift"] is None
-    assert "moves" in run.why["hold_drift"]
+    assert "still cause motion" in run.why["hold_drift"]
 
 
 def test_the_second_opinion_is_another_method():
@@ -156,4 +156,4 @@ def test_torn_oil_is_said():
     text = (
         KNEE + "ends: closed\nload:\n  force:\n    - {shape: step, value: -30 kN, start: 0.01 s}\n"
     )
-    assert any("torn" in note for note in ao.simulate(text).notes)
+    assert any("cavitat" in note for note in ao.simulate(text).notes)
