@@ -133,10 +133,10 @@ def notes(**changes):
 
 
 def test_the_shipped_design_bears_its_verdicts(tables):
-    """Where the numbers do what the thesis tells, the notes say so (conditions in test_aalto)."""
+    """Where the numbers do what the thesis says, the notes say so (conditions in test_aalto)."""
     dynamic, peak = tables["dynamic tests"].note, tables["orifice and 20 Hz peak"].note
     for words in (
-        "what the thesis tells of the stiffness happens: soft up to 15 Hz, more than twice",
+        "the stiffness behaves as the thesis says: soft up to 15 Hz, more than twice",
         "stiffens at 10 Hz (0.56",
         "lowers the peak (2.57 to 2.18 times) and does nothing at 30 Hz",
         "18.5 to 19.5 Hz with a damping ratio of 0.2 to 0.25 do much the same",

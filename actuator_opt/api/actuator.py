@@ -171,8 +171,6 @@ def unanswered(actuator: Actuator, subject: PreparedDesign) -> list[Diagnostic]:
 
 
 _STAMP = "# Written by actuator-opt optimise: an optimum as long as its spec hash is "
-
-
 _LINE = re.compile(re.escape(_STAMP) + r"([0-9a-f]{16})\n")
 
 

@@ -40,11 +40,7 @@ Form = Any
 """A type, a tuple of alternative forms, ``[form]`` for a list of any length, or an object: fields
 by name (``name?`` is optional, others are allowed), or ``{"*": form}`` for any names. ``float``
 also accepts whole numbers, None is null, ``object`` is anything."""
-
-
 _OBJECTIVE = {"metric?": (str, None), "value?": (float, None)}
-
-
 _HEAD: Form = {
     "kind": str,
     "name": str,
@@ -66,8 +62,6 @@ _HEAD: Form = {
     "feasible?": (int, None),
     "failed?": int,
 }
-
-
 _BODY: Form = {
     "date": (str, None),
     "input": {
@@ -78,11 +72,7 @@ _BODY: Form = {
     },
     "versions": {"*": str},
 }
-
-
 _STATE: Form = {"designs": [{}], "result": {}}
-
-
 _AXIS: Form = {
     "path": str,
     "quantity": (str, None),
@@ -91,15 +81,11 @@ _AXIS: Form = {
     "range": bool,
     "steps": (int, None),
 }
-
-
 _HEADS: Mapping[str, Form] = {
     "optimise": {"met": bool, "objective": _OBJECTIVE},
     "pareto": {"objectives": object, "points": object, "knee": object},
     "sweep": {"met": bool, "objective": {"metric": str}, "requested": object, "feasible": object},
 }
-
-
 _BODIES: Mapping[str, Form] = {
     "optimise": {
         "trace": [[float]],
@@ -136,11 +122,7 @@ _BODIES: Mapping[str, Form] = {
         },
     },
 }
-
-
 _NUMBERS: Form = ({"*": (float, None)}, None)
-
-
 _RUN: Form = {
     "actuator_opt": str,
     "command": str,
@@ -459,8 +441,6 @@ def same(a: Any, b: Any) -> bool:
 
 BEST = 10
 """Maximum number of best designs in a sweep's record; the store has all rows."""
-
-
 REASONS = 20
 """Number of failure reasons recorded, most frequent first."""
 

@@ -33,8 +33,6 @@ _WISHES = (
     "measured",
 )
 """Keys of a design that do not describe the tested actuator."""
-
-
 Units = str | Path | Mapping[str, str] | None
 """Units of columns whose header states none: ``"SI"``, a file, or by column."""
 

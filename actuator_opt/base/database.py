@@ -310,12 +310,8 @@ def _diagnosed(path: Path) -> Iterator[None]:
 
 MAGIC = b"SQLite format 3\0"
 """First bytes of every SQLite file."""
-
-
 SOME = 4096
 """Rows per query."""
-
-
 _SELECT = "SELECT key, numbers, failure, checksum FROM rows WHERE study = ?"
 
 

@@ -52,8 +52,6 @@ def remedy(word: str, names: Iterable[str], limit: int = 12) -> str:
 
 CONTROLS = r"\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff"
 """Characters, as in a regular expression, that move the cursor or reverse the text direction."""
-
-
 _CONTROL = rf"\r(?!\n)|(?!\r)[{CONTROLS}]"
 
 

@@ -151,22 +151,14 @@ def lifted(value: Array, dims: int) -> Array:
 
 
 P = ParamSpec("P")
-
-
 T = TypeVar("T")
-
-
 _SIZE = re.compile(
     r"(?:.*_)?(?:bore|radius|diameter|thickness(?:es)?|length|width|section|stroke|span|pitch|gap"
     r"|depth|height|land|engagement|clearance|tolerance|roughness|travel|area|volume"
     r"|second_moments?|wetted_(?:back|front))(?:_[ab12])?"
 )
 """Names of lengths, areas, volumes and second moments, which are never negative."""
-
-
 _RATE = re.compile(r".*_per_.*")
-
-
 PAIRS = (
     ("outer_radius", "inner_radius"),
     ("outer_diameter", "inner_diameter"),

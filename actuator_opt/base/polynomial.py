@@ -16,12 +16,8 @@ from .numeric import Array, namespace, real
 
 BEYOND = 1.324718
 """Root of x^3 = x + 1: scales the distance to a start point beyond all roots but one."""
-
-
 SHY = 1 + 1e-15
 """Divisor of a Newton step: keeps it on its side of the root despite rounding."""
-
-
 MOST = 120
 """Number of steps for a triple root: each step covers a third of the distance."""
 

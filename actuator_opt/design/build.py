@@ -34,8 +34,6 @@ _TABLE_KEYS = {
     "set": "PATHs of the design such as cylinder.bore, each with its value",
 }
 """Contents of the tables whose keys are free names."""
-
-
 Root = TypeVar("Root", bound=Section)
 
 

@@ -56,8 +56,6 @@ EXAMPLES = {
     "stribeck_exponent": "2", "margin": "2", "cycles_per_window": "5",
 }  # fmt: skip
 """A valid example of every input quantity, for messages, the schema and the start file."""
-
-
 MATERIAL_EXAMPLES = {
     "structural": "al_7075_t6",
     "isotropic": "steel_42crmo4",

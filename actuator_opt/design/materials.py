@@ -23,35 +23,19 @@ from .kinds import ValueFault, read_quantity, what
 from .material import ROLES, Material, Property, Spread, allowable_factor, compatible, ply_constants
 
 _TOP = re.compile(r"(?m)^(?P<quote>['\"]?)(?P<name>[^\W\d][\w.+-]*)(?P=quote)[ \t]*:")
-
-
 _STRAY = re.compile(r"(?m)^(?!#|---|['\"]?[^\W\d][\w.+-]*['\"]?[ \t]*:)\S.*$")
-
-
 _KIND = re.compile(r"(?m)^[ ]+kind:[ ]*(\w+)[ ]*$")
-
-
 _SCATTER = re.compile(
     r"(?:not stated|(?P<cv>\d*\.?\d+)(?: to (?P<cv2>\d*\.?\d+))? % CV"
     r"|\+-(?P<half>\d*\.?\d+ \S.*?)|factor (?P<factor>\d*\.?\d+))(?:; .*)?"
 )
-
-
 _META = ("source", "confidence", "scatter", "basis")
-
-
 _ENTRY_KEYS = (
     "kind", "label", "inherit", "notes", "warning", "family", "suits", *_META, "properties",
 )  # fmt: skip
-
-
 _PROPERTY_KEYS = ("value", "points", "note", *_META)
-
-
 _ARGUMENTS = {"temperature": 313.15, "pressure": float("inf")}
 """Arguments of tables and their reference values (the nearest point is used)."""
-
-
 Parent: TypeAlias = Callable[[str], Material | None]
 """Returns the material of an ``inherit:``; None if unknown."""
 

@@ -39,8 +39,6 @@ from .view import Materials
 from .walls import Entry, entries
 
 Schema = dict[str, Any]
-
-
 _NUMBER = r"(\d[\d_]*\.?\d*|\.\d+)([eE][+-]?\d+)?"
 
 

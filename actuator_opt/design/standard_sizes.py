@@ -346,8 +346,6 @@ def nearest_standard(
 
 WHOLE = 1e-6
 """Fraction of a ply, and angle (rad), that counts as zero."""
-
-
 Bounds = tuple[float, float]
 
 
@@ -551,17 +549,9 @@ class _Angles(Series):
 
 
 _BORE_AND_ROD = re.compile(r"cylinder\.bore|rod\.outer_diameter")
-
-
 _THICKNESS = r"(barrel|rod)\.layup\[\d+\]\.thickness"
-
-
 _O_RING = re.compile(r"seals\.(piston|rod)\.(secondary\.)?(section|squeeze|groove_width)")
-
-
 _BOTH = "cylinder.bore and rod.outer_diameter"
-
-
 SERIES: Mapping[str, Series] = {
     series.name: series
     for series in (

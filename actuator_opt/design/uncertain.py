@@ -17,8 +17,6 @@ from .kinds import ValueFault
 from .standard_sizes import citation, metres, tables
 
 _CLASS = re.compile(r"(JS|js|[A-Za-z])(\d{1,2})")
-
-
 _MICRON = 1e-6
 
 

@@ -297,8 +297,6 @@ def reach(view: View) -> Iterator[Fault]:
 
 
 PROFILE_CHECKS = (profiles, reach)
-
-
 _TYPE = ("retention", "type")
 
 

@@ -35,8 +35,6 @@ MAX_NODES = 20_000
 
 _BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")
 _CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\x80-\x84\x86-\x9f\ud800-\udfff\ufffe\uffff]")
-
-
 _START = {
     "design": "start with: actuator-opt init",
     "scenario": "start with name: and design:",

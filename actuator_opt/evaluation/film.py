@@ -324,32 +324,18 @@ def _as_starved(contact: Contact, solved: Contact) -> Contact:
 
 SAMPLES = 64
 """Samples within the bounds of the variables that define the box of the tables."""
-
-
 POINTS = 6
 """Nodes of a surrogate along each axis."""
-
-
 MOST_AXES = 2
 """Most axes of a surrogate: a further axis would need `POINTS` times as many films."""
-
-
 SPEEDS, SPEED_ROOM = 3, 1.25
 """Nodes and relative range of the speed axis, which every surrogate has so that the slope by speed
 depends on all other inputs. The middle node is the speed of the case."""
-
-
 CHECKS = 4
 """Points of the box at which a surrogate is compared with solved films."""
-
-
 MISSED = 0.005
 """Largest first-order error, over the load, at the ends of an input that is not an axis."""
-
-
 Stroke = Literal["drive", "return"]
-
-
 Key = tuple[Place, int, Stroke]
 """Place, load case and stroke of a table."""
 

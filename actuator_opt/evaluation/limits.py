@@ -165,8 +165,6 @@ def margin(value: Array, limit: Array, sense: Sense) -> Array:
 
 
 ALL_CASES = "all"
-
-
 UNLIMITED = 1e300
 """Replaces an infinite value (unloaded part) in margins, which must be finite."""
 

@@ -257,12 +257,8 @@ def _least(values: Array) -> Array:
 
 LEAST_DAMPING = 0.005
 """Damping ratio below which a loop counts as poorly damped (choice)."""
-
-
 NEAR_RESONANCE = 0.8
 """Bandwidth over natural frequency of the load that counts as close to it (choice)."""
-
-
 LONGEST = 0.1
 """Largest line length of a chamber over wavelength for a lumped element (choice: 3 % error of the
 admittance of a closed line, 7 % at constant end pressure)."""

@@ -24,12 +24,8 @@ from .wall_study import WallStudy
 NO_RESERVE = 1e-3
 """Margin below which a met limit has no reserve. A choice: a single tolerance is as wide.
 IT7 of a diameter of 20 mm is 21 um, 0.1 % of it (ISO 286-1). Optima end within 1e-6 of a limit."""
-
-
 NO_ROOM = 1e-6
 """The same for a limit of 0, whose margin is the distance itself in SI: the tolerance of `met`."""
-
-
 MOST_NAMED = 5
 """Most limits without reserve that a sentence names."""
 

@@ -215,8 +215,6 @@ def _wiper(
 
 SHARES = (0.25, 0.5, 0.75, 1.0)
 """Sealed pressures over supply pressure of the profiles, in addition to zero."""
-
-
 POINTS = 81
 """Points of a profile, an even selection from the finite-element nodes."""
 

@@ -20,8 +20,6 @@ PLACES: tuple[Place, ...] = ("piston", "rod")
 
 NEAR = 0.02
 """Relative difference of a housing's depth or length that is ignored."""
-
-
 _SIZES, _GLANDS, _SECTIONS = "standard sizes", "standard glands", "ISO 3601-2 sections (AS568)"
 
 

@@ -29,8 +29,6 @@ from .values import Values
 
 HOLE = 2.0
 """Stress at the edge of a small central hole over that of the solid plate [Timoshenko1959]."""
-
-
 NO_RETENTION = "no retention stated: add retention"
 
 

@@ -44,8 +44,6 @@ class Model:
 
 
 _VALID = re.compile(r"^\s*Valid: (.*?)(?:\n\s*\n|\Z)", re.DOTALL | re.MULTILINE)
-
-
 _REFERENCES = re.compile(r"References\n\s*-+\n(.*?)(?:\n\s*\n|\Z)", re.DOTALL)
 
 
@@ -97,8 +95,6 @@ def model_of(
 
 FILM_ERROR = 0.02
 """Relative error of a film surrogate from which a warning is given."""
-
-
 _SURROGATES = {
     "friction": "friction_running",
     "flow": "rod_leakage",

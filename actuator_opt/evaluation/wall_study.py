@@ -41,12 +41,8 @@ from .values import Values
 
 METALS = ("steel_e355", "al_7075_t6")
 """Metal barrels to compare with every wall: the usual honed steel tube, the usual light alloy."""
-
-
 FACTORS = (0.8, 1.25)
 """Bore growths, over the actual growth, for which a thickness is computed."""
-
-
 LARGEST = 2.0
 """Largest thickness tried, in bore radii."""
 

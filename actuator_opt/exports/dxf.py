@@ -129,15 +129,9 @@ def rows(lengths: Sequence[Length], paper: Paper) -> list[Placed]:
 
 
 LAYER = "dimensions"
-
-
 STYLE = "TRUE"
-
-
 _COLOUR, _BY_LAYER, _BLACK_OR_WHITE = 153, 256, 7
 """Colours of lines, readable on black and on white; text takes the colour the ground lacks."""
-
-
 _SMALLEST = 1e-6
 """Shorter lengths (mm) are not dimensioned."""
 

@@ -17,36 +17,22 @@ from ..base.errors import Diagnostic, InputError
 from ..evaluation.result import Evaluation, Outline
 
 Point: TypeAlias = tuple[float, float]
-
-
 Profile: TypeAlias = tuple[Point, ...]
 """Corners (axial position, radius) in mm, anticlockwise, without collinear points."""
-
-
 _Edge: TypeAlias = tuple[Point, Point]
-
-
 _DIGITS = 9
 """Decimals of a millimetre in files: a thousandth of a nanometre."""
-
-
 _NAMES = {
     "caps": ("cap, cap end", "cap, rod end"),
     "rod.fitting": ("rod.fitting, piston end", "rod.fitting, rod end"),
 }
 """Names of a part's bodies, from the cap end on; others have the name of the part."""
-
-
 _RINGS = tuple(
     f"{place} {ring}"
     for place in ("piston", "rod")
     for ring in ("seal", "secondary seal", "guide", "wiper")
 )
-
-
 EYES = ("cap eye", "rod eye")
-
-
 NOT_TURNED = ("oil", *_RINGS, *EYES)
 """Parts of the section that are not exported: the model does not define their shape."""
 

@@ -467,8 +467,6 @@ def raise_pressure(
 
 SQUEEZE_STEP = 0.04
 """Squeeze per load step."""
-
-
 MOST_SQUEEZE = 0.4
 """Largest squeeze: beyond it, elements at the contact edge invert."""
 

@@ -23,8 +23,6 @@ from .record import Record
 from .straight import BENT, SHARES, Loop, Straight, Term, by_way, mean, scatter, slopes, straight
 
 Part = Literal["rod", "barrel"]
-
-
 POISSON = 0.3
 """Default Poisson's ratio for the shear coefficient (a choice: from 0 to 0.5 the coefficient of a
 round section changes by 9 %)."""

@@ -26,8 +26,6 @@ from .stribeck_fit import StribeckFit
 FARTHER = 1.05
 """Duty relative to the record's speed or pressure that is reported (a choice: less is no
 extrapolation)."""
-
-
 MISFIT = 0.1
 """Deviation of the contact law at other pressures, as a share of F_C, that is reported (a choice: a
 third of what makes a parameter weakly identifiable)."""

@@ -377,13 +377,9 @@ def _noise(time: Array, values: Array, name: str, pieces: Sequence[Piece]) -> fl
 CUTOFFS = (1 / 3, 1 / 8, 1 / 20)
 """Lower cut-offs relative to the record's (a choice: down to 1.5 Hz, some ten times the pace of a
 slow test, 2 to 3 times apart)."""
-
-
 BENT = 1.5
 """Mean square change of the position by a lower cut-off, relative to the sensor's errors, that is
 allowed (a choice: 1 if only errors are removed)."""
-
-
 PADDING = 1.5
 """Periods of a lower cut-off beside a section that affect its filter (a choice: a step response is
 within 0.5 % there)."""

@@ -33,37 +33,23 @@ from .stribeck_fit import (
 BEFORE, AFTER = 0.1, 0.4
 """Length of a window before and after the rod reverses or starts [s] (a choice: at 30 Hz 26
 independent samples, most of them after the reversal)."""
-
-
 MOST = 24
 """Maximum windows, spread over the record (a choice: twice as many cost twice the time for bounds
 30 % narrower)."""
-
-
 LAG = 20e-3
 """Largest pressure lag searched [s] (a choice: five times that of a usual sensor)."""
-
-
 PER_PERIOD = 12
 """Least integration steps per period of the cut-off (a choice: a second-order step has an error of
 (2 pi/12)^2/12 = 2 % at the cut-off itself)."""
-
-
 SAMPLES, LEFT = 2.0, 0.05
 """Independent samples that a few breakaway travels must take, and their share that may still count
 as rest (a choice)."""
-
-
 LEAST = 4
 """Least independent samples of a window (a choice: one more than stiffness, lag and level)."""
-
-
 GRAIN = 0.35
 """Least share of the position error due to resolution that shifts all reversals alike (a choice,
 from records of known friction): over the breakaway travel it is an error of the bristles'
 stiffness, over the speed there one of the lag."""
-
-
 LASTING = 0.05
 """Least duration of motion in one direction [s] (a choice: three independent samples at 30 Hz)."""
 
@@ -370,59 +356,35 @@ def _turns(sliding: Sliding, motion: Motion) -> list[int]:
 
 TRAVELS = (1e-6, 3e-3)
 """Bristle travels F_S/sigma_0 searched [m] (a choice: nearly two decades about 50 um)."""
-
-
 DAMPING_TIMES = (1e-6, 0.3)
 """sigma_1/sigma_0 searched [s] (a choice: from none to the length of a window)."""
-
-
 USUAL = 5e-3
 """Usual standard deviation of the pressure lag [s] (a choice: sensors and lines of a test bench, up
 to 10 ms): included in bounds if a record does not show the lag."""
-
-
 STEP = 1e-4
 """Relative step of central differences (a choice: error 1e-8)."""
-
-
 SYMBOLS = {"bristle_stiffness": "σ₀", "bristle_damping": "σ₁", "lag": "τ"}
 """Parameters in addition to those of the Stribeck curve: N/m, N s/m, s."""
-
-
 MODEL = 1e-3
 """Least scatter of the windows relative to the largest friction (a choice, as of the points): below
 it the filtered motion limits the model, not noise."""
-
-
 BENDS = 3.0
 """Breakaway travels that give 95 % of the force, 1 - e^-3: the record must resolve them in time."""
-
-
 LATE = 1.5
 """Multiple of its standard error by which a lag is uncertain (a choice, from records of known
 friction: with 25 kPa of noise and steps of 10 um z of the fitted lag scatters by 1.3 to 1.9); the
 sampling adds dt/sqrt 12, as a reversal falls anywhere within a sample."""
-
-
 NOISY, MISSED = 2.0, 0.02
 """Allowed misfit in the windows, as a multiple of noise and a share of the largest friction (a
 choice, from records of known friction: position steps cost up to 3 times the noise)."""
-
-
 TOLD = 3
 """Parameters determined by the windows: stiffness, lag or damping, level."""
-
-
 RCOND = 1e-6
 """Least ratio of singular values by which a lag affects parameters (a choice: far above
 rounding)."""
-
-
 ROUNDS = 2
 """Searches, each with windows weighted by their scatter in the last (a choice: the second changes
 the weights by a few per cent)."""
-
-
 LOGARITHMIC = ("bristle_stiffness", "bristle_damping", "stribeck_speed")
 """Parameters searched by logarithm."""
 

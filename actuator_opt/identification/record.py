@@ -19,21 +19,11 @@ from .column_units import NONE, ColumnUnits
 
 ABSENT = {"", "-", "--", "na", "n/a", "nan", "-nan", "null", "none", "#n/a", "inf", "-inf", "+inf"}
 """Cells that mark a missing sample, in small letters."""
-
-
 _BATCH = 50_000
 """Lines read at once (a choice: keeps a record of an hour within memory)."""
-
-
 _BINARY = re.compile(r"[\x00-\x08\x0e-\x1f\x7f]")
-
-
 _ZIP = b"PK\x03\x04"
-
-
 _COMMENT = re.compile(r"\s*#(?!n/a)", re.IGNORECASE)
-
-
 _MISREAD = (("Âµ", "µ"), ("Î¼", "µ"), ("Â°", "°"), ("Â²", "²"), ("Â·", "·"))
 """UTF-8 characters as written by a program that took them for Latin-1."""
 

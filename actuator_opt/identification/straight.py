@@ -407,8 +407,6 @@ def straight(loop: Loop, zeros: Sequence[float], low: float, high: float) -> Str
 SHARE = 0.999
 """Share of the velocity's power that counts as motion (a choice: the rest then has 3 % of the
 velocity)."""
-
-
 ABOVE = 4.0
 """Multiple of its noise at which the velocity's spectrum shows motion (a choice: white noise
 reaches it in one of 55 lines of a single periodogram, hardly ever in the mean of many)."""

@@ -19,8 +19,6 @@ from ..base.numeric import Array, clip, geometry, maximum, positive, real, sqrt,
 
 LIP_PLACES, LIP_SHARE = (0.0, 0.2, 0.6, 1.0), 0.42
 """Knots of the lip profile, and its third pressure over its second (*choice*, surrogate)."""
-
-
 O_RING_POWER = 10
 """Power of the energised part, 1 - t^10: within 0.18 p of the profiles of own finite elements at a
 squeeze of 0.10 to 0.20 and p up to E (worst near the outer edge), whose mean is 0.89 to 0.94 p."""

@@ -308,12 +308,8 @@ def _curvature(
 
 DAMPING = 1e3
 """Weight of complementarity when multipliers are estimated away from the optimum."""
-
-
 FEASIBLE = 1e-9
 """Violation below which a polished point counts as exactly feasible."""
-
-
 RADIUS = 0.5
 """Longest step in any solver coordinate (a factor of 1.65 in a logarithmic variable)."""
 

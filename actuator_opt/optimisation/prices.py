@@ -37,8 +37,6 @@ from .resolve.steps import valley_at
 
 INSTANT = 1e-7
 """Change of an active margin per relative parameter change that counts as zero."""
-
-
 BASES = 1000
 """Maximum vertices of the multiplier polytope to enumerate; beyond, linear programming."""
 
@@ -284,12 +282,8 @@ def _by_linear_programming(
 
 CHANGE = 0.1
 """Relative change at which every row is predicted and re-solved (contract)."""
-
-
 STRAIGHT = 0.25
 """Largest error of the straight line, as a share of the re-solved change, to call it straight."""
-
-
 Kind: TypeAlias = Literal["requirement", "parameter", "material"]
 """A limit to negotiate, a fixed number of the design, or a material property."""
 
@@ -632,16 +626,10 @@ def _finite(value: float) -> float | None:
 
 MOST_PARAMETERS = 10
 """Parameters (not limits) priced in the sensitivity table, by importance."""
-
-
 LEAST_EFFECT = 1e-3
 """Smallest elasticity (% per %) for a row in the table."""
-
-
 FREE = 1e-9
 """Price of a limit of 0, relative to the objective, below which it gets no row."""
-
-
 _NO_PERCENT = ("temperature", "temperature_difference", "angle", "count")
 
 

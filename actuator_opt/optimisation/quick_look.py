@@ -37,8 +37,6 @@ DOUBTFUL = 0.02
 STUCK = 0.3
 """Least violation above which its search may be stuck. Between the two, every start led to the same
 value on the shipped designs, so one start is enough."""
-
-
 SETTLED = 1e-2
 """Residual of the optimality conditions up to which a descent counts as converged."""
 

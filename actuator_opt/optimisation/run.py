@@ -30,8 +30,6 @@ from .solver import solve
 
 CHANCE = 0.95
 """Probability for the evidence of the starts."""
-
-
 SAME = 1e-3
 """Relative difference of objectives up to which two starts reached the same optimum."""
 

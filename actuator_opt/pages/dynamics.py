@@ -207,7 +207,7 @@ def _loop(
 
 
 def _passes_behind(one: LoopStudy) -> bool:
-    """Whether the phase margin is told at a crossover beyond -180 degrees."""
+    """Whether the phase margin is that of a crossover beyond -180 degrees."""
     if one.crossover is None or one.gain_margin <= 1:
         return False
     above = np.asarray(one.open_magnitude) >= 1

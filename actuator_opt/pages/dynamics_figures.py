@@ -15,9 +15,8 @@ from ..base.numeric import Array
 from ..evaluation.dynamics_study import DynamicsStudy, LoopStudy, Response
 from ..evaluation.result import Requirement
 from ..rendering.axes import Axes, Ticks, dot, fitted, legend, level_ticks, lowest, required
-from ..rendering.ink import BLACK, BLUE, GREY, RED, WHITE, Ink, spread_within
+from ..rendering.ink import BLACK, BLUE, GREEN, GREY, OCHRE, RED, WHITE, Ink, spread_within
 from ..rendering.text import MINUS, SENSES, SUPERSCRIPTS, number, trimmed
-from .wall_figures import GREEN, OCHRE
 
 STYLES: tuple[dict[str, Any], ...] = (
     {"stroke": BLUE, "pen": 0.4},

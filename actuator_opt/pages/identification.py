@@ -304,8 +304,6 @@ COEFFICIENTS = {
     ("double_exponential", "rate_2"): Shown("its rate", "b₂", "s/m", 1.0),
 }
 """Parameters of the fits of the secant damping."""
-
-
 NOTHING = 2e-3
 """A value below this share of its bounds' half width is as good as 0 (a choice: 3 digits)."""
 

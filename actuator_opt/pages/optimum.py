@@ -332,7 +332,7 @@ def _columns(first: str) -> list[Column]:
 
 
 def _limit(entry: Mapping[str, Any]) -> list[Cell]:
-    """A limit that gives way; a line of the check list by its name."""
+    """Row of a relaxed limit: its path, or the name of its check."""
     origin = str(entry["origin"])
     return [
         str(entry["parameter"] or entry["requirement"]),

@@ -253,7 +253,7 @@ def front_figure(front: ParetoFront) -> Ink:
         box = (16.0 + k * wide, 12.0, wide - 18.0, HEIGHT - 24.0)
         _panel(ink, box, front, (first, 0), (other, k + 1))
     if any(mark.get("fill") == PALE for mark in ink.marks):
-        words = "grey: designs passed on the way, which others better"
+        words = "grey: dominated designs that the search visited"
         ink.text(WIDTH - 2.0, HEIGHT - 1.6, words, size=6.0, anchor="right", color=GREY)
     return ink
 

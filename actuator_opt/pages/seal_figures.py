@@ -29,7 +29,9 @@ from ..rendering.contours import bands, levels, scale, shades
 from ..rendering.ink import (
     BLACK,
     BLUE,
+    GREEN,
     GREY,
+    OCHRE,
     PALE,
     RED,
     WHITE,
@@ -46,7 +48,6 @@ from ..seals.seal_type import Room
 from ..studies.seal import FilmMap, RingPoint, SealStudy, SqueezeRow
 from .dynamics_figures import STYLES, inside, logs
 from .section import OUTLINE, THIN, choose_scale, scale_bar
-from .wall_figures import GREEN, OCHRE
 
 STATIC: dict[str, Any] = {"stroke": GREY, "pen": 0.4, "dash": (0.5, 0.6)}
 OIL: dict[str, Any] = {"stroke": BLUE, "pen": 0.4}

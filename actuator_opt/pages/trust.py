@@ -55,7 +55,7 @@ def proof(optimisation: Optimisation, *, shortened: bool = False) -> list[str]:
     if certificate is None:
         if optimisation.infeasibility is not None or not optimisation.variables:
             return []
-        return ["Not proven: optimise --certify tells how far this is from the best possible."]
+        return ["Not proven: `optimise --certify` computes how far this is from the best possible."]
     said = [sentence(certificate.sentence), *_of_sizes(optimisation)]
     if certificate.covers and not shortened:
         names = ", ".join(certificate.covers)
@@ -258,8 +258,6 @@ def _missed(violation: float) -> str:
 
 
 _WIDTH, _HEIGHT, _PANEL, _TALL = 180.0, 70.0, 66.0, 44.0
-
-
 _LOWEST = -6.0
 """Decade at which a limit counts as met, the bottom of the right panel."""
 

@@ -16,7 +16,9 @@ from ..rendering.axes import Axes, fitted, legend
 from ..rendering.ink import (
     BLACK,
     BLUE,
+    GREEN,
     GREY,
+    OCHRE,
     RED,
     WHITE,
     Ink,
@@ -27,7 +29,7 @@ from ..rendering.ink import (
 )
 from ..rendering.text import number, trimmed
 
-OCHRE, GREEN, STEEL = "#9a6a12", "#00654a", "#4f86a8"
+STEEL = "#4f86a8"
 BANDS = {"metal": "#f1f3f5", "composite": "#e2e7eb", "polymer": "#f6efdc"}
 _STYLES: tuple[dict[str, Any], ...] = (
     {"stroke": BLUE, "pen": 0.4},

@@ -8,12 +8,12 @@ from typing import Any
 
 from .attachments import embed
 from .heights import wrap
-from .ink import BLACK, GREY, PALE, RED, WHITE, Ink, text_width
+from .ink import BLACK, GREEN, GREY, PALE, RED, WHITE, Ink, text_width
 
 SHEET = (210.0, 297.0)
 LEFT, RIGHT, TOP, BOTTOM = 15.0, 195.0, 15.0, 280.0
 NOTE = "Plain layout: the typst package is not installed; install it for the full report sheet."
-GREEN, AMBER = "#00654a", "#8a5a00"
+AMBER = "#8a5a00"
 _SIZE = 6.2
 _LINE = 3.0
 

@@ -142,8 +142,8 @@ def run_script(
     page: Callable[[Study], Sheets],
     *,
     quick: str = "",
-) -> None:
-    """Compute a study and print it; write its report where a folder is named.
+) -> str:
+    """Compute a study and return its text; write its report if a folder is named.
 
     Parameters
     ----------
@@ -160,6 +160,7 @@ def run_script(
         parser.add_argument("--quick", action="store_true", help=quick)
     given = parser.parse_args()
     study = compute(quick=given.quick) if quick else compute()
-    print(printed(study))
-    if given.out is not None:
-        print(write_study(page(study), given.out, Path(script).stem), "sheets")
+    if given.out is None:
+        return printed(study)
+    count = write_study(page(study), given.out, Path(script).stem)
+    return f"{printed(study)}\n{count} sheets"

@@ -128,7 +128,7 @@ class CsvFile(AbstractContextManager["CsvFile"]):
 
 
 def _cells(field: Field, values: Values) -> list[str]:
-    """The cells of a column as they stand in a CSV file."""
+    """Cells of a column as written to a CSV file."""
     if isinstance(values, Coded):
         words = [*map(_quoted, values.words), ""]
         return [words[max(code, -1)] for code in values.codes.tolist()]

@@ -1,4 +1,4 @@
-"""TODO."""
+"""A tornado: bars of what the two ends of each input change, the largest first."""
 
 from __future__ import annotations
 
@@ -11,20 +11,12 @@ from .ink import BLACK, BLUE, GREY, RED, Ink
 
 MOST = 16
 """Most rows drawn, the largest first."""
-
-
 ROW = 5.0
 """Height of a row (mm): two bars of 1.8 mm."""
-
-
 LABELS, FIGURES = 64.0, 34.0
 """Room for the names at the left and the changes in per cent at the right (mm)."""
-
-
 LIGHT = "#9ec3da"
 """Fill of a decrease; an increase is dark: apart on a grey print too."""
-
-
 BEYOND = 1.4
 """Most room that predictions take beyond the re-solved changes."""
 

@@ -301,14 +301,14 @@ def _valve(test: DynamicTest) -> str:
     judged = judged_statements(shares(test, both))
     if all(holds for _, holds, _ in judged):
         words = (
-            "what the thesis tells of the stiffness happens: soft up to 15 Hz, more than twice the "
+            "the stiffness behaves as the thesis says: soft up to 15 Hz, more than twice the "
             "static stiffness at 20 Hz, a little above it at 25, the static one at 30 Hz."
         )
     else:
         met = [name for name, holds, _ in judged if holds]
         missed = [f"not {name} ({_range(share)})" for name, holds, share in judged if not holds]
         part = f"happens only in part: {listed(met)}" if met else "does not happen"
-        words = f"what the thesis tells of the stiffness {part}."
+        words = f"the behaviour of the stiffness in the thesis {part}."
         words += f" With these numbers the cylinder is {listed(missed)}."
     if test.peak.slowest_decay >= 0:
         words += (
@@ -766,8 +766,6 @@ TABLES: tuple[Callable[[Evaluation], list[Block]], ...] = (
     equations_table,
 )
 """Every table, in the order of the thesis; the equations last."""
-
-
 TRACES = equations("aalto")
 
 

@@ -14,10 +14,9 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from ..base.numeric import Array
-from ..pages.wall_figures import GREEN, OCHRE
 from ..rendering import text
 from ..rendering.axes import Axes
-from ..rendering.ink import BLACK, BLUE, GREY, PALE, Ink, Point, spread_within
+from ..rendering.ink import BLACK, BLUE, GREEN, GREY, OCHRE, PALE, Ink, Point, spread_within
 from ..rendering.text import DASH, trimmed
 from .aalto_models import FREQUENCIES, PAPER, DynamicTest, End, Response, StaticTest, Theory
 

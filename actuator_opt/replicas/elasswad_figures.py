@@ -8,9 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..base.numeric import Array
-from ..pages.wall_figures import GREEN, OCHRE
 from ..rendering.axes import Axes
-from ..rendering.ink import BLUE, GREY, PALE, Ink, spread_within
+from ..rendering.ink import BLUE, GREEN, GREY, OCHRE, PALE, Ink, spread_within
 from ..rendering.text import number
 from .elasswad_models import Along, Record
 

@@ -15,9 +15,8 @@ import numpy as np
 
 from ..base.numeric import Array
 from ..models.friction import HUANG_TABLE_2
-from ..pages.wall_figures import GREEN, OCHRE
 from ..rendering.axes import Axes, ticks
-from ..rendering.ink import BLACK, BLUE, GREY, PALE, WHITE, Ink, Point, spread_within
+from ..rendering.ink import BLACK, BLUE, GREEN, GREY, OCHRE, PALE, WHITE, Ink, Point, spread_within
 from ..rendering.text import trimmed
 from ..studies.film_walk import FilmMap
 from . import huang_published

@@ -294,8 +294,6 @@ def _cvodes(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
 METHODS: Final[dict[Method, Callable[[Compiled, float, list[int]], Advance]]] = {
     "lsoda": lsoda, "radau": radau, "cvodes": _cvodes,
 }  # fmt: skip
-
-
 LAST = 0.1
 """Final share of a record that counts as steady (a choice)."""
 

@@ -363,23 +363,13 @@ def least(loops: Sequence[OpenLoop]) -> tuple[Ultimate, OpenLoop]:
 MARGIN = {"p": 2.0, "pi": 3.0}
 """Gain margin of tuning by margins (a choice: a P law gets the design's default, half the ultimate
 gain; an integral part costs phase)."""
-
-
 PHASE = radians(60.0)
 """Phase margin that counts as sufficient (a choice)."""
-
-
 KEPT = 0.9
 """Share of the proportional loop's margins that must remain with an integral part (a choice)."""
-
-
 NO_GAIN = 1e-9
 """Replacement factor for a zero gain beside an integral or derivative part."""
-
-
 UNHELD = "the valve cannot hold the load"
-
-
 CAUSES = "lower the load or the piston's leakage, raise supply.pressure or the valve's flow"
 
 

@@ -279,31 +279,15 @@ def _finite(value: float) -> float | None:
 
 LAST = 0.1
 """Final share of the time used for creep."""
-
-
 RISE = 4
 """Least number of samples of a rise for reliable results (a choice)."""
-
-
 NOT_HERE = "does not apply to this scenario"
-
-
 NO_STEP = "the reference has no step"
-
-
 NO_MOTION = "the reference does not move on"
-
-
 NO_SINE = "no sinusoidal load acts on the rod"
-
-
 NO_STOP = "the piston does not reach a stop"
-
-
 EXPECTED = (NOT_HERE, NO_STEP, NO_MOTION, NO_SINE, NO_STOP)
 """Reasons of missing results that follow from the scenario and need no report."""
-
-
 _STEP = ("rise_time", "settling_time", "overshoot", "steady_state_ratio")
 
 
@@ -556,8 +540,6 @@ def _values(system: System, expressions: list[object], run: Trajectory) -> list[
 
 TOLD = ("position", "speed", "shaft_speed", "pressure_a", "pressure_b", "pressure_supply")
 """Signals that help to explain a failure."""
-
-
 OUT = 0.1
 """Overrun of the stroke, as a share of it, beyond which the stops have failed (a choice)."""
 

@@ -22,8 +22,6 @@ from ..models.fluid import ATMOSPHERIC_PRESSURE
 
 LOOSE = 1e-4
 """Tolerance of an integral relative to its scale (a choice): the states control the steps."""
-
-
 PRESSURE = 1.0
 """Error tolerance of a pressure [Pa]."""
 EMPTY = -40.0

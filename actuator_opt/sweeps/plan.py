@@ -25,18 +25,10 @@ from ..design.materials import load_library
 from ..design.paths import canonical, get
 
 Metrics: TypeAlias = Mapping[str, Quantity] | None
-
-
 _RANGE = re.compile(r"(?P<first>.+?)\.\.(?P<last>.+?)(?::(?P<count>[^:]*))?")
-
-
 FORM = 'write PATH=A..B:N or PATH=a,b,c, e.g. --vary cylinder.bore="18..40 mm:12"'
-
-
 MOST_LISTED = 10_000
 """Maximum number of values in a list."""
-
-
 SAID = frozenset({"name", "notes", "reproduces", "waivers", "objective"})
 """Blocks of a design that change none of its metrics or limits."""
 

@@ -78,8 +78,6 @@ ANEW = 8
 
 ALONE = 0.5
 """Seconds of work up to which starting more processes does not pay."""
-
-
 MASKS = hasattr(signal, "pthread_sigmask")
 """Whether the system can delay a signal."""
 

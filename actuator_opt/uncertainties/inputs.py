@@ -246,8 +246,6 @@ def _practice(subject: PreparedDesign) -> Iterator[Input]:
 
 CHUNK = 2048
 """Draws evaluated at a time; this bounds the memory."""
-
-
 TOLERANCE = 1e-6
 """A limit is met at a margin of -TOLERANCE or more, as in an evaluation."""
 

@@ -1079,7 +1079,7 @@ def printed(study: Data) -> str:
 def main() -> None:
     """Print the tables; write the report where a folder is named."""
     description = "the rig of the Aalto thesis in the time domain"
-    run_script(__file__, description, compute, printed, page, quick="few places")
+    print(run_script(__file__, description, compute, printed, page, quick="few places"))
 
 
 if __name__ == "__main__":

@@ -551,7 +551,7 @@ def main() -> None:
     """Print the tables; write the report where a folder is named."""
     description = "the course's servos, tuned"
     quick = "fewer cases, no sensitivities"
-    run_script(__file__, description, compute, printed, page, quick=quick)
+    print(run_script(__file__, description, compute, printed, page, quick=quick))
 
 
 if __name__ == "__main__":

@@ -305,7 +305,7 @@ def printed(study: Data) -> str:
 def main() -> None:
     """Print the tables; write the report where a folder is named."""
     description = "what the room in the joint costs in grams"
-    run_script(__file__, description, compute, printed, page, quick="few widths")
+    print(run_script(__file__, description, compute, printed, page, quick="few widths"))
 
 
 if __name__ == "__main__":

@@ -466,7 +466,11 @@ def printed(study: Data) -> str:
 def main() -> None:
     """Print the tables; write the report where a folder is named."""
     description = "what each hertz of the knee costs in grams"
-    run_script(__file__, description, compute, printed, page, quick="few points, no multipliers")
+    print(
+        run_script(
+            __file__, description, compute, printed, page, quick="few points, no multipliers"
+        )
+    )
 
 
 if __name__ == "__main__":

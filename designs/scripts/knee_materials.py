@@ -454,7 +454,7 @@ def table(study: Data) -> str:
 
 def main() -> None:
     """Print the masses; with ``--out`` write the report."""
-    run_script(__file__, "what a wall of each material costs in grams", compute, table, page)
+    print(run_script(__file__, "what a wall of each material costs in grams", compute, table, page))
 
 
 if __name__ == "__main__":

@@ -748,7 +748,9 @@ def printed(study: Data) -> str:
 def main() -> None:
     """Print the tables; write the report where a folder is named."""
     description = "at which supply pressure the knee is lightest"
-    run_script(__file__, description, compute, printed, page, quick="few pressures, one length")
+    print(
+        run_script(__file__, description, compute, printed, page, quick="few pressures, one length")
+    )
 
 
 if __name__ == "__main__":

@@ -636,7 +636,11 @@ def printed(study: Data) -> str:
 def main() -> None:
     """Print the tables; write the report where a folder is named."""
     description = "what the seals of the knee cost in grams"
-    run_script(__file__, description, compute, printed, page, quick="few points, one priced design")
+    print(
+        run_script(
+            __file__, description, compute, printed, page, quick="few points, one priced design"
+        )
+    )
 
 
 if __name__ == "__main__":

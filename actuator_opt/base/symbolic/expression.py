@@ -17,8 +17,6 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 
 Bounds: TypeAlias = tuple[float, float]
-
-
 ANY: Final[Bounds] = (-math.inf, math.inf)
 
 
@@ -527,8 +525,6 @@ Namespace = SimpleNamespace(
     **{name: partial(apply, name) for name in _FUNCTIONS},
 )
 """Array-API namespace of symbols: the functions that models use."""
-
-
 _BOOLEAN = {"lt", "le", "and", "or", "not", "flag"}
 
 
@@ -552,8 +548,6 @@ def needed(outputs: Sequence[Any], known: Iterable[Symbol] = ()) -> list[Symbol]
 
 
 xp = Namespace
-
-
 Slopes: TypeAlias = dict[int, Any]
 """Nonzero derivatives by the number of their variable."""
 
@@ -621,15 +615,9 @@ _RULES: dict[str, Callable[..., Callable[..., Any]]] = {
     "cos": lambda node, a: _scaled(-xp.sin(a)),
 }
 """Derivative of every operation from those of its operands."""
-
-
 DEEPEST = 12
 """Deepest nesting of operations in a line of code; deeper operations get their own line."""
-
-
 _OPERATORS = {"add": "+", "sub": "-", "mul": "*", "div": "/", "lt": "<", "le": "<="}
-
-
 _LOGIC = {"and": ("and", "&"), "or": ("or", "|")}
 
 
@@ -669,8 +657,6 @@ def vectorised(
 
 
 _MATH = ("sqrt", "exp", "expm1", "log", "log1p", "tanh", "sin", "cos", "atan2", "pow")
-
-
 _NUMPY = {"pow": "power", "atan2": "arctan2"}
 
 

@@ -22,14 +22,8 @@ from .signals import SignalSegment
 
 _SLACK = 1e-9
 """Relative tolerance of times."""
-
-
 _time = quantities.SCENARIOS["instant"].text
-
-
 _short = quantities.SCENARIOS["sample_time"].text
-
-
 _hertz = quantities.INPUTS["frequency"].text
 
 
@@ -153,8 +147,6 @@ def _rounded(value: float, way: Callable[[float], int]) -> float:
 
 
 SIGNAL_CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (shapes, order, sampling)
-
-
 REFERENCES: Mapping[str, str] = {
     "position": "position_gain",
     "speed": "speed_gain",
@@ -162,8 +154,6 @@ REFERENCES: Mapping[str, str] = {
     "shaft_angle": "shaft_angle_gain",
 }
 """Every loop by its reference, with its gain."""
-
-
 STEP_RESULTS = ("rise_time", "settling_time", "overshoot", "steady_state_ratio")
 """Results derived from the response to a single step."""
 
@@ -290,8 +280,6 @@ CONTROL_CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
     tuning,
     step_results,
 )
-
-
 _force = quantities.SCENARIOS["coulomb_force"].text
 _flow = quantities.INPUTS["rated_flow"].text
 _area = quantities.INPUTS["orifice_area"].text

@@ -52,11 +52,7 @@ class StartPosition(PositionKind):
 
 
 Shape: TypeAlias = Annotated[str, choice_of("shape of this part of the signal", SHAPES)]
-
-
 Law: TypeAlias = Annotated[str, choice_of("law of the controller", LAWS)]
-
-
 Tuning: TypeAlias = Annotated[
     Literal["margins", "ziegler_nichols", "stated"],
     Choice(
@@ -65,22 +61,14 @@ Tuning: TypeAlias = Annotated[
         "ziegler_nichols: by their table from the same point; stated: all values are stated"
     ),
 ]
-
-
 Friction: TypeAlias = Annotated[str, choice_of("friction model of the seals", FRICTIONS)]
-
-
 Supply: TypeAlias = Annotated[str, choice_of("type of supply", SUPPLIES)]
-
-
 Ends: TypeAlias = Annotated[
     str | None,
     choice_of(
         "connection of the ports (default: the valve of the design, else its ports.end)", ENDS
     ),
 ]
-
-
 CushionEnd: TypeAlias = Annotated[
     Literal["both", "cap", "rod"],
     Choice(

@@ -145,12 +145,8 @@ def _at_its_name(fault: Diagnostic, loaded: LoadedScenario) -> Diagnostic:
 
 WIDE: Final = 1.5
 """Step that counts as a gap in an evenly sampled record, over the normal step (a choice)."""
-
-
 REGULAR: Final = 0.9
 """Least share of equal steps in an evenly sampled record (a choice)."""
-
-
 ROUNDED: Final = 1e-9
 """Relative tolerance of times."""
 

@@ -473,16 +473,10 @@ _OPTIONS = {
     "threads": 1,
     "simplex_scale_strategy": 0,
 }
-
-
 SAMPLES = 1001
 """Number of samples over the range of the argument."""
-
-
 CAUTION = 1.5
 """Safety factor on the second derivative of the samples."""
-
-
 _LOGIC = ("lt", "le", "and", "or", "not")
 
 

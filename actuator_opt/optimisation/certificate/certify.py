@@ -220,36 +220,20 @@ def _positions(there: ModelRun) -> tuple[float, ...]:
 
 GUARD = 1e-6
 """Relative deduction from the bound, far above rounding in the traced values."""
-
-
 CLOSE = 1e-4
 """Gap at which the search ends."""
-
-
 MIDDLE = 0.2
 """Least share of a range in the smaller part of a split."""
-
-
 WORTH = 1e-9
 """Least excess times price that justifies a split."""
-
-
 FAR_OFF = 0.2
 """Excess above which further splits of a curve gain little; the first split gains most."""
-
-
 FLOOR = 0.003
 """Least price of a curve when choosing a direction; consecutive loose curves show none."""
-
-
 SQUEEZES = 2
 """Maximum rounds of cutting the first box."""
-
-
 WAYS = 16
 """Directions cut per round, beside the variables."""
-
-
 GAIN = 0.1
 """Share of their ranges that a round must cut to justify another."""
 

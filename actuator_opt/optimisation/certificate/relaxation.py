@@ -23,15 +23,9 @@ import numpy as np
 from ..problem import Vector
 
 Name: TypeAlias = Literal["softplus", "exp", "log", "tanh"]
-
-
 Function: TypeAlias = Callable[[Vector], Vector]
-
-
 LEAST = 1e-300
 """Substitute for zero under a logarithm."""
-
-
 FAR = 200.0
 """Largest logarithm of an atom or a ratio; e^200 is beyond any quantity."""
 

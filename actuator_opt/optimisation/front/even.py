@@ -16,12 +16,8 @@ from .tracer import FrontSearch
 
 WIDEST = 3.0
 """Largest gap between neighbours, relative to the median gap."""
-
-
 MOST_ROUNDS = 6
 """Maximum rounds of adding designs in wide gaps."""
-
-
 PIECES = 8
 """Maximum number of pieces per split of a gap."""
 

@@ -40,16 +40,10 @@ from .tracer import Design, FrontSearch, Start, Tracer
 
 HOLD = 1e-10
 """Share of its range by which an anchor's objective may worsen while the others improve."""
-
-
 GAINED = 1e-3
 """Normalised gain of the others that justifies this."""
-
-
 CONFLICT = 1e-6
 """Range below this share of the magnitude means that the objective does not vary."""
-
-
 ROUGH = 16
 """Points of an SLSQP run after which steps with the Hessian take over."""
 
@@ -197,12 +191,8 @@ def _sharpened(tracer: Tracer, x: Vector, units: Vector) -> Vector:
 
 OVERLOOKED = 1e-6
 """Normalised level by which a search must improve."""
-
-
 TOLERANCE = 1e-7
 """Relative change of level and variables that ends a run."""
-
-
 ROUNDS = 24
 """Maximum points of a run; if no design is feasible by then, other steps take over."""
 

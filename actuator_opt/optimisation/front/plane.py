@@ -339,8 +339,6 @@ def _doubtful(search: FrontSearch, chosen: Indices) -> list[tuple[int, int]]:
 
 GROWTH = 10
 """Maximum new designs per round, relative to the known ones."""
-
-
 MOST_ROUNDS = 12
 """Maximum rounds: a continuous front takes two or three."""
 

@@ -332,8 +332,6 @@ class Tracer:
 
 EQUAL = 1e-8
 """Normalised difference that counts as equal, as bounded objectives vary by this much."""
-
-
 JUMP = 5.0
 """Step of the variables between neighbours, over the median, that suggests another valley."""
 

@@ -315,12 +315,8 @@ def restoring_steps(
 
 FIRM = 1e-6
 """Multiplier, relative to the largest, above which a row is active."""
-
-
 FLATTEST = 1e-10
 """Least curvature relative to the largest, above rounding; below it no direction is crossed."""
-
-
 LEAST = 1e-6
 """Least curvature over the largest multiplier."""
 

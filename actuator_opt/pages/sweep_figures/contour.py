@@ -17,7 +17,9 @@ from ...rendering.heights import wrap
 from ...rendering.ink import (
     BLACK,
     BLUE,
+    GREEN,
     GREY,
+    OCHRE,
     PALE,
     POINT,
     RED,
@@ -29,7 +31,6 @@ from ...rendering.ink import (
 )
 from ...rendering.text import trimmed
 from ...sweeps.field import Boundary, Field, field as field_of, require_grid
-from ..wall_figures import GREEN, OCHRE
 from .shared import ORIGINS, SweepFigure, SweepFigureData, heading
 
 _LEFT, _WIDE, _TALL, _WIDTH = 20.0, 152.0, 100.0, 180.0

@@ -18,8 +18,6 @@ DEEPEST = -12.0
 choice)."""
 FLOOR = 1e-6
 """Lower limit of the absolute pressure in the laws of oil and air [Pa], against rounding only."""
-
-
 LEAST_DEAD = 0.5e-3
 """Least length of a dead volume [m] (a choice): without any, a chamber would have no compliance."""
 

@@ -27,16 +27,12 @@ COLUMNS = {name: CHANNELS[name] for name in ("t", "p1", "p2", "x", "v", "F_L", "
     "phi": Channel("angle", "deg", "angle of the shaft", ("shaftangle",)),
 }
 """Channels of a record and their descriptions; a temperature column is ignored."""
-
-
 SIGNALS = {
     "p1": "pressure_a", "p2": "pressure_b", "x": "position", "v": "speed", "F_L": "load_force",
     "U": "signal", "spool": "spool", "pS": "pressure_supply", "qA": "flow_a", "qB": "flow_b",
     "n_shaft": "shaft_speed", "phi": "shaft_angle",
 }  # fmt: skip
 """The simulated signal that each channel measures."""
-
-
 FEWEST = 10
 """Least number of samples for a usable channel (a choice)."""
 

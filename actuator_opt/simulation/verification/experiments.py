@@ -34,12 +34,8 @@ from ..integrate import integrate
 
 RELATIVE = 1e-7
 """Relative tolerance of a step for a full-size oscillation; small ones need a smaller one."""
-
-
 FINEST = 1e-9
 """Least relative tolerance of a step: 0.1 nm beside a position of 100 mm."""
-
-
 SETTLED = 3.0
 """Periods of the bandwidth after which a loop is at rest (a choice: e^(-6 pi) remains)."""
 
@@ -328,8 +324,6 @@ UNEVEN = 2.0
 """Ratio of half-period lengths above which the motion is not a decay (a choice)."""
 FADED = 0.01
 """Share of the first amplitude below which a decay is not evaluated (a choice)."""
-
-
 SWINGS = 8.0
 """Periods over which a decay is evaluated (a choice: leakage shifts closed chambers meanwhile)."""
 RINGING = 20.0
@@ -648,16 +642,10 @@ def _extremes(time: Array, values: Array) -> tuple[Array, Array]:
 
 
 WEAKEST = "weakest position"
-
-
 STEADY_STEP = 0.4
 """Gain relative to the ultimate one that brings an oscillating loop to rest (a choice)."""
-
-
 SLOW = 0.05
 """Bandwidth relative to the resonance if the loop's is unknown (a choice)."""
-
-
 PEAK = 0.5
 """Magnitude above which an open-loop resonance may cause a crossover (a choice)."""
 
@@ -830,8 +818,6 @@ class LinearTier:
 
 MANY = 9.0
 """Change above which a factor is clearer than per cent (a choice)."""
-
-
 STILL = 0.01
 """Spool motion, as a share of its opening, that counts as held (a choice)."""
 
