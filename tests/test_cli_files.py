@@ -256,7 +256,7 @@ def test_an_interrupt(tmp_path):
     process.send_signal(signal.SIGINT)
     shown, said = process.communicate(timeout=30)
     assert process.returncode == 130, (shown, said)
-    assert "\nInterrupted before any point" in shown or (shown, said) == ("", "interrupted\n")
+    assert "\nInterrupted before any design" in shown or (shown, said) == ("", "interrupted\n")
     assert "Traceback" not in said
     assert not out.exists()
     assert not best.exists()

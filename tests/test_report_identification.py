@@ -240,7 +240,7 @@ def test_the_verdict_counts_what_is_identifiable():
     known = [*found.stribeck.parameters.values(), *found.lugre.parameters.values()]
     sure = sum(one.identifiable for one in known)
     seen = rows.verdict(found)
-    assert (seen.state, seen.text) == ("checks", "FOUND IN PART")
+    assert (seen.state, seen.text) == ("checks", "PARTLY IDENTIFIED")
     assert seen.lines[1] == f"{sure} of {len(known)} parameters identifiable"
 
     def turned(model, told):

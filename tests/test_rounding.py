@@ -380,7 +380,7 @@ HALF = two_layers((FREE_AXIAL, ""), (AXIAL + PLY, AXIAL.replace("1.6", "1.7") + 
 @pytest.mark.parametrize(("text", "said"), [
     (NO_PLY, {"barrel.layup[1].thickness": "ply_thickness", "barrel.layup[2].thickness": "ply_t"}),
     (ONE_PLY, {"barrel.layup[2].thickness": "states no ply_thickness"}),
-    (HALF, {"barrel.layup[2].thickness": "no whole number of pairs of plies of 0.2 mm"}),
+    (HALF, {"barrel.layup[2].thickness": "not a whole number of pairs of plies of 0.2 mm"}),
 ])  # fmt: skip
 def test_layers_whose_plies_cannot_be_whole_are_refused(text, said, words):
     """However whole plies are asked: by layer, with its line and a remedy; metal has no plies."""

@@ -112,7 +112,7 @@ def _basis(bending: BendingResult) -> list[str]:
         words.append(f"{cycles} {text.share_text(bending.hysteresis)} of the work done on loading")
     if bending.shear_share is not None:
         share = text.share_text(bending.shear_share)
-        words.append(f"shear deflects {share} of what bending does")
+        words.append(f"shear deflection is {share} of the bending deflection")
     return words
 
 

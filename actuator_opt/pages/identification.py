@@ -608,10 +608,10 @@ def verdict(identification: Identification) -> Verdict:
     if not names:
         return Verdict("missed", "NO MODEL", ["friction over time alone"])
     state: State
-    state, words = "checks", "FOUND IN PART"
+    state, words = "checks", "PARTLY IDENTIFIED"
     if not sure:
         state, words = "missed", "NOT IDENTIFIABLE"
     elif len(names) == len(models) and sure == len(known):
-        state, words = "met", "MODELS FOUND"
+        state, words = "met", "IDENTIFIED"
     lines = [" and ".join(names), f"{sure} of {len(known)} parameters identifiable"]
     return Verdict(state, words, lines)

@@ -327,7 +327,7 @@ def margins_figure(found: Uncertainty, *, width: float = 180.0) -> Ink:
     ink.line((zero, top - 1.0), (zero, top + box[3]), pen=0.35, stroke=RED)
     ink.text(zero, top - 2.6, "limit", size=6.5, anchor="center", color=RED, bold=True)
     _key(ink, top)
-    ink.text(width, top - 2.6, "holds", size=6.5, anchor="right", color=GREY)
+    ink.text(width, top - 2.6, "met by", size=6.5, anchor="right", color=GREY)
     for index, one in enumerate(lines):
         _strip(ink, axes, top + ROW * (index + 0.5), one, width)
     return ink

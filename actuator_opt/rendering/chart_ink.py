@@ -226,7 +226,8 @@ def _xs(panel: Panel) -> list[Values]:
 
 def _rises(values: Values) -> bool:
     array = np.asarray(values, dtype=float)
-    return bool(np.all(np.diff(array[np.isfinite(array)]) >= 0))
+    known = array[np.isfinite(array)]
+    return bool(np.all(known[1:] >= known[:-1]))
 
 
 def _frame(panel: Panel, x: Scale) -> _Frame:
