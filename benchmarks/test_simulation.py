@@ -13,7 +13,7 @@ import pytest
 
 import actuator_opt as ao
 from actuator_opt.design.scenario.model import Scenario
-from actuator_opt.models.tuning import ControllerGains
+from actuator_opt.models.loop import ControllerGains
 from actuator_opt.simulation.assemble import assemble
 from actuator_opt.simulation.fast import cvodes
 from actuator_opt.simulation.integrate import METHODS, integrate

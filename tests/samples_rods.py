@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from actuator_opt.models.trial_mode import TrialMode
-from actuator_opt.models.trial_motion import TrialMotion
+from actuator_opt.models.trial_motion import TrialMode, TrialMotion
 
 COLUMN = {
     "critical_load": 1.3e5, "bending_stiffness_1": 5000.0, "length_1": 0.2,

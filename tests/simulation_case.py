@@ -15,7 +15,7 @@ import actuator_opt as ao
 from actuator_opt.base.symbolic import vectorised
 from actuator_opt.design.scenario.model import Scenario
 from actuator_opt.evaluation.springs import Give
-from actuator_opt.models.tuning import ControllerGains
+from actuator_opt.models.loop import ControllerGains
 from actuator_opt.simulation.assemble import assemble
 from actuator_opt.simulation.components.circuit import Circuit
 from actuator_opt.simulation.integrate import Trajectory, integrate

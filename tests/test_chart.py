@@ -12,9 +12,8 @@ from hypothesis import given, settings, strategies as st
 
 from actuator_opt.rendering import heights, html, paper, terminal
 from actuator_opt.rendering.blocks import Chart, Column, Table
-from actuator_opt.rendering.chart import Axis, Curve, Level, Panel, Points, Surface
+from actuator_opt.rendering.chart import Axis, Curve, Level, Panel, Points, Surface, scale
 from actuator_opt.rendering.chart_ink import drawn
-from actuator_opt.rendering.chart_scale import scale
 from actuator_opt.rendering.console import Console
 
 ANY = st.floats(allow_nan=True, allow_infinity=True)

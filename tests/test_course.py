@@ -18,7 +18,7 @@ from servo_oracle_parts import Controller, steps
 
 from actuator_opt.api.simulations import Trial, read_scenario, simulate
 from actuator_opt.evaluation.springs import Give
-from actuator_opt.models.tuning import ControllerGains
+from actuator_opt.models.loop import ControllerGains
 from actuator_opt.simulation import Simulation
 from actuator_opt.simulation.assemble import assemble
 from actuator_opt.simulation.linear import Linear, tune, ultimate

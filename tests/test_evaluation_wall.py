@@ -16,10 +16,9 @@ import actuator_opt as ao
 from actuator_opt.design import read_design
 from actuator_opt.evaluation import compute, prepare
 from actuator_opt.models import autofrettage as worked, barrel_ends
-from actuator_opt.models.criteria import CRITERIA
 from actuator_opt.models.layered_tube import layered_tube, ply_stresses_at_faces, tube_state
+from actuator_opt.models.strength import CRITERIA, yield_utilisation
 from actuator_opt.models.strength_modes import load_multiplier
-from actuator_opt.models.yielding import yield_utilisation
 
 DESIGNS = Path(__file__).parent.parent / "designs"
 KNEE = (DESIGNS / "knee.yaml").read_text("utf-8")

@@ -11,7 +11,7 @@ import pytest
 from scipy.integrate import quad
 
 from actuator_opt.base.errors import ActuatorError
-from actuator_opt.finite_elements import equilibrium, fluid, mesh, o_ring
+from actuator_opt.finite_elements import equilibrium, mesh, o_ring
 from actuator_opt.finite_elements.material import MooneyRivlin, stress, tangent
 from actuator_opt.finite_elements.o_ring import squeezed_ring
 from actuator_opt.finite_elements.result import stress_field
@@ -208,7 +208,7 @@ def test_pressure_on_both_sides_only_adds_itself(monkeypatch):
     pressed = equilibrium.solve(one.problem, free, 0.7)
     touching = one.boundary[free.at_lower.reshape(-1, 2)[one.boundary, 1]]
     places = one.section.places(free.values)
-    share = np.abs(fluid.shares(one.section, places))[touching, 0]
+    share = np.abs(equilibrium.shares(one.section, places))[touching, 0]
     before, after = (s.reaction.reshape(-1, 2)[touching, 1] / share for s in (free, pressed))
     inner = np.argsort(np.abs(places[touching, 0]))[: len(touching) // 2]
     assert after[inner] - before[inner] == pytest.approx(np.full(len(inner), 0.7), rel=5e-3)

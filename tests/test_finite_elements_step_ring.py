@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from actuator_opt.base.errors import ActuatorError
-from actuator_opt.finite_elements import fluid, mesh
+from actuator_opt.finite_elements import equilibrium, mesh
 from actuator_opt.finite_elements.equilibrium import Pair
 from actuator_opt.finite_elements.material import MooneyRivlin
 from actuator_opt.finite_elements.mesh import SlideRing
@@ -91,7 +91,7 @@ def test_derivatives_of_section_fluid_and_pair():
     def total(values):
         places = section.places(values)
         rows = pair.rows(places, touching, force, section.unknowns)
-        external, _ = fluid.load(section, places, pressure)
+        external, _ = equilibrium.load(section, places, pressure)
         return section.internal(values) - external - rows.directions.T @ force[touching]
 
     def gaps(values):
@@ -99,7 +99,7 @@ def test_derivatives_of_section_fluid_and_pair():
 
     places = section.places(state)
     rows = pair.rows(places, touching, force, section.unknowns)
-    _, blocks = fluid.load(section, places, pressure)
+    _, blocks = equilibrium.load(section, places, pressure)
     slope = (section.stiffness(state, blocks) + rows.stiffness) @ direction
     step = 1e-7
     ahead, behind = state + step * direction, state - step * direction

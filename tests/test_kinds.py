@@ -39,7 +39,7 @@ from actuator_opt.pages.seal_figures import filled_grooves
 from actuator_opt.seals import o_ring
 from actuator_opt.seals.kinds import SIZES, TYPES
 from actuator_opt.seals.seal_type import Room, SealSizes, SealType
-from actuator_opt.seals.sizes import GROOVE_WIDTH
+from actuator_opt.seals.contact import GROOVE_WIDTH
 from actuator_opt.studies.plant import plant
 
 WORDS = {

@@ -9,7 +9,7 @@ from actuator_opt.design.scenario import Scenario, signals
 from actuator_opt.design.scenario.components import ENDS, FRICTIONS, LAWS, SUPPLIES
 from actuator_opt.design.scenario.shapes import SHAPES
 from actuator_opt.design.walls import entries
-from actuator_opt.models.tuning import ziegler_nichols
+from actuator_opt.models.loop import ziegler_nichols
 from actuator_opt.simulation.components.friction import FORCES
 from actuator_opt.simulation.components.ports import FEEDS
 from actuator_opt.simulation.components.supply import DELIVERIES

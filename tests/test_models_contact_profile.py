@@ -10,12 +10,12 @@ from hypothesis import given, strategies as st
 from scipy.integrate import quad
 from scipy.interpolate import PchipInterpolator
 
-from actuator_opt.models import contact_land, contact_profile, seals
+from actuator_opt.models import contact_profile, seals
 
 
 def land_mean(*, sealed_pressure, outer_pressure, excess):
     """Mean of `land_profile`, its integral over t."""
-    share = contact_land.LAND_POWER / (contact_land.LAND_POWER + 1)
+    share = contact_profile.LAND_POWER / (contact_profile.LAND_POWER + 1)
     return (sealed_pressure + outer_pressure) / 2 + share * excess
 
 
@@ -26,7 +26,7 @@ SHAPES = {
         contact_profile.o_ring_excess,
     ),
     "lip": (contact_profile.lip_profile, contact_profile.lip_mean, contact_profile.lip_excess),
-    "land": (contact_land.land_profile, land_mean, contact_land.land_excess),
+    "land": (contact_profile.land_profile, land_mean, contact_profile.land_excess),
 }
 ENDS = {"sealed_pressure": 5e6, "outer_pressure": 0.101e6}
 KNOTS = (0.2, 0.6)
@@ -110,10 +110,10 @@ def test_o_ring_profile_at_its_middle_and_by_hertz():
 def test_land_peak_is_the_highest_of_the_profile(difference, outer, load, width):
     """No place of the profile that carries the load lies higher, and one reaches the peak."""
     arguments = {"sealed_pressure": outer + difference, "outer_pressure": outer}
-    peak = contact_land.land_peak(line_load=load, width=width, **arguments)
-    excess = contact_land.land_excess(line_load=load, width=width, **arguments)
+    peak = contact_profile.land_peak(line_load=load, width=width, **arguments)
+    excess = contact_profile.land_excess(line_load=load, width=width, **arguments)
     t = np.linspace(0, 1, 20001)
-    highest = np.max(contact_land.land_profile(position=t, excess=excess, **arguments))
+    highest = np.max(contact_profile.land_profile(position=t, excess=excess, **arguments))
     if excess >= 0:
         assert peak == pytest.approx(highest, rel=1e-5, abs=1e-6)
     else:
@@ -122,8 +122,8 @@ def test_land_peak_is_the_highest_of_the_profile(difference, outer, load, width)
 
 def test_land_without_contact_shows_the_outer_pressure():
     """No width: nothing but the surroundings; a worn land without pressure has its mean 9/8 up."""
-    assert contact_land.land_peak(line_load=0.0, width=0.0, **ENDS) == 0.101e6
-    flat = contact_land.land_peak(
+    assert contact_profile.land_peak(line_load=0.0, width=0.0, **ENDS) == 0.101e6
+    flat = contact_profile.land_peak(
         line_load=8e3, width=1e-3, sealed_pressure=0.0, outer_pressure=0.0
     )
     assert flat == pytest.approx(9e6)

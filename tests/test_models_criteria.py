@@ -14,7 +14,7 @@ import pytest
 from hypothesis import assume, given, settings, strategies as st
 
 from actuator_opt.base.numeric import maximum
-from actuator_opt.models.criteria import CRITERIA
+from actuator_opt.models.strength import CRITERIA
 from actuator_opt.models.strength_modes import PlyRatios, PlyStrength, load_multiplier
 
 PLY = PlyStrength(1900.0, 1300.0, 55.0, 190.0, 85.0)

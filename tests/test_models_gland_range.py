@@ -11,7 +11,7 @@ from hypothesis import given, strategies as st
 from actuator_opt.base.errors import InputError
 from actuator_opt.design import housings, standard_sizes as standards
 from actuator_opt.design.materials import load_library
-from actuator_opt.models import extrusion, gland, gland_range
+from actuator_opt.models import extrusion, gland
 
 MM, BAR = 1e-3, 1e5
 VERIFIED = housings.extrusion_tables()["sealanddesign"].rows
@@ -151,7 +151,7 @@ def test_tolerance_stack_reproduces_the_published_squeeze(use):
     """Extremes of the AS568 glands from nominal squeeze and half tolerances: published, rounded."""
     published = standards.tables()["squeeze_as568"][use]
     for row, limits in zip(standards.glands(use, "as568"), published, strict=True):
-        extremes = gland_range.squeeze_extremes(
+        extremes = gland.squeeze_extremes(
             squeeze=row.squeeze,
             section=row.section,
             section_tolerance=row.section_tolerance,
@@ -166,24 +166,18 @@ def test_tolerance_stack_reproduces_the_published_squeeze(use):
 def test_tolerances_and_eccentricity_only_widen_the_squeeze(squeeze, ring, depth, eccentricity):
     """The nominal squeeze lies between; eccentricity acts as a depth tolerance of its own size."""
     stack = {"squeeze": squeeze, "section": 3.53e-3, "section_tolerance": ring}
-    loose, tight = gland_range.squeeze_extremes(
-        **stack, depth_tolerance=depth, eccentricity=eccentricity
-    )
+    loose, tight = gland.squeeze_extremes(**stack, depth_tolerance=depth, eccentricity=eccentricity)
     assert loose <= squeeze + 1e-15
     assert tight >= squeeze - 1e-15
-    same = gland_range.squeeze_extremes(
-        **stack, depth_tolerance=depth + eccentricity, eccentricity=0.0
-    )
+    same = gland.squeeze_extremes(**stack, depth_tolerance=depth + eccentricity, eccentricity=0.0)
     assert (loose, tight) == pytest.approx(same)
 
 
 def test_heat_fills_the_groove():
     """100 K at 6e-4 1/K fill 6 % more; metal gives room by 3e-5 1/K."""
-    hot = gland_range.volume_ratio(
-        volume_expansion=6e-4, housing_expansion=0.0, temperature_change=100.0
-    )
+    hot = gland.volume_ratio(volume_expansion=6e-4, housing_expansion=0.0, temperature_change=100.0)
     assert hot == pytest.approx(1.06)
-    beside = gland_range.volume_ratio(
+    beside = gland.volume_ratio(
         volume_expansion=6e-4, housing_expansion=1e-5, temperature_change=1e-3
     )
     assert (beside - 1) / 1e-3 == pytest.approx(6e-4 - 3e-5, rel=1e-6)
@@ -192,7 +186,7 @@ def test_heat_fills_the_groove():
 @given(st.floats(0.05, 0.3), st.floats(0.8, 1.2))
 def test_squeeze_and_fill_follow_one_volume(squeeze, ratio):
     """A ring that grows at constant length fills the groove by as much as its section says."""
-    later = gland_range.squeeze_at_volume(squeeze=squeeze, volume_ratio=ratio)
+    later = gland.squeeze_at_volume(squeeze=squeeze, volume_ratio=ratio)
     section, depth = 3.53e-3, 3.53e-3 * (1 - squeeze)
     grown = depth / (1 - later)
     groove = {"groove_width": 4.8e-3, "gland_depth": depth}
@@ -202,13 +196,13 @@ def test_squeeze_and_fill_follow_one_volume(squeeze, ratio):
 
 def test_cold_costs_squeeze():
     """NBR in steel, 20 to -30 degC: about (a_V - 3 a)/2 dT (1 - C) of squeeze lost, here 1.4 %."""
-    ratio = gland_range.volume_ratio(
+    ratio = gland.volume_ratio(
         volume_expansion=6.6e-4, housing_expansion=11.5e-6, temperature_change=-50.0
     )
-    left = gland_range.squeeze_at_volume(squeeze=0.13, volume_ratio=ratio)
+    left = gland.squeeze_at_volume(squeeze=0.13, volume_ratio=ratio)
     slope = (6.6e-4 - 3 * 11.5e-6) / 2 * 50 * 0.87
     assert 0.13 - left == pytest.approx(slope, rel=0.03)
-    assert math.isnan(gland_range.squeeze_at_volume(squeeze=0.13, volume_ratio=0.0))
+    assert math.isnan(gland.squeeze_at_volume(squeeze=0.13, volume_ratio=0.0))
 
 
 @pytest.mark.parametrize(("section", "thickness"), [(1.8, 1.4), (3.55, 1.4), (5.3, 1.9), (7, 2.8)])
@@ -351,7 +345,7 @@ def test_every_standard_gland_passes_its_own_check(section):
     """Metric glands at nominal depth with the ring's own tolerance deviate in nothing."""
     row = standards.gland(section * MM, table="metric")
     tolerance = standards.section_tolerance(row.section).value
-    loose, tight = gland_range.squeeze_extremes(
+    loose, tight = gland.squeeze_extremes(
         squeeze=row.squeeze, section=row.section, section_tolerance=tolerance,
         depth_tolerance=0.0, eccentricity=0.0,
     )  # fmt: skip

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
-from actuator_opt.models import density, fluid, tait
+from actuator_opt.models import fluid, oil_laws
 
 CELSIUS = 273.15
 
@@ -157,17 +157,17 @@ def test_vapour_pressure_lies_between_its_points_as_in_steam_tables():
 def test_density_compressed_has_the_bulk_modulus_it_is_made_of():
     """Closed form rho0 (1 + m p/K0)^(1/m), its limit rho0 exp(p/K0), and K = rho dp/drho."""
     k0, m, p = 1.4e9, 10.8, 300e5
-    found = density.density_compressed(
+    found = oil_laws.density_compressed(
         reference_density=870.0, pressure=p, bulk_modulus=k0, slope=m
     )
     assert found == pytest.approx(870 * (1 + m * p / k0) ** (1 / m), rel=1e-13)
     for slope in (0.0, 1e-9):
-        flat = density.density_compressed(
+        flat = oil_laws.density_compressed(
             reference_density=870.0, pressure=p, bulk_modulus=k0, slope=slope
         )
         assert flat == pytest.approx(870 * math.exp(p / k0), rel=1e-10)
     low, high = (
-        density.density_compressed(
+        oil_laws.density_compressed(
             reference_density=870.0, pressure=q, bulk_modulus=k0, slope=np.array([m])
         )
         for q in (p - 1e4, p + 1e4)
@@ -181,7 +181,7 @@ def test_density_compressed_has_the_bulk_modulus_it_is_made_of():
 )
 def test_density_tait(celsius, bar, expected):
     """Density of the generic mineral oil, published table."""
-    rho = tait.density_tait(temperature=celsius + CELSIUS, pressure=bar * 1e5)
+    rho = oil_laws.density_tait(temperature=celsius + CELSIUS, pressure=bar * 1e5)
     assert rho == pytest.approx(expected, abs=0.06)
 
 
@@ -194,16 +194,16 @@ def test_density_tait(celsius, bar, expected):
 )  # fmt: skip
 def test_bulk_modulus_tait(celsius, bar, expected):
     """Tangent bulk modulus of the generic mineral oil; B = 11.9 (10.9 would give 1563 at 200)."""
-    modulus = tait.bulk_modulus_tait(temperature=celsius + CELSIUS, pressure=bar * 1e5)
+    modulus = oil_laws.bulk_modulus_tait(temperature=celsius + CELSIUS, pressure=bar * 1e5)
     assert modulus / 1e6 == pytest.approx(expected, abs=0.55 if expected % 1 == 0 else 0.06)
 
 
 def test_tait_density_and_modulus_agree():
     """K = rho dp/drho by central differences."""
     t, p, h = 313.15, 200e5, 1e3
-    rho = [tait.density_tait(temperature=t, pressure=q) for q in (0.0, p - h, p, p + h)]
+    rho = [oil_laws.density_tait(temperature=t, pressure=q) for q in (0.0, p - h, p, p + h)]
     tangent = rho[2] * 2 * h / (rho[3] - rho[1])
-    assert tait.bulk_modulus_tait(temperature=t, pressure=p) == pytest.approx(tangent, rel=1e-6)
+    assert oil_laws.bulk_modulus_tait(temperature=t, pressure=p) == pytest.approx(tangent, rel=1e-6)
 
 
 def test_warm_bulk_modulus_falls_as_tait_does():
@@ -271,7 +271,7 @@ def test_effective_bulk_modulus_holds_at_cavitation():
 def test_thermal_pressure_of_trapped_oil():
     """7.806 bar/K for the 16/20 mm aluminium barrel; the printed digit is truncated (7.8066)."""
     wall = 19.7282e-15 / (math.pi * 0.016**2 * 0.18)  # dV/dp over V of the barrel check values
-    slope = density.thermal_pressure_slope(
+    slope = oil_laws.thermal_pressure_slope(
         volume_expansion=7e-4,
         wall_expansion_axial=12e-6,
         wall_expansion_hoop=12e-6,
@@ -287,7 +287,7 @@ def test_linear_and_thermal_laws_by_hand():
     assert viscosity == pytest.approx(0.04002, rel=1e-12)
     modulus = fluid.bulk_modulus_linear(bulk_modulus=1.4e9, slope=6.0, pressure=200e5)
     assert modulus == pytest.approx(1.52e9, rel=1e-12)
-    warm = density.density_thermal(
+    warm = oil_laws.density_thermal(
         reference_density=870.0, volume_expansion=7e-4, temperature=313.15
     )
     assert warm * 1.0175 == pytest.approx(870.0, rel=1e-12)

@@ -14,16 +14,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import jv, jve
 
-from actuator_opt.models import (
-    accumulator,
-    elements,
-    line_ends,
-    line_friction,
-    lines,
-    resonators,
-    transmission_line,
-    water_hammer,
-)
+from actuator_opt.models import (accumulator, elements, line_ends, lines, resonators, transmission_line)
 
 PIPE = {"inner_diameter": 8e-3, "length": 1.2}
 SECTION = {"inner_diameter": 8e-3, "density": 865.0, "dynamic_viscosity": 0.04}
@@ -31,7 +22,7 @@ SPEED = math.sqrt(1.4e9 / 865.0)
 LINE = {**SECTION, "length": 1.2, "sound_speed": SPEED}
 AREA = math.pi * 4e-3**2
 SURGE = 865.0 * SPEED / AREA  # characteristic impedance without loss
-FRICTION = st.sampled_from(line_friction.FRICTION)
+FRICTION = st.sampled_from(lines.FRICTION)
 FREQUENCIES = st.floats(-1, 4).map(lambda x: 10**x)
 
 
@@ -129,7 +120,7 @@ def test_usable_volume_by_hand():
 def test_wave_speed_in_a_rigid_line():
     """K 1.4 GPa, 865 kg/m3: 1272.20 m/s; the lumped line agrees, a = l/sqrt(L C)."""
     volume = lines.line_volume(**PIPE)
-    speed = water_hammer.wave_speed(bulk_modulus=1.4e9, density=865.0, volume=volume)
+    speed = transmission_line.wave_speed(bulk_modulus=1.4e9, density=865.0, volume=volume)
     assert speed == pytest.approx(1272.20, rel=3e-6)
     inertance = elements.inertance(**PIPE, density=865.0)
     capacitance = elements.capacitance(volume=volume, bulk_modulus=1.4e9)
@@ -142,7 +133,7 @@ def test_wave_speed_in_an_elastic_line():
     for outer, expected in ((8.008e-3, 1 + 1.4e9 * 8e-3 / (2e11 * 4e-6)), (12e-3, None)):
         compliance = lines.line_compliance(outer_diameter=outer, **PIPE, **wall)
         volume = lines.line_volume(**PIPE)
-        speed = water_hammer.wave_speed(
+        speed = transmission_line.wave_speed(
             bulk_modulus=1.4e9, density=865.0, volume=volume, wall_compliance=compliance
         )
         if expected:
@@ -154,7 +145,9 @@ def test_wave_speed_in_an_elastic_line():
 
 def test_joukowsky_is_the_momentum_of_the_stopped_oil():
     """Oil of l = a t is stopped in t: dp A t = rho A l dv; the wave sees rho a/A per flow."""
-    rise = water_hammer.joukowsky_pressure(density=865.0, sound_speed=SPEED, velocity_change=4.0)
+    rise = transmission_line.joukowsky_pressure(
+        density=865.0, sound_speed=SPEED, velocity_change=4.0
+    )
     assert rise * AREA * 1e-3 == pytest.approx(865.0 * AREA * (SPEED * 1e-3) * 4.0)
     assert rise == pytest.approx(SURGE * AREA * 4.0)
 
@@ -169,7 +162,7 @@ def test_series_impedance_is_the_bessel_solution():
     for viscosity in (0.04, 1e-3):
         z = np.exp(0.75j * np.pi) * 4e-3 * np.sqrt(omega * 865.0 / viscosity)
         bessel = (1j * omega * 865.0 / AREA) / (1 - 2 * jve(1, z) / (z * jve(0, z)))
-        ours = line_friction.series_impedance(
+        ours = lines.series_impedance(
             frequency=frequency, **{**SECTION, "dynamic_viscosity": viscosity}
         )
         np.testing.assert_allclose(ours, bessel, rtol=1e-9)
@@ -177,10 +170,10 @@ def test_series_impedance_is_the_bessel_solution():
 
 def test_distributed_friction_at_low_frequency():
     """Z' l -> R + i omega (4/3) L with the lumped R 4.77465e8, L 2.06504e7 of the line."""
-    z = 1.2 * line_friction.series_impedance(frequency=1e-4, **SECTION)
+    z = 1.2 * lines.series_impedance(frequency=1e-4, **SECTION)
     assert z.real == pytest.approx(4.77465e8, rel=2e-6)
     assert z.imag / (2 * math.pi * 1e-4) == pytest.approx(4 / 3 * 2.06504e7, rel=3e-6)
-    still = line_friction.series_impedance(frequency=0.0, **SECTION)
+    still = lines.series_impedance(frequency=0.0, **SECTION)
     assert 1.2 * still == pytest.approx(4.77465e8, rel=2e-6)
 
 
@@ -189,7 +182,7 @@ def test_distributed_friction_at_high_frequency():
     for frequency in (1e6, 1e8):
         omega = 2 * math.pi * frequency
         w = 4e-3 * np.sqrt(1j * omega * 865.0 / 0.04)
-        z = line_friction.series_impedance(frequency=frequency, **SECTION)
+        z = lines.series_impedance(frequency=frequency, **SECTION)
         ratio = z / (1j * omega * 865.0 / AREA)
         assert abs(ratio - (1 + 2 / w + 3 / w**2)) < 10 / abs(w) ** 3
         resistance = z.real / math.sqrt(frequency)
@@ -211,7 +204,7 @@ def test_distributed_resistance_is_the_dissipation_of_the_profile(frequency):
 
     flow = total(lambda r: 1 - jv(0, wave * r) / centre)
     loss = total(lambda r: 0.04 * abs(wave * jv(1, wave * r) / centre) ** 2).real
-    impedance = line_friction.series_impedance(frequency=frequency, **SECTION)
+    impedance = lines.series_impedance(frequency=frequency, **SECTION)
     assert impedance.real == pytest.approx(loss / abs(flow) ** 2, rel=1e-8)
 
 
@@ -219,14 +212,14 @@ def test_steady_friction_is_the_lumped_line():
     """Z' l = R + i omega L at every frequency; lossless: R = 0. An unknown name is refused."""
     for frequency in (0.0, 5.0, 3e3):
         along = {"frequency": frequency, **SECTION}
-        z = 1.2 * line_friction.series_impedance(**along, friction="steady")
+        z = 1.2 * lines.series_impedance(**along, friction="steady")
         inertia = 2 * math.pi * frequency * elements.inertance(**PIPE, density=865.0)
         friction = elements.resistance(**PIPE, dynamic_viscosity=0.04)
         assert z == pytest.approx(friction + 1j * inertia)
-        lossless = line_friction.series_impedance(**along, friction="lossless")
+        lossless = lines.series_impedance(**along, friction="lossless")
         assert 1.2 * lossless == pytest.approx(1j * inertia)
     with pytest.raises(ValueError, match="friction: dry; choose one of lossless, steady"):
-        line_friction.series_impedance(frequency=1.0, **SECTION, friction="dry")
+        lines.series_impedance(frequency=1.0, **SECTION, friction="dry")
 
 
 def test_lossless_line_closed_forms():
@@ -247,7 +240,7 @@ def test_line_is_reciprocal_and_symmetric(frequency, friction):
     assert matrix.A == matrix.D
     scale = max(1.0, abs(matrix.A) ** 2)
     assert abs(matrix.A * matrix.D - matrix.B * matrix.C - 1) < 1e-9 * scale
-    along = line_friction.series_impedance(**at, **SECTION)
+    along = lines.series_impedance(**at, **SECTION)
     across = 2j * math.pi * frequency * AREA / (865.0 * SPEED**2)
     gamma, surge = 1.2 * np.sqrt(along * across), np.sqrt(along / across)
     tolerance = 1e-9 * abs(np.cosh(gamma.real))
@@ -329,7 +322,7 @@ def test_energy_balance_along_a_line(friction):
     """Power in less power out is the integral of Re(Z') |q|^2/2 over the length."""
     at = {"frequency": 200.0, "friction": friction}
     end = 3e9 + 2e9j  # p2 = Z, q2 = 1
-    resistance = line_friction.series_impedance(**at, **SECTION).real
+    resistance = lines.series_impedance(**at, **SECTION).real
 
     def state(distance):
         """Pressure and flow at a distance from the far end."""

@@ -10,8 +10,8 @@ from hypothesis import given, strategies as st
 from scipy.integrate import solve_ivp
 
 from actuator_opt.models import chamber, end_stop, endurance, linkage
-from actuator_opt.models.density import density_compressed
 from actuator_opt.models.fluid import effective_bulk_modulus
+from actuator_opt.models.oil_laws import density_compressed
 
 STEP = 1e-30
 K = 1.4e9

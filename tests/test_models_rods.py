@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from scipy.integrate import solve_bvp
 
-from actuator_opt.models import beam_column, lap_joint, rod, solid_ply, stepped
+from actuator_opt.models import column, lap_joint, rod, solid_ply, stepped
 
 PLY_P = {
     "youngs_modulus_1": 138e9,
@@ -54,7 +54,7 @@ def test_bending_as_axial_force():
     """Of one material the force over the area is the largest bending stress M d/(2 I)."""
     tube = {"outer_diameter": 16e-3, "inner_diameter": 12e-3}
     area, inertia = rod.section_area(**tube), rod.second_moment(**tube)
-    force = beam_column.bending_axial_force(
+    force = column.bending_axial_force(
         bending_moment=20.0,
         radius=8e-3,
         axial_stiffness=70e9 * area,
@@ -67,7 +67,7 @@ def test_bending_as_axial_force():
 @settings(max_examples=30, deadline=None)
 def test_self_weight_by_summing_loads(weight_1, length_1, weight_2, length_2):
     """Joint and largest moments of either part, by adding up the weight left of many sections."""
-    joint, first, second = beam_column.self_weight_moments(
+    joint, first, second = column.self_weight_moments(
         weight_1=weight_1, length_1=length_1, weight_2=weight_2, length_2=length_2
     )
     total = length_1 + length_2
@@ -83,12 +83,8 @@ def test_self_weight_by_summing_loads(weight_1, length_1, weight_2, length_2):
 
 def test_self_weight_of_one_bar():
     """Even weight: w L^2/8 in the middle, wherever the joint lies; mirrored, the same."""
-    forward = beam_column.self_weight_moments(
-        weight_1=3.0, length_1=1.4, weight_2=3.0, length_2=0.6
-    )
-    backward = beam_column.self_weight_moments(
-        weight_1=3.0, length_1=0.6, weight_2=3.0, length_2=1.4
-    )
+    forward = column.self_weight_moments(weight_1=3.0, length_1=1.4, weight_2=3.0, length_2=0.6)
+    backward = column.self_weight_moments(weight_1=3.0, length_1=0.6, weight_2=3.0, length_2=1.4)
     assert forward[1] == pytest.approx(3.0 * 4.0 / 8, rel=1e-12)
     assert forward == pytest.approx((backward[0], backward[2], backward[1]), rel=1e-12)
 
@@ -102,7 +98,7 @@ def test_amplification_of_the_uniform_column(ratio):
     """
 
     def factor(shape):
-        return beam_column.amplified_moment(
+        return column.amplified_moment(
             bending_moment=1.0, axial_force=ratio, critical_load=1.0, shape=shape
         )
 
@@ -116,7 +112,7 @@ def test_amplification_of_the_uniform_column(ratio):
 
 def test_no_moment_beyond_the_critical_load():
     """At and above the critical load the amplified moment is NaN, never a negative number."""
-    values = beam_column.amplified_moment(
+    values = column.amplified_moment(
         bending_moment=1.0, axial_force=np.array([0.5, 1.0, 2.0]), critical_load=1.0
     )
     assert np.isnan(values).tolist() == [False, True, True]
@@ -188,12 +184,12 @@ def test_amplification_of_the_stepped_cylinder(ratio, low, high, off):
     load = ratio * critical
 
     def error(moment, exact, shape=0.0):
-        ours = beam_column.amplified_moment(
+        ours = column.amplified_moment(
             bending_moment=moment, axial_force=load, critical_load=critical, shape=shape
         )
         return ours / exact.max(axis=0) - 1
 
-    *_, own = beam_column.self_weight_moments(
+    *_, own = column.self_weight_moments(
         weight_1=weight[0], length_1=length[0], weight_2=weight[1], length_2=length[1]
     )
     heavy = error(own, moments_by_integration(load, bending, length, weight, 0.0))

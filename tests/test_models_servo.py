@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, strategies as st
 from scipy.optimize import brentq
 
-from actuator_opt.models import holding_valve, reducing_valve, spool, tuning, valve
+from actuator_opt.models import holding_valve, loop, supply, valve
 from actuator_opt.models.line_ends import LineEnd, end_admittance, reducing_valve_end
 from actuator_opt.models.linear import Side, linear_actuator
 from actuator_opt.models.loop import open_loop, ultimate_gain
@@ -147,7 +147,7 @@ def test_the_spool_is_a_second_order_lag(natural_frequency, damping_ratio, ratio
     """At r times its frequency it answers a sine with 1/(1 - r^2 + 2 i zeta r)."""
     answer = 1 / (1 - ratio**2 + 2j * damping_ratio * ratio)
     s = 2j * math.pi * natural_frequency * ratio
-    found = spool.spool_acceleration(
+    found = valve.spool_acceleration(
         command=1.0, opening=answer, rate=s * answer, natural_frequency=natural_frequency,
         damping_ratio=damping_ratio,
     )  # fmt: skip
@@ -160,10 +160,10 @@ def test_spool_geometry_check_value():
     stroke = 0.30e-4 / (0.5 * math.pi * 10e-3)
     for overlap in (0.2e-3, 0.0, -0.1e-3):
         geometry = {**ring, "overlap": overlap}
-        k = spool.spool_edge_coefficient(spool_position=stroke + overlap, **geometry)
+        k = valve.spool_edge_coefficient(spool_position=stroke + overlap, **geometry)
         assert k * math.sqrt(5e5) * 60000 == pytest.approx(37.287, abs=5e-4)
         for position in (overlap, overlap - 1e-4):
-            assert spool.spool_edge_coefficient(spool_position=position, **geometry) == 0
+            assert valve.spool_edge_coefficient(spool_position=position, **geometry) == 0
 
 
 REDUCING = {"conductance": 1e-10, "natural_frequency": 20.0, "damping_ratio": 0.3}
@@ -181,11 +181,11 @@ def test_small_signals_of_the_reducing_valve_are_its_line_end(frequency, g, own,
 
     def left(flow):
         """Excess of s^2 q over the valve's acceleration."""
-        found = reducing_valve.reducing_valve_acceleration(flow=flow, rate=s * flow, **swing, **end)
+        found = supply.reducing_valve_acceleration(flow=flow, rate=s * flow, **swing, **end)
         return s * s * flow - found
 
     flow = -left(0.0) / (left(1.0) - left(0.0))  # linear in the flow
-    into_line = reducing_valve.reducing_valve_flow(
+    into_line = supply.reducing_valve_flow(
         flow=flow, largest_flow=1.0, passive_conductance=passive, **swing
     )
     expected = end_admittance(
@@ -201,30 +201,30 @@ def test_the_reducing_valve_rests_on_its_line_and_saturates():
         line = {"pressure": pressure, "set_pressure": 60e5}
         rest = REDUCING["conductance"] * (60e5 - pressure)
         valve_at_rest = {"flow": rest, "rate": 0.0, **line, **REDUCING}
-        assert reducing_valve.reducing_valve_acceleration(**valve_at_rest) == 0
-        found = reducing_valve.reducing_valve_flow(
+        assert supply.reducing_valve_acceleration(**valve_at_rest) == 0
+        found = supply.reducing_valve_flow(
             flow=rest, largest_flow=1e-3, passive_conductance=2e-12, **line
         )
         assert found == pytest.approx((1e-10 + 2e-12) * (60e5 - pressure), rel=1e-12)
         for flow, limit in ((5e-3, 1e-3), (-5e-3, -1e-3)):
             full = {"flow": flow, "largest_flow": 1e-3, **line}
-            assert reducing_valve.reducing_valve_flow(**full) == limit
+            assert supply.reducing_valve_flow(**full) == limit
 
 
 def test_ziegler_nichols_table():
     """P 0.5 K_u; PI 0.45 K_u, T_u/1.2; PID 0.6 K_u, T_u/2, T_u/8."""
     point = {"ultimate_gain": 10.0, "ultimate_period": 2.4}
-    assert tuning.ziegler_nichols(law="p", **point) == (5.0, math.inf, 0.0)
-    assert tuning.ziegler_nichols(law="pi", **point) == pytest.approx((4.5, 2.0, 0.0))
-    assert tuning.ziegler_nichols(law="pid", **point) == pytest.approx((6.0, 1.2, 0.3))
+    assert loop.ziegler_nichols(law="p", **point) == (5.0, math.inf, 0.0)
+    assert loop.ziegler_nichols(law="pi", **point) == pytest.approx((4.5, 2.0, 0.0))
+    assert loop.ziegler_nichols(law="pid", **point) == pytest.approx((6.0, 1.2, 0.3))
 
 
 @given(st.floats(1.0, 1e4), st.floats(1e-3, 1.0), st.floats(1.5, 10.0))
 def test_margin_rules_damp_the_slow_pair_critically(limit, speed, margin):
     """With K = K_u/margin, s^2 + K K_v s + K K_v/T_i has a double root."""
     point = {"ultimate_gain": limit, "velocity_gain": speed, "gain_margin": margin}
-    assert tuning.margin_rules(law="p", **point) == (limit / margin, math.inf, 0.0)
-    gain, integral, derivative = tuning.margin_rules(law="pi", **point)
+    assert loop.margin_rules(law="p", **point) == (limit / margin, math.inf, 0.0)
+    gain, integral, derivative = loop.margin_rules(law="pi", **point)
     assert (gain, derivative) == (limit / margin, 0.0)
     assert (gain * speed) ** 2 == pytest.approx(4 * gain * speed / integral, rel=1e-12)
 
@@ -232,9 +232,9 @@ def test_margin_rules_damp_the_slow_pair_critically(limit, speed, margin):
 def test_an_unknown_law_is_one_clear_line():
     """Another word names the choices; the margin rules say where a PID comes from."""
     with pytest.raises(ValueError, match="law: pd; choose one of p, pi, pid"):
-        tuning.ziegler_nichols(law="pd", ultimate_gain=1.0, ultimate_period=1.0)
+        loop.ziegler_nichols(law="pd", ultimate_gain=1.0, ultimate_period=1.0)
     with pytest.raises(ValueError, match="law: pid; the margin rules give p or pi"):
-        tuning.margin_rules(law="pid", ultimate_gain=1.0, velocity_gain=1.0)
+        loop.margin_rules(law="pid", ultimate_gain=1.0, velocity_gain=1.0)
 
 
 def servo(spool_frequency):
@@ -278,10 +278,10 @@ def test_margin_rules_are_calm_on_a_lightly_damped_cylinder(spool_frequency, lim
     """
     top, low, point, speed = servo(spool_frequency)
     assert point.gain == pytest.approx(limit, abs=1e-3)
-    gains = tuning.margin_rules(law="pi", ultimate_gain=point.gain, velocity_gain=speed)
+    gains = loop.margin_rules(law="pi", ultimate_gain=point.gain, velocity_gain=speed)
     peak, margin = peak_and_margin(top, low, gains)
     assert peak == pytest.approx(2 / math.sqrt(3), rel=0.01)
     assert margin == pytest.approx(3.0, rel=0.02)
     rule = {"ultimate_gain": point.gain, "ultimate_period": 1 / point.frequency}
-    assert peak_and_margin(top, low, tuning.ziegler_nichols(law="pi", **rule))[0] > 3
-    assert peak_and_margin(top, low, tuning.ziegler_nichols(law="pid", **rule))[1] < 1.2
+    assert peak_and_margin(top, low, loop.ziegler_nichols(law="pi", **rule))[0] > 3
+    assert peak_and_margin(top, low, loop.ziegler_nichols(law="pid", **rule))[1] < 1.2

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from actuator_opt.models import barrel, endurance, stiffness, yielding
+from actuator_opt.models import barrel, endurance, stiffness, strength
 
 stresses = st.tuples(*[st.integers(-300, 300).map(lambda mpa: mpa * 1e6)] * 4)
 
@@ -23,18 +23,18 @@ def _mises(s):
 @given(stresses, stresses)
 def test_mises_product_is_the_deviator_s_inner_product(a, b):
     """Its diagonal is the von Mises stress squared; off it, polarisation holds."""
-    square = yielding.mises_product(first=a, second=a)
+    square = strength.mises_product(first=a, second=a)
     assert square == pytest.approx(_mises(a) ** 2, rel=1e-9, abs=1e-3)
     total = tuple(x + y for x, y in zip(a, b, strict=True))
     cross = (_mises(total) ** 2 - _mises(a) ** 2 - _mises(b) ** 2) / 2
     scale = _mises(a) * _mises(b) + 1.0
-    assert yielding.mises_product(first=a, second=b) == pytest.approx(cross, abs=1e-8 * scale)
+    assert strength.mises_product(first=a, second=b) == pytest.approx(cross, abs=1e-8 * scale)
 
 
 def test_mises_product_without_shear_is_the_barrel_s():
     """Three principal stresses give `barrel.von_mises`."""
     stress = (128e6, -28e6, 50e6, 0.0)
-    product = yielding.mises_product(first=stress, second=stress)
+    product = strength.mises_product(first=stress, second=stress)
     assert sqrt(product) == pytest.approx(barrel.von_mises(hoop=128e6, radial=-28e6, axial=50e6))
 
 
@@ -45,10 +45,10 @@ def test_yield_ends_where_the_total_stress_yields(load, held):
     yield_strength = 400e6
     if _mises(held) > 0.9 * yield_strength or _mises(load) < 1e6:
         return
-    used = yielding.yield_utilisation(stress=load, yield_strength=yield_strength, residual=held)
+    used = strength.yield_utilisation(stress=load, yield_strength=yield_strength, residual=held)
     total = [h + s / used for h, s in zip(held, load, strict=True)]
     assert _mises(total) == pytest.approx(yield_strength, rel=1e-6)
-    alone = yielding.yield_utilisation(stress=load, yield_strength=yield_strength)
+    alone = strength.yield_utilisation(stress=load, yield_strength=yield_strength)
     assert alone == pytest.approx(_mises(load) / yield_strength, rel=1e-9)
 
 

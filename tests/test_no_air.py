@@ -12,7 +12,7 @@ from scipy.integrate import quad
 from simulation_case import AREA_A, AREA_B, BALANCED, BAR, OIL, plant, run, scenario
 
 import actuator_opt as ao
-from actuator_opt.models.cavity import cavity
+from actuator_opt.models.chamber import cavity
 from actuator_opt.simulation.components.chambers import oil_at
 from actuator_opt.studies import plant as plants
 

@@ -17,12 +17,8 @@ import pytest
 from hypothesis import given, strategies as st
 
 from actuator_opt.identification.record import Record
-from actuator_opt.pages import (
-    identification as rows,
-    identification_figures as figures,
-    read_attachment,
-)
-from actuator_opt.rendering import axes, chart_scale, paper, paper_plain as fallback, terminal
+from actuator_opt.pages import (identification as rows, identification_figures as figures, read_attachment)
+from actuator_opt.rendering import axes, chart, paper, paper_plain as fallback, terminal
 from actuator_opt.rendering.chart import Axis
 from actuator_opt.rendering.origin import Origin
 from actuator_opt.rendering.series import csv_text
@@ -391,7 +387,7 @@ def test_a_long_record_stays_small():
 )
 def test_velocities_keep_their_order_and_their_sign(values):
     """The axis is odd and increasing, and holds every value."""
-    scale = chart_scale.scale(Axis(log=True, signed=True), values)
+    scale = chart.scale(Axis(log=True, signed=True), values)
     places = scale.at(sorted(values))
     assert np.all(np.diff(places) >= 0)
     assert scale.at([-v for v in values]) == pytest.approx(-scale.at(values))

@@ -28,8 +28,7 @@ from actuator_opt.optimisation.result import Optimisation
 from actuator_opt.pages import calibration, comparison, pareto, report as page, runs, sweep
 from actuator_opt.rendering import paper, paper_plain as fallback, terminal as renderer
 from actuator_opt.rendering.terminal import blocks_text
-from actuator_opt.uncertainties.draw import normal_quantile
-from actuator_opt.uncertainties.estimate import exact
+from actuator_opt.uncertainties.estimate import exact, normal_quantile
 from actuator_opt.uncertainties.study import DRAWS, quick_yield
 
 DESIGNS = Path(__file__).parents[1] / "designs"

@@ -29,7 +29,7 @@ from simulation_case import (
 
 from actuator_opt.design.linkage import Linkage
 from actuator_opt.evaluation.springs import Give
-from actuator_opt.models.tuning import ControllerGains
+from actuator_opt.models.loop import ControllerGains
 from actuator_opt.studies.plant import LineData, Plane, SealData
 
 SHARP = {"sharp": 1e3, "relative": 1e-9}

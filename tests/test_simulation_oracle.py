@@ -27,7 +27,7 @@ from simulation_case import (
     scenario,
 )
 
-from actuator_opt.models.tuning import ControllerGains
+from actuator_opt.models.loop import ControllerGains
 from actuator_opt.simulation.assemble import assemble
 from actuator_opt.simulation.linear import Linear, tune, ultimate
 from actuator_opt.studies.plant import Plane, SealData

@@ -17,8 +17,8 @@ import actuator_opt as ao
 from actuator_opt.base.database import Rows
 from actuator_opt.base.errors import ActuatorError, InputError, UsageError
 from actuator_opt.pages.sweep import SweepColumns, about
-from actuator_opt.rendering import parquet as parquet_file
-from actuator_opt.rendering.parquet import ParquetFile
+from actuator_opt.rendering import series as parquet_file
+from actuator_opt.rendering.series import ParquetFile
 from actuator_opt.sweeps import run
 from actuator_opt.sweeps.chunk import Chunk
 

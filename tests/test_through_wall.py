@@ -15,7 +15,7 @@ import actuator_opt as ao
 from actuator_opt.evaluation.kernel import compute
 from actuator_opt.evaluation.wall_study import YIELD
 from actuator_opt.models import barrel
-from actuator_opt.models.criteria import CRITERIA
+from actuator_opt.models.strength import CRITERIA
 
 DESIGNS = Path(__file__).parent.parent / "designs"
 LINERLESS = """\

@@ -14,7 +14,7 @@ import actuator_opt as ao
 from actuator_opt.design.uncertain import REACH
 from actuator_opt.models.elastomer import modulus_gent, modulus_ruess
 from actuator_opt.uncertainties import estimate
-from actuator_opt.uncertainties.draw import about
+from actuator_opt.uncertainties.estimate import about
 from actuator_opt.uncertainties.inputs import Model, inputs, without_basis
 from actuator_opt.uncertainties.study import draw
 

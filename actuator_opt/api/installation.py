@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, Unpack
 
 from ..base import files as store
-from ..base.display import Displayed
 from ..base.errors import InputError
+from ..base.tables import Displayed
 from ..version import VERSION
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
-from ..base.display import Displayed
 from ..base.errors import Diagnostic, InputError, UsageError
+from ..base.tables import Displayed
 from .actuator import Actuator
 from .recorded_runs import Run
 from .reports import Paper, file_name, report_files

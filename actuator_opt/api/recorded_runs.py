@@ -20,8 +20,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Unpack
 
 from ..base import runs as run_store
-from ..base.display import Displayed
 from ..base.errors import Diagnostic, InputError
+from ..base.tables import Displayed
 from ..evaluation.plugin import Plugin
 from ..version import VERSION
 from .actuator import Actuator

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
-from ..base.display import Displayed
 from ..base.errors import Diagnostic, InputError
+from ..base.tables import Displayed
 from ..design import Design
 from .actuator import Actuator, as_actuator
 from .reports import Paper, page_of

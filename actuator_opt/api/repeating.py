@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, Unpack
 
 from ..base.bounds import CHECKS, FRONT, SEED, STARTS, Bounds
-from ..base.display import Displayed
 from ..base.errors import Diagnostic, InputError, shown
+from ..base.tables import Displayed
 from ..evaluation import Evaluation
 from ..version import VERSION
 from . import results

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
-from ..base.display import Displayed
 from ..base.errors import Diagnostic, InputError
+from ..base.tables import Displayed
 from ..version import VERSION
 from .actuator import Actuator, Plugins, plugins_of, read_as
 from .fronts import write_front, write_front_csv

@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from ..base import runs as run_store
-from ..base.display import show_by
 from ..base.errors import Diagnostic, ExitCode, UsageError
+from ..base.tables import show_by
 from ..design import Design
 from ..evaluation import Evaluation
 from ..evaluation.result import UNKNOWN

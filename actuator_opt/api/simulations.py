@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
-from ..base.display import Displayed
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..base.numeric import Array
+from ..base.tables import Displayed
 from ..design import Design
 from ..studies.plant import plant
 from .actuator import Actuator, as_actuator

@@ -131,8 +131,7 @@ def writing(
 ) -> Iterator[Callable[[Chunk], None]]:
     """Write chunks to all requested files, which appear once all are complete."""
     from ..pages.sweep import SweepColumns, about
-    from ..rendering.parquet import ParquetFile
-    from ..rendering.series import CsvFile
+    from ..rendering.series import CsvFile, ParquetFile
 
     columns = SweepColumns(study)
     with ExitStack() as stack:

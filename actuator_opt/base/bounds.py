@@ -14,12 +14,19 @@ class Bounds(NamedTuple):
 
 STARTS = Bounds(1, 1000)
 """Number of local searches."""
+
+
 CHECKS = Bounds(0, 100)
 """Number of full searches for a front."""
+
+
 SEED = Bounds(0, 2**32 - 1)
 """Seeds that every generator accepts: NLopt's is an unsigned long, which may have 32 bits."""
+
+
 FRONT = Bounds(3, 2000)
 """Number of designs on a front."""
+
 
 SWEEP_FIGURES = ("parallel", "scatter", "contour", "ucurves")
 """Figures of a sweep, named as the modules of `pages.sweep_figures` that draw them."""

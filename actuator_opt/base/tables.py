@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from .errors import Diagnostic, InputError
@@ -74,3 +74,21 @@ def _finite(value: Any, path: str, lost: dict[str, str]) -> Any:
     if isinstance(value, (list, tuple)):
         return [_finite(below, f"{path}[{k}]", lost) for k, below in enumerate(value)]
     return value
+
+
+_RENDERERS: list[Callable[[object], str]] = []
+
+
+def show_by(renderer: Callable[[object], str]) -> None:
+    """Show results by a function that turns a result into a piece of HTML."""
+    _RENDERERS[:] = [renderer]
+
+
+class Displayed:
+    """A result that a notebook shows as its page."""
+
+    __slots__ = ()
+
+    def _repr_html_(self) -> str | None:
+        """The page as HTML; None where nothing has been loaded that can render it."""
+        return _RENDERERS[0](self) if _RENDERERS else None

@@ -14,20 +14,7 @@ from ..base import files as store, runs as run_store
 from ..base.errors import Diagnostic, ExitCode, UsageError, shown
 from . import streams
 from .job import Job
-from .options import (
-    REPORTS,
-    AllPages,
-    Date,
-    DesignFile,
-    Format,
-    Json,
-    Out,
-    PluginFile,
-    Quiet,
-    Report,
-    Seed,
-    Set,
-)
+from .options import (REPORTS, AllPages, Date, DesignFile, Format, Json, Out, PluginFile, Quiet, Report, Seed, Set)
 
 if TYPE_CHECKING:
     from ..api import Restored

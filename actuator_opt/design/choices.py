@@ -9,10 +9,10 @@ from typing import Annotated, Literal, TypeAlias
 
 from ..friction.kinds import LAWS as FRICTION_LAWS
 from ..joints.kinds import JOINTS
-from ..models.criteria import CRITERIA
 from ..models.elastomer import MODULUS_LAWS
 from ..models.oil_laws import BULK_MODULUS_LAWS, VISCOSITY_LAWS
 from ..models.seals import LAWS as CONTACT_LAWS
+from ..models.strength import CRITERIA
 from ..seals.kinds import TYPES as SEAL_TYPES
 from .kinds import Choice, choice_of
 

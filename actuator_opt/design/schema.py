@@ -16,18 +16,7 @@ from ..base import quantities, units
 from ..base.quantities import Quantity
 from ..metrics import METRICS
 from . import choice_list, layup, requirements as wishes
-from .kinds import (
-    CaseName,
-    Flag,
-    Kind,
-    MaterialName,
-    Of,
-    PositionKind,
-    Sizes,
-    Text,
-    ValueFault,
-    example,
-)
+from .kinds import (CaseName, Flag, Kind, MaterialName, Of, PositionKind, Sizes, Text, ValueFault, example)
 from .material import ROLES
 from .model import Design, Ply
 from .section import Section

@@ -14,7 +14,7 @@ from ..models.elastomer import modulus_gent
 from ..models.seals import LAWS
 from ..seals.kinds import SIZES, TYPES
 from ..seals.seal_type import SealType, SizeFault
-from ..seals.sizes import GROOVE_WIDTH
+from ..seals.contact import GROOVE_WIDTH
 from ..seals.u_cup import lip_faults
 from . import wall_faults
 from .seals import BACK_UPS

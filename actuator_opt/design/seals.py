@@ -12,7 +12,7 @@ from ..friction.law import FrictionLaw
 from ..seals import o_ring
 from ..seals.kinds import SIZES, TYPES
 from ..seals.seal_type import SealType
-from ..seals.sizes import GROOVE_WIDTH
+from ..seals.contact import GROOVE_WIDTH
 from . import choices
 from .kinds import MaterialName, Of
 from .section import Section

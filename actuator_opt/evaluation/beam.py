@@ -12,7 +12,7 @@ from typing import TypeAlias
 
 from ..base.numeric import Array, maximum, minimum
 from ..design.model import Design
-from ..models import beam_column, column, stepped
+from ..models import column, stepped
 from . import weight
 from .barrel import Wall
 from .geometry import Geometry
@@ -45,7 +45,7 @@ class Beam:
         """The moment under a push [N]; beyond `NEAR` of the critical load along its tangent."""
         share = push / self.critical
         near = minimum(share, NEAR)
-        bent = beam_column.amplified_moment(
+        bent = column.amplified_moment(
             bending_moment=self.moment, axial_force=near, critical_load=1.0
         )
         return bent + self.moment * (share - near) / (1 - NEAR) ** 2
@@ -131,12 +131,12 @@ def _weight(
     light = GRAVITY * rod.mass_per_length
     mount = design.cylinder.mount
     if not mount.startswith("head"):
-        *_, largest = beam_column.self_weight_moments(
+        *_, largest = column.self_weight_moments(
             weight_1=heavy, length_1=lengths[0], weight_2=light, length_2=lengths[1]
         )
         return largest
     half = lengths[1] / 2
-    span, *_ = beam_column.self_weight_moments(
+    span, *_ = column.self_weight_moments(
         weight_1=light, length_1=half, weight_2=light, length_2=half
     )
     if mount == "head_flange":

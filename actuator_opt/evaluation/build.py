@@ -21,19 +21,7 @@ from ..version import VERSION
 from . import dynamics_study as dynamics, outline, standard_parts, validity as doubts
 from .governing import governing
 from .kernel import ModelRun, PreparedDesign, compute
-from .limits import (
-    ALL_CASES,
-    Limit,
-    LimitRow,
-    MetricArrays,
-    all_limits,
-    allowances,
-    by_case,
-    check_limits,
-    default_limits,
-    extremes,
-    rows_of,
-)
+from .limits import (ALL_CASES, Limit, LimitRow, MetricArrays, all_limits, allowances, by_case, check_limits, default_limits, extremes, rows_of)
 from .plugin import Plugin
 from .result import Check, Evaluation, Metric, Requirement, StrokeCurve
 from .rings import Ring

@@ -13,9 +13,9 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
-from ..base.display import Displayed
 from ..base.errors import InputError
 from ..base.quantities import Quantity, Sense
+from ..base.tables import Displayed
 from ..design import Design
 from ..design.build import to_tree
 from ..design.kinds import Fraction

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..base.numeric import Array, maximum, where
 from ..design.model import Design
 from ..joints.joint import Fatigue
-from ..models import density, end_stop, endurance, rod
+from ..models import end_stop, endurance, oil_laws, rod
 from . import rod_strength
 from .barrel import Wall
 from .geometry import Geometry
@@ -158,7 +158,7 @@ def _trapped(
         out.skip("trapped_pressure", why)
         out.skip("trapped_factor", why)
     else:
-        slope = density.thermal_pressure_slope(
+        slope = oil_laws.thermal_pressure_slope(
             volume_expansion=expansion,
             wall_expansion_axial=wall.expansion[0],
             wall_expansion_hoop=wall.expansion[1],

@@ -16,15 +16,7 @@ from ..base.numeric import Array
 from ..base.polynomial import Polynomial, add, at_frequency, roots, scale
 from ..design.circuit import Line
 from ..design.model import Design
-from ..models import (
-    dynamics,
-    line_ends,
-    linear,
-    lines,
-    loop,
-    transmission_line as transmission,
-    water_hammer,
-)
+from ..models import (dynamics, line_ends, linear, lines, loop, transmission_line, transmission_line as transmission)
 from ..models.line_ends import LineEnd
 from .circuit import CHAMBERS, Chamber, wall_compliance
 from .kernel import ModelRun, PreparedDesign
@@ -74,7 +66,7 @@ def port_admittance(
                 frequency=frequencies,
                 **size,
                 density=density,
-                sound_speed=water_hammer.wave_speed(
+                sound_speed=transmission_line.wave_speed(
                     bulk_modulus=modulus,
                     density=density,
                     volume=lines.line_volume(**size),

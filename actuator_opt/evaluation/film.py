@@ -25,18 +25,7 @@ from ..base.errors import Diagnostic, Unsolvable
 from ..base.numeric import STEP, Array, maximum
 from ..base.surrogate import Axis, Interpolation, Surrogate, surrogate
 from ..design.model import Design
-from ..lubrication import (
-    Contact,
-    Elastic,
-    Film,
-    Lubricant,
-    SealElement,
-    Surface,
-    Tandem,
-    sensitivities,
-    solve_film,
-    solve_tandem,
-)
+from ..lubrication import (Contact, Elastic, Film, Lubricant, SealElement, Surface, Tandem, sensitivities, solve_film, solve_tandem)
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..models.rough_surface import composite_roughness
 from .rings import Place, Ring

@@ -9,7 +9,7 @@ from ..base.numeric import Array, maximum, minimum, real, where
 from ..design.housings import extrusion_tables
 from ..design.material import Material
 from ..design.model import Design
-from ..models import extrusion, gland, gland_range
+from ..models import extrusion, gland
 from .geometry import Geometry
 from .limits import MaterialValues
 from .rings import Ring
@@ -88,11 +88,11 @@ def squeezes(ring: Ring, *, growth: Array, aside: Array, ratio: Array) -> tuple[
         "eccentricity": aside,
     }
     grown = 1 - (section * (1 - ring["squeeze"]) + growth) / thin
-    loosest, _ = gland_range.squeeze_extremes(squeeze=grown, section=thin, **spread)
-    _, tightest = gland_range.squeeze_extremes(squeeze=ring["squeeze"], section=section, **spread)
+    loosest, _ = gland.squeeze_extremes(squeeze=grown, section=thin, **spread)
+    _, tightest = gland.squeeze_extremes(squeeze=ring["squeeze"], section=section, **spread)
     return (
-        gland_range.squeeze_at_volume(squeeze=loosest, volume_ratio=ratio),
-        gland_range.squeeze_at_volume(squeeze=tightest, volume_ratio=ratio),
+        gland.squeeze_at_volume(squeeze=loosest, volume_ratio=ratio),
+        gland.squeeze_at_volume(squeeze=tightest, volume_ratio=ratio),
     )
 
 
@@ -106,7 +106,7 @@ def volume_ratio(
     if expansion is None or housing is None:
         return 1.0
     assembly = v["environment.assembly_temperature"] if design.environment is not None else ROOM
-    return gland_range.volume_ratio(
+    return gland.volume_ratio(
         volume_expansion=expansion,
         housing_expansion=housing,
         temperature_change=temperature - assembly,

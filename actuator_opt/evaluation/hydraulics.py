@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..base.numeric import Array, absolute, maximum, real, where
 from ..design.model import Design
 from ..friction.law import Friction
-from ..models import damping, elements, forces, lines, water_hammer
+from ..models import damping, elements, forces, lines, transmission_line
 from .circuit import wall_compliance
 from .film import Running
 from .geometry import Geometry
@@ -134,13 +134,13 @@ def _compute_lines(
             dynamic_viscosity=viscosity[line.chamber],
         )
         size = {"inner_diameter": inner, "length": v[at + "length"]}
-        speed = water_hammer.wave_speed(
+        speed = transmission_line.wave_speed(
             bulk_modulus=modulus[line.chamber],
             density=state.density,
             volume=lines.line_volume(**size),
             wall_compliance=wall_compliance(v, line, at),
         )
-        hammer[place] = water_hammer.joukowsky_pressure(
+        hammer[place] = transmission_line.joukowsky_pressure(
             density=state.density, sound_speed=speed, velocity_change=velocity[place]
         )
         chamber = f"lines of chamber {line.chamber}"

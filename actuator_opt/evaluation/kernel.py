@@ -14,25 +14,7 @@ from ..design.model import Design
 from ..friction.law import Friction
 from ..metrics.table import AT_STOPS
 from ..models import forces
-from . import (
-    barrel as barrel_module,
-    beam as beam_module,
-    circuit,
-    duty,
-    film,
-    geometry as geometry_module,
-    hydraulics,
-    joints as joint,
-    motion,
-    oil_range,
-    rings as rings_module,
-    rods,
-    sealing,
-    springs,
-    state,
-    strength,
-    weight,
-)
+from . import (barrel as barrel_module, beam as beam_module, circuit, duty, film, geometry as geometry_module, hydraulics, joints as joint, motion, oil_range, rings as rings_module, rods, sealing, springs, state, strength, weight)
 from .barrel import Wall
 from .beam import Beam
 from .film import Key, Table

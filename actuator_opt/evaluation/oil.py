@@ -13,7 +13,7 @@ from typing import TypeAlias
 from ..base.numeric import Array
 from ..design.material import Material, bulk_modulus_law, viscosity_law
 from ..design.model import FluidSection
-from ..models import density as density_models, fluid
+from ..models import fluid, oil_laws as density_models
 from ..models.oil_laws import BULK_MODULUS_LAWS, VISCOSITY_LAWS
 from .limits import MaterialValues
 from .values import Values

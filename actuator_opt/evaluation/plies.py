@@ -15,9 +15,9 @@ import numpy as np
 from ..base.numeric import Array, maximum, real
 from ..design.model import Design, Ply
 from ..models.burst_ladder import WallLayer
-from ..models.criteria import CRITERIA
 from ..models.layered_tube import TubeLayer
 from ..models.solid_ply import Solid, solid_stiffness
+from ..models.strength import CRITERIA
 from ..models.strength_modes import PlyRatios, PlyStrength, Stress
 from .limits import MaterialValues
 from .values import Values

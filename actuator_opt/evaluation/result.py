@@ -13,9 +13,8 @@ from dataclasses import asdict, dataclass, field
 from typing import Any, Literal, TypeAlias
 
 from ..base import quantities
-from ..base.display import Displayed
 from ..base.numeric import Array
-from ..base.tables import aligned
+from ..base.tables import Displayed, aligned
 from ..design.model import Design
 from ..metrics import METRICS
 from .dynamics_study import DynamicsStudy

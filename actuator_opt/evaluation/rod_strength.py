@@ -13,7 +13,7 @@ import numpy as np
 
 from ..base.numeric import Array, maximum, where
 from ..design.model import Design
-from ..models import beam_column, rod, shell_buckling, yielding
+from ..models import column, rod, shell_buckling, strength
 from ..models.strength_modes import Stress, load_multiplier
 from . import plies
 from .barrel import Cycle
@@ -80,7 +80,7 @@ def _layers(
         out.skip("rod_factor", "the rod is a single metal: see yield_factor")
         return
     pressed, drawn = (
-        beam_column.bending_axial_force(
+        column.bending_axial_force(
             bending_moment=moment,
             radius=section.outer_diameter / 2,
             axial_stiffness=section.axial_stiffness,
@@ -122,7 +122,7 @@ def _factors(design: Design, section: Rod, forces: Array, pressures: Array) -> d
     for i, layer in enumerate(section.layers):
         if layer.yields:
             strengths = np.broadcast_arrays(*[np.atleast_1d(one) for one in layer.yields])
-            used = yielding.yield_utilisation(
+            used = strength.yield_utilisation(
                 stress=_load(section, [i], forces, pressures),
                 yield_strength=np.stack(strengths)[None, None, :, None, None],
                 residual=_residual(section, [i]),
@@ -163,7 +163,7 @@ def cycles(
         )
         ends = [part[:, 0, :, :, 0] for part in _load(section, [i], forces, pressures)]
         rest = _residual(section, [i])
-        equivalent = partial(yielding.yield_utilisation, yield_strength=1.0)
+        equivalent = partial(strength.yield_utilisation, yield_strength=1.0)
         span = equivalent(stress=_stress([part[:, :, 1:] - part[:, :, :1] for part in ends]))
         if rest is not None:
             ends = [part + own[:, 0, :, :, 0] for part, own in zip(ends, rest, strict=True)]

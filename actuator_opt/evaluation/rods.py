@@ -13,13 +13,7 @@ import numpy as np
 from ..base.numeric import Array, real, sqrt as root
 from ..design.model import Design
 from ..models import column, laminate, mass, rod
-from ..models.layered_tube import (
-    LayeredTube,
-    TubeState,
-    layered_tube,
-    ply_stresses_at_faces,
-    tube_state,
-)
+from ..models.layered_tube import (LayeredTube, TubeState, layered_tube, ply_stresses_at_faces, tube_state)
 from ..models.shell_buckling import shell_modulus
 from ..models.strength_modes import Stress
 from . import plies

@@ -15,8 +15,8 @@ from ..design.seals import ContactProfile, Wiper
 from ..friction.law import Friction
 from ..models import damping, friction, gland, lip_seal, retention, wear
 from ..models.fluid import ATMOSPHERIC_PRESSURE
-from ..seals.contact import SealContact
 from ..seals.kinds import TYPES
+from ..seals.contact import SealContact
 from . import gland_check
 from .barrel import SEAL_STEP, Wall
 from .film import Key, Running, Stroke, Table, of_place, running as run

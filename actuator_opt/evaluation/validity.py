@@ -20,7 +20,7 @@ from ..metrics import METRICS
 from ..metrics.metric import CRITERION
 from ..metrics.table import OWN, ROWS, WALL_FED
 from ..models import contact_profile, extrusion, laminate, rough_surface, seals
-from ..models.criteria import CRITERIA
+from ..models.strength import CRITERIA
 from . import joints as joint, motion, oil, oil_range, proportions, springs
 from .barrel import LAMINATES, kind
 from .beam import NEAR

@@ -20,16 +20,10 @@ import numpy as np
 
 from ..base.numeric import Array
 from ..design.materials import load_library
-from ..models import barrel, barrel_ends, laminate, liner, ply, ply_discount, tube_burst, yielding
+from ..models import barrel, barrel_ends, laminate, liner, ply, ply_discount, strength, tube_burst
 from ..models.autofrettage import Autofrettage
-from ..models.criteria import CRITERIA
-from ..models.layered_tube import (
-    TubeLayer,
-    layered_tube,
-    ply_stresses_at_faces,
-    tube_state,
-    tube_stresses,
-)
+from ..models.layered_tube import (TubeLayer, layered_tube, ply_stresses_at_faces, tube_state, tube_stresses)
+from ..models.strength import CRITERIA
 from ..models.strength_modes import Stress, load_multiplier
 from . import plies
 from .barrel import LAMINATES, Wall, kind, laminate as laminated
@@ -700,7 +694,7 @@ def _used(layers: Sequence[Layer], sight: _Sight) -> list[_Used]:
             found.append(_Used(name, tuple(brittle), tuple(modes), values))
     for i, layer in enumerate(layers):
         if layer.yields:
-            one = yielding.yield_utilisation(
+            one = strength.yield_utilisation(
                 stress=sight.load([i]),
                 yield_strength=np.array(layer.yields, dtype=float)[:, None, None],
                 residual=sight.rest([i]),
@@ -774,7 +768,7 @@ def _shares(layers: Sequence[Layer], sight: _Sight, ratios: Sequence[Ratio]) -> 
             across[i] = np.where(two[i] > 0, two[i] / s.tension_2, two[i] / s.compression_2)
             shear[i] = slip[i] / s.shear_12
         elif layer.yields:
-            mises[i] = yielding.yield_utilisation(
+            mises[i] = strength.yield_utilisation(
                 stress=(one[i], two[i], three[i], slip[i]), yield_strength=layer.yields[climate]
             )
     return Shares(worst.path, worst.climate, along, across, shear, mises)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from . import fluid
+from . import equilibrium
 from .equilibrium import Booleans, ElementState, NotConverged
 from .material import Floats
 from .mesh import Integers
@@ -53,7 +53,7 @@ def barriers(
     section: Section, state: ElementState, places: Floats, pressing: Floats, pressure: float
 ) -> Floats:
     """Contact pressure at every node from its force and the fluid behind it."""
-    length = np.abs(fluid.shares(section, places)[:, 0]) * section.radii(places)
+    length = np.abs(equilibrium.shares(section, places)[:, 0]) * section.radii(places)
     total = pressing / np.maximum(length, 1e-12) + state.wet * pressure
     return np.asarray(np.where(pressing != 0, total, 0.0))
 
@@ -120,7 +120,7 @@ def profile_on_face(
     # Simpson's rule gives a corner 1/6 of each adjacent edge, a middle node 2/3 of its edge
     before = places[chain[-1], 0]
     lent = (1 / 3 if turn % 2 else 2 / 3) * (x[0] - before)
-    share = np.abs(fluid.shares(section, places)[nodes, 0])
+    share = np.abs(equilibrium.shares(section, places)[nodes, 0])
     inner = force[nodes] / (share * section.radii(places)[nodes])
     apart = (x - start > 1e-6) & (end - x > 1e-6)
     positions = np.concatenate(([0.0], x[apart] - start, [end - start]))

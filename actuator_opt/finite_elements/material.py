@@ -8,9 +8,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+
+from ..base.errors import ActuatorError, Diagnostic
 
 Floats = npt.NDArray[np.float64]
 COMPONENTS = ((0, 0), (0, 1), (1, 0), (1, 1), (2, 2))
@@ -141,3 +144,20 @@ def von_mises(gradient: Floats, multiplier: Floats, c10: Floats, c01: Floats) ->
     mean = np.trace(true, axis1=-2, axis2=-1) / 3
     deviator = true - mean[..., None, None] * np.eye(3)
     return np.asarray(np.sqrt(1.5 * np.sum(deviator**2, axis=(-2, -1))))
+
+
+def finite_element_library() -> Any:
+    """The module ``skfem``; a one-line error if the extra is not installed.
+
+    Raises
+    ------
+    ActuatorError
+        When scikit-fem is missing.
+    """
+    try:
+        import skfem
+    except ImportError as missing:
+        raise ActuatorError(
+            Diagnostic("finite elements need scikit-fem", "pip install 'actuator-opt[fem]'")
+        ) from missing
+    return skfem

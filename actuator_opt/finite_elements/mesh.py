@@ -12,8 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from .library import finite_element_library
-from .material import Floats
+from .material import Floats, finite_element_library
 
 Integers = npt.NDArray[np.int64]
 ORDER = 4

@@ -14,9 +14,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ..base.display import Displayed
 from ..base.errors import Diagnostic, InputError
 from ..base.fitting import WEAK, Parameter, quantile
+from ..base.tables import Displayed
 from ..evaluation import PreparedDesign, compute
 from ..models import bending_test, column, rod
 from .record import Record

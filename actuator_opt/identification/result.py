@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from ..base.display import Displayed
 from ..base.fitting import Parameter
 from ..base.numeric import Array
+from ..base.tables import Displayed
 from ..design.material_fits import Fit
 from ..studies.bench import Bench
 from ..version import VERSION

@@ -5,29 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ..base.numeric import Array
-from . import skirt
-from .joint import (
-    End,
-    Fatigue,
-    Fit,
-    Joint,
-    JointField,
-    Judged,
-    Loaded,
-    Materials,
-    Strength,
-    WallPressures,
-    nothing,
-)
+from . import overlap
+from .joint import (End, Fatigue, Fit, Joint, JointField, Judged, Loaded, Materials, Strength, WallPressures, nothing)
 from .overlap import Overlap, mismatch
 
 
 def _fit(end: End) -> Fit:
-    return skirt.fit(end, end.outer_radius)
+    return overlap.fit(end, end.outer_radius)
 
 
 def _mass(end: End, materials: Materials) -> dict[str, Array]:
-    return {"caps": skirt.weight(end, materials, end.outer_radius)}
+    return {"caps": overlap.weight(end, materials, end.outer_radius)}
 
 
 def _overlap(loaded: Loaded) -> Overlap | str:
@@ -94,10 +82,10 @@ JOINT = Joint(
     fit=_fit,
     stiffness=None,
     mass=_mass,
-    outline=skirt.outline,
+    outline=overlap.outline,
     notes=nothing,
     strength=_strength,
-    yields=skirt.yields,
+    yields=overlap.yields,
     wall=lambda loaded: WallPressures(),
     fatigue=lambda loaded: Fatigue(),
     own=lambda loaded: {},

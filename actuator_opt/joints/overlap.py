@@ -6,14 +6,15 @@ They are not added: their elastic sum is too high for an adhesive that yields be
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
 from math import pi
 
 from ..base.numeric import Array, absolute
-from ..models import lap_joint
+from ..models import lap_joint, mass
 from ..models.strength_modes import load_multiplier
-from .joint import Materials, Thermal
+from .joint import Drawn, End, Fit, Loaded, Materials, Span, Thermal
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,3 +93,32 @@ def mismatch(materials: Materials, metal: str, along: Array) -> Array:
     """Axial expansion of the metal minus that of the tube; None if unknown."""
     own = materials.get(metal, "thermal_expansion")
     return None if own is None or along is None else own - along
+
+
+def fit(end: End, radius: Array) -> Fit:
+    """A skirt with this inner radius over the end of the barrel."""
+    wall = end.sizes["wall"]
+    return Fit(plate_radius=radius + wall, radius=radius, length=end.sizes["length"], wall=wall)
+
+
+def weight(end: End, materials: Materials, radius: Array) -> Array:
+    """Mass of a skirt [kg]."""
+    density = materials.get(end.cap, "density")
+    section = mass.layer_area(inner_radius=radius, thickness=end.sizes["wall"])
+    return density * section * end.sizes["length"]
+
+
+def outline(end: End, fit: Fit, span: Span) -> Iterator[Drawn]:
+    """The skirt at one end."""
+    length, inner = float(fit.length), float(fit.radius)
+    if length > 0:
+        yield Drawn("caps", end.cap, span.over(length, inner, inner + float(fit.wall)))
+
+
+def yields(loaded: Loaded) -> dict[str, Array]:
+    """Yield over stress of the skirt under the force of the end."""
+    end = loaded.end
+    strength = loaded.materials.allowable(end.cap, "yield_strength")
+    if strength is None:
+        return {}
+    return {"cap skirt": strength * (2 * pi * end.outer_radius * end.sizes["wall"]) / loaded.force}

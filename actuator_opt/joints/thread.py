@@ -17,29 +17,10 @@ import numpy as np
 from ..base.errors import Fault
 from ..base.numeric import Array, minimum, real, where
 from ..base.quantities import INPUTS, Quantity
-from ..models import barrel, mass, thread, yielding
+from ..models import barrel, mass, thread
 from ..models.rod import section_area
-from . import skirt
-from .joint import (
-    LEAST_METAL,
-    NOT_BONDED,
-    ROUNDING,
-    End,
-    Fatigue,
-    Fit,
-    Joint,
-    JointField,
-    Judged,
-    Known,
-    Loaded,
-    Materials,
-    Pulsed,
-    Stated,
-    Strength,
-    Usual,
-    WallPressures,
-    judged_later,
-)
+from . import overlap
+from .joint import (LEAST_METAL, NOT_BONDED, ROUNDING, End, Fatigue, Fit, Joint, JointField, Judged, Known, Loaded, Materials, Pulsed, Stated, Strength, Usual, WallPressures, judged_later)
 
 NEEDED = ("yield_strength", "ultimate_strength")
 """Properties of a metal that the assessment of its thread needs."""
@@ -222,13 +203,13 @@ def _radius(end: End) -> Array:
 
 
 def _fit(end: End) -> Fit:
-    return skirt.fit(end, _radius(end))
+    return overlap.fit(end, _radius(end))
 
 
 def _mass(end: End, materials: Materials) -> dict[str, Array]:
     """The skirt, minus the ring that is turned off the barrel."""
     radius = _radius(end)
-    caps = {"caps": skirt.weight(end, materials, radius)}
+    caps = {"caps": overlap.weight(end, materials, radius)}
     if radius is end.outer_radius:
         return caps
     turned = mass.layer_area(inner_radius=radius, thickness=end.outer_radius - radius)
@@ -342,7 +323,7 @@ def _strength(loaded: Loaded) -> Strength | str:
 def _yields(loaded: Loaded) -> dict[str, Array]:
     cut = _judged(loaded)
     if isinstance(cut, str):
-        return skirt.yields(loaded)
+        return overlap.yields(loaded)
     strength = loaded.materials.allowable(cut.female, "yield_strength")
     return {"skirt under the thread": strength * cut.skirt_section / loaded.force}
 
@@ -411,7 +392,7 @@ def _wall(loaded: Loaded) -> WallPressures:
         hoop, radial, along = barrel.bore_stresses(pressure=inside, axial_force=axial, **size)
         stress = (hoop, radial, along, 0.0 * hoop)
         place = f"barrel under the thread, {path}"
-        yields[place] = 1 / yielding.yield_utilisation(stress=stress, yield_strength=strength)
+        yields[place] = 1 / strength.yield_utilisation(stress=stress, yield_strength=strength)
         ratio = axial / (inside * pi * cut.layer_radius * cut.layer_radius)
         alone = barrel.burst_pressure_thick(
             **size, yield_strength=strength, ultimate_strength=ultimate, axial_force_ratio=ratio
@@ -476,7 +457,7 @@ JOINT = Joint(
     fit=_fit,
     stiffness=None,
     mass=_mass,
-    outline=skirt.outline,
+    outline=overlap.outline,
     notes=_notes,
     strength=_strength,
     yields=_yields,

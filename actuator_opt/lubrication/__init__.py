@@ -3,9 +3,8 @@
 NumPy only. Pressures are absolute; forces are per circumference unless stated otherwise.
 """
 
-from .film import Film, solve_film
+from .film import Film, sensitivities, solve_film
 from .reynolds import Contact, Elastic, Lubricant, Surface
-from .slopes import sensitivities
 from .smooth import Gap, SmoothFilm, solve_gap
 from .tandem import SealElement, Tandem, solve_tandem
 

@@ -18,8 +18,8 @@ from math import inf
 from typing import Any, Protocol
 
 from ..base.numeric import Array, absolute, geometry, maximum, real, together, where
+from .strength import yield_utilisation
 from .strength_modes import PlyStrength, Stress, load_multiplier
-from .yielding import yield_utilisation
 
 __all__ = ["MODES", "BurstLadder", "LadderStep", "Mechanics", "WallLayer"]
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from ..base.numeric import STEP, Array, absolute, geometry, namespace, real, where
 from .layered_tube import TubeLayer, layered_tube, tube_state
+from .strength import mises_product
 from .strength_modes import Stress
-from .yielding import mises_product
 
 _STEPS = 60
 """Most steps of the search: halving alone would then reach 1e-18 of the largest thickness."""

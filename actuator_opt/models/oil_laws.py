@@ -11,8 +11,228 @@ from math import inf
 from typing import Any
 
 from ..base.kinds import kinds
-from ..base.numeric import Array
-from . import density, fluid, tait
+from ..base.numeric import Array, namespace, real, where
+from . import fluid
+
+
+def density_compressed(
+    *, reference_density: Array, pressure: Array, bulk_modulus: Array, slope: Array = 0.0
+) -> Array:
+    """Density under pressure of a liquid whose bulk modulus is K0 + m p.
+
+    rho = rho0 (1 + m p/K0)^(1/m); rho0 exp(p/K0) where m = 0.
+
+    Parameters
+    ----------
+    reference_density : at zero gauge pressure [kg/m^3]
+    pressure : gauge [Pa]
+    bulk_modulus : tangent value at zero gauge pressure, K0 [Pa]
+    slope : m = dK/dp [-]
+
+    Returns
+    -------
+    density [kg/m^3]
+
+    Notes
+    -----
+    Valid: 0 to 500 bar, pure liquid.
+
+    References
+    ----------
+    [derived] integral of drho/rho = dp/(K0 + m p)
+
+    Examples
+    --------
+    >>> rho = density_compressed(reference_density=870.0, pressure=200e5, bulk_modulus=1.4e9,
+    ...                          slope=6.0)
+    >>> print(f"{rho:.2f} kg/m3")
+    882.01 kg/m3
+    """
+    strain = pressure / bulk_modulus
+    load = slope * strain
+    xp = namespace(strain, load)
+    small = (real(load) < 1e-5) & (real(load) > -1e-5)
+    safe = where(small, 0 * load + 1, load)
+    mean = where(small, 1 - load / 2 + load * load / 3, xp.log1p(safe) / safe)
+    return reference_density * xp.exp(strain * mean)
+
+
+def density_thermal(
+    *,
+    reference_density: Array,
+    volume_expansion: Array,
+    temperature: Array,
+    reference_temperature: Array = 288.15,
+) -> Array:
+    """Density at a temperature, rho = rho0/(1 + alpha_V (T - T0)).
+
+    Parameters
+    ----------
+    reference_density : at `reference_temperature` [kg/m^3]
+    volume_expansion : volumetric expansion coefficient [1/K]
+    temperature, reference_temperature : [K]; oil data sheets state 15 degC
+
+    Returns
+    -------
+    density [kg/m^3]
+
+    Notes
+    -----
+    Valid: within about 150 K of the reference temperature.
+
+    References
+    ----------
+    [derived] definition of alpha_V, taken on the reference volume
+
+    Examples
+    --------
+    >>> round(density_thermal(reference_density=870.0, volume_expansion=7e-4,
+    ...                       temperature=313.15), 2)
+    855.04
+    """
+    return reference_density / (1 + volume_expansion * (temperature - reference_temperature))
+
+
+def thermal_pressure_slope(
+    *,
+    volume_expansion: Array,
+    wall_expansion_axial: Array,
+    wall_expansion_hoop: Array,
+    bulk_modulus: Array,
+    wall_compliance_per_volume: Array,
+) -> Array:
+    """Pressure rise of trapped oil per kelvin.
+
+    dp/dT = (alpha_V - alpha_z - 2 alpha_theta)/(1/K + (dV/dp)_wall/V).
+
+    Parameters
+    ----------
+    volume_expansion : of the oil [1/K]
+    wall_expansion_axial, wall_expansion_hoop : linear expansions of the wall [1/K]
+    bulk_modulus : tangent value with air [Pa]
+    wall_compliance_per_volume : (dV/dp)/V of the wall [1/Pa]
+
+    Returns
+    -------
+    pressure rise [Pa/K]
+
+    Notes
+    -----
+    Valid: no leakage, no relief valve, chamber full.
+
+    References
+    ----------
+    [derived] oil volume = chamber volume, both functions of p and T
+
+    Examples
+    --------
+    >>> slope = thermal_pressure_slope(volume_expansion=7e-4, wall_expansion_axial=12e-6,
+    ...     wall_expansion_hoop=12e-6, bulk_modulus=1.4e9, wall_compliance_per_volume=1.3627e-10)
+    >>> print(f"{slope / 1e5:.2f} bar/K")
+    7.81 bar/K
+    """
+    wall = wall_expansion_axial + 2 * wall_expansion_hoop
+    return (volume_expansion - wall) / (1 / bulk_modulus + wall_compliance_per_volume)
+
+
+TAIT_PRESSURE, TAIT_TEMPERATURES = 350e5, (273.15, 423.15)
+"""Gauge pressure (Pa) and temperatures (K) for which the constants of the generic oil stand."""
+
+
+def _zero_pressure_modulus(zero_modulus: Array, coefficient: Array, temperature: Array) -> Array:
+    """K0 at a temperature."""
+    cooled = coefficient * temperature
+    return zero_modulus * namespace(cooled).exp(-cooled)
+
+
+def density_tait(
+    *,
+    temperature: Array,
+    pressure: Array,
+    reference_density: Array = 870.0,
+    volume_expansion: Array = 7.7e-4,
+    reference_temperature: Array = 273.15,
+    zero_modulus: Array = 8.4e9,
+    temperature_coefficient: Array = 0.0058,
+    pressure_coefficient: Array = 11.9,
+) -> Array:
+    """Density of a mineral oil by the Tait equation.
+
+    V/V0 = [1 + alpha_V (T - T0)] [1 - ln(1 + B p/K0)/B], rho = rho0/(V/V0).
+
+    Parameters
+    ----------
+    temperature, reference_temperature : [K]
+    pressure : gauge [Pa]
+    reference_density : at T0 and zero gauge pressure [kg/m^3]
+    volume_expansion : [1/K]
+    zero_modulus, temperature_coefficient : of K0, c [Pa], [1/K]
+    pressure_coefficient : B [-]
+
+    Returns
+    -------
+    density [kg/m^3]
+
+    Notes
+    -----
+    Valid: 0 to 150 degC, up to 350 bar for the default constants.
+
+    References
+    ----------
+    [Dymond1988] Tait equation; constants of a generic mineral oil [OpenHydraulics]
+
+    Examples
+    --------
+    >>> print(f"{density_tait(temperature=313.15, pressure=200e5):.1f}")
+    855.6
+    """
+    modulus = _zero_pressure_modulus(zero_modulus, temperature_coefficient, temperature)
+    load = pressure_coefficient * pressure / modulus
+    shrink = namespace(load).log1p(load) / pressure_coefficient
+    expand = 1 + volume_expansion * (temperature - reference_temperature)
+    return reference_density / (expand * (1 - shrink))
+
+
+def bulk_modulus_tait(
+    *,
+    temperature: Array,
+    pressure: Array,
+    zero_modulus: Array = 8.4e9,
+    temperature_coefficient: Array = 0.0058,
+    pressure_coefficient: Array = 11.9,
+) -> Array:
+    """Isothermal tangent bulk modulus of a mineral oil by the Tait equation.
+
+    K = (K0 + B p) [1 - ln(1 + B p/K0)/B].
+
+    Parameters
+    ----------
+    temperature : [K]
+    pressure : gauge [Pa]
+    zero_modulus, temperature_coefficient : of K0, c [Pa], [1/K]
+    pressure_coefficient : B [-]
+
+    Returns
+    -------
+    tangent bulk modulus [Pa]
+
+    Notes
+    -----
+    Valid: 0 to 150 degC, up to 350 bar for the default constants.
+
+    References
+    ----------
+    [Dymond1988] Tait equation; constants of a generic mineral oil [OpenHydraulics]
+
+    Examples
+    --------
+    >>> print(f"{bulk_modulus_tait(temperature=313.15, pressure=280e5) / 1e6:.1f}")
+    1668.1
+    """
+    modulus = _zero_pressure_modulus(zero_modulus, temperature_coefficient, temperature)
+    load = pressure_coefficient * pressure / modulus
+    return modulus * (1 + load) * (1 - namespace(load).log1p(load) / pressure_coefficient)
+
 
 Properties = Callable[[str], Any]
 """A property of the oil by its name in the library [SI]; None where it states none."""
@@ -99,9 +319,7 @@ def _tait_constants(oil: Properties) -> dict[str, Array]:
 
 
 def _tait(oil: Properties, temperature: Array, pressure: Array) -> Array:
-    return tait.bulk_modulus_tait(
-        temperature=temperature, pressure=pressure, **_tait_constants(oil)
-    )
+    return bulk_modulus_tait(temperature=temperature, pressure=pressure, **_tait_constants(oil))
 
 
 def _compressed(
@@ -110,7 +328,7 @@ def _compressed(
     """Density of a law whose bulk modulus rises by a slope, or not at all."""
 
     def density_at(oil: Properties, rho: Array, temperature: Array, pressure: Array) -> Array:
-        return density.density_compressed(
+        return density_compressed(
             reference_density=rho,
             pressure=pressure,
             bulk_modulus=modulus(oil, temperature, 0.0 * pressure),
@@ -121,7 +339,7 @@ def _compressed(
 
 
 def _tait_density(oil: Properties, rho: Array, temperature: Array, pressure: Array) -> Array:
-    return tait.density_tait(
+    return density_tait(
         temperature=temperature,
         pressure=pressure,
         reference_density=rho,
@@ -156,8 +374,8 @@ BULK_MODULUS_LAWS = kinds(
         needs=("tait_modulus", "tait_decay", "tait_coefficient"),
         modulus=_tait,
         density=_tait_density,
-        largest_pressure=tait.TAIT_PRESSURE,
-        model=tait.bulk_modulus_tait,
+        largest_pressure=TAIT_PRESSURE,
+        model=bulk_modulus_tait,
     ),
 )
 """Laws of the bulk modulus by their word."""

@@ -7,10 +7,14 @@ strengths. What all criteria share is in `criteria`.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import inf
+from typing import Protocol
 
+from ..base.kinds import kinds
 from ..base.numeric import Array, namespace, real, where
-from .strength_modes import PlyRatios, PlyStrength, Stress
+from .strength_interfibre import hashin_modes, puck_modes
+from .strength_modes import PlyRatios, PlyStrength, Stress, max_strain_modes, max_stress_modes
 
 
 def _largest_root(square: Array, half: Array, left: Array | None) -> Array:
@@ -106,3 +110,158 @@ def tsai_wu_modes(
         linear = 2 * (skew_1 * held[0] + skew_2 * held_both)
         left = 1 - _inner(held, held) - joint - linear
     return {"interaction": _largest_root(_inner(load, slope), half, left)}
+
+
+_LEAST = 1e-9
+"""Share of the strength that is always left: a metal that residual stress alone makes yield."""
+
+
+def mises_product(*, first: Stress, second: Stress) -> Array:
+    """Bilinear form of von Mises: the square of the equivalent stress for first = second.
+
+    ((a1 - a2)(b1 - b2) + (a2 - a3)(b2 - b3) + (a3 - a1)(b3 - b1))/2 + 3 a12 b12.
+
+    Parameters
+    ----------
+    first, second : stresses 1, 2, 3 and 12 [Pa]
+
+    Returns
+    -------
+    product [Pa^2]
+
+    Notes
+    -----
+    Valid: isotropic metals.
+
+    References
+    ----------
+    [Shigley2011] distortion energy; [derived] polarised quadratic form
+
+    Examples
+    --------
+    >>> pull = (300.0, 0.0, 0.0, 0.0)
+    >>> mises_product(first=pull, second=pull) ** 0.5
+    300.0
+    """
+    a1, a2, a3, a12 = first
+    b1, b2, b3, b12 = second
+    normal = (a1 - a2) * (b1 - b2) + (a2 - a3) * (b2 - b3) + (a3 - a1) * (b3 - b1)
+    return normal / 2 + 3 * a12 * b12
+
+
+def yield_utilisation(
+    *, stress: Stress, yield_strength: Array, residual: Stress | None = None
+) -> Array:
+    """Utilisation 1/SR of a metal: von Mises of residual + SR stress reaches yield.
+
+    With <a, b> of `mises_product` over yield^2:
+    u = (<s, r> + sqrt(<s, r>^2 + (1 - <r, r>) <s, s>))/(1 - <r, r>).
+
+    Parameters
+    ----------
+    stress : stresses 1, 2, 3 and 12 of the load [Pa]
+    yield_strength : yield strength [Pa]
+    residual : stresses that do not grow with the load [Pa]
+
+    Returns
+    -------
+    utilisation [-]; very large where the residual stress alone reaches yield
+
+    Notes
+    -----
+    Valid: isotropic metals, elastic until then.
+
+    References
+    ----------
+    [Shigley2011] distortion energy; [derived] root of the quadratic in SR
+
+    Examples
+    --------
+    >>> pull, press = (200.0, 0.0, 0.0, 0.0), (-100.0, 0.0, 0.0, 0.0)
+    >>> print(f"{yield_utilisation(stress=pull, yield_strength=400.0, residual=press):.3f}")
+    0.400
+    """
+    scale = 1 / (yield_strength * yield_strength)
+    square = mises_product(first=stress, second=stress) * scale
+    xp = namespace(square)
+    if residual is None:
+        return xp.sqrt(square)
+    linear = mises_product(first=stress, second=residual) * scale
+    left = 1 - mises_product(first=residual, second=residual) * scale
+    left = where(real(left) > _LEAST, left, 0 * left + _LEAST)
+    return (linear + xp.sqrt(linear * linear + left * square)) / left
+
+
+class Modes(Protocol):
+    """What every failure criterion is: a function from stresses to utilisations by mode."""
+
+    def __call__(
+        self,
+        *,
+        stress: Stress,
+        strength: PlyStrength,
+        residual: Stress | None = None,
+        elastic: PlyRatios | None = None,
+    ) -> dict[str, Array]:
+        """Utilisation 1/SR of every mode; `elastic` where `Criterion.by_strain`."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Criterion:
+    """A failure criterion of plies.
+
+    Attributes
+    ----------
+    name, help : its word in a design, and what it means
+    words : its name in a report
+    modes : utilisation of every mode [-]
+    by_strain : whether it needs the ratios of the ply's elastic constants
+    """
+
+    name: str
+    help: str
+    words: str
+    modes: Modes
+    by_strain: bool
+
+
+CRITERIA = kinds(
+    "criterion",
+    Criterion(
+        "max_stress",
+        "one stress reaches its strength",
+        "maximum stress",
+        max_stress_modes,
+        by_strain=False,
+    ),
+    Criterion(
+        "max_strain",
+        "one strain reaches its limit",
+        "maximum strain",
+        max_strain_modes,
+        by_strain=True,
+    ),
+    Criterion(
+        "tsai_wu",
+        "all stresses together, in one formula",
+        "Tsai-Wu",
+        tsai_wu_modes,
+        by_strain=False,
+    ),
+    Criterion(
+        "hashin",
+        "fibre or matrix, each by its own formula",
+        "Hashin",
+        hashin_modes,
+        by_strain=False,
+    ),
+    Criterion(
+        "puck",
+        "fibre, or matrix pulled open (mode A), sheared (B) or crushed at a slant (C)",
+        "Puck",
+        puck_modes,
+        by_strain=False,
+    ),
+)
+"""The criteria a design may name."""

@@ -7,8 +7,8 @@ from dataclasses import asdict, dataclass
 from statistics import median
 from typing import Any, Literal
 
-from ..base.display import Displayed
 from ..base.quantities import Quantity
+from ..base.tables import Displayed
 from ..design import Design
 from ..evaluation import Evaluation
 from .front.even import Gap

@@ -7,9 +7,8 @@ from dataclasses import asdict, dataclass, field, replace
 from math import isfinite
 from typing import Any, Literal, TypeAlias
 
-from ..base.display import Displayed
 from ..base.quantities import INPUTS
-from ..base.tables import aligned
+from ..base.tables import Displayed, aligned
 from ..design import choice_list
 from ..design.model import Design
 from ..evaluation.result import Evaluation

@@ -7,7 +7,7 @@ import re
 
 from ..evaluation.result import Evaluation
 from ..evaluation.wall_study import YIELD, Difference, Ratio, WallStudy
-from ..models.criteria import CRITERIA
+from ..models.strength import CRITERIA
 from ..rendering import text
 from ..rendering.blocks import Block, Cell, Column, Drawing, Table, clean, short, soft
 from ..rendering.ink import WHITE

@@ -5,11 +5,17 @@ A chart names values and words. `chart_ink` gives them their place on paper by r
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+import numpy as np
+
 from ..base.numeric import Array
+from .axes import Ticks, even_range, even_ticks, level_ticks, log_range, ticks
+from .ink import text_width
+from .text import MINUS, number
 
 Values: TypeAlias = Sequence[float] | Array
 Weight: TypeAlias = Literal["normal", "thin", "guide"]
@@ -142,3 +148,189 @@ class Panel:
     surface: Surface | None = None
     note: str = ""
     share: float = 1.0
+
+
+CORE = 0.35
+"""Decades of the straight core about zero (a choice: nothing is measured there)."""
+
+
+DECADE = 8.0
+"""Ratio of the ends from which an axis both ways is logarithmic (a choice: nearly a decade)."""
+
+
+LARGEST, SMALLEST = 1e150, 1e-100
+"""Larger values have no place (their differences overflow); smaller ones count as zero."""
+
+
+SIZE = 6.5
+"""Type size of ticks [pt]."""
+
+
+Ranked: TypeAlias = list[tuple[float, str, int]]
+"""Ticks with a rank: the lowest rank stays where there is little room."""
+
+
+def known(values: Iterable[float], *, log: bool = False) -> list[float]:
+    """The values that an axis can show."""
+    array = np.asarray(list(values), dtype=float)
+    array = _sized(array)
+    good = array > 0 if log else np.isfinite(array)
+    found: list[float] = array[good].tolist()
+    return found
+
+
+def _sized(values: Array) -> Array:
+    """Values of a size that an axis can show; others are zero, or not a number."""
+    sizes = np.abs(values)
+    return np.where(sizes <= LARGEST, np.where(sizes < SMALLEST, 0.0, values), np.nan)
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """Places of values along an axis, its ends, and ticks for a number of them."""
+
+    places: Callable[[Array], Array]
+    range: tuple[float, float]
+    candidates: Callable[[int], Ranked]
+
+    def at(self, values: Values) -> Array:
+        """Places of values; not a number where a value has none."""
+        return self.places(_sized(np.asarray(values, dtype=float)))
+
+    def place(self, value: float) -> float:
+        """Place of a value."""
+        return float(self.at([value])[0])
+
+    def ticks(self, room: float, *, across: bool) -> Ticks:
+        """Ticks for an axis of so many millimetres whose words do not touch."""
+        count = min(max(2, int(room / 9.0)), 10) if across else min(max(2, round(room / 8.0)), 6)
+        low, high = self.range
+        found = [tick for tick in self.candidates(count) if low - 1e-9 <= tick[0] <= high + 1e-9]
+        kept = self._spaced(sorted(found, key=lambda tick: (tick[2], abs(tick[0]))), room, across)
+        if len(kept) < 2:  # both ends rather than zero alone
+            kept = self._spaced(sorted(found, key=lambda tick: -abs(tick[0])), room, across)
+        return kept
+
+    def _spaced(self, found: Ranked, room: float, across: bool) -> Ticks:
+        kept: list[tuple[float, str]] = []
+        for place, words, _ in found:
+            if all(self._apart(place, words, tick, room, across) for tick in kept):
+                kept.append((place, words))
+        return sorted(kept)
+
+    def _apart(
+        self, place: float, words: str, tick: tuple[float, str], room: float, across: bool
+    ) -> bool:
+        distance = abs(place - tick[0]) / (self.range[1] - self.range[0]) * room
+        if not across:
+            return distance > 2.8
+        return distance > (text_width(words, SIZE) + text_width(tick[1], SIZE)) / 2 + 1.0
+
+
+def scale(axis: Axis, values: Sequence[float], *, exact: bool = False) -> Scale:
+    """The scale of an axis for the values it shows; `exact`: it ends at the values."""
+    if axis.names:
+        return _rows(axis)
+    if axis.signed and (speeds := [abs(value) for value in known(values) if value]):
+        low, high = min(speeds), max(speeds)
+        ways = [way for way in (1, -1) if any(way * value > 0 for value in known(values))]
+        if axis.log and high / low > DECADE:
+            return _both_ways(low, 1.12 * high, ways)
+        ends = (-1.12 * high if -1 in ways else 0.0, 1.12 * high if 1 in ways else 0.0)
+        return _straight(axis, ends)
+    if axis.log and not axis.signed:
+        return _logarithmic(axis, known(values, log=True), exact)
+    shown = known(values)
+    if axis.range is not None:
+        return _straight(axis, _wide(axis.range))
+    if exact and shown and max(shown) - min(shown) > 1e-9 * max(map(abs, shown)):
+        whole = [*shown, 0.0] if axis.zero else shown
+        return _straight(axis, (min(whole), max(whole)))
+    return _straight(axis, _wide(even_range(shown, zero=axis.zero)))
+
+
+def _wide(ends: tuple[float, float]) -> tuple[float, float]:
+    """Ends that differ."""
+    low, high = ends
+    least = 1e-9 * max(abs(low), abs(high)) or 1.0
+    return ends if high - low >= least else (low - least, low + least)
+
+
+def _stated(axis: Axis, at: Callable[[float], float]) -> Ranked:
+    return [(at(value), words, 0) for value, words in axis.ticks or ()]
+
+
+def _straight(axis: Axis, ends: tuple[float, float]) -> Scale:
+    def candidates(count: int) -> Ranked:
+        if axis.ticks is not None:
+            return _stated(axis, float)
+        return [(value, words, 1) for value, words in _even(*ends, count)]
+
+    return Scale(lambda values: values, ends, candidates)
+
+
+def _even(low: float, high: float, count: int) -> Ticks:
+    """Round ticks; very large and very small ones with a power of ten."""
+    size = max(abs(low), abs(high))
+    if 1e-3 <= size < 1e6:
+        return even_ticks(low, high, count)
+    power = 10.0 ** math.floor(math.log10(size))
+    values = [power * value for value in ticks(low / power, high / power, count)]
+    for digits in range(2, 9):
+        words = [number(value, digits) for value in values]
+        if len({*words}) == len(words):
+            break
+    return list(zip(values, words, strict=True))
+
+
+def _logarithmic(axis: Axis, shown: Sequence[float], exact: bool) -> Scale:
+    given = axis.range if axis.range is not None and min(axis.range) > 0 else None
+    if given is not None:
+        ends = (math.log10(given[0]), math.log10(given[1]))
+    elif exact and shown and max(shown) > 1.5 * min(shown):
+        ends = (math.log10(min(shown)), math.log10(max(shown)))
+    else:
+        ends = log_range(shown or [1.0])
+
+    def at(values: Array) -> Array:
+        return np.log10(np.where(values > 0, values, np.nan))
+
+    def candidates(count: int) -> Ranked:
+        if axis.ticks is not None:
+            return _stated(axis, math.log10)
+        found = level_ticks(*ends)
+        if len(found) < 2:
+            even = _even(10.0 ** ends[0], 10.0 ** ends[1], 3)
+            found = [(math.log10(value), words) for value, words in even if value > 0]
+        return [(place, words, int(abs(place - round(place)) > 1e-9)) for place, words in found]
+
+    return Scale(at, ends, candidates)
+
+
+def _both_ways(low: float, high: float, ways: Sequence[int]) -> Scale:
+    """Logarithmic both ways about zero; straight within the core, below the least value."""
+
+    def at(values: Array) -> Array:
+        size = np.maximum(np.abs(values), low)  # NaN stays
+        outside = np.copysign(CORE + np.log10(size) - math.log10(low), values)
+        return np.where(size <= low, CORE * values / low, outside)
+
+    end = CORE + math.log10(high / low)
+    ends = (-end if -1 in ways else 0.0, end if 1 in ways else 0.0)
+
+    def candidates(count: int) -> Ranked:
+        found: Ranked = [(0.0, "0", 0)]
+        for place, words in level_ticks(math.log10(low), math.log10(high)):
+            rank = 1 if abs(place - round(place)) < 1e-9 else 2
+            along = CORE + place - math.log10(low)
+            found += [(way * along, words if way > 0 else MINUS + words, rank) for way in ways]
+        return found
+
+    return Scale(at, ends, candidates)
+
+
+def _rows(axis: Axis) -> Scale:
+    """Rows by name, the first at the top."""
+    count = len(axis.names)
+    ticks: Ranked = [(-float(k), name, 0) for k, name in enumerate(axis.names)]
+    return Scale(lambda values: -values, (0.5 - count, 0.5), lambda _: ticks)

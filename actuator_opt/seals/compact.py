@@ -6,19 +6,8 @@ from collections.abc import Mapping
 
 from ..base.numeric import Array
 from ..models import compact_seal, gland
-from .contact import SealContact, landed
-from .outline import Shape, box
-from .seal_type import (
-    AXIAL_PLAY,
-    Piece,
-    Room,
-    SealGroove,
-    SealSizes,
-    SealType,
-    no_faults,
-    no_warnings,
-)
-from .sizes import LAND, WIDTH, SizeField
+from .seal_type import (AXIAL_PLAY, Piece, Room, SealGroove, SealSizes, SealType, no_faults, no_warnings)
+from .contact import LAND, WIDTH, SealContact, Shape, SizeField, box, landed
 
 
 def contact(seal: SealSizes) -> SealContact:

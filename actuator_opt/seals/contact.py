@@ -1,12 +1,97 @@
-"""Contact of a seal with its counterface: load, width, peak pressure and profile."""
+"""Sizes of seal types besides section and squeeze, as keys of a design file."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Literal, NamedTuple, TypeAlias
 
 from ..base.numeric import Array, maximum
-from ..models import contact_land
+from ..models import contact_profile
+
+
+class Size(NamedTuple):
+    """A size of a seal, as a key of the design file.
+
+    Parameters
+    ----------
+    key : key in the design file
+    quantity : its name in `quantities.INPUTS`
+    help : its meaning, for the JSON Schema
+    example : valid value, for messages
+    """
+
+    key: str
+    quantity: str
+    help: str
+    example: str
+
+
+class SizeField(NamedTuple):
+    """A size that a seal type has.
+
+    Parameters
+    ----------
+    size : the size
+    default : function of default value from the preceding numbers (SI), such as `section` and
+        `gland_depth`; None if the design must state the size
+    """
+
+    size: Size
+    default: Callable[[Mapping[str, Array]], Array] | None
+
+    @property
+    def key(self) -> str:
+        """Key in the design file."""
+        return self.size.key
+
+
+THICKNESS = Size(
+    "thickness", "part_length", "radial thickness of a step ring, or of a lip at its root", "1.5 mm"
+)
+WIDTH = Size(
+    "width",
+    "part_length",
+    "axial width of a step ring or compact seal, or length of a lip",
+    "4 mm",
+)
+GROOVE_WIDTH = Size(
+    "groove_width",
+    "groove_width",
+    "axial width of the groove; default: the standard gland",
+    "6.3 mm",
+)
+LAND = Size(
+    "land",
+    "part_length",
+    "axial width of the face in contact without pressure; default: half the width of a "
+    "step ring, the whole width of a compact seal; for a U-cup twice its rim radius, "
+    "default a tenth of the lip length",
+    "2 mm",
+)
+RELIEF = Size(
+    "relief",
+    "length",
+    "pressure-wetted face of a step ring in front of its land; default: half of the "
+    "width outside the land",
+    "1 mm",
+)
+TAPER = Size(
+    "taper",
+    "taper",
+    "angle between the counterface and the tapers beside a step ring's land; default: 6 deg",
+    "6 deg",
+)
+ROOT_CLEARANCE = Size(
+    "root_clearance",
+    "length",
+    "gap under a U-cup's lip at the body; default: its interference",
+    "0.3 mm",
+)
+SHARED = (THICKNESS, WIDTH, GROOVE_WIDTH, LAND, RELIEF, TAPER, ROOT_CLEARANCE)
+"""Sizes in the order of a design file; a type may have further sizes."""
+
 
 WITHIN, TOUCHING = 1e-6, 1.0
 """Least excess of a static profile, as a share of the sealed pressure and in Pa: below it the
@@ -58,7 +143,7 @@ def shaped(
 
 def landed(load: Array, width: Array, pressure: Array) -> SealContact:
     """A worn-in land under a line load."""
-    peak = contact_land.land_peak(
+    peak = contact_profile.land_peak(
         line_load=load, width=width, sealed_pressure=pressure, outer_pressure=0.0
     )
     return shaped(
@@ -66,6 +151,49 @@ def landed(load: Array, width: Array, pressure: Array) -> SealContact:
         width,
         peak,
         pressure,
-        excess_law=contact_land.land_excess,
-        profile_law=contact_land.land_profile,
+        excess_law=contact_profile.land_excess,
+        profile_law=contact_profile.land_profile,
     )
+
+
+Polygon: TypeAlias = tuple[tuple[float, float], ...]
+
+
+_CORNERS = 24
+
+
+class Shape(NamedTuple):
+    """A named closed polygon; `free` is the outline before mounting."""
+
+    kind: Literal["elastomer", "polymer", "back-up", "free"]
+    points: Polygon
+
+
+def box(left: float, right: float, low: float, high: float) -> Polygon:
+    """A rectangle."""
+    return ((left, low), (right, low), (right, high), (left, high))
+
+
+def stadium(middle: float, low: float, high: float, section: float) -> Polygon:
+    """Outline of a round section compressed to the height high - low; a circle if uncompressed.
+
+    >>> points = stadium(0.0, 0.0, 0.8, 1.0)
+    >>> f"{max(x for x, _ in points) - min(x for x, _ in points):.4f}"
+    '1.1534'
+    """
+    height = min(high - low, section)
+    flat = math.pi / 4 * (section**2 - height**2) / height
+    centre, radius = high - height / 2, height / 2
+    points = []
+    for k in range(2 * _CORNERS + 2):
+        end = 1.0 if k <= _CORNERS else -1.0
+        angle = math.pi * ((k if k <= _CORNERS else k - 1) / _CORNERS - 0.5)
+        x = middle + end * flat / 2 + radius * math.cos(angle)
+        points.append((x, centre + radius * math.sin(angle)))
+    return tuple(points)
+
+
+def round_ring(middle: float, low: float, high: float, section: float) -> tuple[Shape, ...]:
+    """A round ring between two heights, mounted and free."""
+    free = stadium(middle, high - section, high, section)
+    return Shape("elastomer", stadium(middle, low, high, section)), Shape("free", free)

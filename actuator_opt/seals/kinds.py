@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..base.kinds import Kinds, kinds_in
 from .seal_type import SealType
-from .sizes import SHARED
+from .contact import SHARED
 
 TYPES: Kinds[SealType] = kinds_in(
     "seal type",

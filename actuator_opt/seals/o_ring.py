@@ -11,9 +11,8 @@ import numpy as np
 
 from ..base.numeric import Array, minimum, real, where
 from ..models import contact_profile, elastomer, gland, seals
-from .contact import SealContact, shaped
-from .outline import Shape, round_ring
 from .seal_type import Elements, Piece, Room, SealGroove, SealSizes, SealType, no_faults
+from .contact import SealContact, Shape, round_ring, shaped
 
 if TYPE_CHECKING:
     from ..finite_elements.result import SealSolution

@@ -8,9 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from ..base.numeric import Array
-from .contact import SealContact
-from .outline import Shape
-from .sizes import SizeField
+from .contact import SealContact, Shape, SizeField
 
 if TYPE_CHECKING:
     from ..finite_elements.result import SealSolution

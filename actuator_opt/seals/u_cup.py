@@ -7,19 +7,8 @@ from collections.abc import Iterable, Mapping
 from ..base.numeric import Array
 from ..base.quantities import INPUTS
 from ..models import contact_profile, gland, lip_seal
-from .contact import SealContact, shaped
-from .outline import Shape
-from .seal_type import (
-    AXIAL_PLAY,
-    Piece,
-    Room,
-    SealGroove,
-    SealSizes,
-    SealType,
-    SizeFault,
-    no_warnings,
-)
-from .sizes import GROOVE_WIDTH, LAND, ROOT_CLEARANCE, THICKNESS, WIDTH, SizeField
+from .seal_type import (AXIAL_PLAY, Piece, Room, SealGroove, SealSizes, SealType, SizeFault, no_warnings)
+from .contact import (GROOVE_WIDTH, LAND, ROOT_CLEARANCE, THICKNESS, WIDTH, SealContact, Shape, SizeField, shaped)
 
 LAND_SHARE = 0.1
 """Default land over lip length (a choice)."""

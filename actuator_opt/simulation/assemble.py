@@ -10,8 +10,8 @@ from ..base.symbolic import Expression, Symbol
 from ..design.kinds import position_at
 from ..design.scenario.model import HeldPorts, Scenario
 from ..models import linkage
+from ..models.loop import ControllerGains
 from ..models.stiffness import holding_pressures
-from ..models.tuning import ControllerGains
 from ..studies.plant import Plant
 from .components import chambers, friction, load_cylinder, motion, motor, ports, signals, valve
 from .components.circuit import Circuit, Start

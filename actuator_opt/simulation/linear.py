@@ -15,7 +15,7 @@ from ..base.quantities import INPUTS
 from ..base.symbolic import function, jacobian
 from ..design.scenario.model import Control, Scenario
 from ..design.scenario.signals import SignalSegment
-from ..models.tuning import ControllerGains, margin_rules, ziegler_nichols
+from ..models.loop import ControllerGains, margin_rules, ziegler_nichols
 from ..studies.plant import Plant
 from .assemble import assemble
 from .components.circuit import Circuit

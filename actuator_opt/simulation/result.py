@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from ..base.display import Displayed
 from ..base.errors import Diagnostic, InputError, Unsolvable
 from ..base.numeric import Array
 from ..base.quantities import RESULTS, Quantity
 from ..base.symbolic import vectorised
+from ..base.tables import Displayed
 from ..design.scenario.model import Scenario
 from ..design.scenario.shapes import SHAPES
 from ..design.scenario.signals import SignalSegment

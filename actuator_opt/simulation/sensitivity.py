@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from time import perf_counter
 from typing import Any, Literal, TypeAlias
 
-from ..base.display import Displayed
 from ..base.errors import Diagnostic, InputError, Unsolvable, remedy
 from ..base.progress import steps
 from ..base.quantities import RESULTS, Quantity
+from ..base.tables import Displayed
 from ..design import paths
 from ..design.build import with_values
 from ..design.kinds import Fraction, ValueFault

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..base.display import Displayed
 from ..base.errors import Diagnostic, InputError
+from ..base.tables import Displayed
 from ..design.model import Design
 from ..evaluation import gland_check, sealing as contacts_of_seals
 from ..evaluation.barrel import SEAL_STEP

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..base.display import Displayed
+from ..base.tables import Displayed
 from ..version import VERSION
 from .chunk import Chunk, Study
 from .sample import Sample

@@ -28,7 +28,7 @@ from ..evaluation.limits import UNLIMITED, Limit, MetricArrays, all_limits, rows
 from ..evaluation.values import Values
 from ..models.elastomer import MODULUS_LAWS
 from ..optimisation.problem import Vector
-from .draw import Distribution, about
+from .estimate import Distribution, about
 
 GUARANTEED = ("limit", "minimum", "maximum", "A", "B", "S")
 """Bases of values that are already lower bounds."""

@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..base.display import Displayed
-from ..base.tables import aligned
+from ..base.tables import Displayed, aligned
 from ..optimisation.problem import Vector
 from .estimate import Rate
 from .inputs import Input

@@ -14,7 +14,7 @@ import numpy as np
 
 from ...base.numeric import Array, maximum, real, where
 from ...design.model import Design
-from ...models import column, liner, ply_discount, rod, tube_burst, yielding
+from ...models import column, liner, ply_discount, rod, strength, tube_burst
 from ...models.autofrettage import Autofrettage, autofrettage
 from ...models.strength_modes import Stress, load_multiplier
 from .. import plies
@@ -211,7 +211,7 @@ def _metal(
     equivalent stress at its ends minus half the range, and not below zero (no credit).
     """
     strength = _by_climate(layer.yields)
-    used = yielding.yield_utilisation(stress=load, yield_strength=strength, residual=residual)
+    used = strength.yield_utilisation(stress=load, yield_strength=strength, residual=residual)
     for place, pressure in _rows(states, paths, 1 / plies.worst(used, (0, 1))):
         wall.yield_pressure[f"{layer.label}, {place}"] = pressure
     pulse = liner.liner_cycle(
@@ -241,7 +241,7 @@ def _cooling(layers: Sequence[Layer], rest: _Rest, wall: Wall, *, exact: bool) -
     wall.why_no_mismatch = "the thin laminate has no radial stress at the liner"
     for k, i in enumerate(liners):
         own = tuple(part[:, [k]] for part in residual)
-        used = yielding.yield_utilisation(
+        used = strength.yield_utilisation(
             stress=(own[0], own[1], own[2], own[3]), yield_strength=_by_climate(layers[i].yields)
         )
         wall.mismatch[layers[i].label] = 1 / plies.worst(used, (0, 1, 2, 3))

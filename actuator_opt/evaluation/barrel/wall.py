@@ -15,7 +15,7 @@ import numpy as np
 
 from ...base.numeric import Array, maximum
 from ...design.model import Design
-from ...models import barrel, barrel_ends, column, laminate, ply, rod, yielding
+from ...models import barrel, barrel_ends, column, laminate, ply, rod
 from ...models.autofrettage import Autofrettage
 from ...models.layered_tube import layered_tube, ply_stresses_at_faces, tube_state
 from ...models.strength_modes import Stress
@@ -170,7 +170,7 @@ def _used(
         _, _, clamp = barrel.bore_stresses(pressure=0.0, axial_force=path.held, **size)
         residual = (none, none, clamp, none)
     stress = (hoop, radial, along, none)
-    return yielding.yield_utilisation(stress=stress, yield_strength=strength, residual=residual)
+    return strength.yield_utilisation(stress=stress, yield_strength=strength, residual=residual)
 
 
 PRESSURE, FORCE, WARMTH = range(3)

@@ -12,18 +12,7 @@ import numpy as np
 from ...base.symbolic import Symbol
 from .bounding import CAUTION, SAMPLES, Leads, function
 from .intervals import branch, extreme
-from .relaxation import (
-    FAR,
-    ConstraintRow,
-    Curve,
-    Form,
-    Kind,
-    Mixed,
-    Relaxation,
-    Signomial,
-    Table,
-    Unknown,
-)
+from .relaxation import (FAR, ConstraintRow, Curve, Form, Kind, Mixed, Relaxation, Signomial, Table, Unknown)
 
 WIDEST = 20.0
 """Widest logarithmic range that is sampled."""

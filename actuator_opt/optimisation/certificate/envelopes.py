@@ -28,8 +28,7 @@ from ...joints.joint import Clamp
 from ...models import column, rod as rod_models, stepped, tube_bounds
 from ...models.layered_tube import layered_tube, tube_state
 from ...models.solid_ply import solid_rotated
-from ...models.trial_mode import TrialMode, buckled_mode, trial_mode_load
-from ...models.trial_motion import Chamber, least_energy_motion, trial_motion_stiffness
+from ...models.trial_motion import (Chamber, TrialMode, buckled_mode, least_energy_motion, trial_mode_load, trial_motion_stiffness)
 from .relaxation import Unknown
 
 LEAST_DECAY = 1e-3

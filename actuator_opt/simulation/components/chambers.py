@@ -8,7 +8,7 @@ from ...base.numeric import clip, maximum, where
 from ...base.symbolic import Expression, Namespace, Symbol
 from ...evaluation.springs import Give
 from ...models import chamber, oil_energy
-from ...models.cavity import cavity
+from ...models.chamber import cavity
 from ...models.fluid import ATMOSPHERIC_PRESSURE
 from ...studies.plant import Oil
 from .circuit import Circuit

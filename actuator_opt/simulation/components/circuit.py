@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from ...base.symbolic import Expression, Symbol
 from ...design.scenario.model import Scenario
 from ...design.scenario.signals import SignalSegment
-from ...models.tuning import ControllerGains
+from ...models.loop import ControllerGains
 from ...studies.plant import Plant
 from ..loops import Loop
 from ..system import System

@@ -9,7 +9,7 @@ from ...base.quantities import SCENARIOS
 from ...base.symbolic import Expression, Symbol
 from ...design.scenario.components import ENDS
 from ...evaluation.circuit import Chamber
-from ...models import one_way_valve, reducing_valve
+from ...models import one_way_valve, supply
 from .chambers import node
 from .circuit import Circuit
 
@@ -136,7 +136,7 @@ def _reducing(circuit: Circuit, one: Side, held: float) -> Expression:
     system.rate(regulated, rate)
     system.rate(
         rate,
-        reducing_valve.reducing_valve_acceleration(
+        supply.reducing_valve_acceleration(
             flow=regulated,
             rate=rate,
             pressure=one.end,
@@ -146,7 +146,7 @@ def _reducing(circuit: Circuit, one: Side, held: float) -> Expression:
             damping_ratio=data["damping_ratio"],
         ),
     )
-    flow = reducing_valve.reducing_valve_flow(
+    flow = supply.reducing_valve_flow(
         flow=regulated,
         pressure=one.end,
         set_pressure=held,

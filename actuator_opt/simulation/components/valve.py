@@ -8,7 +8,7 @@ from ...base.numeric import clip
 from ...base.quantities import SCENARIOS
 from ...base.symbolic import Expression
 from ...models import valve
-from ...models.spool import spool_acceleration
+from ...models.valve import spool_acceleration
 from ...studies.plant import ValveData
 from .circuit import Circuit
 

@@ -26,7 +26,7 @@ from ...evaluation.kernel import ModelRun, PreparedDesign, compute
 from ...evaluation.result import Requirement
 from ...evaluation.values import of_case
 from ...models import linear, loop
-from ...models.tuning import ControllerGains
+from ...models.loop import ControllerGains
 from ...studies.plant import Plant, plant
 from ..assemble import assemble
 from ..harmonic import dynamic_stiffness_of_record, harmonic_fit

@@ -14,9 +14,9 @@ from math import inf, isfinite, isnan
 from time import perf_counter
 from typing import Any, Final, Literal
 
-from ...base.display import Displayed
 from ...base.errors import InputError, Unsolvable
 from ...base.progress import steps
+from ...base.tables import Displayed
 from ...design.scenario.model import Load, Scenario
 from ...evaluation.build import evaluate
 from ...evaluation.kernel import PreparedDesign
