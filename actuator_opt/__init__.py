@@ -19,11 +19,86 @@ from typing import TYPE_CHECKING, Any
 from . import version
 
 if TYPE_CHECKING:
-    from .api import (Actuator as Actuator, Calibrated as Calibrated, Compared as Compared, Comparison as Comparison, Curve as Curve, Installation as Installation, Prediction as Prediction, Price as Price, Rerun as Rerun, Restored as Restored, Run as Run, Session as Session, Trial as Trial, bending as bending, calibrate as calibrate, check as check, compare as compare, compare_measured as compare_measured, comparison_json as comparison_json, delete_run as delete_run, doctor as doctor, draw_comparison as draw_comparison, draw_run as draw_run, draw_sweep as draw_sweep, evaluate as evaluate, exit_code as exit_code, explore as explore, export as export, identify as identify, optimise as optimise, pareto as pareto, prune_runs as prune_runs, read as read, read_record as read_record, read_run as read_run, read_scenario as read_scenario, record as record, record_front as record_front, record_run as record_run, record_sweep as record_sweep, report as report, report_run as report_run, rerun as rerun, restore as restore, runs as runs, save as save, seal as seal, sensitivity as sensitivity, servo_sensitivities as servo_sensitivities, session as session, simulate as simulate, sweep as sweep, uncertainty as uncertainty, verify_dynamics as verify_dynamics, write_calibration as write_calibration, write_comparison as write_comparison, write_draws as write_draws, write_front as write_front, write_front_csv as write_front_csv, write_identification as write_identification, write_seal as write_seal, write_series as write_series, write_signals as write_signals, write_simulation as write_simulation, write_uncertainty as write_uncertainty)
-    from .base.errors import (ActuatorError as ActuatorError, Diagnostic as Diagnostic, InputError as InputError)
+    from .api import (
+        Actuator as Actuator,
+        Calibrated as Calibrated,
+        Compared as Compared,
+        Comparison as Comparison,
+        Curve as Curve,
+        Installation as Installation,
+        Prediction as Prediction,
+        Price as Price,
+        Rerun as Rerun,
+        Restored as Restored,
+        Run as Run,
+        Session as Session,
+        Trial as Trial,
+        bending as bending,
+        calibrate as calibrate,
+        check as check,
+        compare as compare,
+        compare_measured as compare_measured,
+        comparison_json as comparison_json,
+        delete_run as delete_run,
+        doctor as doctor,
+        draw_comparison as draw_comparison,
+        draw_run as draw_run,
+        draw_sweep as draw_sweep,
+        evaluate as evaluate,
+        exit_code as exit_code,
+        explore as explore,
+        export as export,
+        identify as identify,
+        optimise as optimise,
+        pareto as pareto,
+        prune_runs as prune_runs,
+        read as read,
+        read_record as read_record,
+        read_run as read_run,
+        read_scenario as read_scenario,
+        record as record,
+        record_front as record_front,
+        record_run as record_run,
+        record_sweep as record_sweep,
+        report as report,
+        report_run as report_run,
+        rerun as rerun,
+        restore as restore,
+        runs as runs,
+        save as save,
+        seal as seal,
+        sensitivity as sensitivity,
+        servo_sensitivities as servo_sensitivities,
+        session as session,
+        simulate as simulate,
+        sweep as sweep,
+        uncertainty as uncertainty,
+        verify_dynamics as verify_dynamics,
+        write_calibration as write_calibration,
+        write_comparison as write_comparison,
+        write_draws as write_draws,
+        write_front as write_front,
+        write_front_csv as write_front_csv,
+        write_identification as write_identification,
+        write_seal as write_seal,
+        write_series as write_series,
+        write_signals as write_signals,
+        write_simulation as write_simulation,
+        write_uncertainty as write_uncertainty,
+    )
+    from .base.errors import (
+        ActuatorError as ActuatorError,
+        Diagnostic as Diagnostic,
+        InputError as InputError,
+    )
     from .design.materials import load_library as load_library
     from .evaluation.plugin import constraint as constraint, metric as metric
-    from .identification import (BendingResult as BendingResult, Identification as Identification, Record as Record, Specimen as Specimen)
+    from .identification import (
+        BendingResult as BendingResult,
+        Identification as Identification,
+        Record as Record,
+        Specimen as Specimen,
+    )
     from .simulation import Simulation as Simulation
 
 __version__ = version.VERSION

@@ -18,7 +18,12 @@ import pytest
 import actuator_opt as ao
 from actuator_opt.design import read_design
 from actuator_opt.evaluation import compute, prepare
-from actuator_opt.models.layered_tube import (TubeLayer, layered_tube, ply_stresses_at_faces, tube_state)
+from actuator_opt.models.layered_tube import (
+    TubeLayer,
+    layered_tube,
+    ply_stresses_at_faces,
+    tube_state,
+)
 from actuator_opt.models.line_ends import LineEnd
 from actuator_opt.models.linear import Side, dynamic_stiffness, linear_actuator
 from actuator_opt.models.loop import poles

@@ -29,8 +29,8 @@ import problems
 from actuator_opt import api as verbs
 from actuator_opt.base.errors import UsageError
 from actuator_opt.optimisation import actuator, nlopt_wrapper
-from actuator_opt.optimisation.descents import FEASIBLE
 from actuator_opt.optimisation.problem import BoxProblem, Space
+from actuator_opt.optimisation.resolve.parallel_descents import FEASIBLE
 from actuator_opt.optimisation.run import SAMPLES
 from actuator_opt.optimisation.solver import solve
 

@@ -34,7 +34,7 @@ from cli_runner import BENCH, DESIGNS, Result, one_object, run
 import actuator_opt as ao
 from actuator_opt.api.reports import origin
 from actuator_opt.cli import faults
-from actuator_opt.design.template import init_text
+from actuator_opt.design.writer import init_text
 from actuator_opt.pages.report import outcome
 from actuator_opt.rendering.attachments import embed
 

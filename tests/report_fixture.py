@@ -14,7 +14,16 @@ from typing import Any
 import numpy as np
 
 from actuator_opt.design.model import Design
-from actuator_opt.evaluation.result import (Check, Evaluation, Metric, ModelUse, Outline, Requirement, StrokeCurve, Unverified)
+from actuator_opt.evaluation.result import (
+    Check,
+    Evaluation,
+    Metric,
+    ModelUse,
+    Outline,
+    Requirement,
+    StrokeCurve,
+    Unverified,
+)
 from actuator_opt.optimisation.prices import Sensitivity
 from actuator_opt.optimisation.result import Infeasibility, Kkt, Optimisation, VariableResult
 from actuator_opt.pages import report

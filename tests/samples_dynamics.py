@@ -8,7 +8,12 @@ from __future__ import annotations
 from math import pi
 
 from actuator_opt.models import loop
-from actuator_opt.models.line_ends import (LineEnd, accumulator_end, parallel_ends, reducing_valve_end)
+from actuator_opt.models.line_ends import (
+    LineEnd,
+    accumulator_end,
+    parallel_ends,
+    reducing_valve_end,
+)
 from actuator_opt.models.linear import Side, dynamic_stiffness, linear_actuator
 
 FAR_END = LineEnd((2e-12, 3e-16), (1.0, 1e-3, 4e-6))

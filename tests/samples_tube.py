@@ -6,7 +6,13 @@ from dataclasses import replace
 from math import pi
 
 from actuator_opt.models.burst_ladder import WallLayer
-from actuator_opt.models.layered_tube import (TubeLayer, layered_tube, ply_stresses_at_faces, tube_state, tube_stresses)
+from actuator_opt.models.layered_tube import (
+    TubeLayer,
+    layered_tube,
+    ply_stresses_at_faces,
+    tube_state,
+    tube_stresses,
+)
 from actuator_opt.models.solid_ply import solid_stiffness
 from actuator_opt.models.strength_modes import PlyStrength
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from actuator_opt import api as verbs
-from actuator_opt.design.circuit import ReducingValve
+from actuator_opt.design.model import ReducingValve
 from actuator_opt.replicas import aalto_models
 
 DESIGN = Path(__file__).parents[1] / "designs" / "aalto_40_25_220.yaml"

@@ -10,14 +10,30 @@ from hypothesis import given, strategies as st
 from samples_tube import PLY
 
 from actuator_opt.models import rod
-from actuator_opt.models.layered_tube import (TubeLayer, layered_tube, ply_stresses_at_faces, tube_state)
+from actuator_opt.models.layered_tube import (
+    TubeLayer,
+    layered_tube,
+    ply_stresses_at_faces,
+    tube_state,
+)
 from actuator_opt.models.solid_ply import solid_rotated, solid_stiffness
 from actuator_opt.models.stepped import stepped_column_load
 from actuator_opt.models.stiffness import hydraulic_stiffness
 from actuator_opt.models.strength import yield_utilisation
 from actuator_opt.models.strength_modes import PlyStrength, max_stress_modes
-from actuator_opt.models.trial_motion import (TrialMotion, buckled_mode, least_energy_motion, trial_mode_load, trial_motion_stiffness)
-from actuator_opt.models.tube_bounds import (axial_stiffness, greatest_pressure, least_growth, ply_hoop_strength)
+from actuator_opt.models.trial_motion import (
+    TrialMotion,
+    buckled_mode,
+    least_energy_motion,
+    trial_mode_load,
+    trial_motion_stiffness,
+)
+from actuator_opt.models.tube_bounds import (
+    axial_stiffness,
+    greatest_pressure,
+    least_growth,
+    ply_hoop_strength,
+)
 
 RADIUS = 16e-3
 ROUNDING = 1e-9

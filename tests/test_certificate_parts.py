@@ -16,7 +16,16 @@ from actuator_opt.optimisation.certificate.box import Box, Layout
 from actuator_opt.optimisation.certificate.builder import Builder
 from actuator_opt.optimisation.certificate.certify import BoxSearch
 from actuator_opt.optimisation.certificate.intervals import narrow, tighten
-from actuator_opt.optimisation.certificate.relaxation import (SHAPES, Form, Mixed, Relaxation, Signomial, Table, Tables, Unknown)
+from actuator_opt.optimisation.certificate.relaxation import (
+    SHAPES,
+    Form,
+    Mixed,
+    Relaxation,
+    Signomial,
+    Table,
+    Tables,
+    Unknown,
+)
 
 ROUNDING = 1e-9
 KNOWN = -83.2497

@@ -13,7 +13,7 @@ import yaml
 from cli_runner import BENCH, DESIGNS, KNEE, run, spawn, surroundings
 from frozen_cases import commands
 
-from actuator_opt.design.template import init_text
+from actuator_opt.design.writer import init_text
 
 COMMANDS = [(), ("optimize",), *commands()]
 VERBS = ["check", "evaluate", "optimise", "optimize", "sensitivity", "report"]

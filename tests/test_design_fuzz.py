@@ -12,7 +12,7 @@ from hypothesis import given, settings, strategies as st
 
 from actuator_opt.base.errors import InputError
 from actuator_opt.design import read_design
-from actuator_opt.design.template import init_text
+from actuator_opt.design.writer import init_text
 from actuator_opt.design.yaml_source import parse
 
 

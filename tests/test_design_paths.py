@@ -5,9 +5,17 @@ from __future__ import annotations
 import pytest
 
 from actuator_opt.base.errors import InputError, UsageError
-from actuator_opt.design import (Fraction, canonical, get, numbers, quantity_of, split_assignment, with_values)
+from actuator_opt.design import (
+    Fraction,
+    canonical,
+    get,
+    numbers,
+    quantity_of,
+    split_assignment,
+    with_values,
+)
 from actuator_opt.design.build import build
-from actuator_opt.design.template import init_text
+from actuator_opt.design.writer import init_text
 from actuator_opt.design.yaml_source import parse
 
 DESIGN = build(parse(init_text("test"), "f").data).design

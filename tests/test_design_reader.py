@@ -11,7 +11,7 @@ from actuator_opt.base import units
 from actuator_opt.base.errors import InputError
 from actuator_opt.design import read_design
 from actuator_opt.design.build import build, to_tree
-from actuator_opt.design.template import init_text
+from actuator_opt.design.writer import init_text
 
 
 class Names(dict):

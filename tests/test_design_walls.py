@@ -11,8 +11,7 @@ from hypothesis import given, settings, strategies as st
 from actuator_opt.base.errors import InputError
 from actuator_opt.design import LoadedDesign, get, numbers, read_design, with_values
 from actuator_opt.design.materials import load_library
-from actuator_opt.design.template import init_text
-from actuator_opt.design.writer import to_yaml
+from actuator_opt.design.writer import init_text, to_yaml
 from actuator_opt.joints.kinds import JOINTS
 
 GOOD = init_text("test")

@@ -11,8 +11,7 @@ from actuator_opt.base import quantities, units
 from actuator_opt.design import LoadedDesign, Source, read_design, with_values
 from actuator_opt.design.build import build
 from actuator_opt.design.paths import numbers
-from actuator_opt.design.template import init_text
-from actuator_opt.design.writer import exact_text, scalar, to_yaml
+from actuator_opt.design.writer import exact_text, init_text, scalar, to_yaml
 from actuator_opt.design.yaml_source import parse
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from actuator_opt.evaluation.distinct import FEW, distinct
+from actuator_opt.evaluation.barrel.laminate import FEW, distinct
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from cli_runner import KNEE, run
 import actuator_opt as ao
 from actuator_opt.api import seal
 from actuator_opt.evaluation.kernel import base
-from actuator_opt.evaluation.seal_contact import seal_contact
+from actuator_opt.evaluation.rings import seal_contact
 from actuator_opt.finite_elements.material import MooneyRivlin
 from actuator_opt.finite_elements.o_ring import squeezed_ring
 from actuator_opt.models.contact_profile import o_ring_profile

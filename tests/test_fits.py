@@ -9,7 +9,7 @@ from scipy.optimize import curve_fit, isotonic_regression
 
 from actuator_opt.base import fitting as least_squares
 from actuator_opt.base.errors import InputError
-from actuator_opt.design.material_fits import fit_double_exponential, fit_power_law
+from actuator_opt.design.material import fit_double_exponential, fit_power_law
 
 SPEEDS = np.linspace(0.5e-3, 10e-3, 20)
 LAWS = (fit_power_law, fit_double_exponential)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from actuator_opt.optimisation.front import dominance
+from actuator_opt.optimisation.front import tracer
 from actuator_opt.optimisation.front.front import Front, Settings, front
 from actuator_opt.optimisation.front.objectives import Objectives
 from actuator_opt.optimisation.problem import BoxProblem, Values
@@ -31,7 +31,7 @@ def found(problem, count, **more) -> Front:
     result = front(problem, Settings(count, samples=256, **more))
     assert isinstance(result, Front)
     assert result.residuals.max() <= 1e-6
-    assert dominance.nondominated(result.values).all()
+    assert tracer.nondominated(result.values).all()
     return result
 
 
@@ -305,7 +305,7 @@ def test_infeasible_is_told():
 def test_nondominated_against_the_definition():
     """Every pair compared."""
     values = np.random.default_rng(0).integers(0, 6, (3, 80)).astype(float)
-    kept = dominance.nondominated(values)
+    kept = tracer.nondominated(values)
     for k in range(80):
         beaten = any(
             (values[:, j] <= values[:, k]).all() and (values[:, j] < values[:, k]).any()

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from test_front import objectives
 
-from actuator_opt.optimisation.front import dominance, plane as cells
+from actuator_opt.optimisation.front import plane as cells, tracer
 from actuator_opt.optimisation.front.front import Front, Settings, front
 from actuator_opt.optimisation.problem import Values
 
@@ -84,7 +84,7 @@ def angles(count, dense):
 def greedy_radius(dense, count):
     """Covering radius of the greedy choice of so many."""
     first = np.array([int(np.argmin(dense[0]))])
-    kept = dominance.thinned(dense, first, count)
+    kept = tracer.thinned(dense, first, count)
     return away(dense, dense[:, kept]).max()
 
 
@@ -100,7 +100,7 @@ def searched(evaluate, bounds, names, count, **more) -> Front:
     result = front(problem, Settings(count, samples=256, **more))
     assert isinstance(result, Front)
     assert result.residuals.max() <= 1e-6
-    assert dominance.nondominated(result.values).all()
+    assert tracer.nondominated(result.values).all()
     assert result.values.shape == (len(names), count)
     return result
 
@@ -128,7 +128,7 @@ def test_covers_all_of_it(shape, objective_count, count, most, short):
     low, wide = there.min(axis=1)[:, None], np.ptp(there, axis=1)[:, None]
     unit, own = (there - low) / wide, (result.values - low) / wide
     assert away(unit, own).max() <= most * greedy_radius(unit, count)
-    assert away(own, unit).max() <= 2.5 * np.median(dominance.nearest(unit))
+    assert away(own, unit).max() <= 2.5 * np.median(tracer.nearest(unit))
     assert result.gaps.max() <= 3 * np.median(result.gaps)
     np.testing.assert_allclose(own.min(axis=1), 0, atol=0.03)
     np.testing.assert_allclose(own.max(axis=1), 1, atol=short)

@@ -17,12 +17,12 @@ from test_sweep import NEAR
 import actuator_opt as ao
 from actuator_opt.design.model import Limit, Objective
 from actuator_opt.evaluation import compute, evaluate, prepare
-from actuator_opt.evaluation.many import evaluate_many
+from actuator_opt.evaluation.build import evaluate_many
 from actuator_opt.evaluation.plugin import collect
 from actuator_opt.metrics.table import METRICS, ROWS
 from actuator_opt.optimisation import pareto
 from actuator_opt.optimisation.actuator import build, goal_of
-from actuator_opt.optimisation.pareto_result import ParetoFront
+from actuator_opt.optimisation.pareto import ParetoFront
 from actuator_opt.optimisation.recorded import from_plain, to_plain
 from actuator_opt.optimisation.rounding import design_at
 from actuator_opt.pages import report as page

@@ -12,7 +12,24 @@ import actuator_opt as ao
 from actuator_opt.api import results
 from actuator_opt.base.tables import Displayed
 from actuator_opt.rendering import html
-from actuator_opt.rendering.blocks import (Bar, Column, Drawing, Flag, Listing, Notes, Page, Pair, Row, Share, Slot, Status, Table, TerminalFigure, Tile, Verdict)
+from actuator_opt.rendering.blocks import (
+    Bar,
+    Column,
+    Drawing,
+    Flag,
+    Listing,
+    Notes,
+    Page,
+    Pair,
+    Row,
+    Share,
+    Slot,
+    Status,
+    Table,
+    TerminalFigure,
+    Tile,
+    Verdict,
+)
 from actuator_opt.rendering.ink import Ink
 from actuator_opt.rendering.origin import Origin
 

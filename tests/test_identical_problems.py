@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 import actuator_opt as ao
-from actuator_opt.optimisation.branch_and_bound import search
+from actuator_opt.optimisation.branch_and_bound import Listed, search
 from actuator_opt.optimisation.identical_problems import Evidence
-from actuator_opt.optimisation.listed import Listed
 from actuator_opt.optimisation.problem import BoxProblem, Values
 from actuator_opt.optimisation.solver import solve
 

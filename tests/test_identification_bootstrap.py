@@ -14,7 +14,12 @@ from scipy.optimize import least_squares
 import actuator_opt as ao
 from actuator_opt.base.errors import InputError
 from actuator_opt.identification import synthetic
-from actuator_opt.identification.bootstrap import (LuGreResiduals, resampled, resampled_stribeck, searched)
+from actuator_opt.identification.bootstrap import (
+    LuGreResiduals,
+    resampled,
+    resampled_stribeck,
+    searched,
+)
 from actuator_opt.identification.identify import identify
 from actuator_opt.identification.lugre import windows
 from actuator_opt.identification.many_fits import FitSearch, relaxed

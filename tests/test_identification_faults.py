@@ -12,7 +12,13 @@ import pytest
 
 import actuator_opt as ao
 from actuator_opt.base.errors import InputError
-from actuator_opt.identification import (Settings, conditioning as conditioning_module, identify, parse_record, synthetic)
+from actuator_opt.identification import (
+    Settings,
+    conditioning as conditioning_module,
+    identify,
+    parse_record,
+    synthetic,
+)
 from actuator_opt.identification.points import SETTLED, steady_points
 from actuator_opt.studies.bench import bench as bench_of
 

@@ -17,7 +17,7 @@ from actuator_opt.base import kinds
 from actuator_opt.base.errors import InputError
 from actuator_opt.design import read_design, with_values
 from actuator_opt.design.schema import json_schema
-from actuator_opt.design.template import init_text
+from actuator_opt.design.writer import init_text
 from actuator_opt.evaluation import compute
 from actuator_opt.evaluation.validity import describe, function_of
 from actuator_opt.joints.joint import Joint, check

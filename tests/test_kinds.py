@@ -28,7 +28,7 @@ from actuator_opt.base.quantities import INPUTS
 from actuator_opt.design.kinds import Of
 from actuator_opt.design.schema import json_schema
 from actuator_opt.design.seals import SealElement
-from actuator_opt.design.template import init_text
+from actuator_opt.design.writer import init_text
 from actuator_opt.evaluation import prepare
 from actuator_opt.friction import coefficient
 from actuator_opt.friction.kinds import LAWS as FRICTION_LAWS
@@ -37,9 +37,9 @@ from actuator_opt.models.elastomer import MODULUS_LAWS
 from actuator_opt.models.seals import LAWS as CONTACT_LAWS
 from actuator_opt.pages.seal_figures import filled_grooves
 from actuator_opt.seals import o_ring
+from actuator_opt.seals.contact import GROOVE_WIDTH
 from actuator_opt.seals.kinds import SIZES, TYPES
 from actuator_opt.seals.seal_type import Room, SealSizes, SealType
-from actuator_opt.seals.contact import GROOVE_WIDTH
 from actuator_opt.studies.plant import plant
 
 WORDS = {

@@ -6,8 +6,7 @@ import pytest
 
 from actuator_opt.base.kinds import kinds, per_kind
 from actuator_opt.design.scenario import Scenario, signals
-from actuator_opt.design.scenario.components import ENDS, FRICTIONS, LAWS, SUPPLIES
-from actuator_opt.design.scenario.shapes import SHAPES
+from actuator_opt.design.scenario.kinds import ENDS, FRICTIONS, LAWS, SHAPES, SUPPLIES
 from actuator_opt.design.walls import entries
 from actuator_opt.models.loop import ziegler_nichols
 from actuator_opt.simulation.components.friction import FORCES

@@ -11,7 +11,12 @@ import tube_oracle as oracle
 from hypothesis import HealthCheck, given, settings, strategies as st
 
 from actuator_opt.base.numeric import STEP
-from actuator_opt.models.solid_ply import (solid_expansion_load, solid_ply_stresses, solid_rotated, solid_stiffness)
+from actuator_opt.models.solid_ply import (
+    solid_expansion_load,
+    solid_ply_stresses,
+    solid_rotated,
+    solid_stiffness,
+)
 
 AGREEMENT = 1e-8
 """Largest difference, as a share of the largest value of the same kind in the wall."""

@@ -10,8 +10,7 @@ from hypothesis import given, settings, strategies as st
 from actuator_opt.base.errors import InputError
 from actuator_opt.design import get, read_design, with_values
 from actuator_opt.design.layup import NotationFault, read_notation
-from actuator_opt.design.template import init_text
-from actuator_opt.design.writer import to_yaml
+from actuator_opt.design.writer import init_text, to_yaml
 
 GOOD = init_text("test")
 LIST_FORM = GOOD[GOOD.index("    - material: t700_epoxy     # hoop") : GOOD.index("\nrod:\n")]

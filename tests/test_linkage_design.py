@@ -21,7 +21,7 @@ from actuator_opt.design import with_values
 from actuator_opt.design.schema import json_schema
 from actuator_opt.design.writer import to_yaml
 from actuator_opt.evaluation import compute
-from actuator_opt.evaluation.joints import at_stop
+from actuator_opt.evaluation.linkage import at_stop
 from actuator_opt.optimisation.actuator import build
 
 CLOSED, STROKE = 0.198, 0.110

@@ -9,7 +9,15 @@ import pytest
 from film_cases import AIR, ROUGH, lip, o_ring_profile
 
 from actuator_opt.base.numeric import STEP
-from actuator_opt.lubrication import (Elastic, Lubricant, SealElement, Surface, sensitivities, solve_film, solve_tandem)
+from actuator_opt.lubrication import (
+    Elastic,
+    Lubricant,
+    SealElement,
+    Surface,
+    sensitivities,
+    solve_film,
+    solve_tandem,
+)
 from actuator_opt.models.contact_profile import lip_profile
 
 PLACES = np.linspace(0, 1, 121)

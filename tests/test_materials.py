@@ -12,7 +12,14 @@ from actuator_opt.base import files as store
 from actuator_opt.base.errors import InputError
 from actuator_opt.base.quantities import MATERIAL_PROPERTIES
 from actuator_opt.design.material import BASES, CONFIDENCES, compliance_determinant
-from actuator_opt.design.materials import (Library, Spread, allowable_factor, compatible, load_library, ply_constants)
+from actuator_opt.design.materials import (
+    Library,
+    Spread,
+    allowable_factor,
+    compatible,
+    load_library,
+    ply_constants,
+)
 from actuator_opt.models.fluid import viscosity_astm_d341
 from actuator_opt.models.oil_laws import bulk_modulus_tait
 from actuator_opt.pages import material as material_page

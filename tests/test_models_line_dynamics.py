@@ -14,7 +14,14 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import jv, jve
 
-from actuator_opt.models import (accumulator, elements, line_ends, lines, resonators, transmission_line)
+from actuator_opt.models import (
+    accumulator,
+    elements,
+    line_ends,
+    lines,
+    resonators,
+    transmission_line,
+)
 
 PIPE = {"inner_diameter": 8e-3, "length": 1.2}
 SECTION = {"inner_diameter": 8e-3, "density": 865.0, "dynamic_viscosity": 0.04}

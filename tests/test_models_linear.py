@@ -19,7 +19,12 @@ from test_models_hydraulics_dynamics import CHAMBERS, CONDUCTANCE
 
 from actuator_opt.base.polynomial import at_frequency
 from actuator_opt.models import stiffness
-from actuator_opt.models.line_ends import (LineEnd, accumulator_end, parallel_ends, reducing_valve_end)
+from actuator_opt.models.line_ends import (
+    LineEnd,
+    accumulator_end,
+    parallel_ends,
+    reducing_valve_end,
+)
 from actuator_opt.models.linear import Side, dynamic_stiffness, linear_actuator
 from actuator_opt.models.loop import poles
 

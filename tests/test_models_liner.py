@@ -14,7 +14,12 @@ from scipy.optimize import brentq
 
 from actuator_opt.models.autofrettage import autofrettage
 from actuator_opt.models.barrel import wall_ratio_for_strain
-from actuator_opt.models.layered_tube import (TubeLayer, layered_tube, ply_stresses_at_faces, tube_state)
+from actuator_opt.models.layered_tube import (
+    TubeLayer,
+    layered_tube,
+    ply_stresses_at_faces,
+    tube_state,
+)
 from actuator_opt.models.liner import layer_thickness_for_strain, liner_cycle
 from actuator_opt.models.solid_ply import solid_stiffness
 

@@ -17,7 +17,7 @@ from hypothesis import given, strategies as st
 
 import actuator_opt as ao
 from actuator_opt.design.materials import load_library
-from actuator_opt.evaluation import compute, oil
+from actuator_opt.evaluation import compute, state
 from actuator_opt.pages.material import fluid_figure
 
 KNEE = Path(__file__).parent.parent / "designs" / "knee.yaml"
@@ -27,7 +27,7 @@ WARM, P_AIR = 313.15, 101325.0
 
 def of(name, **choices):
     """An oil of the library with the laws chosen."""
-    return oil.alone(load_library().get(name), **choices)
+    return state.alone(load_library().get(name), **choices)
 
 
 def state_of(**changes):
@@ -50,7 +50,7 @@ def state_of(**changes):
 )  # fmt: skip
 def test_bulk_modulus_without_air(law, bar, expected):
     """Tait by its published table; linear and constant by hand from 1367 MPa and slope 10.8."""
-    modulus = oil.pure_bulk_modulus(*of("iso_vg_32", bulk_modulus_law=law), WARM, bar * 1e5)
+    modulus = state.pure_bulk_modulus(*of("iso_vg_32", bulk_modulus_law=law), WARM, bar * 1e5)
     assert modulus / 1e6 == pytest.approx(expected, abs=0.55)
 
 
@@ -60,14 +60,14 @@ def test_the_default_law_is_linear_and_the_same_to_the_last_bit():
         k = 1367e6 * np.exp(0.0058 * (313.15 - temperature)) + 10.8 * p
         r = 0.005 * (P_AIR / (p + P_AIR)) ** (1 / 1.4)
         expected = k * (1 + r) / (1 + r * k / (1.4 * (p + P_AIR)))
-        assert oil.bulk_modulus(*of("iso_vg_32"), temperature, p) == expected
+        assert state.bulk_modulus(*of("iso_vg_32"), temperature, p) == expected
 
 
 def test_each_oil_of_a_paper_keeps_its_constant():
     """800 MPa of [ElAsswad2018] and 1600 MPa of [AaltoThesis] at every pressure and temperature."""
     for name, expected in (("elasswad2018_oil", 800e6), ("aalto_thesis_oil", 1600e6)):
         for temperature, pressure in ((280.0, 0.0), (350.0, 300e5)):
-            assert oil.pure_bulk_modulus(*of(name), temperature, pressure) == expected
+            assert state.pure_bulk_modulus(*of(name), temperature, pressure) == expected
 
 
 @pytest.mark.parametrize("law", ["constant", "linear", "tait"])
@@ -75,12 +75,12 @@ def test_each_oil_of_a_paper_keeps_its_constant():
 def test_density_follows_the_bulk_modulus_of_its_law(law, temperature):
     """K = rho dp/drho by central difference, in every law; at p = 0 the thermal density."""
     given_oil, p, h = of("iso_vg_46", bulk_modulus_law=law), 180e5, 1e4
-    low, rho, high = (oil.density(*given_oil, temperature, q) for q in (p - h, p, p + h))
-    modulus = oil.pure_bulk_modulus(*given_oil, temperature, p)
+    low, rho, high = (state.oil_density(*given_oil, temperature, q) for q in (p - h, p, p + h))
+    modulus = state.pure_bulk_modulus(*given_oil, temperature, p)
     assert modulus == pytest.approx(rho * 2 * h / (high - low), rel=1e-6)
     thermal = 875.0 / (1 + 7.7e-4 * (temperature - 288.15))
-    assert oil.density(*given_oil, temperature) == pytest.approx(thermal, rel=1e-12)
-    assert oil.density(*given_oil, temperature, 0.0) == pytest.approx(thermal, rel=1e-12)
+    assert state.oil_density(*given_oil, temperature) == pytest.approx(thermal, rel=1e-12)
+    assert state.oil_density(*given_oil, temperature, 0.0) == pytest.approx(thermal, rel=1e-12)
 
 
 def test_viscosity_under_pressure():
@@ -96,7 +96,7 @@ def test_viscosity_under_pressure():
         ("roelands", eta * math.exp(size * growth)),
         (None, eta * math.exp(size * growth)),
     ):
-        found = oil.dynamic_viscosity(*of("iso_vg_32", viscosity_pressure=law), 333.15, p)
+        found = state.dynamic_viscosity(*of("iso_vg_32", viscosity_pressure=law), 333.15, p)
         assert found == pytest.approx(expected, rel=5e-4)  # the curve is given to four digits
 
 
@@ -104,7 +104,7 @@ def test_the_coefficient_of_viscosity_lies_between_its_temperatures():
     """28/GPa at 30 and 20/GPa at 60 degC are 24/GPa at 45 degC; 28/GPa holds below 30 degC."""
     for celsius, alpha in ((45, 24e-9), (10, 28e-9)):
         given_oil = of("iso_vg_32", viscosity_pressure="barus")
-        ratio = [oil.dynamic_viscosity(*given_oil, celsius + 273.15, p) for p in (0.0, 100e5)]
+        ratio = [state.dynamic_viscosity(*given_oil, celsius + 273.15, p) for p in (0.0, 100e5)]
         assert ratio[1] / ratio[0] == pytest.approx(math.exp(alpha * 100e5), rel=1e-9)
 
 
@@ -112,7 +112,7 @@ def test_the_coefficient_of_viscosity_lies_between_its_temperatures():
 def test_pressure_never_thins_and_never_softens(name, pressure, step):
     """Viscosity, density and bulk modulus rise (or stay) with pressure in every oil."""
     given_oil = of(name)
-    for quantity in (oil.dynamic_viscosity, oil.density, oil.bulk_modulus):
+    for quantity in (state.dynamic_viscosity, state.oil_density, state.bulk_modulus):
         low = quantity(*given_oil, WARM, pressure)
         assert quantity(*given_oil, WARM, pressure + step) >= low * (1 - 1e-12)
 
@@ -121,7 +121,7 @@ def test_pressure_never_thins_and_never_softens(name, pressure, step):
 def test_more_air_is_never_stiffer(name, pressure, air):
     """Air softens every oil at every pressure."""
     more, some, none = (
-        float(oil.bulk_modulus(*of(name, air_content=share), WARM, pressure))
+        float(state.bulk_modulus(*of(name, air_content=share), WARM, pressure))
         for share in (air + 0.01, air, 0.0)
     )
     assert more < some <= none
@@ -133,7 +133,7 @@ def test_slow_air_is_softer_only_at_low_pressure(name):
     turn = 1.4**3.5 * P_AIR - P_AIR
     for pressure, softer in ((0.9 * turn, True), (1.1 * turn, False), (100e5, False)):
         fast, slow = (
-            oil.bulk_modulus(*of(name, polytropic_index=n), WARM, pressure) for n in (1.4, 1.0)
+            state.bulk_modulus(*of(name, polytropic_index=n), WARM, pressure) for n in (1.4, 1.0)
         )
         assert (slow < fast) == softer
 
@@ -144,7 +144,7 @@ def test_slow_air_is_softer_only_at_low_pressure(name):
 def test_laws_differentiate_by_complex_step(choice):
     """Slopes by temperature and pressure against central differences."""
     given_oil, at = of("iso_vg_68", **choice), (330.0, 150e5)
-    for quantity in (oil.dynamic_viscosity, oil.density, oil.bulk_modulus):
+    for quantity in (state.dynamic_viscosity, state.oil_density, state.bulk_modulus):
         for i, h in enumerate((1e-3, 1e3)):
             up, down, tilted = ([*at] for _ in range(3))
             up[i], down[i], tilted[i] = at[i] + h, at[i] - h, at[i] + 1e-30j
@@ -159,7 +159,7 @@ def test_the_state_knows_the_moving_chambers():
     s = done.state
     given_oil = of("iso_vg_32")
     for chamber, pressure in (("a", s.moving_a), ("b", s.moving_b)):
-        expected = oil.dynamic_viscosity(*given_oil, s.temperature, pressure)
+        expected = state.dynamic_viscosity(*given_oil, s.temperature, pressure)
         np.testing.assert_allclose(getattr(s, f"dynamic_viscosity_{chamber}"), expected, rtol=1e-12)
     assert (np.maximum(s.dynamic_viscosity_a, s.dynamic_viscosity_b) > s.dynamic_viscosity).all()
     plain = state_of(fluid__viscosity_pressure="none").state
@@ -206,7 +206,7 @@ def test_a_design_may_state_what_the_library_lacks():
     subject = ao.read(bench(law) + own + "    tait_coefficient: 11.9\n").subject()
     done = compute(subject, subject.values())
     given_oil = of("iso_vg_32", bulk_modulus_law="tait")
-    share = done.state.bulk_modulus_a / oil.bulk_modulus(*given_oil, WARM, done.state.holding_a)
+    share = done.state.bulk_modulus_a / state.bulk_modulus(*given_oil, WARM, done.state.holding_a)
     assert (share > 1).all()  # 8.5 instead of 8.4 GPa
     assert (share < 8.5 / 8.4).all()
 

@@ -14,7 +14,11 @@ import report_fixture as fixture
 from test_through_wall import text_of
 
 import actuator_opt as ao
-from actuator_opt.pages import (dynamics as dynamics_page, dynamics_figures as bode, stiffness as stiffness_page)
+from actuator_opt.pages import (
+    dynamics as dynamics_page,
+    dynamics_figures as bode,
+    stiffness as stiffness_page,
+)
 from actuator_opt.pages.stiffness import PARTS, fills
 from actuator_opt.rendering import paper, paper_plain as fallback, text
 from actuator_opt.rendering.axes import AREAS, Axes

@@ -17,7 +17,11 @@ import pytest
 from hypothesis import given, strategies as st
 
 from actuator_opt.identification.record import Record
-from actuator_opt.pages import (identification as rows, identification_figures as figures, read_attachment)
+from actuator_opt.pages import (
+    identification as rows,
+    identification_figures as figures,
+    read_attachment,
+)
 from actuator_opt.rendering import axes, chart, paper, paper_plain as fallback, terminal
 from actuator_opt.rendering.chart import Axis
 from actuator_opt.rendering.origin import Origin

@@ -17,7 +17,14 @@ from test_report_identification import agrees, printed
 
 from actuator_opt.base.errors import InputError
 from actuator_opt.design.scenario.model import Scenario
-from actuator_opt.pages import (read_attachment, simulation as subject, simulation_comparison as comparing, simulation_comparison_figures as pair_figures, simulation_energy, simulation_figures as figures)
+from actuator_opt.pages import (
+    read_attachment,
+    simulation as subject,
+    simulation_comparison as comparing,
+    simulation_comparison_figures as pair_figures,
+    simulation_energy,
+    simulation_figures as figures,
+)
 from actuator_opt.rendering import axes, paper, series, terminal
 from actuator_opt.rendering.blocks import Column, Pair, Status, Table
 from actuator_opt.rendering.ink import Ink

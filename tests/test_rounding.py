@@ -18,8 +18,7 @@ from actuator_opt.base.errors import InputError
 from actuator_opt.design import read_design
 from actuator_opt.design.model import Ply
 from actuator_opt.optimisation.actuator import build
-from actuator_opt.optimisation.branch_and_bound import search
-from actuator_opt.optimisation.listed import Listed
+from actuator_opt.optimisation.branch_and_bound import Listed, search
 from actuator_opt.optimisation.problem import BoxProblem, Values
 from actuator_opt.optimisation.rounding import Wanted, misfits, plies, rounded, sizes_of
 from actuator_opt.optimisation.solver import solve

@@ -19,7 +19,7 @@ import actuator_opt as ao
 from actuator_opt.api import recorded_runs
 from actuator_opt.base import runs as run_store
 from actuator_opt.optimisation import recorded
-from actuator_opt.optimisation.pareto_result import ParetoFront
+from actuator_opt.optimisation.pareto import ParetoFront
 from actuator_opt.sweeps.chunk import Study
 
 SMALL = BENCH.replace("  retention.wall:\n    lower: 1 mm\n    upper: 10 mm\n", "").replace(

@@ -19,7 +19,7 @@ from actuator_opt.base.quantities import RESULTS, SCENARIOS
 from actuator_opt.design.kinds import Fraction, ValueFault, example, read_quantity
 from actuator_opt.design.scenario import Scenario, read_design_of, read_scenario
 from actuator_opt.design.scenario.faults import cross_field, part_lists
-from actuator_opt.design.scenario.shapes import SHAPES
+from actuator_opt.design.scenario.kinds import SHAPES
 from actuator_opt.design.schema import json_schema, quantity_schema
 from actuator_opt.design.walls import entries
 

@@ -16,7 +16,15 @@ from test_seals import BLOCK, BORE, DRAIN, MODULUS, PULL, ROD, STEP_NUMBERS, SUP
 
 import actuator_opt as ao
 from actuator_opt.evaluation import compute, film as films
-from actuator_opt.lubrication import (Contact, Elastic, Lubricant, SealElement, Surface, solve_film, solve_tandem)
+from actuator_opt.lubrication import (
+    Contact,
+    Elastic,
+    Lubricant,
+    SealElement,
+    Surface,
+    solve_film,
+    solve_tandem,
+)
 from actuator_opt.optimisation.actuator import build
 
 NODES = 121

@@ -12,7 +12,7 @@ from scipy import signal, stats
 from scipy.optimize import curve_fit
 
 import actuator_opt as ao
-from actuator_opt.design.material_fits import fit_double_exponential, fit_power_law
+from actuator_opt.design.material import fit_double_exponential, fit_power_law
 from actuator_opt.identification import Record
 from actuator_opt.identification.conditioning import condition, low_pass, pass_cutoff
 from actuator_opt.studies.bench import bench

@@ -10,7 +10,7 @@ import pytest
 
 import actuator_opt as ao
 from actuator_opt.optimisation.evaluator import Evaluator
-from actuator_opt.optimisation.resolve.batch import Batch, run_batch
+from actuator_opt.optimisation.resolve.steps import Batch, run_batch
 
 ROOT = Path(__file__).parents[1]
 STEEL = ROOT / "designs" / "steel_baseline.yaml"

@@ -27,7 +27,7 @@ from simulation_case import (
     scenario,
 )
 
-from actuator_opt.design.linkage import Linkage
+from actuator_opt.design.model import Linkage
 from actuator_opt.evaluation.springs import Give
 from actuator_opt.models.loop import ControllerGains
 from actuator_opt.studies.plant import LineData, Plane, SealData

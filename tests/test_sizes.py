@@ -22,8 +22,7 @@ from actuator_opt.design.sizes import groups
 from actuator_opt.design.standard_sizes import SERIES
 from actuator_opt.design.writer import to_yaml
 from actuator_opt.optimisation.actuator import build
-from actuator_opt.optimisation.branch_and_bound import search
-from actuator_opt.optimisation.listed import Listed
+from actuator_opt.optimisation.branch_and_bound import Listed, search
 from actuator_opt.optimisation.problem import BoxProblem, Values
 from actuator_opt.optimisation.solver import solve
 from actuator_opt.pages.optimum import rounding_notes

@@ -15,7 +15,7 @@ import pytest
 from actuator_opt import api as verbs
 from actuator_opt.design.materials import load_library
 from actuator_opt.evaluation.film import FilmRow, slopes, solve
-from actuator_opt.evaluation.seal_contact import seal_contact
+from actuator_opt.evaluation.rings import seal_contact
 from actuator_opt.replicas import trends
 from actuator_opt.replicas.trends import FACTORS
 

@@ -8,15 +8,46 @@ from .exports import explore, export
 from .fronts import pareto, write_front, write_front_csv
 from .installation import Installation, doctor
 from .optimum import Prices, evaluate, optimise, sensitivity, with_yield
-from .recorded_runs import (Run, delete_run, prune_runs, read_run, record, record_front, record_run, record_sweep, runs)
-from .records import (Calibrated, bending, calibrate, identify, read_record, write_calibration, write_identification, write_series)
+from .recorded_runs import (
+    Run,
+    delete_run,
+    prune_runs,
+    read_run,
+    record,
+    record_front,
+    record_run,
+    record_sweep,
+    runs,
+)
+from .records import (
+    Calibrated,
+    bending,
+    calibrate,
+    identify,
+    read_record,
+    write_calibration,
+    write_identification,
+    write_series,
+)
 from .repeating import Rerun, rerun
 from .reports import save
 from .restoring import Restored, draw_run, report_run, restore
 from .results import exit_code, report
 from .seals import seal, with_contact, write_seal
 from .sessions import Curve, Prediction, Price, Session, session
-from .simulations import (Compared, Trial, compare_measured, fitting, read_scenario, servo_sensitivities, simulate, verify_dynamics, write_comparison, write_signals, write_simulation)
+from .simulations import (
+    Compared,
+    Trial,
+    compare_measured,
+    fitting,
+    read_scenario,
+    servo_sensitivities,
+    simulate,
+    verify_dynamics,
+    write_comparison,
+    write_signals,
+    write_simulation,
+)
 from .studies import uncertainty, write_draws, write_uncertainty
 from .sweeping import draw_sweep, sweep
 

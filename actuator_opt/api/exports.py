@@ -162,7 +162,7 @@ def _require(target: Path, source: Path) -> None:
 
 def _front(run: Run, plugins: Plugins) -> Explored:
     """The designs of a recorded front."""
-    from ..optimisation.pareto_result import ParetoFront
+    from ..optimisation.pareto import ParetoFront
     from ..sweeps.explored import explored_designs
 
     back = restore(run, plugins=plugins)

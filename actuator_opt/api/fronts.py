@@ -11,7 +11,7 @@ from .actuator import Actuator, Plugins, answered, located, place
 from .reports import Paper, page_of, report_files
 
 if TYPE_CHECKING:
-    from ..optimisation.pareto_result import ParetoFront
+    from ..optimisation.pareto import ParetoFront
     from ..pages import ReportFile
 
 

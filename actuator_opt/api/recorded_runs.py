@@ -28,7 +28,7 @@ from .actuator import Actuator
 from .reports import date_from_environment, file_name, verification_tables
 
 if TYPE_CHECKING:
-    from ..optimisation.pareto_result import ParetoFront
+    from ..optimisation.pareto import ParetoFront
     from ..optimisation.result import Optimisation
     from ..pages import Table
     from ..rendering.console import Style

@@ -23,7 +23,7 @@ from .recorded_runs import Run, differing, run_fault
 from .reports import Paper, is_date, verification_tables
 
 if TYPE_CHECKING:
-    from ..optimisation.pareto_result import ParetoFront
+    from ..optimisation.pareto import ParetoFront
     from ..optimisation.result import Optimisation
     from ..pages import ReportFile, Table
     from ..rendering.console import Style
@@ -272,7 +272,7 @@ def _differences(
     then: Mapping[str, Any], subject: Evaluation | Optimisation | ParetoFront
 ) -> dict[str, tuple[Any, Any]]:
     """Changes: status, variables by PATH, metrics by name."""
-    from ..optimisation.pareto_result import ParetoFront
+    from ..optimisation.pareto import ParetoFront
     from ..pages.pareto import front_outcome
     from ..pages.report import outcome
 
@@ -289,7 +289,7 @@ def _differences(
 
 def _hash(subject: Evaluation | Optimisation | ParetoFront) -> str | None:
     """The hash in its report; None if that only covers the input."""
-    from ..optimisation.pareto_result import ParetoFront
+    from ..optimisation.pareto import ParetoFront
     from ..pages.report import parts_of
 
     return None if isinstance(subject, ParetoFront) else parts_of(subject)[0].spec_hash

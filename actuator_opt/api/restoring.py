@@ -19,7 +19,7 @@ from .reports import Paper, report_design
 if TYPE_CHECKING:
     from ..evaluation import Evaluation
     from ..evaluation.plugin import Plugin
-    from ..optimisation.pareto_result import ParetoFront
+    from ..optimisation.pareto import ParetoFront
     from ..optimisation.result import Optimisation
     from ..pages import ReportFile
 
@@ -84,7 +84,7 @@ def restore(of: Run | str | Path, *, plugins: Plugins = ()) -> Restored:
 
 def _solved(found: Run, own: tuple[Plugin, ...]) -> tuple[Optimisation | ParetoFront, Evaluation]:
     """An optimisation or a front, and its recorded evaluation."""
-    from ..optimisation.pareto_result import ParetoFront
+    from ..optimisation.pareto import ParetoFront
     from ..optimisation.recorded import from_plain
     from ..optimisation.result import Optimisation
 

@@ -133,7 +133,7 @@ KINDS = kinds(
         report="report", csv=None, record=None,
     ),
     ResultKind(
-        "optimisation.pareto_result:ParetoFront", _solved, page="pages.pareto:page",
+        "optimisation.pareto:ParetoFront", _solved, page="pages.pareto:page",
         report="api:write_front", csv="api:write_front_csv",
         record="api:record_front", writes=lambda front: bool(front.points),
     ),

@@ -14,7 +14,20 @@ from ..base import files as store, runs as run_store
 from ..base.errors import Diagnostic, ExitCode, UsageError, shown
 from . import streams
 from .job import Job
-from .options import (REPORTS, AllPages, Date, DesignFile, Format, Json, Out, PluginFile, Quiet, Report, Seed, Set)
+from .options import (
+    REPORTS,
+    AllPages,
+    Date,
+    DesignFile,
+    Format,
+    Json,
+    Out,
+    PluginFile,
+    Quiet,
+    Report,
+    Seed,
+    Set,
+)
 
 if TYPE_CHECKING:
     from ..api import Restored
@@ -84,8 +97,8 @@ def _start_text(
     """Start file of a design, or of a scenario to be written to `out`."""
     from ..design import read_design
     from ..design.kinds import ValueFault
-    from ..design.scenario.template import scenario_text
-    from ..design.template import init_text
+    from ..design.scenario.reader import scenario_text
+    from ..design.writer import init_text
 
     try:
         if scenario is None:

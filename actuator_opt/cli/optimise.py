@@ -10,7 +10,29 @@ import typer
 from ..base.bounds import CHECKS
 from ..base.errors import Diagnostic, ExitCode
 from .job import Job
-from .options import (REPORTS, Algorithm, AllPages, Certify, Date, DesignFile, Format, Json, NoRecord, Out, PluginFile, Quiet, Report, Seed, Set, StandardSizes, Starts, VerifyDynamics, WholePlies, Write, Yield)
+from .options import (
+    REPORTS,
+    Algorithm,
+    AllPages,
+    Certify,
+    Date,
+    DesignFile,
+    Format,
+    Json,
+    NoRecord,
+    Out,
+    PluginFile,
+    Quiet,
+    Report,
+    Seed,
+    Set,
+    StandardSizes,
+    Starts,
+    VerifyDynamics,
+    WholePlies,
+    Write,
+    Yield,
+)
 
 if TYPE_CHECKING:
     from ..api import Actuator, Trial

@@ -11,7 +11,23 @@ import typer
 from ..base.errors import Diagnostic, ExitCode, UsageError
 from ..base.quantities import RECORDS
 from .job import Job
-from .options import (REPORTS, AllPages, Date, Format, Json, Out, PluginFile, Quiet, Report, Seed, Set, Units, file_of_units, named_columns, quantity_of)
+from .options import (
+    REPORTS,
+    AllPages,
+    Date,
+    Format,
+    Json,
+    Out,
+    PluginFile,
+    Quiet,
+    Report,
+    Seed,
+    Set,
+    Units,
+    file_of_units,
+    named_columns,
+    quantity_of,
+)
 
 RecordFile = Annotated[
     str, typer.Argument(metavar="RECORD", help="CSV file of the test record, or - for stdin.")

@@ -11,7 +11,24 @@ from ..base.errors import Diagnostic, ExitCode, UsageError
 from ..base.files import require_apart
 from ..base.quantities import INPUTS
 from .job import Job
-from .options import (REPORTS, AllPages, Date, DesignFile, Format, Json, Out, PluginFile, Quiet, Report, Seed, Set, Units, file_of_units, named_columns, quantity_of)
+from .options import (
+    REPORTS,
+    AllPages,
+    Date,
+    DesignFile,
+    Format,
+    Json,
+    Out,
+    PluginFile,
+    Quiet,
+    Report,
+    Seed,
+    Set,
+    Units,
+    file_of_units,
+    named_columns,
+    quantity_of,
+)
 
 Draws = Annotated[
     int,

@@ -14,10 +14,9 @@ from ..base.quantities import Quantity
 from ..metrics import METRICS
 from . import choice_list, requirements as wishes
 from .faults import cross_field, material_faults
-from .kinds import Fraction, Of, ValueFault, example, what
+from .kinds import Fraction, Of, Section, ValueFault, example, what
 from .model import Design, Ply
 from .paths import put, resolve, spell
-from .section import Section
 from .view import Materials
 from .walls import Entry, Loc, child_at, entries, leaves
 

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final, Literal, TypeAlias, get_args
 
-from pydantic import GetCoreSchemaHandler
+from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from ..base import kinds, quantities, units
@@ -386,3 +386,9 @@ class Goal(Kind):
             if not isinstance(weight, (int, float)) or not 0 < weight < math.inf:
                 raise ValueFault(f"{name}: the weight must be > 0", "write e.g. mass: 1")
         return {str(name): float(weight) for name, weight in value.items()}
+
+
+class Section(BaseModel):
+    """A block of the design file; unknown keys are faults."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)

@@ -9,8 +9,7 @@ from typing import NamedTuple
 from ..base import quantities
 from ..base.errors import Fault
 from ..models import linkage as crank
-from .linkage import closed_length
-from .model import PLAIN_CAP
+from .model import PLAIN_CAP, closed_length
 from .view import View, length_text
 from .walls import Loc
 

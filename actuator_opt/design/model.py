@@ -6,20 +6,203 @@ declaration (`quantities.INPUTS`). Sections contain no physics.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
 from pydantic import Field, create_model
 
+from ..base.numeric import Array
 from ..base.quantities import Sense
 from ..joints.kinds import JOINTS
+from ..models import mass
 from . import choices
 from .choices import Paper
-from .circuit import Control, Line, Ports, Valve
-from .kinds import CaseName, Flag, Fraction, Goal, MaterialName, Of, Position, PositionKind, Text
-from .linkage import Linkage, Load
+from .kinds import (
+    CaseName,
+    Choice,
+    Flag,
+    Fraction,
+    Goal,
+    MaterialName,
+    Of,
+    Position,
+    PositionKind,
+    Section,
+    Sizes,
+    Text,
+)
 from .seals import Seals
-from .section import Section
-from .variable import Measured, Uncertain, Variable
+
+
+class Line(Section):
+    """A pipe or hose of one chamber (a: cap side, b: rod side), in order from the port."""
+
+    chamber: choices.Chamber
+    type: choices.LineType = "pipe"
+    length: Annotated[float, Of("part_length", "length of the line")]
+    inner_diameter: Annotated[float, Of("diameter", "inner diameter")]
+    outer_diameter: Annotated[float, Of("diameter", "outer diameter")]
+    material: Annotated[str, MaterialName("isotropic")]
+    rigid: Annotated[bool, Flag("rigid wall: only the oil is compliant")] = False
+    beyond_throttle: Annotated[
+        bool, Flag("the line is between the throttle and the line's end")
+    ] = False
+
+
+class Valve(Section):
+    """A proportional or servo valve with four edges, linear in the signal."""
+
+    rated_flow: Annotated[float, Of("rated_flow", "flow through one metering edge at full signal")]
+    rated_drop: Annotated[
+        float, Of("pressure_drop", "pressure drop across the edge at rated flow")
+    ] = 35e5
+    leakage_flow: Annotated[
+        float, Of("leakage_flow", "leakage of one edge with centred spool: half of the valve's")
+    ] = 0.0
+    leakage_drop: Annotated[
+        float, Of("pressure_drop", "pressure drop across the edge at the leakage flow")
+    ] = 50e5
+    tank_leakage_drop: Annotated[
+        float | None,
+        Of("pressure_drop", "the same across an edge to tank; default: leakage_drop"),
+    ] = None
+    rated_viscosity: Annotated[
+        float | None,
+        Of("oil_viscosity", "oil viscosity at rated flow; default: rated flow for any oil"),
+    ] = None
+    offset: Annotated[float, Of("signal_offset", "signal that centres the spool")] = 0.0
+    signal: Annotated[float, Of("signal", "signal of the fully open spool")] = 10.0
+    natural_frequency: Annotated[float, Of("frequency", "natural frequency of the spool")]
+    damping_ratio: Annotated[float, Of("damping_ratio", "damping ratio of the spool")] = 0.7
+
+
+class Throttle(Section):
+    """One-way flow-control valves that throttle the outflow; linear about the flow of each case."""
+
+    area: Annotated[float, Of("orifice_area", "area of the fully open needle")]
+    opening: Annotated[float, Of("opening", "opening of the needle")] = 1.0
+    check_area: Annotated[float, Of("orifice_area", "area of the open check valve")]
+    cracking_pressure: Annotated[
+        float, Of("pressure_drop", "opening pressure of the check valve")
+    ] = 0.4e5
+
+
+class ReducingValve(Section):
+    """A pressure reducing valve as a second-order line end, for small signals."""
+
+    conductance: Annotated[float, Of("conductance", "static regulating conductance")]
+    passive_conductance: Annotated[
+        float, Of("conductance", "conductance of the valve opening, at any frequency")
+    ] = 0.0
+    natural_frequency: Annotated[float, Of("frequency", "natural frequency of the valve")]
+    damping_ratio: Annotated[float, Of("damping_ratio", "damping ratio of the valve")]
+
+
+class Accumulator(Section):
+    """A gas accumulator on the line of one chamber; the gas has fluid.polytropic_index."""
+
+    chamber: choices.Chamber
+    gas_volume: Annotated[float, Of("gas_volume", "gas volume at the precharge")]
+    precharge: Annotated[float, Of("precharge", "gas precharge, gauge")]
+    neck_length: Annotated[float, Of("part_length", "length of the neck")]
+    neck_diameter: Annotated[float, Of("diameter", "inner diameter of the neck")]
+
+
+class Ports(Section):
+    """End of both lines while the load excites the actuator, with the position loop open."""
+
+    end: choices.End = "closed"
+    throttle: Throttle | None = None
+    reducing_valve: ReducingValve | None = None
+    accumulators: Annotated[tuple[Accumulator, ...], Field(max_length=8)] = ()
+
+
+class Control(Section):
+    """The position loop: signal = gain x position error, measured at the load."""
+
+    gain: Annotated[
+        float | None,
+        Of("gain", "signal per position error; default: half the ultimate gain"),
+    ] = None
+
+
+class Linkage(Section):
+    """Two pivots about a joint axis with the actuator between them; angles grow as it extends."""
+
+    base_radius: Annotated[float, Of("pivot_radius", "distance from joint axis to fixed pivot")]
+    crank_radius: Annotated[float, Of("pivot_radius", "distance from joint axis to crank pin")]
+    angle_offset: Annotated[
+        float, Of("joint_angle", "angle between both radii at joint angle 0, signed")
+    ] = 0.0
+
+
+class Load(Section):
+    """The load on the rod."""
+
+    mass: Annotated[float, Of("load_mass", "moving mass, reflected to the rod")] = 0.0
+    inertia: Annotated[
+        float, Of("load_inertia", "inertia about the joint of the linkage; added to mass")
+    ] = 0.0
+
+
+def closed_length(
+    *, barrel_length: Array, plate: Array, extension: Array, pin_diameter: Array
+) -> Array:
+    """Pin-to-pin length of the retracted actuator [m]."""
+    eye = mass.eye_length(pin_diameter=pin_diameter)
+    return barrel_length + 2 * plate + extension + 2 * eye
+
+
+class Variable(Section):
+    """Bounds and start (SI) of a dimension that the optimiser varies; in the file, units by PATH.
+
+    It varies continuously, or takes the `sizes` of a series or a list, or multiples of `step`.
+    """
+
+    lower: float
+    upper: float
+    start: float
+    sizes: Annotated[str | tuple[float, ...] | None, Sizes()] = None
+    step: float | None = None
+
+
+class Measured(Section):
+    """Test result for a value of the design: its 95 % bounds.
+
+    SI; in the file, units by PATH.
+    """
+
+    lower: float
+    upper: float
+    record: Annotated[str, Text("name of the record in a report", 200)]
+
+
+Shape: TypeAlias = Literal["normal", "lognormal", "uniform", "loguniform", "triangular", "fixed"]
+
+
+class Uncertain(Section):
+    """Scatter of a value; SI, in the file units by PATH."""
+
+    distribution: Annotated[
+        Shape,
+        Choice(
+            "distribution of the value; normal: about the value, by deviation or cv; "
+            "lognormal: the value is its median, by cv or by the factor that covers 95 %; "
+            "uniform: between bounds, half_width about the value, or an ISO 286 tolerance; "
+            "loguniform: uniform in its logarithm, between bounds or value/factor to value*factor; "
+            "triangular: as uniform, with the mode at the value; "
+            "fixed: no scatter, even if libraries or practice give some"
+        ),
+    ]
+    lower: float | None = None
+    upper: float | None = None
+    deviation: float | None = None
+    half_width: float | None = None
+    cv: float | None = None
+    factor: float | None = None
+    tolerance: Annotated[str | None, Text("ISO 286 class of a diameter or length, e.g. H8", 10)] = (
+        None
+    )
+    source: Annotated[str | None, Text("source, as named in a report", 200)] = None
 
 
 class FluidSection(Section):

@@ -18,9 +18,8 @@ from ..base import errors, quantities, units
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..base.quantities import Quantity
 from ..metrics import METRICS
-from .kinds import Fraction, ValueFault
+from .kinds import Fraction, Section, ValueFault
 from .model import Design
-from .section import Section
 from .uncertain import NUMBERS, quantity_of_entry
 from .walls import Entry, Loc, child, child_at, entries, leaves, number_of
 

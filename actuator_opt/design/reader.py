@@ -16,10 +16,9 @@ from ..base.files import read_bytes
 from ..base.quantities import Quantity
 from . import layup
 from .build import MOST_FAULTS, Root, build, copy_tree
-from .kinds import ValueFault
+from .kinds import Section, ValueFault
 from .model import Design
 from .paths import put, resolve, spell
-from .section import Section
 from .view import Materials
 from .walls import Loc
 from .yaml_source import MAX_BYTES, Document, Span, decode, parse

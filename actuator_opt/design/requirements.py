@@ -14,10 +14,9 @@ from ..base import errors, quantities
 from ..base.errors import Fault
 from ..base.quantities import Quantity
 from . import sizes, uncertain_faults
-from .kinds import ValueFault, example, read_quantity, what
+from .kinds import Section, ValueFault, example, read_quantity, what
 from .model import Design
 from .paths import Target, resolve
-from .section import Section
 from .walls import Loc, entries, number_of, value_at
 
 _LARGEST = {

@@ -16,14 +16,24 @@ from ..base import quantities, units
 from ..base.quantities import Quantity
 from ..metrics import METRICS
 from . import choice_list, layup, requirements as wishes
-from .kinds import (CaseName, Flag, Kind, MaterialName, Of, PositionKind, Sizes, Text, ValueFault, example)
+from .kinds import (
+    CaseName,
+    Flag,
+    Kind,
+    MaterialName,
+    Of,
+    PositionKind,
+    Section,
+    Sizes,
+    Text,
+    ValueFault,
+    example,
+)
 from .material import ROLES
-from .model import Design, Ply
-from .section import Section
+from .model import Design, Ply, Uncertain
 from .sizes import MOST_SIZES
 from .standard_sizes import SERIES
 from .uncertain import NUMBERS, quantity_of_entry
-from .variable import Uncertain
 from .view import Materials
 from .walls import Entry, entries
 

@@ -12,9 +12,9 @@ from ..base.errors import Fault, InputError, article
 from ..friction.kinds import LAWS as FRICTION_LAWS
 from ..models.elastomer import modulus_gent
 from ..models.seals import LAWS
+from ..seals.contact import GROOVE_WIDTH
 from ..seals.kinds import SIZES, TYPES
 from ..seals.seal_type import SealType, SizeFault
-from ..seals.contact import GROOVE_WIDTH
 from ..seals.u_cup import lip_faults
 from . import wall_faults
 from .seals import BACK_UPS

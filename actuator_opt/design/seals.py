@@ -10,12 +10,11 @@ from ..friction import coefficient
 from ..friction.kinds import LAWS
 from ..friction.law import FrictionLaw
 from ..seals import o_ring
+from ..seals.contact import GROOVE_WIDTH
 from ..seals.kinds import SIZES, TYPES
 from ..seals.seal_type import SealType
-from ..seals.contact import GROOVE_WIDTH
 from . import choices
-from .kinds import MaterialName, Of
-from .section import Section
+from .kinds import MaterialName, Of, Section
 
 BACK_UPS = {"none": 0, "one": 1, "both": 2}
 """Number of back-up rings by the word of `back_up`."""

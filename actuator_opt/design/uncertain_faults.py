@@ -8,9 +8,9 @@ from typing import Any, get_args
 from ..base import errors
 from ..base.errors import Fault
 from .kinds import ValueFault, example, read_quantity, what
+from .model import Shape
 from .paths import Target, resolve
 from .uncertain import KEYS, NUMBERS, misfit, quantity_of_entry
-from .variable import Shape
 from .walls import number_of, value_at
 
 

@@ -7,8 +7,8 @@ from typing import Any, Protocol, runtime_checkable
 
 from ..base import quantities
 from ..base.errors import Fault
+from .kinds import Section
 from .model import Design
-from .section import Section
 from .walls import Loc, child_at, number_of, value_at
 
 

@@ -12,9 +12,8 @@ from types import UnionType
 from typing import Any, Literal, TypeAlias, Union, get_args, get_origin
 
 from ..base.quantities import Quantity
-from .kinds import Choice, Fraction, Kind, Of, PositionKind
+from .kinds import Choice, Fraction, Kind, Of, PositionKind, Section
 from .model import Design
-from .section import Section
 
 Loc: TypeAlias = tuple[str | int, ...]
 """Keys and indices from the root to a value."""

@@ -5,29 +5,137 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
 from ..base import quantities
-from ..design import paths
+from ..base.errors import InputError
+from ..base.numeric import Array
+from ..design import paths, standard_sizes as standards
+from ..design.housings import gland_deviations, housings, housings_for
 from ..design.material import Material
 from ..design.materials import Library, load_library
 from ..design.model import Design
 from ..metrics import METRICS, MetricRow
 from ..metrics.table import CHECKS
 from ..version import VERSION
-from . import dynamics_study as dynamics, outline, standard_parts, validity as doubts
-from .governing import governing
-from .kernel import ModelRun, PreparedDesign, compute
-from .limits import (ALL_CASES, Limit, LimitRow, MetricArrays, all_limits, allowances, by_case, check_limits, default_limits, extremes, rows_of)
+from . import dynamics_study as dynamics, outline, validity as doubts
+from .film import floats
+from .kernel import ModelRun, PreparedDesign, compute, governing
+from .limits import (
+    ALL_CASES,
+    Limit,
+    LimitRow,
+    MetricArrays,
+    all_limits,
+    allowances,
+    by_case,
+    check_limits,
+    default_limits,
+    extremes,
+    rows_of,
+)
 from .plugin import Plugin
 from .result import Check, Evaluation, Metric, Requirement, StrokeCurve
-from .rings import Ring
+from .rings import Place, Ring, squeezes
 from .validity import model_of
 from .values import Values, of_case
 from .wall_study import study as wall_study
+
+PLACES: tuple[Place, ...] = ("piston", "rod")
+
+
+NEAR = 0.02
+"""Relative difference of a housing's depth or length that is ignored."""
+
+
+_SIZES, _GLANDS, _SECTIONS = "standard sizes", "standard glands", "ISO 3601-2 sections (AS568)"
+
+
+def sizes(design: Design) -> Check:
+    """Whether bore and rod are ISO 3320 sizes; otherwise the nearest sizes."""
+    odd = []
+    asked: tuple[tuple[Literal["bore", "rod"], float], ...] = (
+        ("bore", design.cylinder.bore),
+        ("rod", design.rod.outer_diameter),
+    )
+    for what, value in asked:
+        near = standards.nearest_standard(what, value, "nearest")
+        if abs(near - value) > 1e-9:
+            odd.append(f"{what} {1e3 * value:.4g} mm (nearest {1e3 * near:g} mm)")
+    if odd:
+        reason = "free sizes: " + ", ".join(odd)
+        return Check(_SIZES, "not_checked", reason, source="ISO 3320")
+    return Check(_SIZES, "met", "bore and rod are standard sizes", source="ISO 3320")
+
+
+def glands(rings: Iterable[Ring]) -> Check:
+    """Whether every groove conforms to a standard; otherwise the differences."""
+    odd = [text for ring in rings for text in _remarks(floats(ring, 0))]
+    if odd:
+        return Check(_GLANDS, "not_checked", "free glands: " + "; ".join(odd), source=_SECTIONS)
+    return Check(_GLANDS, "met", "all glands are standard", source=_SECTIONS)
+
+
+def _remarks(ring: Ring) -> Iterator[str]:
+    """Deviations of a groove from its standard."""
+    if ring.element.seal_type.o_ring_gland:
+        yield from _o_ring(ring)
+    elif any(housings(ring.element.type, place) for place in PLACES):
+        yield from _housing(ring)
+    else:
+        yield f"{ring.label}: no standard housing for a {ring.element.type}"
+
+
+def _o_ring(ring: Ring) -> Iterator[str]:
+    loosest, tightest = squeezes(ring.at(stretch=0.0), growth=0.0, aside=0.0, ratio=1.0)
+    area = float(np.squeeze(ring.groove.pieces[0].area))
+    try:
+        found = gland_deviations(
+            standards.gland(ring["section"]),
+            squeeze_min=float(loosest),
+            squeeze_max=float(tightest),
+            width=ring["groove_width"],
+            fill=area / (ring["groove_width"] * ring["gland_depth"]),
+            stretch=ring["stretch"],
+            back_up_rings=ring.element.back_ups,
+        )
+    except InputError as error:
+        yield f"{ring.label}: {error.diagnostics[0].message}"
+        return
+    for one in found:
+        scale, unit = (1e3, "mm") if one.what == "groove width" else (100, "%")
+        yield (
+            f"{ring.label}: {one.what} {scale * one.value:.3g} {unit}, "
+            f"{scale * one.lower:.3g} to {scale * one.upper:.3g} {unit}"
+        )
+
+
+def _housing(ring: Ring) -> Iterator[str]:
+    try:
+        known = housings_for(ring.element.type, ring.name, ring["diameter"])
+    except InputError as error:
+        yield f"{ring.label}: {error.diagnostics[0].message}"
+        return
+    depth, length = ring["gland_depth"], ring["groove_width"]
+    if any(
+        abs(one.radial_depth - depth) <= NEAR * depth
+        and any(abs(x - length) <= NEAR * length for x in one.lengths)
+        for one in known
+    ):
+        return
+    listed = ", ".join(
+        f"{1e3 * one.radial_depth:g} x {' or '.join(f'{1e3 * x:g}' for x in one.lengths)}"
+        for one in known[:2]
+    )
+    yield (
+        f"{ring.label}: groove {1e3 * depth:.3g} x {1e3 * length:.3g} mm, "
+        f"{known[0].standard} has {listed} mm"
+    )
+
 
 NO_ANSWER = "not computable for these dimensions"
 NOT_COMPUTED = "not computed for this design"
@@ -255,8 +363,8 @@ def _checks(
             yield Check(check.name, "not_checked", reason, name)
         else:
             yield _check(check.name, metric, limits.get(name), computed, v, requirements)
-    yield standard_parts.sizes(design)
-    yield standard_parts.glands(rings)
+    yield sizes(design)
+    yield glands(rings)
 
 
 def _check(
@@ -323,3 +431,108 @@ def _curve(done: ModelRun, v: Values, case: str | None) -> StrokeCurve:
         stiffness=1 / sum(parts.values()),
         contributions=parts,
     )
+
+
+@dataclass(frozen=True, slots=True)
+class Many:
+    """Results of many designs, arrays (designs,).
+
+    `metrics` are the governing values, NaN if missing; `margin` is the least margin of all limits,
+    including the check list, and `missed` the index of its limit in `limits`. `read` are the PATHs
+    that models and limits have read.
+    """
+
+    metrics: dict[str, Array]
+    margin: Array
+    missed: Array
+    limits: tuple[Limit, ...]
+    read: frozenset[str]
+
+    @property
+    def feasible(self) -> Array:
+        """Whether requirements and checks are met, (designs,)."""
+        found: Array = self.margin >= -TOLERANCE
+        return found
+
+
+@np.errstate(all="ignore")  # values that are not finite are NaN
+def evaluate_many(
+    subject: PreparedDesign,
+    varied: Mapping[str, Array],
+    count: int,
+    wanted: Container[str] | None = None,
+) -> Many:
+    """Metrics and limits of designs that differ in some numbers.
+
+    Parameters
+    ----------
+    subject : the design
+    varied : arrays (designs,) by PATH, SI
+    count : number of designs
+    wanted : metrics to compute; default: all
+    """
+    v = subject.values(varied)
+    computed = compute(subject, v).computed
+    metrics = {
+        name: _governing(name, computed, v, subject, count)
+        for name in subject.quantities
+        if wanted is None or name in wanted
+    }
+    limits = limits_of(subject)
+    margin, missed = np.full(count, np.inf), np.zeros(count, dtype=np.int32)
+    for number, value in _margins(limits, computed, v, count):
+        worse = ~(value >= margin)  # NaN counts as the worst
+        margin = np.where(worse, np.where(np.isnan(value), -np.inf, value), margin)
+        missed[worse] = number
+    return Many(metrics, margin, missed, limits, frozenset(v.read))
+
+
+@np.errstate(all="ignore")
+def margins_of(subject: PreparedDesign, varied: Mapping[str, Array], count: int) -> Array:
+    """Margins of all limits of such designs, (limits, designs), in the order of `limits_of`.
+
+    Infinity if a limit does not apply, NaN if its value is not finite.
+    """
+    v = subject.values(varied)
+    limits = limits_of(subject)
+    found = np.full((len(limits), count), np.inf)
+    for number, value in _margins(limits, compute(subject, v).computed, v, count):
+        found[number] = np.minimum(found[number], value)
+    return found
+
+
+def margins_many(
+    subject: PreparedDesign, varied: Mapping[str, Array], count: int
+) -> dict[str, Array]:
+    """Margins of all limits (designs,) of designs that differ in some numbers, by name.
+
+    Infinity if a limit does not apply; minus infinity if its value is unknown.
+    """
+    found = margins_of(subject, varied, count)
+    return {
+        limit.name: np.where(np.isnan(row), -np.inf, row)
+        for limit, row in zip(limits_of(subject), found, strict=True)
+    }
+
+
+def _margins(
+    limits: Sequence[Limit], computed: MetricArrays, v: Values, count: int
+) -> Iterator[tuple[int, Array]]:
+    """Index of a limit, with its margins (designs,) in one case at one place."""
+    for number, limit in enumerate(limits):
+        for row in rows_of(limit, computed, v):
+            yield number, np.broadcast_to(row.margin, (count,))
+
+
+def limits_of(subject: PreparedDesign) -> tuple[Limit, ...]:
+    """Requirements and checks of a feasible design."""
+    every = all_limits(subject.design, subject.plugins)
+    return tuple(limit for limit in every if limit.origin != "advice")
+
+
+def _governing(
+    name: str, computed: MetricArrays, v: Values, subject: PreparedDesign, count: int
+) -> Array:
+    """Governing value of every design (count,); infinity (unlimited) does not count as a value."""
+    found = governing(name, computed, v, subject)
+    return np.broadcast_to(np.where(np.isfinite(found), found, np.nan), (count,))

@@ -8,8 +8,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from ..base.numeric import Array, maximum, where
-from ..design.circuit import Line
-from ..design.model import Design
+from ..design.model import Design, Line
 from ..models import accumulator, elements, holding_valve, line_ends, lines, one_way_valve, valve
 from ..models.line_ends import LineEnd
 from .geometry import Geometry
@@ -17,6 +16,8 @@ from .state import LoadState
 from .values import Values
 
 Chamber = Literal["a", "b"]
+
+
 CHAMBERS: tuple[Chamber, Chamber] = ("a", "b")
 
 

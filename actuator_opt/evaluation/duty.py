@@ -9,8 +9,8 @@ from ..models import end_stop, endurance, oil_laws, rod
 from . import rod_strength
 from .barrel import Wall
 from .geometry import Geometry
-from .joints import Demand
 from .limits import MaterialValues, MetricArrays
+from .linkage import Demand
 from .rods import Rod
 from .state import LoadState
 from .strength import Held

@@ -14,9 +14,16 @@ import numpy as np
 
 from ..base.numeric import Array
 from ..base.polynomial import Polynomial, add, at_frequency, roots, scale
-from ..design.circuit import Line
-from ..design.model import Design
-from ..models import (dynamics, line_ends, linear, lines, loop, transmission_line, transmission_line as transmission)
+from ..design.model import Design, Line
+from ..models import (
+    dynamics,
+    line_ends,
+    linear,
+    lines,
+    loop,
+    transmission_line,
+    transmission_line as transmission,
+)
 from ..models.line_ends import LineEnd
 from .circuit import CHAMBERS, Chamber, wall_compliance
 from .kernel import ModelRun, PreparedDesign

@@ -25,11 +25,21 @@ from ..base.errors import Diagnostic, Unsolvable
 from ..base.numeric import STEP, Array, maximum
 from ..base.surrogate import Axis, Interpolation, Surrogate, surrogate
 from ..design.model import Design
-from ..lubrication import (Contact, Elastic, Film, Lubricant, SealElement, Surface, Tandem, sensitivities, solve_film, solve_tandem)
+from ..lubrication import (
+    Contact,
+    Elastic,
+    Film,
+    Lubricant,
+    SealElement,
+    Surface,
+    Tandem,
+    sensitivities,
+    solve_film,
+    solve_tandem,
+)
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..models.rough_surface import composite_roughness
-from .rings import Place, Ring
-from .seal_contact import seal_contact, static_profile
+from .rings import Place, Ring, seal_contact, static_profile
 from .values import Values, of_case
 
 NODES = 121

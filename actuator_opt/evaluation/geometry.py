@@ -7,18 +7,199 @@ both plates.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Literal, NamedTuple
 
-from ..base.numeric import Array, absolute
-from ..design.linkage import closed_length
+from ..base.numeric import Array, absolute, maximum
 from ..design.material import Material
-from ..design.model import Design, Ply
-from ..joints.joint import End, Fit, JointSizes
-from ..models import forces, mass
-from .grooves import Groove, grooves, taken
-from .retention import Numbers, end_of, joint_of
+from ..design.model import Design, Ply, Retention, closed_length
+from ..design.seals import Seal, SealElement
+from ..joints.joint import BarrelLayer, End, Fit, Joint, JointSizes
+from ..joints.kinds import JOINTS
+from ..models import forces, gland, mass
 from .values import Values
+
+
+class Numbers:
+    """Numbers of `retention` by key, from the numbers of an evaluation."""
+
+    def __init__(self, v: Values) -> None:
+        self._v = v
+
+    def __contains__(self, key: object) -> bool:
+        return f"retention.{key}" in self._v
+
+    def __getitem__(self, key: str) -> Array:
+        return self._v[f"retention.{key}"]
+
+    def get(self, key: str, default: Array) -> Array:
+        """The number of a key, or `default` if the design does not state it."""
+        return self._v.get(f"retention.{key}", default)
+
+
+class Stated:
+    """Numbers of `retention` by key, as stated in a design."""
+
+    def __init__(self, section: Retention) -> None:
+        self._section = section
+
+    def get(self, key: str, default: Array) -> Array:
+        """The number of a key, or `default` if the design does not state it."""
+        found: object = self._section
+        for name in key.split("."):
+            found = getattr(found, name, None)
+        return default if found is None else found
+
+    def __contains__(self, key: object) -> bool:
+        return self.get(str(key), None) is not None
+
+    def __getitem__(self, key: str) -> Array:
+        return self.get(key, None)
+
+
+def joint_of(design: Design) -> Joint | None:
+    """The joint of a design; None without retention."""
+    return None if design.retention is None else JOINTS[design.retention.type]
+
+
+def clamped(design: Design) -> bool:
+    """Whether the joint clamps the barrel between both ends."""
+    joint = joint_of(design)
+    return joint is not None and joint.stiffness is not None
+
+
+def end_of(
+    design: Design,
+    sizes: JointSizes,
+    *,
+    inner_radius: Array,
+    outer_radius: Array,
+    thicknesses: Sequence[Array],
+    barrel_length: Array,
+    plate: Array,
+) -> End:
+    """The end of a design's barrel; `thicknesses` are those of its layers."""
+    layers = zip(design.barrel.layup, thicknesses, strict=True)
+    return End(
+        sizes=sizes,
+        material=None if design.retention is None else design.retention.material,
+        cap=design.caps.material,
+        layers=tuple(BarrelLayer(ply.material, thickness) for ply, thickness in layers),
+        inner_radius=inner_radius,
+        outer_radius=outer_radius,
+        barrel_length=barrel_length,
+        plate=plate,
+    )
+
+
+class Piece(NamedTuple):
+    """A ring in a groove: material, free section [m^2], depth of its centre under the face [m]."""
+
+    material: str
+    area: Array
+    depth: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Groove:
+    """A radial groove: owner, free section, gland depth at nominal squeeze, width, count."""
+
+    place: str
+    path: str
+    role: Literal["element", "wiper", "guide"]
+    material: str
+    section: Array
+    gland_depth: Array
+    width: Array
+    ring_width: Array
+    count: Array
+    pieces: tuple[Piece, ...]
+
+
+def _element(v: Values, place: str, path: str, element: SealElement) -> Groove:
+    sizes = {key: v[path + key] for key in ("section", "squeeze", *element.seal_type.needed)}
+    own = element.seal_type.groove(sizes)
+    default = own.width
+    pieces = [Piece(element.compound, piece.area, piece.depth) for piece in own.pieces]
+    if element.back_ups:
+        assert element.back_up_material is not None
+        thickness = v[f"{path}back_up_thickness"]
+        default = gland.back_up_groove_width(
+            groove_width=default, thickness=thickness, count=element.back_ups
+        )
+        area = element.back_ups * thickness * own.depth
+        pieces.append(Piece(element.back_up_material, area, own.depth / 2))
+    return Groove(
+        place=place,
+        path=path,
+        role="element",
+        material=element.compound,
+        section=sizes["section"],
+        gland_depth=own.depth,
+        width=v.get(f"{path}groove_width", default),
+        ring_width=own.ring_width,
+        count=v[f"{path}count"],
+        pieces=tuple(pieces),
+    )
+
+
+def grooves(v: Values, design: Design, name: Literal["piston", "rod"]) -> tuple[Groove, ...]:
+    """All grooves of a place, from the pressure side outwards: guide, elements, wiper."""
+    seal: Seal = getattr(design.seals, name)
+    at = f"seals.{name}."
+    found = []
+    if seal.guide is not None:
+        path = f"{at}guide."
+        depth = v[f"{path}thickness"]
+        found.append(
+            Groove(
+                place=f"{name} guide",
+                path=path,
+                role="guide",
+                material=seal.guide.material,
+                section=depth,
+                gland_depth=depth,
+                width=v[f"{path}width"],
+                ring_width=v[f"{path}width"],
+                count=v[f"{path}count"],
+                pieces=(Piece(seal.guide.material, depth * v[f"{path}width"], depth / 2),),
+            )
+        )
+    found.append(_element(v, f"{name} seal", at, seal))
+    if seal.secondary is not None:
+        found.append(_element(v, f"{name} secondary seal", f"{at}secondary.", seal.secondary))
+    if seal.wiper is not None:
+        path = f"{at}wiper."
+        section, width = v[f"{path}section"], v[f"{path}groove_width"]
+        depth = gland.gland_depth(squeeze=v[f"{path}squeeze"], section=section)
+        found.append(
+            Groove(
+                place=f"{name} wiper",
+                path=path,
+                role="wiper",
+                material=seal.wiper.compound,
+                section=section,
+                gland_depth=depth,
+                width=width,
+                ring_width=width,
+                count=1.0,
+                pieces=(Piece(seal.wiper.compound, section * width, depth / 2),),
+            )
+        )
+    return tuple(found)
+
+
+def taken(grooves: Sequence[Groove]) -> tuple[Array, Array, Array]:
+    """Total axial length of all grooves, their number, and the largest depth."""
+    length: Array = 0.0
+    count: Array = 0.0
+    deepest: Array = 0.0
+    for groove in grooves:
+        length = length + groove.count * groove.width
+        count = count + groove.count
+        deepest = maximum(deepest, groove.gland_depth)
+    return length, count, deepest
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,24 +7,190 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..base.numeric import Array, minimum, where
+from ..base.numeric import Array, absolute, maximum, minimum, real, where
 from ..base.quantities import Quantity, Sense
 from ..design.material import Material
 from ..design.model import Design
 from ..friction.law import Friction
 from ..metrics.table import AT_STOPS
-from ..models import forces
-from . import (barrel as barrel_module, beam as beam_module, circuit, duty, film, geometry as geometry_module, hydraulics, joints as joint, motion, oil_range, rings as rings_module, rods, sealing, springs, state, strength, weight)
+from ..models import damping, elements, forces, lines, transmission_line
+from . import (
+    barrel as barrel_module,
+    circuit,
+    duty,
+    film,
+    geometry as geometry_module,
+    linkage as joint,
+    motion,
+    rings as rings_module,
+    rod_strength as beam_module,
+    rods,
+    sealing,
+    springs,
+    state,
+    strength,
+    weight,
+)
 from .barrel import Wall
-from .beam import Beam
-from .film import Key, Table
+from .circuit import wall_compliance
+from .film import Key, Running, Table
 from .geometry import Geometry
-from .limits import ENDS, MaterialValues, MetricArrays
+from .limits import ENDS, MaterialValues, MetricArrays, by_case, margin
 from .plugin import Plugin, with_own
 from .rings import Ring
+from .rod_strength import Beam
 from .rods import Rod
 from .state import LoadState
 from .values import Values
+
+
+def compute_damping(
+    geometry: Geometry, state: LoadState, friction: Friction, out: MetricArrays
+) -> Array:
+    """Oil damping (pipe form and annular gaps); returns the total incremental damping."""
+    g = geometry
+    viscosity = 0.5 * (state.dynamic_viscosity_a + state.dynamic_viscosity_b)
+    pipe = damping.pipe_flow(dynamic_viscosity=viscosity, length=g.stroke)
+    piston = damping.annular_couette(
+        dynamic_viscosity=viscosity,
+        length=g.piston_length,
+        inner_radius=g.inner_radius - g.piston_clearance,
+        outer_radius=g.inner_radius,
+    )
+    head = damping.annular_couette(
+        dynamic_viscosity=0.5 * (state.dynamic_viscosity_b + state.dynamic_viscosity),
+        length=g.head_length,
+        inner_radius=g.rod_diameter / 2,
+        outer_radius=g.rod_diameter / 2 + g.head_clearance,
+    )
+    out.put("damping_pipe", pipe)
+    out.put("damping_annular", piston + head)
+    return friction.slope + pipe + piston + head
+
+
+def compute_leakage(
+    v: Values,
+    design: Design,
+    geometry: Geometry,
+    state: LoadState,
+    film: Running | None,
+    out: MetricArrays,
+) -> Array:
+    """Leakage across the moving piston; returns its conductance.
+
+    Sum of the stated conductance, the oil film of the seal, and the gap of a piston without seals,
+    widened by bore growth. The flow of a film is taken at the speed of the case; a film that draws
+    oil back to the driven side counts as tight.
+    """
+    path = "piston.leakage_conductance"
+    conductance = v[path]
+    across = absolute(state.moving_a - state.moving_b)
+    bare = design.seals.piston.count == 0
+    if bare:
+        g = geometry
+        conductance = conductance + damping.gap_conductance(
+            diameter=g.bore,
+            gap=g.piston_clearance + out.metrics["growth_at_seal"][""],
+            dynamic_viscosity=0.5 * (state.dynamic_viscosity_a + state.dynamic_viscosity_b),
+            length=g.piston_length,
+        )
+    elif film is not None:
+        moving = real(state.speed) > 0
+        divisor = where(real(across) > 0, across, 1.0)
+        passed = where(moving & (real(across) > 0), maximum(film.flow, 0.0), 0.0)
+        conductance = conductance + passed / divisor
+    if bare or film is not None or path in v.varied or design.piston.leakage_conductance > 0:
+        running = None if film is None else real(state.speed)[:, 0] > 0
+        out.put("leakage", conductance * across, cases=running)
+    else:
+        out.skip(
+            "leakage",
+            'needs the oil film: write "friction: film" in seals.piston, or state '
+            "piston.leakage_conductance",
+        )
+    return conductance
+
+
+LINE_METRICS = (
+    "line_velocity",
+    "line_pressure_drop",
+    "line_drop_ratio",
+    "line_hammer",
+    "line_resonance",
+)
+
+
+def compute_flow(
+    v: Values, design: Design, geometry: Geometry, state: LoadState, out: MetricArrays
+) -> None:
+    """Flow, port and line velocities and pressure drop."""
+    flow = {
+        "a": forces.chamber_flow(area=geometry.area_a, speed=state.speed),
+        "b": forces.chamber_flow(area=geometry.area_b, speed=state.speed),
+    }
+    out.put("flow", flow["a"])
+    out.put("piston_speed", state.speed)
+    out.put("oil_viscosity", state.kinematic_viscosity)
+    if "cylinder.port_diameter" in v:
+        port = v["cylinder.port_diameter"]
+        out.put("port_velocity", lines.port_velocity(flow=flow["a"], port_diameter=port))
+    else:
+        out.skip("port_velocity", "no port stated: add cylinder.port_diameter")
+    if design.lines:
+        _compute_lines(v, design, state, flow, out)
+    else:
+        for name in LINE_METRICS:
+            out.skip(name, "no lines stated: add lines")
+
+
+def _compute_lines(
+    v: Values, design: Design, state: LoadState, flow: dict[str, Array], out: MetricArrays
+) -> None:
+    """Velocity, pressure drop, hammer and resonance of the lines, by flow of their chamber."""
+    velocity, drop, hammer = {}, {}, {}
+    lengths: dict[str, Array] = {}
+    times: dict[str, Array] = {}  # travel time of a wave through the lines of a chamber
+    modulus = {"a": state.bulk_modulus_a, "b": state.bulk_modulus_b}
+    viscosity = {"a": state.dynamic_viscosity_a, "b": state.dynamic_viscosity_b}
+    for i, line in enumerate(design.lines):
+        at, place = f"lines[{i}].", f"line {line.chamber} [{i}]"
+        inner = v[at + "inner_diameter"]
+        velocity[place] = lines.line_velocity(flow=flow[line.chamber], inner_diameter=inner)
+        drop[place] = lines.line_pressure_drop(
+            flow=flow[line.chamber],
+            inner_diameter=inner,
+            length=v[at + "length"],
+            density=state.density,
+            dynamic_viscosity=viscosity[line.chamber],
+        )
+        size = {"inner_diameter": inner, "length": v[at + "length"]}
+        speed = transmission_line.wave_speed(
+            bulk_modulus=modulus[line.chamber],
+            density=state.density,
+            volume=lines.line_volume(**size),
+            wall_compliance=wall_compliance(v, line, at),
+        )
+        hammer[place] = transmission_line.joukowsky_pressure(
+            density=state.density, sound_speed=speed, velocity_change=velocity[place]
+        )
+        chamber = f"lines of chamber {line.chamber}"
+        lengths[chamber] = lengths.get(chamber, 0.0) + v[at + "length"]
+        times[chamber] = times.get(chamber, 0.0) + v[at + "length"] / speed
+    out.put("line_hammer", hammer)
+    out.put(
+        "line_resonance",
+        {
+            chamber: elements.quarter_wave_frequency(
+                length=length, sound_speed=length / times[chamber]
+            )
+            for chamber, length in lengths.items()
+        },
+    )
+    out.put("line_velocity", velocity)
+    out.put("line_pressure_drop", drop)
+    supply = v["supply.pressure"]
+    out.put("line_drop_ratio", {place: value / supply for place, value in drop.items()})
+
 
 STROKES: tuple[film.Stroke, ...] = ("drive", "return")
 """The stroke of the case, and the return stroke."""
@@ -153,7 +319,7 @@ def statics(
     found = base(subject, v, implicit)
     stock, g, case_state = found.stock, found.geometry, found.state
     barrel, rings = found.wall, found.rings
-    oil_range.compute(design.fluid, stock, case_state, out)
+    state.compute(design.fluid, stock, case_state, out)
     out.put("bore_growth", barrel.growth)
     tables = _films(subject)
     there, back = (sealing.films_of(tables, rings, stroke, len(v.cases)) for stroke in STROKES)
@@ -167,9 +333,9 @@ def statics(
     out.put("mass_oil", weight.oil(v, design, g))
     branches = circuit.branches(v, design, case_state)
     budget = springs.springs(v, design, g, case_state, barrel, rod, friction.breakaway, branches)
-    damping = hydraulics.compute_damping(g, case_state, friction, out)
-    leakage = hydraulics.compute_leakage(v, design, g, case_state, there.get("piston seal"), out)
-    hydraulics.compute_flow(v, design, g, case_state, out)
+    damping = compute_damping(g, case_state, friction, out)
+    leakage = compute_leakage(v, design, g, case_state, there.get("piston seal"), out)
+    compute_flow(v, design, g, case_state, out)
     beam = beam_module.derive(
         v, design, g, case_state, barrel, rod, parts, critical_load=implicit.critical_load
     )
@@ -330,3 +496,68 @@ def _forces(g: Geometry, s: LoadState, friction: Friction, out: MetricArrays) ->
     out.put("efficiency", forces.efficiency(force=net, pressure=s.driven_pressure, area=driven))
     out.put("power", forces.power(force=minimum(net, s.force), speed=s.asked[joint.WORKING].speed))
     return net
+
+
+def worst_of(aim: Sense) -> Sense:
+    """Worst value of a metric: the largest if minimised ("min"), the smallest if maximised.
+
+    >>> worst_of("min")
+    'max'
+    """
+    return "max" if aim == "min" else "min"
+
+
+def sense_of(metric: str, subject: PreparedDesign) -> Sense | None:
+    """Whether the smallest ("min") or the largest value of a metric governs a design.
+
+    1. The worst value of an objective governs: the largest where it is minimised.
+    2. A metric with a required limit is governed in the sense of that limit. With limits on both
+       sides the sense is None: the value with the smaller margin governs.
+    3. Any other metric is governed by its worst value according to `metrics.METRICS`.
+    """
+    objective = subject.design.objective
+    aims = subject.aims or dict.fromkeys(objective.metrics, objective.aim)
+    if metric in aims:
+        return worst_of(aims[metric])
+    required = subject.design.requirements.get(metric)
+    if required is None:
+        return subject.quantities[metric].worst
+    if required.min is not None and required.max is not None:
+        return None
+    return "max" if required.min is None else "min"
+
+
+def extreme(
+    computed: MetricArrays, metric: str, cases: tuple[str, ...], sense: Sense
+) -> Array | None:
+    """The smallest or largest value over load cases and places (designs,), SI.
+
+    NaN if any value is missing, None if the metric is not computed.
+    """
+    pick = maximum if sense == "max" else minimum
+    found: Array | None = None
+    for place, array in computed.metrics.get(metric, {}).items():
+        for _, value in by_case(computed, metric, array, cases, place):
+            if found is None:
+                found = value
+            else:
+                unknown = np.isnan(found) | np.isnan(value)
+                found = where(unknown, np.nan, pick(found, value))
+    return found
+
+
+def governing(metric: str, computed: MetricArrays, v: Values, subject: PreparedDesign) -> Array:
+    """Governing value of a metric for every design (designs,), SI.
+
+    Infinite for an unloaded part; NaN if a value is missing or the metric is not computed.
+    """
+    sense = sense_of(metric, subject)
+    if sense is not None:
+        found = extreme(computed, metric, v.cases, sense)
+        return np.full(1, np.nan) if found is None else found
+    least = extreme(computed, metric, v.cases, "min")
+    most = extreme(computed, metric, v.cases, "max")
+    if least is None or most is None:
+        return np.full(1, np.nan)
+    lowest, highest = (v[f"requirements.{metric}.{one}"] for one in ("min", "max"))
+    return where(margin(least, lowest, "min") <= margin(most, highest, "max"), least, most)

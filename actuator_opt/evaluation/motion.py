@@ -17,8 +17,17 @@ from ..design.model import Design
 from ..models import dynamics, line_ends, linear, loop
 from ..models.line_ends import LineEnd
 from ..models.linear import LinearActuator, Side
-from . import circuit
-from .circuit import CHAMBERS, Branch, Chamber, LinearValve, Ways
+from .circuit import (
+    CHAMBERS,
+    Branch,
+    Chamber,
+    LinearValve,
+    Ways,
+    accumulator_ends,
+    line_end,
+    linear_valve,
+    throttle_conductances,
+)
 from .limits import MetricArrays
 from .springs import Springs, weakest_per_chamber
 from .state import LoadState
@@ -121,20 +130,18 @@ def derive(
     leakage: Array,
 ) -> Motion:
     """Inputs of the linear model in every load case."""
-    holding = circuit.linear_valve(v, design, state, leakage)
-    accumulators = {
-        chamber: circuit.accumulator_ends(v, design, state, chamber) for chamber in CHAMBERS
-    }
+    holding = linear_valve(v, design, state, leakage)
+    accumulators = {chamber: accumulator_ends(v, design, state, chamber) for chamber in CHAMBERS}
     return Motion(
         springs=springs,
         mass=mass,
         damping=damping,
         leakage=leakage,
         branches=branches,
-        throttles=circuit.throttle_conductances(v, design, state, springs.geometry),
+        throttles=throttle_conductances(v, design, state, springs.geometry),
         push=state.push,
         held={
-            chamber: circuit.line_end(v, design, holding, accumulators[chamber], chamber)
+            chamber: line_end(v, design, holding, accumulators[chamber], chamber)
             for chamber in CHAMBERS
         },
         accumulators=accumulators,

@@ -18,9 +18,8 @@ from ..design.model import Design
 from ..joints.joint import End, Joint
 from ..joints.kinds import JOINTS
 from . import geometry
-from .geometry import Geometry, end_at
+from .geometry import Geometry, Numbers, end_at, joint_of
 from .kernel import PreparedDesign
-from .retention import Numbers, joint_of
 from .values import Values
 
 Ratio = Callable[[Values, Design, Geometry], Array | None]

@@ -15,16 +15,13 @@ from ..design.seals import ContactProfile, Wiper
 from ..friction.law import Friction
 from ..models import damping, friction, gland, lip_seal, retention, wear
 from ..models.fluid import ATMOSPHERIC_PRESSURE
-from ..seals.kinds import TYPES
 from ..seals.contact import SealContact
-from . import gland_check
+from ..seals.kinds import TYPES
 from .barrel import SEAL_STEP, Wall
 from .film import Key, Running, Stroke, Table, of_place, running as run
-from .geometry import Geometry
-from .grooves import Groove
+from .geometry import Geometry, Groove
 from .limits import MaterialValues, MetricArrays
-from .rings import INCOMPRESSIBLE, Place, Ring, face_modulus, places
-from .seal_contact import seal_contact
+from .rings import INCOMPRESSIBLE, Place, Ring, face_modulus, gland_metrics, places, seal_contact
 from .state import LoadState, side_reactions
 from .values import Values
 
@@ -51,7 +48,7 @@ def compute(
     for ring in rings:
         grown = full_growth if ring.name == "piston" else 0.0
         contact = seal_contact(_share(ring, films))
-        rows = gland_check.metrics(v, design, stock, geometry, state, ring, grown) | {
+        rows = gland_metrics(v, design, stock, geometry, state, ring, grown) | {
             "contact_width": contact.width,
             "contact_pressure": contact.peak,
             "seal_wear": wear.sliding_severity(

@@ -2,20 +2,176 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 
-from ..base.numeric import Array, where
+from ..base.numeric import Array, minimum, real, where
 from ..design.kinds import Fraction
-from ..design.model import Design
-from ..models import retention, stiffness
-from . import joints as joint_module, oil
+from ..design.material import Material, bulk_modulus_law, viscosity_law
+from ..design.model import Design, FluidSection
+from ..metrics.table import OIL_FED
+from ..models import fluid, oil_laws as density_models, retention, stiffness
+from ..models.oil_laws import BULK_MODULUS_LAWS, VISCOSITY_LAWS
+from . import linkage as joint_module, state as oil_laws
 from .geometry import Geometry
-from .joints import WORST, Demand, Joint
-from .limits import MaterialValues
+from .limits import MaterialValues, MetricArrays
+from .linkage import WORST, Demand, Joint
 from .values import Values, stacked
+
+Law: TypeAlias = Callable[..., Array]
+
+
+def alone(material: Material, **choices: object) -> tuple[Values, FluidSection, MaterialValues]:
+    """Inputs of the functions below for a library oil without a design.
+
+    Parameters
+    ----------
+    material : the oil
+    choices : other keys of the section `fluid`, SI
+    """
+    section = FluidSection.model_validate({"material": material.name, **choices})
+    numbers = {f"materials.{material.name}.{key}": x for key, x in material.numbers.items()}
+    numbers |= {
+        "fluid.air_content": section.air_content,
+        "fluid.polytropic_index": section.polytropic_index,
+    }
+    v = Values(numbers, ())
+    return v, section, MaterialValues(v, {material.name: material}, {}, {})
+
+
+def pure_bulk_modulus(
+    v: Values, section: FluidSection, stock: MaterialValues, temperature: Array, pressure: Array
+) -> Array:
+    """Tangent bulk modulus of the oil without air."""
+    oil = stock.material(section.material)
+    law = BULK_MODULUS_LAWS[bulk_modulus_law(section.bulk_modulus_law, oil.numbers)]
+    return law.modulus(_properties(stock, oil.name), temperature, pressure)
+
+
+def _properties(stock: MaterialValues, name: str) -> Callable[[str], Array]:
+    """Properties of an oil by their name."""
+    return lambda key: stock.get(name, key)
+
+
+def bulk_modulus(
+    v: Values, section: FluidSection, stock: MaterialValues, temperature: Array, pressure: Array
+) -> Array:
+    """Tangent bulk modulus of the oil with entrained air."""
+    return fluid.effective_bulk_modulus(
+        bulk_modulus=pure_bulk_modulus(v, section, stock, temperature, pressure),
+        pressure=pressure,
+        air_content=v["fluid.air_content"],
+        polytropic_index=v["fluid.polytropic_index"],
+    )
+
+
+def oil_density(
+    v: Values,
+    section: FluidSection,
+    stock: MaterialValues,
+    temperature: Array,
+    pressure: Array | None = None,
+) -> Array:
+    """Density at a temperature and a pressure (None: zero), by the law of the bulk modulus."""
+    name = section.material
+    rho = stock.get(name, "density")
+    expansion = stock.get(name, "volume_expansion")
+    known = stock.material(name).numbers
+    if expansion is not None and "density_temperature" in known:
+        rho = density_models.density_thermal(
+            reference_density=rho,
+            volume_expansion=expansion,
+            temperature=temperature,
+            reference_temperature=stock.get(name, "density_temperature"),
+        )
+    if pressure is None:
+        return rho
+    law = BULK_MODULUS_LAWS[bulk_modulus_law(section.bulk_modulus_law, known)]
+    return law.density(_properties(stock, name), rho, temperature, pressure)
+
+
+def kinematic_viscosity(
+    v: Values, section: FluidSection, stock: MaterialValues, temperature: Array
+) -> Array:
+    """Kinematic viscosity at zero gauge pressure, from the oil's table, scaled by its value."""
+    oil = stock.material(section.material)
+    points = oil.viscosity_points
+    stated = oil.numbers["kinematic_viscosity"]
+    scale = v[f"materials.{oil.name}.kinematic_viscosity"] / stated
+    if len(points) < 2:
+        return scale * stated + 0 * temperature
+    return scale * fluid.viscosity_astm_d341(
+        temperature=temperature,
+        points_temperature=tuple(t for t, _ in points),
+        points_viscosity=tuple(value for _, value in points),
+    )
+
+
+def dynamic_viscosity(
+    v: Values, section: FluidSection, stock: MaterialValues, temperature: Array, pressure: Array
+) -> Array:
+    """Dynamic viscosity at a temperature and a pressure."""
+    viscosity = fluid.dynamic_viscosity(
+        kinematic_viscosity=kinematic_viscosity(v, section, stock, temperature),
+        density=oil_density(v, section, stock, temperature),
+    )
+    return under_pressure(section, stock, viscosity, temperature, pressure)
+
+
+def pressure_law(
+    section: FluidSection, stock: MaterialValues, temperature: Array
+) -> tuple[str, Array]:
+    """Name of the viscosity law over pressure, and its coefficient at a temperature."""
+    name = section.material
+    oil = stock.material(name)
+    law = VISCOSITY_LAWS[viscosity_law(section.viscosity_pressure, oil.numbers)]
+    if not law.needs:
+        return law.name, 0.0
+    key = law.needs[0]
+    return law.name, oil.properties[key].at(temperature, value=stock.get(name, key))
+
+
+def under_pressure(
+    section: FluidSection,
+    stock: MaterialValues,
+    viscosity: Array,
+    temperature: Array,
+    pressure: Array,
+) -> Array:
+    """Dynamic viscosity at a pressure, from the value at zero gauge pressure."""
+    law, coefficient = pressure_law(section, stock, temperature)
+    return VISCOSITY_LAWS[law].viscosity(
+        viscosity=viscosity, pressure=pressure, coefficient=coefficient
+    )
+
+
+def vapour_pressure(stock: MaterialValues, name: str, temperature: Array) -> Array | None:
+    """Vapour pressure (absolute) at a temperature; None if the library has none."""
+    stated = stock.get(name, "vapour_pressure")
+    if stated is None:
+        return None
+    entry = stock.material(name).properties["vapour_pressure"]
+    if not entry.points:
+        return stated + 0 * temperature
+    return (stated / entry.value) * fluid.vapour_pressure(
+        temperature=temperature,
+        points_temperature=entry.arguments,
+        points_pressure=entry.values,
+    )
+
+
+def laws(section: FluidSection, oil: Material) -> Iterable[tuple[Law, str]]:
+    """(function, quantity) of all laws of the oil over pressure in an evaluation."""
+    modulus = BULK_MODULUS_LAWS[bulk_modulus_law(section.bulk_modulus_law, oil.numbers)]
+    if modulus.model is not None:
+        yield modulus.model, "bulk modulus"
+    yield fluid.effective_bulk_modulus, "air"
+    viscosity = VISCOSITY_LAWS[viscosity_law(section.viscosity_pressure, oil.numbers)]
+    if viscosity.model is not None:
+        yield viscosity.model, "viscosity"
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,8 +284,8 @@ def holding(
         force=force,
         holding_a=holding_a,
         holding_b=holding_b,
-        bulk_modulus_a=oil.bulk_modulus(v, design.fluid, stock, s.temperature, holding_a),
-        bulk_modulus_b=oil.bulk_modulus(v, design.fluid, stock, s.temperature, holding_b),
+        bulk_modulus_a=bulk_modulus(v, design.fluid, stock, s.temperature, holding_a),
+        bulk_modulus_b=bulk_modulus(v, design.fluid, stock, s.temperature, holding_b),
     )
 
 
@@ -144,8 +300,8 @@ def derive(v: Values, design: Design, stock: MaterialValues, geometry: Geometry)
     driven = v.case("pressure", supply)
     temperature = v.case("temperature", v["fluid.temperature"])
     holding_a, holding_b = _holding(v, design, geometry, push, force)
-    kinematic = oil.kinematic_viscosity(v, design.fluid, stock, temperature)
-    density = oil.density(v, design.fluid, stock, temperature)
+    kinematic = kinematic_viscosity(v, design.fluid, stock, temperature)
+    density = oil_density(v, design.fluid, stock, temperature)
     dynamic = kinematic * density
     moving_a, moving_b = where(push, driven, drain), where(push, drain, driven)
     return LoadState(
@@ -166,8 +322,74 @@ def derive(v: Values, design: Design, stock: MaterialValues, geometry: Geometry)
         kinematic_viscosity=kinematic,
         density=density,
         dynamic_viscosity=dynamic,
-        dynamic_viscosity_a=oil.under_pressure(design.fluid, stock, dynamic, temperature, moving_a),
-        dynamic_viscosity_b=oil.under_pressure(design.fluid, stock, dynamic, temperature, moving_b),
-        bulk_modulus_a=oil.bulk_modulus(v, design.fluid, stock, temperature, holding_a),
-        bulk_modulus_b=oil.bulk_modulus(v, design.fluid, stock, temperature, holding_b),
+        dynamic_viscosity_a=under_pressure(design.fluid, stock, dynamic, temperature, moving_a),
+        dynamic_viscosity_b=under_pressure(design.fluid, stock, dynamic, temperature, moving_b),
+        bulk_modulus_a=bulk_modulus(v, design.fluid, stock, temperature, holding_a),
+        bulk_modulus_b=bulk_modulus(v, design.fluid, stock, temperature, holding_b),
     )
+
+
+def compute(
+    section: FluidSection, stock: MaterialValues, state: LoadState, out: MetricArrays
+) -> None:
+    """Margin of the chambers to boiling of the oil, in every case."""
+    limit = oil_laws.vapour_pressure(stock, section.material, state.temperature)
+    if limit is None:
+        why = f"{section.material} has no vapour_pressure: add it under materials"
+        out.skip("cavitation_margin", why)
+        return
+    lowest = minimum(
+        minimum(state.moving_a, state.moving_b), minimum(state.holding_a, state.holding_b)
+    )
+    out.put("cavitation_margin", lowest + fluid.ATMOSPHERIC_PRESSURE - limit)
+
+
+def warnings(
+    section: FluidSection, oil: Material, cases: Sequence[str], state: LoadState
+) -> Iterable[tuple[str, str]]:
+    """(metric, sentence) for each use of the oil outside the range of its data or laws."""
+    yield from _temperatures(oil, cases, state)
+    law = bulk_modulus_law(section.bulk_modulus_law, oil.numbers)
+    chambers = [state.moving_a, state.moving_b, state.holding_a, state.holding_b]
+    highest = max(float(np.max(np.real(pressure))) for pressure in chambers)
+    limit = BULK_MODULUS_LAWS[law].largest_pressure
+    if highest > limit:
+        text = (
+            f"bulk modulus: {highest / 1e5:.0f} bar exceeds the limit of {limit / 1e5:.0f} bar of "
+            f"the {law} law of the oil"
+        )
+        yield from ((metric, text) for metric in OIL_FED)
+    law = viscosity_law(section.viscosity_pressure, oil.numbers)
+    limit = VISCOSITY_LAWS[law].largest_pressure
+    if highest > limit:
+        yield (
+            "oil_viscosity",
+            f"viscosity: {highest / 1e5:.0f} bar exceeds the limit of {limit / 1e5:.0f} bar of the "
+            f"{law.capitalize()} law",
+        )
+
+
+def _temperatures(
+    oil: Material, cases: Sequence[str], state: LoadState
+) -> Iterable[tuple[str, str]]:
+    """Load cases outside the temperatures and viscosities of the oil's data or service range."""
+    low = oil.numbers.get("temperature_min", -np.inf)
+    high = oil.numbers.get("temperature_max", np.inf)
+    for case, temperature, viscosity in zip(
+        cases,
+        np.broadcast_to(np.ravel(real(state.temperature)), len(cases)),
+        np.broadcast_to(np.ravel(real(state.kinematic_viscosity)), len(cases)),
+        strict=True,
+    ):
+        if not low <= temperature <= high:
+            yield (
+                "oil_viscosity",
+                f"{case}: {temperature - 273.15:.0f} degC is outside the service range of "
+                f"{oil.name}, {low - 273.15:.0f} to {high - 273.15:.0f} degC",
+            )
+        if viscosity < fluid.LEAST_VISCOSITY:
+            yield (
+                "oil_viscosity",
+                f"{case}: {1e6 * viscosity:.2g} mm^2/s is below the "
+                f"lower limit of ASTM D341, {1e6 * fluid.LEAST_VISCOSITY:.0f} mm^2/s",
+            )

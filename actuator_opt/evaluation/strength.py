@@ -16,13 +16,11 @@ from ..joints.joint import Joint, Loaded, Strength
 from ..joints.kinds import JOINTS
 from ..joints.overlap import Overlap
 from ..models import end_plate, retention, rod
-from . import joints, rod_strength
+from . import rod_strength, rods
 from .barrel import Wall, load_path
-from .beam import Beam
-from .geometry import Geometry, end_at
-from .grooves import Groove, taken
+from .geometry import Geometry, Groove, Numbers, clamped, end_at, joint_of, taken
 from .limits import MaterialValues, MetricArrays
-from .retention import Numbers, clamped, joint_of
+from .rod_strength import Beam
 from .rods import Rod
 from .state import LoadState, side_reactions
 from .values import Values
@@ -87,13 +85,13 @@ def compute(
     _rod_end(v, stock, design, section, pull, out)
     found = NO_RETENTION if held is None else held.joint.strength(held.loaded)
     _retention(found, out)
-    fittings = joints.fittings(v, stock, design, section)
+    fittings = rods.fittings(v, stock, design, section)
     _fittings(stock, fittings, push, out)
     thermal = {
         "caps": found if isinstance(found, str) else found.thermal,
         "rod fittings": fittings if isinstance(fittings, str) else fittings.thermal(stock),
     }
-    joints.thermal(v, design, thermal, out)
+    rods.thermal(v, design, thermal, out)
     _caps(stock, design, g, supply, out)
     _pins(v, stock, design, push, out)
     _guides(stock, design, g, state, out)
@@ -137,7 +135,7 @@ def _fitting_yield(
     strength = stock.allowable(section.end_material, "yield_strength")
     if strength is None or design.rod.fitting is None:
         return {}
-    return {"rod fitting": strength * joints.fitting_area(v, design, section) / push}
+    return {"rod fitting": strength * rods.fitting_area(v, design, section) / push}
 
 
 def _rod_end(

@@ -21,15 +21,13 @@ from ..metrics.metric import CRITERION
 from ..metrics.table import OWN, ROWS, WALL_FED
 from ..models import contact_profile, extrusion, laminate, rough_surface, seals
 from ..models.strength import CRITERIA
-from . import joints as joint, motion, oil, oil_range, proportions, springs
+from . import linkage as joint, motion, proportions, springs, state
 from .barrel import LAMINATES, kind
-from .beam import NEAR
 from .film import Table
-from .gland_check import extrusion_end
 from .kernel import ModelRun, PreparedDesign
 from .result import Metric, ModelUse, Unverified
-from .rings import Ring
-from .seal_contact import seal_contact
+from .rings import Ring, extrusion_end, seal_contact
+from .rod_strength import NEAR
 from .values import Values
 
 
@@ -292,7 +290,7 @@ def warnings(subject: PreparedDesign, v: Values, done: ModelRun) -> Iterable[tup
             "treat it as a lower bound; adhesive and plies are not included",
         )
     section = subject.design.fluid
-    yield from oil_range.warnings(section, subject.materials[section.material], v.cases, done.state)
+    yield from state.warnings(section, subject.materials[section.material], v.cases, done.state)
     yield from seal_warnings(subject, v, done)
     yield from springs.warnings(done.springs)
     yield from joint.warnings(subject.design, done.state.joint)
@@ -436,7 +434,7 @@ def models(
     yield from seen.values()
     yield from seal_models(rings, subject, said)
     liquid = subject.design.fluid
-    for function, what in oil.laws(liquid, subject.materials[liquid.material]):
+    for function, what in state.laws(liquid, subject.materials[liquid.material]):
         model = describe(function)
         yield ModelUse(
             model.name,

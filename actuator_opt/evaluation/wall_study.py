@@ -22,7 +22,13 @@ from ..base.numeric import Array
 from ..design.materials import load_library
 from ..models import barrel, barrel_ends, laminate, liner, ply, ply_discount, strength, tube_burst
 from ..models.autofrettage import Autofrettage
-from ..models.layered_tube import (TubeLayer, layered_tube, ply_stresses_at_faces, tube_state, tube_stresses)
+from ..models.layered_tube import (
+    TubeLayer,
+    layered_tube,
+    ply_stresses_at_faces,
+    tube_state,
+    tube_stresses,
+)
 from ..models.strength import CRITERIA
 from ..models.strength_modes import Stress, load_multiplier
 from . import plies

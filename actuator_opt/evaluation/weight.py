@@ -5,11 +5,9 @@ from __future__ import annotations
 from ..base.numeric import Array
 from ..design.model import Design
 from ..models import mass
-from .geometry import Geometry, end_at
-from .joints import fitting_hole
+from .geometry import Geometry, Numbers, end_at, joint_of
 from .limits import MaterialValues
-from .retention import Numbers, joint_of
-from .rods import Rod
+from .rods import Rod, fitting_hole
 from .values import Values
 
 PARTS = ("barrel", "rod", "piston", "caps", "glands", "seals", "fastening", "clevises")

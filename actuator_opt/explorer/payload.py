@@ -14,9 +14,9 @@ from ..base.quantities import Quantity
 from ..design.paths import quantity_of
 from ..evaluation import prepare
 from ..evaluation.limits import Limit
+from ..evaluation.outline import LENGTHS, Template
 from ..evaluation.plugin import Plugin, with_own
 from ..evaluation.result import NO_RESERVE, NO_ROOM, Outline
-from ..evaluation.shapes import LENGTHS, Template
 from ..rendering.text import SENSES, limit_text, pretty, unit_text
 from ..sweeps.explored import BEST, Explored
 from ..sweeps.sample import MORE_IS_BETTER, better

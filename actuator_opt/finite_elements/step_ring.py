@@ -8,8 +8,26 @@ from collections.abc import Sequence
 import numpy as np
 
 from . import equilibrium
-from .contact import (barriers, both_ways, boundary_nodes, level_pair, middle_node, profile_on_face, reached, wall_pressing)
-from .equilibrium import (SQUEEZE_STEP, Bounds, ElementProblem, ElementState, NotConverged, Pair, check_inputs, follow)
+from .contact import (
+    barriers,
+    both_ways,
+    boundary_nodes,
+    level_pair,
+    middle_node,
+    profile_on_face,
+    reached,
+    wall_pressing,
+)
+from .equilibrium import (
+    SQUEEZE_STEP,
+    Bounds,
+    ElementProblem,
+    ElementState,
+    NotConverged,
+    Pair,
+    check_inputs,
+    follow,
+)
 from .material import Floats, MooneyRivlin
 from .mesh import SlideRing, disc, slide_ring
 from .result import Contact, SealSolution, stress_field

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from ..base.numeric import Array
 from ..models import friction
-from ..seals.seal_type import SealSizes
 from ..seals.contact import SealContact
+from ..seals.seal_type import SealSizes
 from .law import FrictionLaw
 
 STRIBECK_EXPONENT = 2.0

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from ..base.numeric import real, where
 from ..models import friction
-from ..seals.seal_type import SealSizes
 from ..seals.contact import SealContact
+from ..seals.seal_type import SealSizes
 from . import coefficient
 from .law import Film, Friction
 

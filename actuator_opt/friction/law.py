@@ -8,8 +8,8 @@ from typing import Protocol
 
 from ..base.numeric import Array, real, where
 from ..models import friction
-from ..seals.seal_type import SealSizes
 from ..seals.contact import SealContact
+from ..seals.seal_type import SealSizes
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,7 +31,18 @@ from ..base.fitting import CONFIDENCE, WEAK, Parameter, quantile
 from ..base.numeric import STEP as COMPLEX_STEP, Array
 from .balance import Sliding
 from .conditioning import Motion
-from .lugre import (BENDS, LAG, LOGARITHMIC, STEP, SYMBOLS, TRAVELS, LuGreFit, Windows, sizes, windows)
+from .lugre import (
+    BENDS,
+    LAG,
+    LOGARITHMIC,
+    STEP,
+    SYMBOLS,
+    TRAVELS,
+    LuGreFit,
+    Windows,
+    sizes,
+    windows,
+)
 from .many_fits import FitSearch, relaxed
 from .points import SETTLED, Point
 from .stribeck_fit import EXPONENTS, SPEEDS, STATIC_MOST, Steady, StribeckFit

@@ -13,8 +13,7 @@ from ..base.errors import Diagnostic, InputError
 from ..base.fitting import Parameter, quantile, rated
 from ..base.numeric import Array
 from ..base.quantities import INPUTS
-from ..design.model import Design
-from ..design.variable import Measured
+from ..design.model import Design, Measured
 from ..friction.coefficient import STRIBECK_EXPONENT
 from ..models import friction
 from ..studies.bench import Bench

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..base.errors import InputError
 from ..base.fitting import quantile
-from ..design.material_fits import Fit, fit_double_exponential, fit_power_law
+from ..design.material import Fit, fit_double_exponential, fit_power_law
 from ..studies.bench import Bench
 from .balance import Sliding, check_signs, slide, velocity_noise
 from .bootstrap import resampled

@@ -19,7 +19,16 @@ from .balance import Sliding
 from .conditioning import SLOWEST, Motion, low_pass, velocities, zero_phase
 from .doubtful import PARTED, agreed, hidden, opened, widened
 from .points import SETTLED, SETTLING, Point, settled
-from .stribeck_fit import (EXPONENT, EXPONENTS, OTHER, SHARED, SPEEDS, Steady, StribeckFit, held_error)
+from .stribeck_fit import (
+    EXPONENT,
+    EXPONENTS,
+    OTHER,
+    SHARED,
+    SPEEDS,
+    Steady,
+    StribeckFit,
+    held_error,
+)
 
 BEFORE, AFTER = 0.1, 0.4
 """Length of a window before and after the rod reverses or starts [s] (a choice: at 30 Hz 26

@@ -11,7 +11,7 @@ import numpy as np
 from ..base.fitting import Parameter
 from ..base.numeric import Array
 from ..base.tables import Displayed
-from ..design.material_fits import Fit
+from ..design.material import Fit
 from ..studies.bench import Bench
 from ..version import VERSION
 from .balance import Sliding

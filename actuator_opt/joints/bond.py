@@ -6,7 +6,19 @@ from collections.abc import Mapping
 
 from ..base.numeric import Array
 from . import overlap
-from .joint import (End, Fatigue, Fit, Joint, JointField, Judged, Loaded, Materials, Strength, WallPressures, nothing)
+from .joint import (
+    End,
+    Fatigue,
+    Fit,
+    Joint,
+    JointField,
+    Judged,
+    Loaded,
+    Materials,
+    Strength,
+    WallPressures,
+    nothing,
+)
 from .overlap import Overlap, mismatch
 
 

@@ -20,7 +20,26 @@ from ..base.quantities import INPUTS, Quantity
 from ..models import barrel, mass, thread
 from ..models.rod import section_area
 from . import overlap
-from .joint import (LEAST_METAL, NOT_BONDED, ROUNDING, End, Fatigue, Fit, Joint, JointField, Judged, Known, Loaded, Materials, Pulsed, Stated, Strength, Usual, WallPressures, judged_later)
+from .joint import (
+    LEAST_METAL,
+    NOT_BONDED,
+    ROUNDING,
+    End,
+    Fatigue,
+    Fit,
+    Joint,
+    JointField,
+    Judged,
+    Known,
+    Loaded,
+    Materials,
+    Pulsed,
+    Stated,
+    Strength,
+    Usual,
+    WallPressures,
+    judged_later,
+)
 
 NEEDED = ("yield_strength", "ultimate_strength")
 """Properties of a metal that the assessment of its thread needs."""

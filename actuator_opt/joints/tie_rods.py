@@ -10,7 +10,25 @@ import numpy as np
 from ..base.numeric import Array
 from ..base.quantities import Quantity
 from ..models import endurance, mass, retention
-from .joint import (NOT_BONDED, Clamp, Drawn, End, Fatigue, Fit, Joint, JointField, Judged, Life, Loaded, Materials, Span, Strength, WallPressures, nothing, rectangle)
+from .joint import (
+    NOT_BONDED,
+    Clamp,
+    Drawn,
+    End,
+    Fatigue,
+    Fit,
+    Joint,
+    JointField,
+    Judged,
+    Life,
+    Loaded,
+    Materials,
+    Span,
+    Strength,
+    WallPressures,
+    nothing,
+    rectangle,
+)
 
 
 def _fit(end: End) -> Fit:

@@ -12,9 +12,24 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..base.numeric import STEP, Array, real
-from ..models.flow_factors import (pressure_stress_factor, shear_stress_correction, shear_stress_factor)
+from ..models.flow_factors import (
+    pressure_stress_factor,
+    shear_stress_correction,
+    shear_stress_factor,
+)
 from ..models.rough_surface import film_ratio_under_contact
-from .newton import (Bed, FilmState, Linear, Outcome, Residual, contact_pressure, follow, newton, residual, weights)
+from .newton import (
+    Bed,
+    FilmState,
+    Linear,
+    Outcome,
+    Residual,
+    contact_pressure,
+    follow,
+    newton,
+    residual,
+    weights,
+)
 from .reynolds import Contact, Flow, Vector, fault, flux
 
 LEAST_CONTACT = 1e-12

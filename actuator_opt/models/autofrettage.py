@@ -28,7 +28,18 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..base.numeric import (Array, absolute, geometry, maximum, minimum, namespace, positive, real, sqrt, where)
+from ..base.numeric import (
+    Array,
+    absolute,
+    geometry,
+    maximum,
+    minimum,
+    namespace,
+    positive,
+    real,
+    sqrt,
+    where,
+)
 from .layered_tube import TubeLayer, layered_tube, ply_stresses_at_faces, tube_state
 from .strength_modes import Stress
 from .tube_elements import LayeredTube

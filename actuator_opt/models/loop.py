@@ -14,7 +14,18 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base.numeric import Array, absolute, angle, positive, real, sqrt, where
-from ..base.polynomial import (Polynomial, add, at_frequency, even_and_odd, multiply, positive_root, root_motion, roots, scale, square_of_magnitude)
+from ..base.polynomial import (
+    Polynomial,
+    add,
+    at_frequency,
+    even_and_odd,
+    multiply,
+    positive_root,
+    root_motion,
+    roots,
+    scale,
+    square_of_magnitude,
+)
 from .linear import LinearActuator
 
 

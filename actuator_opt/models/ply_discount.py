@@ -11,7 +11,15 @@ from math import pi
 from typing import Any
 
 from ..base.numeric import Array, geometry, namespace, where
-from .burst_ladder import (BurstLadder, WallLayer, batch_zero, climb, inverse_strengths, metals_first, stacked_rows)
+from .burst_ladder import (
+    BurstLadder,
+    WallLayer,
+    batch_zero,
+    climb,
+    inverse_strengths,
+    metals_first,
+    stacked_rows,
+)
 from .ply import ply_stiffness
 from .strength_modes import PlyStrength
 

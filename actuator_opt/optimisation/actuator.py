@@ -20,7 +20,7 @@ from ..base.errors import Diagnostic, InputError
 from ..base.numeric import STEP, Array, real, where
 from ..base.quantities import Sense
 from ..evaluation import PreparedDesign, compute
-from ..evaluation.governing import extreme, worst_of
+from ..evaluation.kernel import extreme, worst_of
 from ..evaluation.limits import UNLIMITED, LimitRow, MetricArrays, all_limits, margin, rows_of
 from ..evaluation.values import Values as Numbers
 from .evaluator import Evaluator, Point

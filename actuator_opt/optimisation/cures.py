@@ -23,13 +23,12 @@ from ..base.units import unit
 from ..design import quantity_of, standard_sizes as standards, with_values
 from ..design.material import Material
 from ..design.materials import Library, load_library
-from ..design.model import Design
+from ..design.model import Design, Variable
 from ..design.seals import BACK_UPS, Seal
-from ..design.variable import Variable
 from ..evaluation import PreparedDesign, prepare
 from ..evaluation.build import names_of_materials
 from ..joints.kinds import JOINTS
-from . import elastic, repairs
+from . import repairs
 from .actuator import ActuatorProblem, build
 from .evaluator import Evaluator
 from .infeasibility import Infeasibility
@@ -217,7 +216,7 @@ def freed(
     if near is None:
         return []
     evaluator = Evaluator(free)
-    end = elastic.go(evaluator, evaluator.point(evaluator.space.to_z(near)))
+    end = repairs.go(evaluator, evaluator.point(evaluator.space.to_z(near)))
     if end.violation > repairs.NOTHING:
         return []
     found = []

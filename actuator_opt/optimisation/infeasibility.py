@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..base.progress import tell
-from . import elastic, kkt, repairs
+from . import kkt, repairs
 from .evaluator import Evaluator, Point
 from .problem import BoxProblem, Vector
 from .repairs import NOTHING, Opening, Relaxation
@@ -101,7 +101,7 @@ def explain(problem: BoxProblem, points: Sequence[Vector]) -> Infeasibility:
 
 def _joint(
     problem: BoxProblem,
-    groups: list[elastic.Indices],
+    groups: list[repairs.Indices],
     mask: npt.NDArray[np.bool_],
     found: Point,
 ) -> tuple[Relaxation, ...]:
@@ -118,8 +118,8 @@ def _joint(
 def _less(
     problem: BoxProblem,
     evaluator: Evaluator,
-    groups: list[elastic.Indices],
-    candidates: list[elastic.Indices],
+    groups: list[repairs.Indices],
+    candidates: list[repairs.Indices],
     sole: Sequence[Relaxation],
     found: Point,
 ) -> Point | None:
@@ -133,7 +133,7 @@ def _less(
     if start is None:
         return None
     lacks = repairs.missed(Evaluator(problem), start, groups)
-    end = elastic.descend(evaluator.problem, start, lacks)
+    end = repairs.descend(evaluator.problem, start, lacks)
     better = end.violation <= NOTHING and end.objective < found.objective
     return end if better else None
 
@@ -149,7 +149,7 @@ def _taking_part(evaluator: Evaluator, found: Point, quality: kkt.Kkt) -> npt.ND
     return found.rows[1 : 1 + evaluator.constraint_count] <= kkt.ACTIVE
 
 
-def _groups(problem: BoxProblem) -> list[elastic.Indices]:
+def _groups(problem: BoxProblem) -> list[repairs.Indices]:
     """Rows of the constraints that are relaxed together."""
     m = len(problem.constraint_names)
     numbers = np.arange(m) if problem.groups is None else np.asarray(problem.groups)
@@ -157,7 +157,7 @@ def _groups(problem: BoxProblem) -> list[elastic.Indices]:
 
 
 def _smallest(
-    problem: BoxProblem, groups: list[elastic.Indices], points: Sequence[Vector]
+    problem: BoxProblem, groups: list[repairs.Indices], points: Sequence[Vector]
 ) -> tuple[Point, Evaluator]:
     """Return the smallest sum of slacks of the groups, from the best of several points."""
     judge = Evaluator(problem)
@@ -166,10 +166,10 @@ def _smallest(
         lacks = repairs.missed(judge, x, groups)
         room = max(room, 2.0 * max(lacks, default=0.0))
         starts.append((x, lacks))
-    stretched = elastic.separate(problem, groups, [room] * len(groups))
+    stretched = repairs.separate(problem, groups, [room] * len(groups))
     ends: list[Point] = []
     for x, lacks in starts:
-        found = elastic.descend(stretched, x, lacks, ends)
+        found = repairs.descend(stretched, x, lacks, ends)
         if found.valid and not any(found is end for end in ends):
             ends.append(found)
     best = min(ends, key=lambda end: (max(end.violation - NOTHING, 0.0), end.objective))

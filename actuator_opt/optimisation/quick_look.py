@@ -15,12 +15,12 @@ import numpy as np
 
 from ..design.choice_list import Value
 from ..evaluation import PreparedDesign
-from . import elastic, kkt, nlopt_wrapper
+from . import kkt, nlopt_wrapper, repairs
 from .actuator import ActuatorProblem, Solution
-from .descents import FEASIBLE
 from .evaluator import Evaluator, LimitReached, Point
 from .problem import Vector
 from .resolve.boxes import ROUGH, stepped
+from .resolve.parallel_descents import FEASIBLE
 from .resolve.steps import ScaledHessian, hessian_at
 from .result import How
 from .solver import solve, sweep
@@ -117,7 +117,7 @@ def look_quickly(
             if point.valid and (descend or point.violation <= FEASIBLE):
                 point = down(point)
             if point.valid and point.violation > FEASIBLE and evaluator.space.size:
-                point = _keep(look, evaluator, elastic.least_missed(evaluator, point))
+                point = _keep(look, evaluator, repairs.least_missed(evaluator, point))
                 if point.violation <= FEASIBLE:
                     down(point)
             if look.feasible or DOUBTFUL < look.violation <= STUCK:

@@ -24,7 +24,7 @@ from ..design.kinds import Fraction
 from ..evaluation import Evaluation, evaluate, prepare
 from ..evaluation.plugin import Plugin, with_own
 from ..evaluation.result import YieldEstimate
-from .pareto_result import ParetoFront
+from .pareto import ParetoFront
 from .result import Optimisation
 
 Found = TypeVar("Found", Optimisation, ParetoFront)

@@ -9,10 +9,18 @@ from dataclasses import dataclass, replace
 from ..base.progress import tell
 from ..design import quantity_of
 from ..evaluation import Evaluation, PreparedDesign, evaluate
-from .actuator import (ActuatorProblem, Fault, Goal, Outcome, Solution, build, idle_metrics, require_movable_objective)
-from .choice_record import record
+from .actuator import (
+    ActuatorProblem,
+    Fault,
+    Goal,
+    Outcome,
+    Solution,
+    build,
+    idle_metrics,
+    require_movable_objective,
+)
 from .choice_sizes import Sized, best_of_sizes
-from .choices import MOST_SOLVED, ChoiceSearch, Settings, search
+from .choices import MOST_SOLVED, ChoiceSearch, Settings, record, search
 from .infeasibility_card import explained
 from .prices import Sensitivity, sensitivities
 from .result import Certificate, Choices, Infeasibility, Kkt, Optimisation, Rounding, VariableResult

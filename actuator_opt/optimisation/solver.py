@@ -23,10 +23,16 @@ import numpy as np
 from ..base.progress import tell
 from . import kkt, nlopt_wrapper
 from .actuator import LocalOptimum, Outcome, Solution
-from .descents import FEASIBLE, LOCAL_EVALUATIONS, RESIDUAL, Descents, SearchResult
 from .evaluator import CHUNK, Evaluator, LimitReached, Point
 from .problem import BoxProblem, Vector
-from .resolve.parallel_descents import precompute
+from .resolve.parallel_descents import (
+    FEASIBLE,
+    LOCAL_EVALUATIONS,
+    RESIDUAL,
+    Descents,
+    SearchResult,
+    precompute,
+)
 
 KEEP = 256
 """Number of best points kept as candidate starts."""

@@ -13,7 +13,22 @@ from ..identification.calibration import Calibration
 from ..identification.points import Point, by_pressure
 from ..optimisation.redesign import Redesign, Shift, solved
 from ..rendering import text
-from ..rendering.blocks import (Block, Chart, Column, Notes, Page, Pair, Row, State, Status, Table, Tile, Verdict, short, tile)
+from ..rendering.blocks import (
+    Block,
+    Chart,
+    Column,
+    Notes,
+    Page,
+    Pair,
+    Row,
+    State,
+    Status,
+    Table,
+    Tile,
+    Verdict,
+    short,
+    tile,
+)
 from ..rendering.chart import Axis, Curve, Panel, Points
 from ..rendering.chart_ink import drawn
 from ..rendering.ink import Ink

@@ -11,7 +11,18 @@ from ..evaluation.result import count_words
 from ..metrics import METRICS, of_metric
 from ..rendering import text
 from ..rendering.axes import AREAS
-from ..rendering.blocks import (Block, Column, Drawing, Notes, Page, Table, Tile, Verdict, short, tile)
+from ..rendering.blocks import (
+    Block,
+    Column,
+    Drawing,
+    Notes,
+    Page,
+    Table,
+    Tile,
+    Verdict,
+    short,
+    tile,
+)
 from ..rendering.heights import wrap
 from ..rendering.ink import BLACK, GREY, Ink, text_width
 from ..rendering.text import DASH, limit_text, number, pretty

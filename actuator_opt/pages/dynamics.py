@@ -14,7 +14,15 @@ from ..evaluation.result import Evaluation, Requirement
 from ..rendering import text
 from ..rendering.blocks import Block, Cell, Column, Drawing, Table, clean, short, soft
 from ..rendering.text import DASH
-from .dynamics_figures import (LoopLimits, Shaken, closed_figure, compact_figure, modes_figure, open_figure, response_figure)
+from .dynamics_figures import (
+    LoopLimits,
+    Shaken,
+    closed_figure,
+    compact_figure,
+    modes_figure,
+    open_figure,
+    response_figure,
+)
 
 FASTEST = 1e4
 """Poles above this frequency (Hz) are counted, not listed: the model describes nothing there."""

@@ -13,18 +13,51 @@ import numpy as np
 from ..base import quantities
 from ..base.fitting import Parameter
 from ..base.quantities import Quantity
-from ..design.material_fits import Fit
+from ..design.material import Fit
 from ..identification.coefficient import Coefficient
 from ..identification.lugre import LuGreFit
 from ..identification.record import CHANNELS, Record
 from ..identification.result import Identification
 from ..identification.stribeck_fit import StribeckFit
 from ..metrics import METRICS
-from ..rendering.blocks import (Block, Column, Notes, Page, Pair, Row, State, Status, Table, TerminalFigure, Tile, Verdict, tile)
+from ..rendering.blocks import (
+    Block,
+    Column,
+    Notes,
+    Page,
+    Pair,
+    Row,
+    State,
+    Status,
+    Table,
+    TerminalFigure,
+    Tile,
+    Verdict,
+    tile,
+)
 from ..rendering.heights import HALF, SPARE, height
 from ..rendering.series import Series
-from ..rendering.text import (DASH, decimals, fixed, number, pretty, sentence, trimmed, unit_text, value_text, with_unit)
-from .identification_figures import (FORCE, LEAST, MOST, PRESSURE, SPEED, STIFFNESS, identification_figure)
+from ..rendering.text import (
+    DASH,
+    decimals,
+    fixed,
+    number,
+    pretty,
+    sentence,
+    trimmed,
+    unit_text,
+    value_text,
+    with_unit,
+)
+from .identification_figures import (
+    FORCE,
+    LEAST,
+    MOST,
+    PRESSURE,
+    SPEED,
+    STIFFNESS,
+    identification_figure,
+)
 
 DAMPING = METRICS["damping_seal"]
 MASS = METRICS["mass"]

@@ -13,7 +13,7 @@ from ..base import quantities
 from ..base.fitting import NORMAL
 from ..base.numeric import Array
 from ..base.quantities import Quantity
-from ..design.material_fits import Fit
+from ..design.material import Fit
 from ..identification.balance import Sliding
 from ..identification.lugre import LuGreFit
 from ..identification.points import Point, by_pressure

@@ -16,7 +16,7 @@ import numpy as np
 from ..base.quantities import MATERIAL_PROPERTIES
 from ..design.material import Material, Property, bulk_modulus_law, viscosity_law
 from ..design.materials import Library
-from ..evaluation import oil
+from ..evaluation import state
 from ..models.fluid import LEAST_VISCOSITY
 from ..models.oil_laws import VISCOSITY_LAWS
 from ..rendering.axes import Axes, Ticks, ticks
@@ -234,14 +234,14 @@ def _over_range(material: Material) -> Table:
 
 
 def _oil_row(material: Material, temperature: float) -> tuple[str, ...]:
-    given = oil.alone(material)
-    airy = oil.alone(material, air_content=0.01)
-    nu = oil.kinematic_viscosity(*given, temperature)
-    eta = [1e3 * float(oil.dynamic_viscosity(*given, temperature, p)) for p in PRESSURES]
-    rho = [float(oil.density(*given, temperature, p)) for p in (0.0, _HIGH)]
-    modulus = [float(oil.pure_bulk_modulus(*given, temperature, p)) for p in (_LOW, 200e5)]
-    modulus.append(float(oil.bulk_modulus(*airy, temperature, 20e5)))
-    vapour = oil.vapour_pressure(given[2], material.name, temperature)
+    given = state.alone(material)
+    airy = state.alone(material, air_content=0.01)
+    nu = state.kinematic_viscosity(*given, temperature)
+    eta = [1e3 * float(state.dynamic_viscosity(*given, temperature, p)) for p in PRESSURES]
+    rho = [float(state.oil_density(*given, temperature, p)) for p in (0.0, _HIGH)]
+    modulus = [float(state.pure_bulk_modulus(*given, temperature, p)) for p in (_LOW, 200e5)]
+    modulus.append(float(state.bulk_modulus(*airy, temperature, 20e5)))
+    vapour = state.vapour_pressure(given[2], material.name, temperature)
     return (
         _degrees(temperature),
         number(1e6 * float(nu)),
@@ -369,15 +369,15 @@ def _viscosity_panel(
     ink: Ink, box: tuple[float, float, float, float], material: Material, over: _Range
 ) -> None:
     """Kinematic viscosity on the axes of ASTM D341, where a mineral oil is a straight line."""
-    given, temperature = oil.alone(material), _temperatures(over)
+    given, temperature = state.alone(material), _temperatures(over)
 
     def bent(viscosity: Any) -> Any:
         return np.log(np.log(1e6 * np.asarray(viscosity) + 0.7))
 
     curves = {}
     for pressure in PRESSURES:
-        eta = oil.dynamic_viscosity(*given, temperature, pressure)
-        nu = eta / oil.density(*given, temperature, pressure)
+        eta = state.dynamic_viscosity(*given, temperature, pressure)
+        nu = eta / state.oil_density(*given, temperature, pressure)
         curves[_pressure(pressure)] = (np.log(temperature), bent(nu), nu)
     found = np.concatenate([nu for _, _, nu in curves.values()])
     low, high = float(found.min()) / 1.15, float(found.max()) * 1.3
@@ -414,8 +414,8 @@ def _air_panel(
     pressure = np.geomspace(_LOW, _HIGH, 121)
     curves = {}
     for air in AIR:
-        given = oil.alone(material, air_content=air)
-        modulus = oil.bulk_modulus(*given, temperature, pressure) / 1e6
+        given = state.alone(material, air_content=air)
+        modulus = state.bulk_modulus(*given, temperature, pressure) / 1e6
         curves[f"{100 * air:g} % air"] = (np.log(pressure), modulus)
     top = 1.06 * max(float(np.max(ys)) for _, ys in curves.values())
     axes = Axes(ink, box, (math.log(_LOW), math.log(_HIGH)), (0.0, top))
@@ -457,9 +457,12 @@ def _over_temperature(
 def _density_panel(
     ink: Ink, box: tuple[float, float, float, float], material: Material, over: _Range
 ) -> None:
-    given, temperature = oil.alone(material), _temperatures(over)
+    given, temperature = state.alone(material), _temperatures(over)
     curves = {
-        _pressure(p): (temperature - _ZERO, oil.density(*given, temperature, p) + 0 * temperature)
+        _pressure(p): (
+            temperature - _ZERO,
+            state.oil_density(*given, temperature, p) + 0 * temperature,
+        )
         for p in PRESSURES
     }
     _over_temperature(ink, box, "Density, kg/m³", over, curves)
@@ -468,9 +471,9 @@ def _density_panel(
 def _modulus_panel(
     ink: Ink, box: tuple[float, float, float, float], material: Material, over: _Range
 ) -> None:
-    given, temperature = oil.alone(material), _temperatures(over)
+    given, temperature = state.alone(material), _temperatures(over)
     curves = {}
     for p in PRESSURES:
-        modulus = oil.pure_bulk_modulus(*given, temperature, p) + 0 * temperature
+        modulus = state.pure_bulk_modulus(*given, temperature, p) + 0 * temperature
         curves[_pressure(p)] = (temperature - _ZERO, modulus / 1e6)
     _over_temperature(ink, box, "Bulk modulus without air, MPa", over, curves)

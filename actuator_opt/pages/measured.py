@@ -14,7 +14,17 @@ from ..design.scenario.reader import gaps
 from ..rendering.blocks import Block, Column, Drawing, Notes, Table, short
 from ..rendering.ink import Ink
 from ..rendering.strips import LEVEL, MEASURED, STYLES, Curve, Level, Strip, stack
-from ..rendering.text import (DASH, decimals, fixed, number, pretty, sentence, trimmed, unit_text, with_unit)
+from ..rendering.text import (
+    DASH,
+    decimals,
+    fixed,
+    number,
+    pretty,
+    sentence,
+    trimmed,
+    unit_text,
+    with_unit,
+)
 from ..simulation.measured import Overlay
 from ..simulation.measured.fit import Fit, Fitted
 from ..simulation.measured.record import beside

@@ -9,7 +9,14 @@ from typing import Any
 from ..base.quantities import Quantity
 from ..design import choice_list, quantity_of
 from ..optimisation.infeasibility_card import percent as change_percent
-from ..optimisation.result import (Choices, Combination, Infeasibility, Optimisation, Rounding, VariableResult)
+from ..optimisation.result import (
+    Choices,
+    Combination,
+    Infeasibility,
+    Optimisation,
+    Rounding,
+    VariableResult,
+)
 from ..rendering import heights, text
 from ..rendering.blocks import Block, Cell, Column, Notes, Pair, Slot, Table, soft
 from ..rendering.text import DASH, sentence

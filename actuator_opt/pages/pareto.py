@@ -9,7 +9,7 @@ from ..base.quantities import Quantity
 from ..design import quantity_of
 from ..evaluation.result import count_words
 from ..optimisation.front.even import Gap
-from ..optimisation.pareto_result import ParetoFront, Wish
+from ..optimisation.pareto import ParetoFront, Wish
 from ..rendering import text
 from ..rendering.axes import Axes, even_ticks
 from ..rendering.blocks import Block, Column, Notes, Page, State, Table, Tile, Verdict, short, tile

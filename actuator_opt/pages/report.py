@@ -15,7 +15,25 @@ from ..metrics import METRICS
 from ..metrics.table import ROWS
 from ..optimisation.result import Optimisation
 from ..rendering import heights, text
-from ..rendering.blocks import (Bar, Block, Cell, Column, Flag, Medium, Notes, Page, Row, Share, State, Status, Table, Tile, Verdict, clean, soft)
+from ..rendering.blocks import (
+    Bar,
+    Block,
+    Cell,
+    Column,
+    Flag,
+    Medium,
+    Notes,
+    Page,
+    Row,
+    Share,
+    State,
+    Status,
+    Table,
+    Tile,
+    Verdict,
+    clean,
+    soft,
+)
 from ..rendering.ink import Ink
 from ..rendering.text import DASH
 from ..studies.seal import SealStudy

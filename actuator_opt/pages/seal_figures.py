@@ -18,7 +18,7 @@ import numpy as np
 from ..design import paths
 from ..design.model import Design
 from ..design.seals import Guide, Seal, SealElement, Wiper
-from ..evaluation.grooves import Groove, grooves as cut_grooves
+from ..evaluation.geometry import Groove, grooves as cut_grooves
 from ..evaluation.rings import Place, Ring
 from ..evaluation.sealing import closed_form, room
 from ..evaluation.values import Values
@@ -26,10 +26,25 @@ from ..rendering import contours
 from ..rendering.axes import Axes, dot, fitted, legend, level_ticks, ticks
 from ..rendering.blocks import clean
 from ..rendering.contours import bands, levels, scale, shades
-from ..rendering.ink import (BLACK, BLUE, GREEN, GREY, OCHRE, PALE, RED, WHITE, Ink, Point, Polygon, hatch, spread_within, text_width)
+from ..rendering.ink import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    OCHRE,
+    PALE,
+    RED,
+    WHITE,
+    Ink,
+    Point,
+    Polygon,
+    hatch,
+    spread_within,
+    text_width,
+)
 from ..rendering.text import AT_LEAST, AT_MOST, bars, degrees, number, speed_words, trimmed
-from ..seals.seal_type import Room
 from ..seals.contact import Shape, box
+from ..seals.seal_type import Room
 from ..studies.seal import FilmMap, RingPoint, SealStudy, SqueezeRow
 from .dynamics_figures import STYLES, inside, logs
 from .section import OUTLINE, THIN, choose_scale, scale_bar

@@ -11,14 +11,39 @@ import numpy as np
 
 from ..base.numeric import Array
 from ..base.quantities import INPUTS, RESULTS, SCENARIOS, Quantity
-from ..design.scenario.components import ENDS, FRICTIONS, SUPPLIES
+from ..design.scenario.kinds import ENDS, FRICTIONS, SHAPES, SUPPLIES, height
 from ..design.scenario.model import SAMPLES, Scenario
-from ..design.scenario.shapes import SHAPES, height
 from ..evaluation.result import count_words
 from ..rendering import text
-from ..rendering.blocks import (Bar, Block, Cell, Column, Notes, Page, Pair, Row, State, Status, Table, TerminalFigure, Tile, Verdict, short, tile)
+from ..rendering.blocks import (
+    Bar,
+    Block,
+    Cell,
+    Column,
+    Notes,
+    Page,
+    Pair,
+    Row,
+    State,
+    Status,
+    Table,
+    TerminalFigure,
+    Tile,
+    Verdict,
+    short,
+    tile,
+)
 from ..rendering.series import Series, heading
-from ..rendering.text import (DASH, number, pretty, sentence, trimmed, unit_text, value_text, with_unit)
+from ..rendering.text import (
+    DASH,
+    number,
+    pretty,
+    sentence,
+    trimmed,
+    unit_text,
+    value_text,
+    with_unit,
+)
 from ..simulation.assemble import ends_of
 from ..simulation.loops import LOOPS, loop_of
 from ..simulation.result import EXPECTED, RequirementResult, Simulation

@@ -8,7 +8,20 @@ from dataclasses import dataclass
 
 from ..base.errors import Diagnostic, InputError, remedy
 from ..base.quantities import RESULTS
-from ..rendering.blocks import (Block, Cell, Column, Notes, Page, State, Status, Table, Tile, Verdict, short, tile)
+from ..rendering.blocks import (
+    Block,
+    Cell,
+    Column,
+    Notes,
+    Page,
+    State,
+    Status,
+    Table,
+    Tile,
+    Verdict,
+    short,
+    tile,
+)
 from ..rendering.text import DASH, number, pretty, sentence, unit_text, with_unit
 from ..simulation.linear import Tuned
 from ..simulation.result import Simulation

@@ -8,7 +8,21 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from ..base.quantities import SCENARIOS
-from ..rendering.axes import (AREAS, COLOURS, DASHES, SIZE, ZERO, Axes, Box, even_ticks, fitted, lines, names, steady_range, time_axis)
+from ..rendering.axes import (
+    AREAS,
+    COLOURS,
+    DASHES,
+    SIZE,
+    ZERO,
+    Axes,
+    Box,
+    even_ticks,
+    fitted,
+    lines,
+    names,
+    steady_range,
+    time_axis,
+)
 from ..rendering.ink import GREY, Ink, text_width
 from ..rendering.strips import ASKED, MEASURED, Curve, Strip, stack
 from ..rendering.text import value_text
@@ -16,7 +30,17 @@ from ..simulation.linear import BAND
 from ..simulation.loops import LOOPS
 from ..simulation.result import Simulation
 from .simulation_energy import ENERGY
-from .simulation_figures import (Measured, Static, along, overlay, scaled, stiffness_panels, titled, travelled, window)
+from .simulation_figures import (
+    Measured,
+    Static,
+    along,
+    overlay,
+    scaled,
+    stiffness_panels,
+    titled,
+    travelled,
+    window,
+)
 
 Runs: TypeAlias = Sequence[tuple[str, Simulation]]
 """Runs with their names."""

@@ -9,7 +9,19 @@ import numpy as np
 
 from ..base.numeric import Array
 from ..base.quantities import RESULTS
-from ..rendering.axes import (COLOURS, DASHES, ZERO, Axes, Box, even_ticks, fitted, lines, per_cent, steady_range, time_axis)
+from ..rendering.axes import (
+    COLOURS,
+    DASHES,
+    ZERO,
+    Axes,
+    Box,
+    even_ticks,
+    fitted,
+    lines,
+    per_cent,
+    steady_range,
+    time_axis,
+)
 from ..rendering.ink import BLUE, GREY, OCHRE, PALE, Ink, spread_within, text_width
 from ..rendering.text import number, value_text
 from ..simulation.result import Simulation

@@ -13,7 +13,22 @@ from ..base.fitting import NORMAL
 from ..base.numeric import Array
 from ..base.quantities import INPUTS, RESULTS, SCENARIOS, Quantity
 from ..models.fluid import ATMOSPHERIC_PRESSURE
-from ..rendering.axes import (SIZE, ZERO, Axes, Box, band, error_bar, even_ticks, lines, names, required, steady_range, thinned, time_axis, x_axis)
+from ..rendering.axes import (
+    SIZE,
+    ZERO,
+    Axes,
+    Box,
+    band,
+    error_bar,
+    even_ticks,
+    lines,
+    names,
+    required,
+    steady_range,
+    thinned,
+    time_axis,
+    x_axis,
+)
 from ..rendering.ink import BLACK, BLUE, OCHRE, WHITE, Ink, text_width
 from ..rendering.strips import ASKED, LEVEL, LIMIT, MEASURED, STYLES, Curve, Level, Strip, stack
 from ..rendering.text import SENSES, number, trimmed, unit_text

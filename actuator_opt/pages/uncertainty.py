@@ -10,7 +10,20 @@ import numpy as np
 from ..evaluation.result import count_words, without_reserve
 from ..rendering import text
 from ..rendering.axes import Axes, fitted, ticks
-from ..rendering.blocks import (Block, Column, Drawing, Notes, Page, Row, State, Table, Tile, Verdict, short, tile)
+from ..rendering.blocks import (
+    Block,
+    Column,
+    Drawing,
+    Notes,
+    Page,
+    Row,
+    State,
+    Table,
+    Tile,
+    Verdict,
+    short,
+    tile,
+)
 from ..rendering.ink import BLACK, BLUE, GREY, RED, Ink
 from ..rendering.series import Series
 from ..rendering.text import sentence

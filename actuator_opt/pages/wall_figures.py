@@ -13,7 +13,20 @@ from typing import Any
 
 from ..evaluation.wall_study import Profile, WallStudy
 from ..rendering.axes import Axes, fitted, legend
-from ..rendering.ink import (BLACK, BLUE, GREEN, GREY, OCHRE, RED, WHITE, Ink, Point, hatch, spread_within, text_width)
+from ..rendering.ink import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    OCHRE,
+    RED,
+    WHITE,
+    Ink,
+    Point,
+    hatch,
+    spread_within,
+    text_width,
+)
 from ..rendering.text import number, trimmed
 
 STEEL = "#4f86a8"

@@ -20,7 +20,22 @@ from .axes import Axes, Box, Ticks, band, fitted, thinned
 from .blocks import Chart
 from .chart import Curve, Level, Panel, Points, Scale, Values, known, scale
 from .heights import wrap
-from .ink import (BLACK, BLUE, GREEN, GREY, OCHRE, PALE, RED, WHITE, Anchor, Ink, Point, hatch, spread_within, text_width)
+from .ink import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    OCHRE,
+    PALE,
+    RED,
+    WHITE,
+    Anchor,
+    Ink,
+    Point,
+    hatch,
+    spread_within,
+    text_width,
+)
 
 LINES: tuple[dict[str, Any], ...] = (
     {"stroke": BLUE, "pen": 0.4},

@@ -10,7 +10,25 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from .blocks import (Bar, Block, Cell, Chart, Drawing, Flag, Listing, Notes, Page, Pair, Reach, Row, Share, Slot, Status, Table, soft)
+from .blocks import (
+    Bar,
+    Block,
+    Cell,
+    Chart,
+    Drawing,
+    Flag,
+    Listing,
+    Notes,
+    Page,
+    Pair,
+    Reach,
+    Row,
+    Share,
+    Slot,
+    Status,
+    Table,
+    soft,
+)
 from .ink import text_width
 
 SHEET, TILES, FOOT, HEAD = 265.0, 23.0, 24.5, 8.2

@@ -15,7 +15,28 @@ from pathlib import Path
 
 from ..base.files import write_all
 from ..version import VERSION
-from .blocks import (FARTHEST, Bar, Block, Cell, Chart, Column, Drawing, Flag, Listing, Notes, Page, Pair, Reach, Row, Share, Slot, Status, Table, Tile, clean)
+from .blocks import (
+    FARTHEST,
+    Bar,
+    Block,
+    Cell,
+    Chart,
+    Column,
+    Drawing,
+    Flag,
+    Listing,
+    Notes,
+    Page,
+    Pair,
+    Reach,
+    Row,
+    Share,
+    Slot,
+    Status,
+    Table,
+    Tile,
+    clean,
+)
 from .chart_ink import drawn
 from .heights import cells_of, joined
 from .ink import POINT, Ink, PathMark, TextMark

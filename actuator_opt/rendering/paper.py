@@ -19,7 +19,28 @@ from ..base.files import write_all
 from ..base.tables import encoded
 from ..version import VERSION
 from . import html
-from .blocks import (FARTHEST, Bar, Block, Cell, Chart, Drawing, Flag, Listing, Notes, Page, Pair, Reach, Share, Slot, Status, Table, clean, printable, short, soft)
+from .blocks import (
+    FARTHEST,
+    Bar,
+    Block,
+    Cell,
+    Chart,
+    Drawing,
+    Flag,
+    Listing,
+    Notes,
+    Page,
+    Pair,
+    Reach,
+    Share,
+    Slot,
+    Status,
+    Table,
+    clean,
+    printable,
+    short,
+    soft,
+)
 from .chart_ink import drawn
 from .heights import FULL, HALF, cells_of, fitting, room
 from .ink import Ink

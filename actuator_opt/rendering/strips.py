@@ -9,7 +9,18 @@ from typing import Any
 import numpy as np
 
 from ..base.numeric import Array
-from .axes import (COLOURS, DASHES, ZERO, Axes, Box, even_ticks, lines, names, steady_range, time_axis)
+from .axes import (
+    COLOURS,
+    DASHES,
+    ZERO,
+    Axes,
+    Box,
+    even_ticks,
+    lines,
+    names,
+    steady_range,
+    time_axis,
+)
 from .ink import BLACK, GREY, RED, Ink, text_width
 
 STYLES: tuple[dict[str, Any], ...] = tuple(

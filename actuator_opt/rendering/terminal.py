@@ -8,7 +8,26 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Unpack
 
-from .blocks import (Bar, Block, Cell, Chart, Column, Drawing, Flag, Notes, Page, Pair, Row, Share, Slot, State, Status, Table, TerminalFigure, Verdict)
+from .blocks import (
+    Bar,
+    Block,
+    Cell,
+    Chart,
+    Column,
+    Drawing,
+    Flag,
+    Notes,
+    Page,
+    Pair,
+    Row,
+    Share,
+    Slot,
+    State,
+    Status,
+    Table,
+    TerminalFigure,
+    Verdict,
+)
 from .console import GAP, Console, Style, visible
 from .heights import cells_of, joined
 from .terminal_curve import curve

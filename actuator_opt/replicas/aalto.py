@@ -21,8 +21,39 @@ from ..rendering import text
 from ..rendering.blocks import Block, Drawing, text_table
 from . import aalto_models, trends
 from .aalto_figures import area_text, dynamic_figure, static_figure, theory_figure
-from .aalto_models import (CONTENTS, DOWN, ENTRAINED, PAPER, TESTED, UP, Answer, Bypass, DynamicTest, Neighbour, Response, StaticTest, Theory, air_behind, dynamic_test, evaluated, oil_alone, places, static_test, total)
-from .papers import (SLASH, TRACE_COLUMNS, close, equations, listed, of_another_cylinder, percent, scaled, trace_rows)
+from .aalto_models import (
+    CONTENTS,
+    DOWN,
+    ENTRAINED,
+    PAPER,
+    TESTED,
+    UP,
+    Answer,
+    Bypass,
+    DynamicTest,
+    Neighbour,
+    Response,
+    StaticTest,
+    Theory,
+    air_behind,
+    dynamic_test,
+    evaluated,
+    oil_alone,
+    places,
+    static_test,
+    total,
+)
+from .papers import (
+    SLASH,
+    TRACE_COLUMNS,
+    close,
+    equations,
+    listed,
+    of_another_cylinder,
+    percent,
+    scaled,
+    trace_rows,
+)
 
 
 def air_text(content: float) -> str:

@@ -21,9 +21,8 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from ..base.numeric import Array
-from ..design.circuit import Line, Ports, ReducingValve, Throttle
-from ..design.model import Design
-from ..evaluation import oil
+from ..design.model import Design, Line, Ports, ReducingValve, Throttle
+from ..evaluation import state
 from ..evaluation.build import prepare
 from ..evaluation.circuit import CHAMBERS, Chamber, Ways
 from ..evaluation.kernel import ModelRun, compute
@@ -130,7 +129,7 @@ def temperature_of(design: Design, viscosity: float) -> float:
     v = subject.values()
     stock = MaterialValues(v, subject.materials, subject.factors, subject.constants)
     warm = np.linspace(253.15, 393.15, 1401)
-    viscosities = np.log(np.ravel(oil.kinematic_viscosity(v, design.fluid, stock, warm)))
+    viscosities = np.log(np.ravel(state.kinematic_viscosity(v, design.fluid, stock, warm)))
     return float(np.interp(-np.log(viscosity), -viscosities, warm, left=np.nan, right=np.nan))
 
 

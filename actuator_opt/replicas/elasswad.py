@@ -14,12 +14,38 @@ from ..base import units
 from ..base.numeric import Array
 from ..design.materials import load_library
 from ..evaluation import Evaluation
-from ..models import (barrel, damping, elastomer, fluid, forces, friction, rod, seals, stiffness_published as published)
+from ..models import (
+    barrel,
+    damping,
+    elastomer,
+    fluid,
+    forces,
+    friction,
+    rod,
+    seals,
+    stiffness_published as published,
+)
 from ..rendering import text
 from ..rendering.blocks import Block, Drawing, text_table
 from . import papers
 from .elasswad_figures import record_figure
-from .elasswad_models import (FORCE, PAPER, POISSONS_RATIO, ROLLER_RADIUS, SPANS, STIFF_END, Tube, along, chord, own_record, properties, root, tube_of, value, wall_thickness)
+from .elasswad_models import (
+    FORCE,
+    PAPER,
+    POISSONS_RATIO,
+    ROLLER_RADIUS,
+    SPANS,
+    STIFF_END,
+    Tube,
+    along,
+    chord,
+    own_record,
+    properties,
+    root,
+    tube_of,
+    value,
+    wall_thickness,
+)
 
 
 def _over_spans(written: Callable[[float], str]) -> str:

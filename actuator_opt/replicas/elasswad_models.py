@@ -17,7 +17,18 @@ from ..base.numeric import Array
 from ..design.materials import load_library
 from ..design.seals import Seal
 from ..evaluation import Evaluation
-from ..models import (barrel, bending_test, column, damping, forces, friction, rod, seals, stiffness, stiffness_published as published)
+from ..models import (
+    barrel,
+    bending_test,
+    column,
+    damping,
+    forces,
+    friction,
+    rod,
+    seals,
+    stiffness,
+    stiffness_published as published,
+)
 from .papers import published_numbers
 
 POISSONS_RATIO = 0.3

@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ..base.numeric import Array
-from ..design.material_fits import Fit
+from ..design.material import Fit
 from ..design.model import Design
 from ..evaluation import Evaluation
 from ..models.friction import HUANG_TABLE_2
@@ -21,10 +21,44 @@ from ..rendering import text
 from ..rendering.blocks import Block, Drawing, text_table
 from ..studies.film_walk import FilmMap, Missing
 from . import huang_published
-from .huang_figures import (SHOWN, back_up_figure, cylinder_figure, plunger_figure, relief_figure, ring_figure, simulated_figure, speed_figure)
-from .huang_models import (BACK_UP, BOTH, CHAMBER, FILM_SPEED, TYPICAL, HuangStudy, Readings, dry_ring, kind_name, study_of)
+from .huang_figures import (
+    SHOWN,
+    back_up_figure,
+    cylinder_figure,
+    plunger_figure,
+    relief_figure,
+    ring_figure,
+    simulated_figure,
+    speed_figure,
+)
+from .huang_models import (
+    BACK_UP,
+    BOTH,
+    CHAMBER,
+    FILM_SPEED,
+    TYPICAL,
+    HuangStudy,
+    Readings,
+    dry_ring,
+    kind_name,
+    study_of,
+)
 from .huang_published import PAPER, SEAL_VISCOSITY, CurveFits
-from .papers import (SLASH, TRACE_COLUMNS, claim, equations, listed, newtons, of_another_cylinder, percent, pressure_text, rounded, speed_text, times, trace_rows)
+from .papers import (
+    SLASH,
+    TRACE_COLUMNS,
+    claim,
+    equations,
+    listed,
+    newtons,
+    of_another_cylinder,
+    percent,
+    pressure_text,
+    rounded,
+    speed_text,
+    times,
+    trace_rows,
+)
 
 AGREES, DISAGREES, IN_PART = "agrees", "disagrees", "agrees in part"
 

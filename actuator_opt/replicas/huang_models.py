@@ -27,13 +27,12 @@ from typing import Any
 import numpy as np
 
 from ..base.numeric import STEP, Array
-from ..design.material_fits import fit_double_exponential, fit_power_law
+from ..design.material import fit_double_exponential, fit_power_law
 from ..design.model import Design
 from ..evaluation.build import prepare
 from ..evaluation.film import FilmRow, solve
 from ..evaluation.kernel import base
-from ..evaluation.rings import Ring
-from ..evaluation.seal_contact import seal_contact
+from ..evaluation.rings import Ring, seal_contact
 from ..friction import film
 from ..lubrication import Elastic, Gap, Lubricant, SmoothFilm, solve_gap
 from ..models.damping import flat_gap, secant

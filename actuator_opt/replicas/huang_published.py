@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base.numeric import Array
-from ..design.material_fits import Fit, fit_double_exponential, fit_power_law
+from ..design.material import Fit, fit_double_exponential, fit_power_law
 from ..models import damping, forces, friction
 from ..models.friction import HUANG_TABLE_2, StribeckParameters
 from .papers import published_numbers

@@ -23,8 +23,7 @@ from ..evaluation import Evaluation
 from ..evaluation.build import prepare
 from ..evaluation.film import floats
 from ..evaluation.kernel import PreparedDesign, base, compute
-from ..evaluation.rings import Place, Ring
-from ..evaluation.seal_contact import seal_contact
+from ..evaluation.rings import Place, Ring, seal_contact
 from ..evaluation.values import Values, of_case
 from ..friction import coefficient, film
 from ..rendering import text

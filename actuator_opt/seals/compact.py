@@ -6,8 +6,17 @@ from collections.abc import Mapping
 
 from ..base.numeric import Array
 from ..models import compact_seal, gland
-from .seal_type import (AXIAL_PLAY, Piece, Room, SealGroove, SealSizes, SealType, no_faults, no_warnings)
 from .contact import LAND, WIDTH, SealContact, Shape, SizeField, box, landed
+from .seal_type import (
+    AXIAL_PLAY,
+    Piece,
+    Room,
+    SealGroove,
+    SealSizes,
+    SealType,
+    no_faults,
+    no_warnings,
+)
 
 
 def contact(seal: SealSizes) -> SealContact:

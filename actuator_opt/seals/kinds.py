@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from ..base.kinds import Kinds, kinds_in
-from .seal_type import SealType
 from .contact import SHARED
+from .seal_type import SealType
 
 TYPES: Kinds[SealType] = kinds_in(
     "seal type",

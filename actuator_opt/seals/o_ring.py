@@ -11,8 +11,8 @@ import numpy as np
 
 from ..base.numeric import Array, minimum, real, where
 from ..models import contact_profile, elastomer, gland, seals
-from .seal_type import Elements, Piece, Room, SealGroove, SealSizes, SealType, no_faults
 from .contact import SealContact, Shape, round_ring, shaped
+from .seal_type import Elements, Piece, Room, SealGroove, SealSizes, SealType, no_faults
 
 if TYPE_CHECKING:
     from ..finite_elements.result import SealSolution

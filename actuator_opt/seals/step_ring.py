@@ -9,9 +9,20 @@ from typing import TYPE_CHECKING
 from ..base.numeric import Array
 from ..base.quantities import INPUTS
 from ..models import gland, seals, step_seal
+from .contact import (
+    LAND,
+    RELIEF,
+    TAPER,
+    THICKNESS,
+    WIDTH,
+    SealContact,
+    Shape,
+    SizeField,
+    landed,
+    round_ring,
+)
 from .o_ring import law_inputs, law_warnings, round_piece
 from .seal_type import AXIAL_PLAY, Elements, Piece, Room, SealGroove, SealSizes, SealType, SizeFault
-from .contact import (LAND, RELIEF, TAPER, THICKNESS, WIDTH, SealContact, Shape, SizeField, landed, round_ring)
 
 if TYPE_CHECKING:
     from ..finite_elements.result import SealSolution

@@ -7,8 +7,27 @@ from collections.abc import Iterable, Mapping
 from ..base.numeric import Array
 from ..base.quantities import INPUTS
 from ..models import contact_profile, gland, lip_seal
-from .seal_type import (AXIAL_PLAY, Piece, Room, SealGroove, SealSizes, SealType, SizeFault, no_warnings)
-from .contact import (GROOVE_WIDTH, LAND, ROOT_CLEARANCE, THICKNESS, WIDTH, SealContact, Shape, SizeField, shaped)
+from .contact import (
+    GROOVE_WIDTH,
+    LAND,
+    ROOT_CLEARANCE,
+    THICKNESS,
+    WIDTH,
+    SealContact,
+    Shape,
+    SizeField,
+    shaped,
+)
+from .seal_type import (
+    AXIAL_PLAY,
+    Piece,
+    Room,
+    SealGroove,
+    SealSizes,
+    SealType,
+    SizeFault,
+    no_warnings,
+)
 
 LAND_SHARE = 0.1
 """Default land over lip length (a choice)."""

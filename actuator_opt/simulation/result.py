@@ -13,8 +13,8 @@ from ..base.numeric import Array
 from ..base.quantities import RESULTS, Quantity
 from ..base.symbolic import vectorised
 from ..base.tables import Displayed
+from ..design.scenario.kinds import SHAPES
 from ..design.scenario.model import Scenario
-from ..design.scenario.shapes import SHAPES
 from ..design.scenario.signals import SignalSegment
 from ..evaluation.result import State, without_reserve
 from ..models.fluid import ATMOSPHERIC_PRESSURE

@@ -10,13 +10,12 @@ import numpy as np
 
 from ..base.numeric import Array
 from ..design.model import Design
-from ..evaluation import oil
+from ..evaluation import state
 from ..evaluation.barrel import SEAL_STEP
 from ..evaluation.film import floats
 from ..evaluation.kernel import PreparedDesign, compute
 from ..evaluation.limits import MaterialValues
-from ..evaluation.rings import Ring
-from ..evaluation.seal_contact import seal_contact
+from ..evaluation.rings import Ring, seal_contact
 from ..evaluation.sealing import WiperFriction, wipers
 from ..evaluation.springs import Springs
 from ..models import forces
@@ -213,7 +212,7 @@ def bench(subject: PreparedDesign) -> Bench:
     temperature = _first_of(done.state.temperature)
 
     def bulk_modulus(pressure: Array) -> Array:
-        found = oil.bulk_modulus(v, subject.design.fluid, stock, temperature, pressure)
+        found = state.bulk_modulus(v, subject.design.fluid, stock, temperature, pressure)
         return np.real(found) + 0.0 * pressure
 
     driven = np.broadcast_to(_cases(done.state.driven_pressure), (len(v.cases),))

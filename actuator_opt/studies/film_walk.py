@@ -13,8 +13,7 @@ from ..base.numeric import Array
 from ..evaluation.barrel import SEAL_STEP
 from ..evaluation.film import FilmRow, Solved, floats, of_place, ring_films, solve
 from ..evaluation.kernel import Base
-from ..evaluation.rings import Place, Ring
-from ..evaluation.seal_contact import seal_contact
+from ..evaluation.rings import Place, Ring, seal_contact
 from ..evaluation.values import of_case
 from ..models import friction
 from ..seals.contact import SealContact

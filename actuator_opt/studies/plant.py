@@ -9,7 +9,7 @@ import numpy as np
 
 from ..base.numeric import Array, absolute, maximum
 from ..design.model import Design
-from ..evaluation import circuit, oil
+from ..evaluation import circuit, state
 from ..evaluation.circuit import CHAMBERS, Chamber
 from ..evaluation.kernel import ModelRun, PreparedDesign, compute
 from ..evaluation.limits import MaterialValues
@@ -256,12 +256,12 @@ def _oil(subject: PreparedDesign, v: Values, own: Bench, supply: float) -> Oil:
     stock = MaterialValues(v, subject.materials, subject.factors, subject.constants)
 
     def modulus(pressure: float) -> float:
-        return _one(oil.pure_bulk_modulus(v, section, stock, temperature, pressure))
+        return _one(state.pure_bulk_modulus(v, section, stock, temperature, pressure))
 
     at_rest = modulus(0.0)
-    density = _one(oil.density(v, section, stock, temperature))
-    kinematic = _one(oil.kinematic_viscosity(v, section, stock, temperature))
-    vapour = oil.vapour_pressure(stock, section.material, temperature)
+    density = _one(state.oil_density(v, section, stock, temperature))
+    kinematic = _one(state.kinematic_viscosity(v, section, stock, temperature))
+    vapour = state.vapour_pressure(stock, section.material, temperature)
     return Oil(
         temperature=temperature,
         bulk_modulus=at_rest,

@@ -15,12 +15,11 @@ import numpy as np
 from ..base.errors import Diagnostic, InputError
 from ..base.tables import Displayed
 from ..design.model import Design
-from ..evaluation import gland_check, sealing as contacts_of_seals
+from ..evaluation import rings, sealing as contacts_of_seals
 from ..evaluation.barrel import SEAL_STEP
 from ..evaluation.film import FilmRow, Solved, floats, of_place, solve
 from ..evaluation.kernel import Base, PreparedDesign, base
-from ..evaluation.rings import Place, Ring
-from ..evaluation.seal_contact import seal_contact
+from ..evaluation.rings import Place, Ring, seal_contact
 from ..evaluation.values import of_case
 from ..models import damping, elastomer, lugre
 from ..models.fluid import ATMOSPHERIC_PRESSURE
@@ -418,7 +417,7 @@ def study(
         back=points["in"],
         outer_pressure=driven.rings[-1]["outer_pressure"],
         stroke=float(np.squeeze(found.geometry.stroke)),
-        clearance=float(np.squeeze(gland_check.clearances(found.geometry, found.state, own[0])[0])),
+        clearance=float(np.squeeze(rings.clearances(found.geometry, found.state, own[0])[0])),
         growth=driven.grown(held),
         squeezes=tuple(_squeezes(subject, found, own, largest if place == "piston" else 0.0)),
         curves=film_map(driven, [x * supply for x in CURVE_SHARES], CURVE_SPEEDS)
@@ -579,12 +578,12 @@ def _squeezes(
     for ring in own:
         one = floats(ring, 0)
         for temperature in sorted(set(temperatures)):
-            ratio = gland_check.volume_ratio(v, design, found.stock, ring, temperature)
+            ratio = rings.volume_ratio(v, design, found.stock, ring, temperature)
             for pressure, grown in ((0.0, 0.0), (float(v["supply.pressure"]), growth)):
                 spread = {"growth": grown, "ratio": ratio}
-                loosest, tightest = gland_check.squeezes(one, aside=0.0, **spread)
+                loosest, tightest = rings.squeezes(one, aside=0.0, **spread)
                 exact = one.at(tolerance=0.0, section_tolerance=0.0)
-                nominal, _ = gland_check.squeezes(exact, aside=0.0, **spread)
+                nominal, _ = rings.squeezes(exact, aside=0.0, **spread)
                 rows.append(
                     SqueezeRow(
                         ring.label,

@@ -18,8 +18,7 @@ from ..base.quantities import Quantity
 from ..design import Design
 from ..design.paths import quantity_of
 from ..design.writer import to_yaml
-from ..evaluation.build import spec_hash
-from ..evaluation.many import Many, evaluate_many, limits_of
+from ..evaluation.build import Many, evaluate_many, limits_of, spec_hash
 from ..evaluation.plugin import Plugin
 from ..optimisation.actuator import Goal, goal_of
 from .designs import KEPT, Designs, first_fault

@@ -14,8 +14,8 @@ from ..base.numeric import Array
 from ..design import Design, with_values
 from ..design.paths import quantity_of
 from ..evaluation import PreparedDesign, prepare
+from ..evaluation.build import Many, evaluate_many
 from ..evaluation.limits import extremes
-from ..evaluation.many import Many, evaluate_many
 from ..evaluation.plugin import Plugin, with_own
 from .plan import Axis, Plan, Points
 

@@ -15,10 +15,10 @@ from ..base.errors import Diagnostic, InputError
 from ..base.numeric import Array
 from ..design import Design, read_design
 from ..evaluation import PreparedDesign
+from ..evaluation.build import limits_of, margins_many
 from ..evaluation.limits import Limit
-from ..evaluation.many import limits_of, margins_many
+from ..evaluation.outline import Shapes, same_dimensions, shapes
 from ..evaluation.plugin import Plugin, with_own
-from ..evaluation.shapes import Shapes, same_dimensions, shapes
 from ..metrics import METRICS
 from ..version import VERSION
 from .chunk import Study, key_head

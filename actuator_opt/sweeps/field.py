@@ -11,8 +11,7 @@ import numpy as np
 
 from ..base.errors import Diagnostic, UsageError
 from ..base.numeric import Array
-from ..evaluation.build import TOLERANCE
-from ..evaluation.many import margins_of
+from ..evaluation.build import TOLERANCE, margins_of
 from .chunk import Study
 from .plan import Plan, Points
 

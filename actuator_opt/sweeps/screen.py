@@ -17,7 +17,7 @@ from ..base.numeric import Array
 from ..base.symbolic import Symbol, vectorised
 from ..base.symbolic.expression import needed
 from ..design import Design
-from ..design.variable import Variable
+from ..design.model import Variable
 from ..evaluation import prepare
 from ..evaluation.build import TOLERANCE
 from ..optimisation.actuator import build

@@ -23,7 +23,7 @@ from ..design.material import Property, Spread
 from ..design.standard_sizes import citation, tables
 from ..design.uncertain import misfit, source
 from ..evaluation import PreparedDesign, compute
-from ..evaluation.governing import governing
+from ..evaluation.kernel import governing
 from ..evaluation.limits import UNLIMITED, Limit, MetricArrays, all_limits, rows_of
 from ..evaluation.values import Values
 from ..models.elastomer import MODULUS_LAWS

@@ -31,7 +31,13 @@ from actuator_opt.pages.simulation_comparison_figures import comparison_figure
 from actuator_opt.rendering.axes import Axes, names as named_above
 from actuator_opt.rendering.blocks import Drawing, Notes, Pair, Table
 from actuator_opt.rendering.ink import BLUE, GREY, RED, WHITE, Ink, text_width
-from actuator_opt.rendering.script_pages import (Sheets, grid_table, rounded, run_script, study_report)
+from actuator_opt.rendering.script_pages import (
+    Sheets,
+    grid_table,
+    rounded,
+    run_script,
+    study_report,
+)
 from actuator_opt.rendering.text import NARROW, fixed, number
 from actuator_opt.replicas.aalto_models import Bench, End
 from actuator_opt.simulation import Simulation

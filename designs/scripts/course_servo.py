@@ -25,7 +25,13 @@ from actuator_opt.base.tables import aligned
 from actuator_opt.models.loop import ziegler_nichols
 from actuator_opt.pages.simulation_comparison_figures import LEAST, comparison_figure
 from actuator_opt.rendering.blocks import Block, Drawing, Notes, Table
-from actuator_opt.rendering.script_pages import (Sheets, grid_table, rounded, run_script, study_report)
+from actuator_opt.rendering.script_pages import (
+    Sheets,
+    grid_table,
+    rounded,
+    run_script,
+    study_report,
+)
 from actuator_opt.rendering.text import fixed, number
 from actuator_opt.simulation import Simulation
 from actuator_opt.simulation.sensitivity import sensitivities

@@ -25,7 +25,13 @@ from actuator_opt.base.tables import aligned
 from actuator_opt.rendering.axes import Axes
 from actuator_opt.rendering.blocks import Drawing
 from actuator_opt.rendering.ink import BLUE, RED, WHITE, Ink
-from actuator_opt.rendering.script_pages import (Sheets, grid_table, rounded, run_script, study_report)
+from actuator_opt.rendering.script_pages import (
+    Sheets,
+    grid_table,
+    rounded,
+    run_script,
+    study_report,
+)
 from actuator_opt.rendering.text import fixed, number
 
 Data = dict[str, Any]

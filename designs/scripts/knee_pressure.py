@@ -32,7 +32,13 @@ from actuator_opt.models.mass import oil_mass, tube_mass
 from actuator_opt.rendering.axes import AREAS, Axes
 from actuator_opt.rendering.blocks import Drawing
 from actuator_opt.rendering.ink import BLACK, BLUE, GREY, RED, WHITE, Ink, spread_within
-from actuator_opt.rendering.script_pages import (Sheets, grid_table, rounded, run_script, study_report)
+from actuator_opt.rendering.script_pages import (
+    Sheets,
+    grid_table,
+    rounded,
+    run_script,
+    study_report,
+)
 from actuator_opt.rendering.text import fixed, number
 
 Data = dict[str, Any]

@@ -27,7 +27,13 @@ from actuator_opt.models.seals import LAWS
 from actuator_opt.rendering.axes import Axes
 from actuator_opt.rendering.blocks import Drawing
 from actuator_opt.rendering.ink import BLUE, GREY, RED, WHITE, Ink
-from actuator_opt.rendering.script_pages import (Sheets, grid_table, rounded, run_script, study_report)
+from actuator_opt.rendering.script_pages import (
+    Sheets,
+    grid_table,
+    rounded,
+    run_script,
+    study_report,
+)
 from actuator_opt.rendering.text import fixed, number
 
 DESIGN = Path(__file__).resolve().parents[1] / "knee.yaml"

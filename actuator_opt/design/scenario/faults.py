@@ -10,14 +10,12 @@ from typing import Any
 from ...base import quantities
 from ...base.errors import Fault
 from ..build import how_to_add
-from ..kinds import position_at
+from ..kinds import Section, position_at
 from ..model import Design
-from ..section import Section
 from ..view import View, length_text, without_effect
 from ..walls import Loc, child_at, entries
-from .components import FRICTIONS, LAWS, SUPPLIES, ControlLaw
+from .kinds import FRICTIONS, LAWS, SHAPES, SUPPLIES, ControlLaw
 from .model import FEWEST_SAMPLES, MOST_SAMPLES, SAMPLES, Control, Friction, Load, Scenario, Supply
-from .shapes import SHAPES
 from .signals import SignalSegment
 
 _SLACK = 1e-9

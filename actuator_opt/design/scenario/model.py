@@ -6,10 +6,8 @@ from typing import Annotated
 
 from pydantic import Field
 
-from ..circuit import Valve
-from ..kinds import Of, Position, Text
-from ..model import Limit
-from ..section import Section
+from ..kinds import Of, Position, Section, Text
+from ..model import Limit, Valve
 from . import kinds, signals
 from .kinds import FileName, Label, StartPosition
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from ..kinds import Of
-from ..section import Section
+from ..kinds import Of, Section
 from . import kinds
 from .kinds import FileName, Label
 

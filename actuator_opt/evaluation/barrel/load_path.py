@@ -14,9 +14,8 @@ from ...base.numeric import Array, maximum
 from ...design.model import Design
 from ...joints.joint import Clamp
 from ...models import barrel_ends
-from ..geometry import Geometry, end_at
+from ..geometry import Geometry, Numbers, clamped, end_at, joint_of
 from ..limits import MaterialValues
-from ..retention import Numbers, clamped, joint_of
 from ..state import LoadState
 from ..values import Values
 

@@ -29,8 +29,7 @@ from ..actuator import MET, ActuatorProblem
 from ..problem import Vector
 from .bounding import Bound, Bounding, Seen, ranges, straighten
 from .box import ROOM, Box, Gone, Layout
-from .builder import Builder
-from .envelopes import Envelopes, decays, layered, refuse
+from .builder import Builder, Envelopes, decays, layered, refuse
 from .intervals import Empty, narrow, tighten
 from .relaxation import ConstraintRow, Form, Relaxation, Unknown
 

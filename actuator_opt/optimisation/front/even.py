@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...base.progress import tell
-from ..descents import RESIDUAL
 from ..problem import Vector
-from . import dominance, plane
+from ..resolve.parallel_descents import RESIDUAL
+from . import plane, tracer
 from .plane import between_on_line
 from .tracer import FrontSearch
 
@@ -40,7 +40,7 @@ class Gap:
     jump: bool
 
 
-def chosen(search: FrontSearch, count: int) -> dominance.Indices:
+def chosen(search: FrontSearch, count: int) -> tracer.Indices:
     """The requested number of designs, farthest apart, along the first objective."""
     kept = np.array([k for k in search.chosen() if search.residual(k) <= RESIDUAL], dtype=np.intp)
     units = search.units[:, kept]
@@ -53,10 +53,10 @@ def chosen(search: FrontSearch, count: int) -> dominance.Indices:
         jumps = [gap.after for gap in wide(search, kept) if gap.jump]
         firm += [k + side for k in jumps for side in (0, 1)]
     first = np.array(list(dict.fromkeys(firm))[:count], dtype=np.intp)
-    return kept[dominance.thinned(units, first, count)]
+    return kept[tracer.thinned(units, first, count)]
 
 
-def wide(search: FrontSearch, kept: dominance.Indices) -> list[Gap]:
+def wide(search: FrontSearch, kept: tracer.Indices) -> list[Gap]:
     """The wide gaps between designs of two objectives, in order."""
     units = search.units[:, kept]
     sizes = np.sqrt((np.diff(units, axis=1) ** 2).sum(axis=0))
@@ -97,14 +97,14 @@ def middles(search: FrontSearch, count: int) -> list[int]:
     return found
 
 
-def lost(search: FrontSearch, kept: dominance.Indices) -> int:
+def lost(search: FrontSearch, kept: tracer.Indices) -> int:
     """Number of levels without a design in or near them, in gaps that are not jumps."""
     units = search.units[:, kept]
     if len(units) > 2:
-        widest = dominance.nearest(units).max(initial=0.0)
+        widest = tracer.nearest(units).max(initial=0.0)
         plane = search.plane[:, kept]
         levels = [level - level.mean() for level in search.lost]
-        return sum(bool(dominance.distances(plane, one).min() > widest) for one in levels)
+        return sum(bool(tracer.distances(plane, one).min() > widest) for one in levels)
     ranges = [
         sorted(search.designs[kept[gap.after + side]].level[0] for side in (0, 1))
         for gap in wide(search, kept)
@@ -113,11 +113,11 @@ def lost(search: FrontSearch, kept: dominance.Indices) -> int:
     return sum(any(low < a[0] < high for low, high in ranges) for a in search.lost)
 
 
-def _pairs(kept: dominance.Indices) -> Iterator[tuple[int, int]]:
+def _pairs(kept: tracer.Indices) -> Iterator[tuple[int, int]]:
     return zip(kept[:-1].tolist(), kept[1:].tolist(), strict=True)
 
 
-def _among(search: FrontSearch, left: int, right: int) -> dominance.Indices:
+def _among(search: FrontSearch, left: int, right: int) -> tracer.Indices:
     """Designs at levels between two given ones, in order."""
     levels = np.array([one.level[0] for one in search.designs])
     low, high = sorted((levels[left], levels[right]))

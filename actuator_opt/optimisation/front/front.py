@@ -27,16 +27,21 @@ import numpy as np
 from ...base.numeric import Array
 from ...base.progress import tell
 from ..actuator import Solution
-from ..descents import FEASIBLE, RESIDUAL
 from ..evaluator import Evaluator, Point
 from ..problem import Values, Vector
-from ..resolve.parallel_descents import converged_from, descents_from, distinct_ends
+from ..resolve.parallel_descents import (
+    FEASIBLE,
+    RESIDUAL,
+    converged_from,
+    descents_from,
+    distinct_ends,
+)
 from ..solver import KEEP, Halton, Sweep, distinct, solve, sweep
-from . import dominance
+from . import tracer
 from .even import Gap, chosen, close, lost, middles, wide
 from .objectives import Conditions, Objectives
 from .plane import fill_line, fill_plane
-from .tracer import Design, FrontSearch, Start, Tracer
+from .tracer import Design, FrontSearch, Start, Tracer, knee, nondominated
 
 HOLD = 1e-10
 """Share of its range by which an anchor's objective may worsen while the others improve."""
@@ -316,7 +321,7 @@ class Front:
         if self.units.shape[1] < 2:
             return np.empty(0)
         if len(self.units) > 2:
-            return dominance.nearest(self.units)
+            return tracer.nearest(self.units)
         return np.asarray(np.sqrt((np.diff(self.units, axis=1) ** 2).sum(axis=0)))
 
 
@@ -381,13 +386,13 @@ def _finished(
     units = search.units[:, kept]
     replaced = np.stack(search.passed, axis=1) if search.passed else np.empty((len(units), 0))
     everything = np.concatenate([search.units, search.rest, tracer.normal(replaced)], axis=1)
-    dominated = ~dominance.nondominated(np.concatenate([units, everything], axis=1))[len(kept) :]
+    dominated = ~nondominated(np.concatenate([units, everything], axis=1))[len(kept) :]
     return Front(
         x=np.stack([search.designs[k].point.x[:-1] for k in kept], axis=1),
         values=tracer.values(units),
         units=units,
         residuals=np.array([search.residual(k) for k in kept]),
-        knee=dominance.knee(units),
+        knee=knee(units),
         passed=tracer.values(everything[:, dominated]),
         checked=checked,
         improved=improved,

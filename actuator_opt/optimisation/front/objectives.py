@@ -15,10 +15,10 @@ from functools import cached_property
 import numpy as np
 
 from ...base.numeric import Array
-from ..descents import RESIDUAL
 from ..evaluator import Evaluator, Point
 from ..kkt import residual
 from ..problem import BoxProblem, ParametricProblem, Values, Vector
+from ..resolve.parallel_descents import RESIDUAL
 
 LEVEL = "level of the objectives"
 """Name of the variable t."""

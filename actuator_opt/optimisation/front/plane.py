@@ -21,9 +21,8 @@ import numpy.typing as npt
 
 from ...base.progress import tell
 from ..problem import Vector
-from . import dominance, plane
-from .dominance import Indices, distances
-from .tracer import BETTER, HELD, JUMP, Design, FrontSearch, Start
+from . import plane, tracer
+from .tracer import BETTER, HELD, JUMP, Design, FrontSearch, Indices, Start, distances
 
 STEEPEST = 2.0
 """Maximum length of a two-objective front per unit of u."""
@@ -327,7 +326,7 @@ def _doubtful(search: FrontSearch, chosen: Indices) -> list[tuple[int, int]]:
     if not len(neighbours):
         return []
     far = JUMP * np.median(np.abs(z[:, neighbours[:, 0]] - z[:, neighbours[:, 1]]).max(axis=0))
-    near = CLOSE * np.median(dominance.nearest(units))
+    near = CLOSE * np.median(tracer.nearest(units))
     pairs = []
     for i in range(len(chosen)):
         behind = (units - units[:, [i]]).max(axis=0)

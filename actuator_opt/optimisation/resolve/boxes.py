@@ -13,12 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import elastic, kkt, nlopt_wrapper
-from ..descents import FEASIBLE, RESIDUAL
+from .. import kkt, nlopt_wrapper, repairs
 from ..evaluator import Evaluator, Point, points_together
 from ..problem import Vector
-from .batch import Steps, run_batch
-from .steps import PATIENCE, SETTLED, ScaledHessian, restoring_steps
+from .parallel_descents import FEASIBLE, RESIDUAL
+from .steps import PATIENCE, SETTLED, ScaledHessian, Steps, restoring_steps, run_batch
 
 STEPS = 14
 """Maximum steps with the Hessian of the other optimum."""
@@ -179,7 +178,7 @@ def _restored(evaluator: Evaluator, start: Point, patience: int) -> Steps[Neares
             return Nearest(feasible)
         best = least or start
     doubtful = best.violation <= DOUBTFUL or bool(evaluator.problem.equality_names)
-    return Nearest(elastic.feasible_point(evaluator, best) if doubtful else None, best)
+    return Nearest(repairs.feasible_point(evaluator, best) if doubtful else None, best)
 
 
 def _met(point: Point) -> bool:

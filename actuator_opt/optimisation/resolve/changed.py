@@ -10,8 +10,19 @@ import numpy as np
 from ...base.numeric import STEP
 from ..evaluator import Evaluator, Point
 from ..problem import ParametricProblem, Vector
-from .batch import Result, Steps, run_batch
-from .steps import (FEASIBLE, LONGEST, MET, Descent, Valley, full_steps, restoring_steps, trusted_steps)
+from .steps import (
+    FEASIBLE,
+    LONGEST,
+    MET,
+    Descent,
+    Result,
+    Steps,
+    Valley,
+    full_steps,
+    restoring_steps,
+    run_batch,
+    trusted_steps,
+)
 
 
 def applicable(parametric: ParametricProblem, evaluator: Evaluator) -> bool:

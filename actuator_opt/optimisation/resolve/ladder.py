@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .. import elastic, kkt
+from .. import kkt, repairs
 from ..actuator import Solution
 from ..evaluator import Evaluator, Point
 from ..kkt import polish
@@ -245,7 +245,7 @@ def search_near(
             uphill = _met(here) and here.objective < found.objective
             if _optimal(near, found) and not uphill:
                 return found
-        restored = elastic.feasible_point(near, tried[0]) if tried else None
+        restored = repairs.feasible_point(near, tried[0]) if tried else None
         if restored is None:
             return None
         inside = restored.z

@@ -13,16 +13,74 @@ convex, as the rows determine the step [NocedalWright2006] section 16.2.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Generic, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
 
 from .. import kkt
 from ..evaluator import HESSIAN_STEP, Evaluator, Point
 from ..problem import Vector
-from .batch import Steps
+
+Result = TypeVar("Result")
+
+
+Steps: TypeAlias = Generator[Vector, Point, Result]
+"""A solver: yields coordinates (nf,), receives the evaluated point, returns its result."""
+
+
+Answer: TypeAlias = Callable[[Mapping[int, Vector]], Sequence[Point]]
+"""Evaluates the point requested by each solver, by number."""
+
+
+class Batch(Generic[Result]):
+    """Solvers under way.
+
+    Parameters
+    ----------
+    solvers : all of them
+    answer : evaluates a point for each solver that asks, in one model call
+
+    Attributes
+    ----------
+    wanted : the coordinates that the solvers still running ask for, by number
+    results : of the solvers that have ended, by number
+    """
+
+    def __init__(self, solvers: Sequence[Steps[Result]], answer: Answer) -> None:
+        self.wanted: dict[int, Vector] = {}
+        self.results: dict[int, Result] = {}
+        self._solvers, self._answer = solvers, answer
+        for number in range(len(solvers)):
+            self._advance(number, None)
+
+    def step(self) -> None:
+        """Answer every solver that is still running."""
+        wanted, self.wanted = self.wanted, {}
+        for number, point in zip(wanted, self._answer(wanted), strict=True):
+            self._advance(number, point)
+
+    def drop(self, number: int) -> None:
+        """End a solver without a result."""
+        del self.wanted[number]
+        self._solvers[number].close()
+
+    def _advance(self, number: int, point: Point | None) -> None:
+        solver = self._solvers[number]
+        try:
+            self.wanted[number] = next(solver) if point is None else solver.send(point)
+        except StopIteration as end:
+            self.results[number] = end.value
+
+
+def run_batch(solvers: Sequence[Steps[Result]], answer: Answer) -> list[Result]:
+    """The result of every solver, in order."""
+    batch = Batch(solvers, answer)
+    while batch.wanted:
+        batch.step()
+    return [batch.results[number] for number in range(len(solvers))]
+
 
 ITERATIONS = 10
 """Maximum full steps; 10 % changes usually take three to five."""

@@ -14,7 +14,21 @@ from ...base.errors import Diagnostic, InputError
 from ...base.numeric import Array
 from ...rendering.axes import Axes, even_ticks, spaced
 from ...rendering.heights import wrap
-from ...rendering.ink import (BLACK, BLUE, GREEN, GREY, OCHRE, PALE, POINT, RED, WHITE, Ink, Point, hatch, text_width)
+from ...rendering.ink import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    OCHRE,
+    PALE,
+    POINT,
+    RED,
+    WHITE,
+    Ink,
+    Point,
+    hatch,
+    text_width,
+)
 from ...rendering.text import trimmed
 from ...sweeps.field import Boundary, Field, field as field_of, require_grid
 from .shared import ORIGINS, SweepFigure, SweepFigureData, heading

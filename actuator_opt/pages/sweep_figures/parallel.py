@@ -11,7 +11,17 @@ from ...base.numeric import Array
 from ...rendering.axes import even_range, even_ticks, fitted
 from ...rendering.ink import BLACK, GREY, RED, WHITE, Ink, Point, text_width
 from ...rendering.text import SENSES, trimmed
-from .shared import (BETTER, INFEASIBLE, Rows, SweepFigure, SweepFigureData, Track, fits, heading, two_lines)
+from .shared import (
+    BETTER,
+    INFEASIBLE,
+    Rows,
+    SweepFigure,
+    SweepFigureData,
+    Track,
+    fits,
+    heading,
+    two_lines,
+)
 
 MOST = 1000
 """Designs drawn of the feasible, and of the others (a choice: more lines are a blot)."""

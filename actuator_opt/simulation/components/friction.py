@@ -8,7 +8,7 @@ from ...base.kinds import per_kind
 from ...base.numeric import maximum
 from ...base.quantities import SCENARIOS
 from ...base.symbolic import Expression
-from ...design.scenario.components import FRICTIONS
+from ...design.scenario.kinds import FRICTIONS
 from ...design.scenario.model import Friction as Stated
 from ...models import friction, lugre
 from ...studies.plant import Plane, Plant

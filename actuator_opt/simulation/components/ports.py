@@ -7,7 +7,7 @@ from typing import NamedTuple
 from ...base.kinds import per_kind
 from ...base.quantities import SCENARIOS
 from ...base.symbolic import Expression, Symbol
-from ...design.scenario.components import ENDS
+from ...design.scenario.kinds import ENDS
 from ...evaluation.circuit import Chamber
 from ...models import one_way_valve, supply
 from .chambers import node

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...base.numeric import Array
 from ...base.symbolic import Expression, Namespace, jacobian
-from ...design.scenario.shapes import SHAPES, Records as Records, height
+from ...design.scenario.kinds import SHAPES, Records as Records, height
 from ...design.scenario.signals import SignalSegment
 from ..system import System
 

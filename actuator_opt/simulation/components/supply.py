@@ -8,7 +8,7 @@ from ...base.kinds import per_kind
 from ...base.numeric import clip, where
 from ...base.quantities import INPUTS, SCENARIOS
 from ...base.symbolic import Expression, Symbol
-from ...design.scenario.components import SUPPLIES
+from ...design.scenario.kinds import SUPPLIES
 from ...models import accumulator, elements, lines, supply, wilson
 from .chambers import node
 from .circuit import Circuit
