@@ -15,9 +15,7 @@ import actuator_opt as ao
 from actuator_opt.design.scenario.model import Scenario
 from actuator_opt.models.loop import ControllerGains
 from actuator_opt.simulation.assemble import assemble
-from actuator_opt.simulation.fast import cvodes
-from actuator_opt.simulation.integrate import METHODS, integrate
-from actuator_opt.simulation.methods import RELATIVE
+from actuator_opt.simulation.integrate import METHODS, RELATIVE, cvodes, integrate
 from actuator_opt.simulation.system import Compiled
 from actuator_opt.studies.plant import Plant, plant
 

@@ -11,8 +11,8 @@ import numpy as np
 from actuator_opt.design import read_design
 from actuator_opt.evaluation import prepare
 from actuator_opt.optimisation.actuator import ActuatorProblem, build
-from actuator_opt.optimisation.certificate.box import Box, Layout
 from actuator_opt.optimisation.certificate.certify import Relaxed, relax, trace
+from actuator_opt.optimisation.certificate.intervals import Box, Layout
 from actuator_opt.optimisation.problem import BoxProblem, Values
 from actuator_opt.optimisation.solver import solve
 

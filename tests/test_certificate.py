@@ -9,8 +9,8 @@ import pytest
 from certificate_cases import HEAVIER, case
 
 from actuator_opt.optimisation.certificate.bounding import Bounding
-from actuator_opt.optimisation.certificate.box import Box, Layout
 from actuator_opt.optimisation.certificate.certify import BoxSearch, certify
+from actuator_opt.optimisation.certificate.intervals import Box, Layout
 
 FREE_PRESSURE = (
     ("variables.supply.pressure.lower", "150 bar"),

@@ -12,10 +12,9 @@ from hypothesis import assume, given, strategies as st
 
 from actuator_opt.base.symbolic import Graph
 from actuator_opt.optimisation.certificate.bounding import Bounding, straighten
-from actuator_opt.optimisation.certificate.box import Box, Layout
 from actuator_opt.optimisation.certificate.builder import Builder
 from actuator_opt.optimisation.certificate.certify import BoxSearch
-from actuator_opt.optimisation.certificate.intervals import narrow, tighten
+from actuator_opt.optimisation.certificate.intervals import Box, Layout, narrow, tighten
 from actuator_opt.optimisation.certificate.relaxation import (
     SHAPES,
     Form,

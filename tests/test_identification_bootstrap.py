@@ -20,9 +20,9 @@ from actuator_opt.identification.bootstrap import (
     resampled_stribeck,
     searched,
 )
+from actuator_opt.identification.calibration import FitSearch, relaxed
 from actuator_opt.identification.identify import identify
 from actuator_opt.identification.lugre import windows
-from actuator_opt.identification.many_fits import FitSearch, relaxed
 from actuator_opt.identification.points import Point
 from actuator_opt.identification.stribeck_fit import fit_stribeck
 from actuator_opt.studies.bench import bench

@@ -9,8 +9,8 @@ from actuator_opt.design.scenario import Scenario, signals
 from actuator_opt.design.scenario.kinds import ENDS, FRICTIONS, LAWS, SHAPES, SUPPLIES
 from actuator_opt.design.walls import entries
 from actuator_opt.models.loop import ziegler_nichols
-from actuator_opt.simulation.components.friction import FORCES
-from actuator_opt.simulation.components.ports import FEEDS
+from actuator_opt.simulation.components.chambers import FEEDS
+from actuator_opt.simulation.components.motion import FORCES
 from actuator_opt.simulation.components.supply import DELIVERIES
 
 CHOICES = {

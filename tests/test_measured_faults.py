@@ -22,7 +22,7 @@ from actuator_opt.pages import measured as pages
 from actuator_opt.pages.measured import drawn, measured_figures
 from actuator_opt.pages.simulation_figures import simulation_figure
 from actuator_opt.rendering import terminal
-from actuator_opt.simulation.components.signals import acts_after, at_start
+from actuator_opt.simulation.components.circuit import acts_after, at_start
 from actuator_opt.simulation.measured import Measured, fit, overlay, parse_measured
 from actuator_opt.studies.plant import plant
 

@@ -11,7 +11,7 @@ import pytest
 from cli_runner import KNEE, bench, run
 
 import actuator_opt as ao
-from actuator_opt.optimisation.front.even import Gap
+from actuator_opt.optimisation.front.plane import Gap
 from actuator_opt.pages.pareto import remarks
 
 PAIR = ("--objective", "mass:min", "--objective", "stiffness_min:max")

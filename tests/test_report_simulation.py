@@ -21,7 +21,7 @@ from actuator_opt.pages import (
     read_attachment,
     simulation as subject,
     simulation_comparison as comparing,
-    simulation_comparison_figures as pair_figures,
+    simulation_comparison as pair_figures,
     simulation_energy,
     simulation_figures as figures,
 )

@@ -11,7 +11,7 @@ from test_through_wall import evaluated, with_wall
 
 import actuator_opt as ao
 from actuator_opt.pages import wall
-from actuator_opt.pages.wall_figures import Rung, ladder_figure
+from actuator_opt.pages.wall import Rung, ladder_figure
 from actuator_opt.rendering import paper, paper_plain as fallback
 from actuator_opt.rendering.ink import Ink
 

@@ -15,8 +15,7 @@ from hypothesis import given, strategies as st
 from actuator_opt.base.errors import InputError, Unsolvable
 from actuator_opt.base.symbolic import Graph, Namespace, jacobian
 from actuator_opt.models.loop import ControllerGains
-from actuator_opt.simulation.fast import interruptible, translate
-from actuator_opt.simulation.integrate import integrate
+from actuator_opt.simulation.integrate import integrate, interruptible, translate
 from actuator_opt.simulation.run import COMPARED
 from actuator_opt.simulation.system import System
 

@@ -19,10 +19,14 @@ from actuator_opt.api import reports
 from actuator_opt.base.bounds import SWEEP_FIGURES
 from actuator_opt.base.errors import InputError, UsageError
 from actuator_opt.pages.sweep import page
-from actuator_opt.pages.sweep_figures import drawing
+from actuator_opt.pages.sweep_figures import shared
 from actuator_opt.pages.sweep_figures.contour import contour_figure
-from actuator_opt.pages.sweep_figures.drawing import sweep_figures
-from actuator_opt.pages.sweep_figures.shared import SweepFigure, SweepFigureData, fits
+from actuator_opt.pages.sweep_figures.shared import (
+    SweepFigure,
+    SweepFigureData,
+    fits,
+    sweep_figures,
+)
 from actuator_opt.pages.ucurves import STYLES, differences_drawn
 from actuator_opt.rendering import html, paper, terminal
 from actuator_opt.rendering.ink import Ink
@@ -338,10 +342,10 @@ def test_the_page_of_a_sweep(knee, tmp_path):
 @pytest.mark.parametrize("kind", SWEEP_FIGURES)
 def test_every_figure_of_a_sweep_is_whole(kind):
     """Its module states a complete figure; modules with a figure are listed."""
-    own = drawing.figure(kind)
+    own = shared.figure(kind)
     assert callable(own.check)
     assert callable(own.draw)
-    folder = Path(drawing.__file__).parent
+    folder = Path(shared.__file__).parent
     modules = {
         file.stem for file in folder.glob("*.py") if "\nFIGURE = " in file.read_text("utf-8")
     }

@@ -66,7 +66,7 @@ class Installation(Displayed):
 
     def text(self, **style: Unpack[Style]) -> str:
         """Return the terminal text."""
-        from ..pages.installation import findings
+        from ..pages.runs import findings
         from ..rendering.terminal import blocks_text
 
         rows = [(x.group, x.name, x.status, x.value, x.remedy) for x in self.findings]

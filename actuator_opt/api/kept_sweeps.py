@@ -100,7 +100,7 @@ def report_sweep(kept: KeptSweep, **paper: Unpack[Paper]) -> list[ReportFile]:
     InputError : the store is missing, has other rows or lacks some, or the folder cannot be written
     """
     from ..base.files import require_folder
-    from ..pages.sweep_figures.drawing import watched
+    from ..pages.sweep_figures.shared import watched
     from ..sweeps import swept_again
 
     target = Path(paper.get("folder", "reports"))

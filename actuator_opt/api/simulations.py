@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from ..rendering.blocks import Block
     from ..rendering.origin import Origin
     from ..simulation import Simulation
+    from ..simulation.integrate import Method
     from ..simulation.measured import Overlay
     from ..simulation.measured.fit import Fit
-    from ..simulation.methods import Method
     from ..simulation.sensitivity import Sensitivities
     from ..simulation.verification import Verification
 

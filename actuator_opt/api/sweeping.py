@@ -196,7 +196,7 @@ def _watched(study: Study, figures: Sequence[str], show: Sequence[str]) -> tuple
     """The metrics for Pareto lines of the figures; rejects an invalid figure before the work."""
     if not figures:
         return ()
-    from ..pages.sweep_figures.drawing import watched
+    from ..pages.sweep_figures.shared import watched
 
     return watched(study, figures, show)
 
@@ -237,7 +237,7 @@ def draw_sweep(
     the figure. Pareto lines cover every feasible design if the metrics were known before the sweep
     (``sweep(..., figures=["scatter"], show=...)``), else only the sample.
     """
-    from ..pages.sweep_figures.drawing import write_figures
+    from ..pages.sweep_figures.shared import write_figures
 
     name = stem or Path(file_name(swept.study.design, None)).stem
     return write_figures(swept, figures, show, Path(out), name)

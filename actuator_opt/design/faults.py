@@ -8,16 +8,272 @@ already faulty, so the checks also run on a file with other faults. More checks 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from typing import Any, NamedTuple, get_args
 
 from ..base import errors, quantities
 from ..base.errors import Fault
-from . import circuit_faults, linkage_faults, material, seal_faults, wall_faults
+from ..models import linkage as crank
+from . import choices, material, seal_faults, wall_faults
 from .kinds import MaterialName
 from .material import ROLES
+from .model import PLAIN_CAP, closed_length
 from .view import Materials, View, length_text
 from .walls import Loc, child, leaves
+
+_ROUND = math.radians(0.01)
+"""Joint angles in remedies are rounded inwards to this step (rad), for short numbers."""
+
+
+class _Reach(NamedTuple):
+    """Pin-to-pin range of the actuator, and the linkage."""
+
+    closed: float
+    stroke: float
+    base: float
+    crank: float
+    offset: float
+
+
+def _closed(view: View) -> float | None:
+    """Pin-to-pin length of the retracted actuator; None if a part is unknown."""
+    stroke, piston = view.number("cylinder", "stroke"), view.number("piston", "length")
+    head = view.number("head", "length") if view.has("head") else piston
+    barrel = view.number("barrel", "length")
+    if not view.has("barrel", "length"):
+        known = stroke is not None and piston is not None and head is not None
+        barrel = (stroke or 0.0) + (piston or 0.0) + (head or 0.0) if known else None
+    bore = view.number("cylinder", "bore")
+    plain = None if bore is None else PLAIN_CAP * bore
+    plate = view.number("caps", "thickness") if view.has("caps") else plain
+    extension = view.number("rod", "extension")
+    pin = view.number("clevis", "pin_diameter") if view.has("clevis") else 0.0
+    if barrel is None or plate is None or extension is None or pin is None:
+        return None
+    return float(
+        closed_length(barrel_length=barrel, plate=plate, extension=extension, pin_diameter=pin)
+    )
+
+
+def _reach(view: View) -> _Reach | None:
+    if not view.has("linkage"):
+        return None
+    values = (
+        _closed(view),
+        view.number("cylinder", "stroke"),
+        view.number("linkage", "base_radius"),
+        view.number("linkage", "crank_radius"),
+        view.number("linkage", "angle_offset"),
+    )
+    numbers = [value for value in values if value is not None]
+    return _Reach(*numbers) if len(numbers) == len(values) else None
+
+
+def linkage(view: View) -> Iterator[Fault]:
+    """No dead point between the stops: |a - r| < l < a + r."""
+    found = _reach(view)
+    if found is None:
+        return
+    closed, stroke, base, pin, _ = found
+    if stroke >= 2 * pin:
+        yield Fault(
+            ("linkage", "crank_radius"),
+            f"{length_text(pin)}: a stroke of {length_text(stroke)} moves the joint past a dead "
+            "point",
+            f"write more than {length_text(stroke / 2)}, or a shorter cylinder.stroke",
+        )
+        return
+    least, most = max(closed + stroke - pin, pin - closed), closed + pin
+    if not least < base < most:
+        yield Fault(
+            ("linkage", "base_radius"),
+            f"{length_text(base)}: the actuator, {length_text(closed)} to "
+            f"{length_text(closed + stroke)} from pin to pin, moves the joint past a dead point",
+            f"write more than {length_text(least)} and less than {length_text(most)}",
+        )
+
+
+def inertia(view: View) -> Iterator[Fault]:
+    """A joint speed, torque or inertia needs a linkage."""
+    if view.number("load", "inertia") and not view.has("linkage"):
+        yield _no_linkage(("load", "inertia"), "load.mass")
+
+
+def _no_linkage(loc: Loc, instead: str) -> Fault:
+    remedy = f'add a block "linkage:" with base_radius, crank_radius, or write {instead} instead'
+    return Fault(loc, "no linkage stated", remedy, at_key=True)
+
+
+def linkage_load_cases(view: View) -> Iterator[Fault]:
+    """A case has an angle or a position, one speed, and stays within the range of the joint."""
+    for index, case in enumerate(view.items("load_cases")):
+        if not isinstance(case, dict):
+            continue
+        loc = ("load_cases", index)
+        for key, instead, unset in (("angle", "position", "worst"), ("joint_speed", "speed", 0.0)):
+            if key in case and not view.has("linkage"):
+                yield _no_linkage((*loc, key), instead)
+            elif key in case and case.get(instead, unset) != unset:
+                message = f"{instead} and {key} in one load case"
+                yield Fault((*loc, key), message, "keep one of them", at_key=True)
+        yield from _angle(view, loc)
+
+
+def _angle(view: View, loc: Loc) -> Iterator[Fault]:
+    """The joint angle of a case is between those of both stops."""
+    angle, found = view.number(*loc, "angle"), _reach(view)
+    if angle is None or found is None:
+        return
+    low, high = (
+        float(
+            crank.linkage_angle(
+                length=found.closed + travel,
+                base_radius=found.base,
+                crank_radius=found.crank,
+                angle_offset=found.offset,
+            )
+        )
+        for travel in (0.0, found.stroke)
+    )
+    if low - 1e-9 <= angle <= high + 1e-9 or math.isnan(high - low):
+        return
+    text = quantities.INPUTS["joint_angle"].text
+    inner = [_ROUND * math.ceil(low / _ROUND), _ROUND * math.floor(high / _ROUND)]
+    yield Fault(
+        (*loc, "angle"),
+        f"{text(angle)}: the range of the joint is {text(low)} to {text(high)}",
+        f"write {text(inner[0], 7)} to {text(inner[1], 7)}, or change linkage.angle_offset",
+    )
+
+
+LINKAGE_CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
+    linkage,
+    inertia,
+    linkage_load_cases,
+)
+
+
+def lines(view: View) -> Iterator[Fault]:
+    """Every line has a wall; a line beyond the throttle requires a throttle."""
+    for index in range(len(view.items("lines"))):
+        inner = view.number("lines", index, "inner_diameter")
+        outer = view.number("lines", index, "outer_diameter")
+        if inner is not None and outer is not None and outer <= inner:
+            yield Fault(
+                ("lines", index, "outer_diameter"),
+                f"{length_text(outer)}: not larger than inner_diameter ({length_text(inner)})",
+                f"write more than {length_text(inner)}",
+            )
+        if view.flag("lines", index, "beyond_throttle") and not view.has("ports", "throttle"):
+            yield Fault(
+                ("lines", index, "beyond_throttle"),
+                "no throttle stated",
+                "add ports.throttle, or remove beyond_throttle",
+            )
+
+
+ENDS = get_args(get_args(choices.End)[0])
+
+
+def ports(view: View) -> Iterator[Fault]:
+    """The selected end of the lines is described."""
+    end = view.text("ports", "end")
+    if end not in ENDS:  # a separate fault, reported at its place
+        return
+    needed = {"valve": ("valve",), "reducing_valve": ("ports", "reducing_valve")}.get(end or "")
+    if needed is not None and not view.has(*needed):
+        yield Fault(
+            ("ports", "end"),
+            f"{end}: not described",
+            f"add {'.'.join(needed)}, or write closed or constant_pressure",
+        )
+    if end != "reducing_valve" and view.has("ports", "reducing_valve"):
+        yield Fault(
+            ("ports", "reducing_valve"),
+            "is not the selected end of the lines",
+            'write "end: reducing_valve", or remove it',
+            at_key=True,
+        )
+    if end == "constant_pressure" and view.items("ports", "accumulators"):
+        yield Fault(
+            ("ports", "accumulators"),
+            "has no effect at constant line pressure",
+            "remove it, or write another end",
+            at_key=True,
+        )
+
+
+def valve(view: View) -> Iterator[Fault]:
+    """The centred valve leaks less than the open valve passes, at the same pressure drop."""
+    numbers = [
+        view.number("valve", name)
+        for name in ("rated_flow", "rated_drop", "leakage_flow", "leakage_drop")
+    ]
+    if any(number is None for number in numbers):
+        return
+    rated, rated_drop, leakage, leakage_drop = (number or 0.0 for number in numbers)
+    most = rated * (leakage_drop / rated_drop) ** 0.5
+    if leakage >= most:
+        text = quantities.INPUTS["leakage_flow"].text
+        yield Fault(
+            ("valve", "leakage_flow"),
+            f"{text(leakage)}: the leakage reaches the flow of the open valve",
+            f"write less than {text(most)}",
+        )
+
+
+def stiffness(view: View) -> Iterator[Fault]:
+    """The published topologies do not include sticking seals."""
+    published = view.text("stiffness", "topology") != "per_chamber"
+    if published and view.text("stiffness", "seals") == "sticking":
+        yield Fault(
+            ("stiffness", "seals"),
+            "sticking: the published topologies do not include seals",
+            'write "topology: per_chamber", or "seals: sliding"',
+        )
+
+
+def control(view: View) -> Iterator[Fault]:
+    """A position loop needs a valve."""
+    if view.has("control") and not view.has("valve"):
+        yield Fault(
+            ("control",), "no valve to control", "add valve, or remove control", at_key=True
+        )
+
+
+def held_pressures(view: View) -> Iterator[Fault]:
+    """Held pressures are given for both chambers or for neither."""
+    for index in range(len(view.items("load_cases"))):
+        loc = ("load_cases", index)
+        a, b = view.has(*loc, "pressure_a"), view.has(*loc, "pressure_b")
+        if a != b:
+            missing, other = ("pressure_b", "pressure_a") if a else ("pressure_a", "pressure_b")
+            yield Fault(
+                (*loc, missing), f"missing: required with {other}", f'add e.g. "{missing}: 20 bar"'
+            )
+        for name in ("pressure_a", "pressure_b"):
+            pressure, supply = view.number(*loc, name), view.number("supply", "pressure")
+            ratio = view.number("supply", "proof_ratio")
+            if pressure is None or supply is None or ratio is None:
+                continue
+            if pressure > supply * ratio * (1 + 1e-9):
+                text = quantities.INPUTS["pressure"].text
+                yield Fault(
+                    (*loc, name),
+                    f"{text(pressure)}: above proof pressure ({text(supply * ratio)})",
+                    f"write at most {text(supply * ratio)}, or raise supply.pressure",
+                )
+
+
+CIRCUIT_CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
+    lines,
+    ports,
+    valve,
+    stiffness,
+    control,
+    held_pressures,
+)
 
 
 def _smaller(
@@ -179,8 +435,8 @@ CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
     wall_faults.keys,
     load_cases,
     *seal_faults.CHECKS,
-    *circuit_faults.CHECKS,
-    *linkage_faults.CHECKS,
+    *CIRCUIT_CHECKS,
+    *LINKAGE_CHECKS,
     *wall_faults.CHECKS,
     wall_faults.values,
 )

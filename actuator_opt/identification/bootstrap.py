@@ -30,6 +30,7 @@ from ..base.errors import Diagnostic, InputError
 from ..base.fitting import CONFIDENCE, WEAK, Parameter, quantile
 from ..base.numeric import STEP as COMPLEX_STEP, Array
 from .balance import Sliding
+from .calibration import FitSearch, relaxed
 from .conditioning import Motion
 from .lugre import (
     BENDS,
@@ -43,7 +44,6 @@ from .lugre import (
     sizes,
     windows,
 )
-from .many_fits import FitSearch, relaxed
 from .points import SETTLED, Point
 from .stribeck_fit import EXPONENTS, SPEEDS, STATIC_MOST, Steady, StribeckFit
 

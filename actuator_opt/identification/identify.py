@@ -12,7 +12,7 @@ from ..design.material import Fit, fit_double_exponential, fit_power_law
 from ..studies.bench import Bench
 from .balance import Sliding, check_signs, slide, velocity_noise
 from .bootstrap import resampled
-from .coefficient import coefficient
+from .column import coefficient
 from .conditioning import Motion, condition
 from .lag import CANNOT, lag_of, taken_off, undone, unparted
 from .lugre import BENDS, LuGreFit, fit_lugre, settling_distance

@@ -15,7 +15,7 @@ from ..design.material import Fit
 from ..studies.bench import Bench
 from ..version import VERSION
 from .balance import Sliding
-from .coefficient import Coefficient
+from .column import Coefficient
 from .conditioning import CUTOFF, ORDER, Motion
 from .lugre import LuGreFit
 from .points import Point

@@ -23,9 +23,12 @@ from ..evaluation import PreparedDesign, compute, prepare
 from ..evaluation.build import names_of_materials
 from ..evaluation.limits import LimitRow, all_limits, rows_of
 from .actuator import ActuatorProblem, Goal, build, goal_of
+from .branch_and_bound import Found, Memory, at, search
+from .identical_problems import Evidence
 from .quick_look import DOUBTFUL, Look, Start, hessian_of, look_quickly
 from .resolve.parallel_descents import FEASIBLE
 from .result import Choices, Combination, How
+from .rounding import RUNNERS_UP, Sizes, Wanted, sizes_of
 from .solver import solve
 
 NEAR = 0.05
@@ -152,7 +155,9 @@ def _require_one(looks: Sequence[Look]) -> None:
 
 
 @np.errstate(all="ignore")  # a design without finite values is never the best
-def search(subject: PreparedDesign, settings: Settings, most: int = MOST_SOLVED) -> ChoiceSearch:
+def search_choices(
+    subject: PreparedDesign, settings: Settings, most: int = MOST_SOLVED
+) -> ChoiceSearch:
     """Look at every combination of the choices, and solve the best ones from many starts.
 
     Parameters
@@ -437,3 +442,97 @@ def _counts(made: Choices) -> Iterator[str]:
     for how, said in words.items():
         if count := made.count(how):
             yield f"{count} {said}"
+
+
+_NOTHING_BETTER = Found(None, None, None, {}, 0, complete=True)
+"""Same result as another combination."""
+
+
+@dataclass(frozen=True)
+class Sized:
+    """A combination with its sizes and their search result."""
+
+    look: Look
+    sizes: Sizes
+    found: Found
+    memory: Memory
+
+
+def best_of_sizes(choices: ChoiceSearch, wanted: Wanted, settings: Settings) -> Sized | None:
+    """Find the combination with the best design of listed sizes, solved from many starts.
+
+    If none fits, the combination with the best continuous optimum; None if no variable has sizes.
+
+    Raises
+    ------
+    InputError
+        the requested sizes fit no combination
+    """
+    searched = list(_searched(choices, wanted, settings))
+    better = [sized for sized in searched if sized.found.objective is not None]
+    winner = next(iter([*reversed(better), *searched]), None)
+    if winner is None:
+        return None
+    if better:
+        _runners_up(winner, searched)
+    if winner.look.solution is None:
+        many_starts(winner.look, settings)
+    return winner
+
+
+def _searched(choices: ChoiceSearch, wanted: Wanted, settings: Settings) -> Iterator[Sized]:
+    """Search each promising combination for a better design than those before."""
+    error: InputError | None = None
+    memories: dict[object, Memory] = {}
+    alike: dict[object, list[Evidence]] = {}
+    mendable = choices.mendable()
+    best, count = (math.inf, math.inf), 0
+    for look in choices.ranked():
+        if not look.feasible or look.actuator is None or look.x is None:
+            continue
+        checks = len(look.checks & mendable)
+        late = settings.until is not None and time.perf_counter() > settings.until
+        if (count and late) or (checks, look.objective) >= best:
+            break
+        try:
+            subject = look.actuator.subject
+            sizes = sizes_of(subject.design, wanted, subject.materials)
+        except InputError as fault:
+            error, look.sizing = error or fault, "no size fits"
+            continue
+        if sizes is None:
+            continue
+        key = tuple((one.index, one.rows.tobytes()) for one in sizes.listed)
+        memory = memories.setdefault(key, Memory())
+        problem = look.actuator.problem
+        if any(one.holds_for(problem, look.objective) for one in alike.get(key, ())):
+            look.sizing = "none" if best[1] == math.inf else "none better"
+            yield Sized(look, sizes, _NOTHING_BETTER, memory)
+            continue
+        found = search(
+            problem, sizes.listed, look.x, until=settings.until, below=best[1], memory=memory
+        )
+        if found.complete:
+            alike.setdefault(key, []).append(Evidence(problem, look.objective, found.ends))
+        look.rounded, count = found.objective, count + 1
+        if found.objective is not None:
+            look.sizing, best = "found", (checks, found.objective)
+        else:
+            look.sizing = "none" if best[1] == math.inf else "none better"
+        yield Sized(look, sizes, found, memory)
+    if not count and error is not None:
+        raise error
+
+
+def _runners_up(winner: Sized, searched: Sequence[Sized]) -> None:
+    """Add the cost of the best sizes in the next best combinations."""
+    assert winner.found.assignment is not None
+    others = [sized for sized in searched if sized.look.sizing == "none better"]
+    for sized in others[:RUNNERS_UP]:
+        look = sized.look
+        if sized.memory is not winner.memory or look.actuator is None or look.x is None:
+            continue
+        problem, listed = look.actuator.problem, sized.sizes.listed
+        objective = at(problem, listed, winner.found.assignment, look.x, sized.memory)
+        if objective is not None:
+            look.rounded, look.sizing = objective, "sizes of the best"

@@ -18,7 +18,7 @@ from .evaluator import Evaluator, Point
 from .problem import BoxProblem, Vector
 from .resolve.boxes import NEAR
 
-EQUAL = 1e-6
+SAME_OPTIMUM = 1e-6
 """Relative difference of continuous optima that counts as none: the accuracy of quick looks."""
 
 
@@ -33,7 +33,7 @@ class Evidence:
     def holds_for(self, other: BoxProblem, optimum: float) -> bool:
         """Whether a search of another problem would give the same result."""
         one = self.problem
-        if not self.ends or abs(optimum - self.optimum) > EQUAL * abs(self.optimum):
+        if not self.ends or abs(optimum - self.optimum) > SAME_OPTIMUM * abs(self.optimum):
             return False
         same = one.names == other.names and one.constraint_names == other.constraint_names
         boxed = np.array_equal(one.lower, other.lower) and np.array_equal(one.upper, other.upper)

@@ -22,9 +22,9 @@ from ..evaluation.build import spec_hash
 from ..evaluation.kernel import governing
 from ..evaluation.limits import MetricArrays
 from .actuator import ActuatorProblem, Fault, Goal, build, idle_metrics
-from .front.even import Gap
 from .front.front import Front, NoEnd, Settings, front
 from .front.objectives import Objectives
+from .front.plane import Gap
 from .infeasibility_card import explained
 from .problem import Values, Vector
 from .resolve.parallel_descents import FEASIBLE

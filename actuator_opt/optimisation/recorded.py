@@ -19,16 +19,18 @@ import numpy as np
 from ..base.errors import InputError
 from ..base.quantities import Sense
 from ..design import Design
-from ..design.build import build, to_tree
+from ..design.build import build as build_design, to_tree
 from ..design.kinds import Fraction
 from ..evaluation import Evaluation, evaluate, prepare
 from ..evaluation.plugin import Plugin, with_own
 from ..evaluation.result import YieldEstimate
 from .pareto import ParetoFront
 from .result import Optimisation
+from .run import _DESIGN, _EVALUATION, _FRACTION, _NUMBER
 
 Found = TypeVar("Found", Optimisation, ParetoFront)
-_DESIGN, _EVALUATION, _FRACTION, _NUMBER = "$design", "$evaluation", "$fraction", "$number"
+
+
 _PLAIN: dict[Any, Any] = {float: (int, float), int: int, str: str, bool: bool}
 """Plain values, with the JSON types they may have."""
 
@@ -87,7 +89,7 @@ def from_plain(
     aims: dict[str, Sense] = {}
 
     def design(index: int) -> Design:
-        built = build(special(data["designs"][index]), metrics=metrics, contradictions=False)
+        built = build_design(special(data["designs"][index]), metrics=metrics, contradictions=False)
         if built.design is None:
             raise InputError(f"invalid design in the record: {built.faults[0].message}")
         return built.design

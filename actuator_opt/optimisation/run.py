@@ -19,8 +19,15 @@ from .actuator import (
     idle_metrics,
     require_movable_objective,
 )
-from .choice_sizes import Sized, best_of_sizes
-from .choices import MOST_SOLVED, ChoiceSearch, Settings, record, search
+from .choices import (
+    MOST_SOLVED,
+    ChoiceSearch,
+    Settings,
+    Sized,
+    best_of_sizes,
+    record,
+    search_choices,
+)
 from .infeasibility_card import explained
 from .prices import Sensitivity, sensitivities
 from .result import Certificate, Choices, Infeasibility, Kkt, Optimisation, Rounding, VariableResult
@@ -173,7 +180,7 @@ def optimise(
     choices: Choices | None = None
     if subject.design.choices:
         settings = Settings(algorithm, starts, SAMPLES, seed, until)
-        found = search(subject, settings, MOST_SOLVED if sizes is None else 1)
+        found = search_choices(subject, settings, MOST_SOLVED if sizes is None else 1)
         if sizes is not None:
             sized = best_of_sizes(found, wanted, settings)
         choices = record(found, subject.design)
@@ -370,3 +377,6 @@ def _kkt(solution: Solution) -> Kkt | None:
         return None
     curvature = "" if found.curvature is None else found.curvature.value
     return Kkt(float(found.residual), found.active, int(found.rank), curvature)
+
+
+_DESIGN, _EVALUATION, _FRACTION, _NUMBER = "$design", "$evaluation", "$fraction", "$number"

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from ..base.quantities import Quantity
 from ..design import quantity_of
 from ..evaluation.result import count_words
-from ..optimisation.front.even import Gap
+from ..optimisation.front.plane import Gap
 from ..optimisation.pareto import ParetoFront, Wish
 from ..rendering import text
 from ..rendering.axes import Axes, even_ticks

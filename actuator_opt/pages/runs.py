@@ -7,7 +7,7 @@ from typing import Any
 
 from ..base.quantities import INPUTS, MATERIAL_PROPERTIES, Quantity
 from ..metrics import METRICS, of_metric
-from ..rendering.blocks import Block, Column, Row, Table, short
+from ..rendering.blocks import Block, Column, Row, State, Table, short
 from ..rendering.text import DASH, number, pretty
 
 MET = 1e-6
@@ -234,4 +234,29 @@ def convergence(head: Mapping[str, Any], trace: Sequence[Sequence[float]]) -> Ta
         Column("objective of the best so far", "right"),
         Column("worst limit missed by", "right"),
     ]
+    return Table("", columns, rows)
+
+
+_STATUS: dict[str, tuple[str, State]] = {
+    "ok": ("ok", "met"),
+    "missing": ("not there", "no_reserve"),
+    "fault": ("FAULT", "missed"),
+}
+"""Words and state of a status."""
+
+
+def findings(entries: Iterable[tuple[str, str, str, str, str]]) -> Table:
+    """A table of findings: group, name, status, value and remedy of each."""
+    columns = [
+        Column("", strong=True, drop=1),
+        Column("", style="state"),
+        Column(""),
+        Column("", width=1.0, wraps=True, least=24),
+    ]
+    rows, before = [], ""
+    for group, name, status, value, remedy in entries:
+        words, state = _STATUS[status]
+        heading = "" if group == before else group
+        rows.append(Row((heading, words, name, f"{value}; {remedy}" if remedy else value), state))
+        before = group
     return Table("", columns, rows)

@@ -45,7 +45,7 @@ from ..rendering.text import (
     with_unit,
 )
 from ..simulation.assemble import ends_of
-from ..simulation.loops import LOOPS, loop_of
+from ..simulation.components.circuit import LOOPS, loop_of
 from ..simulation.result import EXPECTED, RequirementResult, Simulation
 from .simulation_energy import doubts, table_rows
 from .simulation_figures import LEAST, MOST, Measured, Static, simulation_figure, window

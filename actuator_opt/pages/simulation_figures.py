@@ -32,9 +32,9 @@ from ..rendering.axes import (
 from ..rendering.ink import BLACK, BLUE, OCHRE, WHITE, Ink, text_width
 from ..rendering.strips import ASKED, LEVEL, LIMIT, MEASURED, STYLES, Curve, Level, Strip, stack
 from ..rendering.text import SENSES, number, trimmed, unit_text
+from ..simulation.components.circuit import LOOPS, Loop, loop_of
 from ..simulation.harmonic import harmonic_fit
 from ..simulation.linear import BAND
-from ..simulation.loops import LOOPS, Loop, loop_of
 from ..simulation.result import HarmonicLoad, Servo, Simulation, Window
 from .simulation_energy import ROW, TOP, over_time, share_panel, shares, time_panel
 

@@ -22,9 +22,8 @@ from ..sweeps import Swept
 from ..sweeps.chunk import Chunk, Study
 from ..sweeps.plan import Axis
 from ..version import VERSION
-from .sweep_figures.drawing import chosen
 from .sweep_figures.parallel import parallel_figure
-from .sweep_figures.shared import SweepFigureData
+from .sweep_figures.shared import SweepFigureData, chosen
 
 FAILURES = 3
 """Most reasons of failed designs on the page."""

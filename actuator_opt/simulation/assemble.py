@@ -8,17 +8,16 @@ from ..base.errors import Diagnostic, InputError
 from ..base.quantities import INPUTS, SCENARIOS
 from ..base.symbolic import Expression, Symbol
 from ..design.kinds import position_at
+from ..design.scenario.kinds import Records
 from ..design.scenario.model import HeldPorts, Scenario
 from ..models import linkage
 from ..models.loop import ControllerGains
 from ..models.stiffness import holding_pressures
 from ..studies.plant import Plant
-from .components import chambers, friction, load_cylinder, motion, motor, ports, signals, valve
-from .components.circuit import Circuit, Start
-from .components.control import Feedback, command, inner
-from .components.signals import Records
+from .components import chambers, circuit, motion, valve
+from .components.circuit import LOOPS, Circuit, Start, loop_of
 from .components.supply import Source
-from .loops import LOOPS, loop_of
+from .components.valve import Feedback, command, inner
 from .system import System
 
 PRESSURES = INPUTS["pressure"]
@@ -39,13 +38,13 @@ def start_of(scenario: Scenario, plant: Plant, records: Records) -> Start:
     areas = plant.area_a, plant.area_b
     if turned is not None:  # volume per radian and torque, in place of area and force
         areas = 2 * (turned.machine.setting * turned.machine.displacement / (2 * pi),)
-        force = signals.at_start(turned.torque, records)
+        force = circuit.at_start(turned.torque, records)
     else:
-        force = signals.at_start(load.force, records)
+        force = circuit.at_start(load.force, records)
         force -= 0.0 if load.cylinder is None else load.cylinder.force
         joint = plant.joint(position)
         if joint is not None:
-            torque = signals.at_start(load.torque, records)
+            torque = circuit.at_start(load.torque, records)
             force += float(linkage.actuator_force(torque=torque, lever_arm=joint[0].lever_arm))
     held = holding_pressures(
         force=force,
@@ -145,12 +144,12 @@ def _motor(circuit: Circuit) -> None:
     system, begin = circuit.system, circuit.start
     a = system.pressure("pressure a", begin.pressure_a)
     b = system.pressure("pressure b", begin.pressure_b)
-    shaft = motor.shaft(system)
+    shaft = chambers.shaft(system)
     value = shaft.angle if circuit.loop == "shaft_angle" else shaft.speed
     across = begin.pressure_a - begin.pressure_b
     wish = _command(circuit, Feedback(value, shaft.speed, a - b, across))
     flows = _driven(circuit, wish, (a, b))
-    motor.turn(
+    chambers.turn(
         circuit,
         shaft,
         pressure_a=a,
@@ -172,8 +171,8 @@ def _cylinder(circuit: Circuit) -> None:
     ends = ends_of(scenario, plant)
     position = system.state("position", begin.position, tolerance=motion.POSITION)
     speed = system.state("speed", scenario.initial.speed, tolerance=motion.SPEED)
-    a = ports.side(circuit, "a", ends, begin.pressure_a)
-    b = ports.side(circuit, "b", ends, begin.pressure_b)
+    a = chambers.side(circuit, "a", ends, begin.pressure_a)
+    b = chambers.side(circuit, "b", ends, begin.pressure_b)
     feed: tuple[Expression, Expression] = (0.0, 0.0)
     if ends == "valve":
         ratio = plant.area_b / plant.area_a
@@ -185,16 +184,16 @@ def _cylinder(circuit: Circuit) -> None:
         )
         flows = _driven(circuit, _command(circuit, measured), (a.end, b.end))
         feed = flows.into_a, flows.into_b
-    into_a = ports.connect(circuit, a, ends, feed[0], held=begin.pressure_a)
-    into_b = ports.connect(circuit, b, ends, feed[1], held=begin.pressure_b)
+    into_a = chambers.connect(circuit, a, ends, feed[0], held=begin.pressure_a)
+    into_b = chambers.connect(circuit, b, ends, feed[1], held=begin.pressure_b)
     across = plant.leakage * (a.pressure - b.pressure)
     if plant.leakage:
         lost = across * (a.pressure - b.pressure)
         circuit.door("leakage across the piston", lost, state="leakage loss")
         system.signal("flow_leakage", "leakage across the piston", SCENARIOS["flow_value"], across)
     pressed = _chambers(circuit, (a, b), (into_a - across, into_b + across), position, speed)
-    own = friction.law(plant, scenario.friction, begin)
-    force = friction.resist(circuit, own, speed=speed, pressure_a=a.pressure, pressure_b=b.pressure)
+    own = motion.law(plant, scenario.friction, begin)
+    force = motion.resist(circuit, own, speed=speed, pressure_a=a.pressure, pressure_b=b.pressure)
     bench = scenario.load.cylinder
     motion.move(
         circuit,
@@ -204,14 +203,14 @@ def _cylinder(circuit: Circuit) -> None:
         friction=force,
         pulled=0.0
         if bench is None
-        else load_cylinder.push(circuit, bench, position=position, speed=speed),
+        else chambers.push(circuit, bench, position=position, speed=speed),
     )
     _pressures(system, a.pressure, b.pressure)
 
 
 def _chambers(
     circuit: Circuit,
-    sides: tuple[ports.Side, ports.Side],
+    sides: tuple[chambers.Side, chambers.Side],
     inflow: tuple[Expression, Expression],
     position: Symbol,
     speed: Symbol,

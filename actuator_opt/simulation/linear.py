@@ -13,15 +13,14 @@ from ..base.errors import Diagnostic, InputError
 from ..base.numeric import Array
 from ..base.quantities import INPUTS
 from ..base.symbolic import function, jacobian
+from ..design.scenario.kinds import Records
 from ..design.scenario.model import Control, Scenario
 from ..design.scenario.signals import SignalSegment
 from ..models.loop import ControllerGains, margin_rules, ziegler_nichols
 from ..studies.plant import Plant
 from .assemble import assemble
-from .components.circuit import Circuit
-from .components.signals import Records, steady_value
+from .components.circuit import LOOPS, Circuit, Loop, loop_of, steady_value
 from .integrate import LAST, last_mean, sampled
-from .loops import LOOPS, Loop, loop_of
 
 TOUCH = 1e-9
 """Spool offset from its centre [V], which selects the open pair of edges."""

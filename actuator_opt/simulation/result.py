@@ -13,19 +13,16 @@ from ..base.numeric import Array
 from ..base.quantities import RESULTS, Quantity
 from ..base.symbolic import vectorised
 from ..base.tables import Displayed
-from ..design.scenario.kinds import SHAPES
+from ..design.scenario.kinds import SHAPES, Records
 from ..design.scenario.model import Scenario
 from ..design.scenario.signals import SignalSegment
 from ..evaluation.result import State, without_reserve
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..studies.plant import Plant
-from .components.circuit import Circuit
-from .components.signals import Records, acts_after, frequencies
+from .components.circuit import Circuit, Loop, acts_after, frequencies, loop_of
 from .harmonic import dynamic_stiffness_of_record, windows
-from .integrate import Event, Trajectory
+from .integrate import Event, Stuck, Trajectory
 from .linear import StepMetrics, Tuned, step_metrics
-from .loops import Loop, loop_of
-from .methods import Stuck
 from .system import Compiled, System
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..base.numeric import Array
 from ..base.quantities import INPUTS
+from ..design.scenario.kinds import Records
 from ..design.scenario.model import SAMPLES, Scenario
 from ..design.scenario.reader import recorded_notes
 from ..evaluation.build import spec_hash
@@ -22,10 +23,8 @@ from ..studies.plant import Plant, plant
 from . import result as reading
 from .assemble import assemble
 from .components.circuit import Circuit
-from .components.signals import Records
-from .integrate import Trajectory, integrate
+from .integrate import Method, Stuck, Trajectory, integrate
 from .linear import CAUSES, UNHELD, Tuned, tune
-from .methods import Method, Stuck
 from .result import Second, Simulation, Told, balance, failed
 from .system import Compiled
 

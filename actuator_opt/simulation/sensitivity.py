@@ -19,12 +19,12 @@ from ..base.tables import Displayed
 from ..design import paths
 from ..design.build import with_values
 from ..design.kinds import Fraction, ValueFault
+from ..design.scenario.kinds import Records
 from ..design.scenario.model import Scenario
 from ..design.walls import Loc, child, child_at, leaves, number_of
 from ..evaluation.build import prepare
 from ..evaluation.kernel import PreparedDesign
 from ..studies.plant import plant
-from .components.signals import Records
 from .linear import Tuned, tune
 from .result import Simulation
 from .run import run

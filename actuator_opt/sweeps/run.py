@@ -25,8 +25,8 @@ from ..base.database import Database, Rows, opened, reading, refused
 from ..base.numeric import Array
 from ..version import VERSION
 from .chunk import Chunk, Study
-from .cluster import on_cluster
 from .designs import KEPT
+from .field import on_cluster
 from .sample import Sample
 from .swept import Swept
 

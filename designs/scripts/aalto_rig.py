@@ -27,7 +27,7 @@ from actuator_opt.api import simulate
 from actuator_opt.base.tables import aligned
 from actuator_opt.models.fluid import ATMOSPHERIC_PRESSURE
 from actuator_opt.models.one_way_valve import one_way_flow
-from actuator_opt.pages.simulation_comparison_figures import comparison_figure
+from actuator_opt.pages.simulation_comparison import comparison_figure
 from actuator_opt.rendering.axes import Axes, names as named_above
 from actuator_opt.rendering.blocks import Drawing, Notes, Pair, Table
 from actuator_opt.rendering.ink import BLUE, GREY, RED, WHITE, Ink, text_width

@@ -23,7 +23,7 @@ import actuator_opt as ao
 from actuator_opt.api import read_scenario, simulate
 from actuator_opt.base.tables import aligned
 from actuator_opt.models.loop import ziegler_nichols
-from actuator_opt.pages.simulation_comparison_figures import LEAST, comparison_figure
+from actuator_opt.pages.simulation_comparison import LEAST, comparison_figure
 from actuator_opt.rendering.blocks import Block, Drawing, Notes, Table
 from actuator_opt.rendering.script_pages import (
     Sheets,

@@ -24,7 +24,7 @@ import scipy.sparse as sp
 
 from ...base.symbolic import Symbol, vectorised
 from ..problem import Vector
-from .box import ROOM, Box, Layout
+from .intervals import ROOM, Box, Layout
 from .relaxation import FAR, ConstraintRow, Curve, Form, Link, Powers, Product, Relaxation, Table
 
 

@@ -28,9 +28,8 @@ from ...evaluation.values import Values
 from ..actuator import MET, ActuatorProblem
 from ..problem import Vector
 from .bounding import Bound, Bounding, Seen, ranges, straighten
-from .box import ROOM, Box, Gone, Layout
 from .builder import Builder, Envelopes, decays, layered, refuse
-from .intervals import Empty, narrow, tighten
+from .intervals import ROOM, Box, Empty, Gone, Layout, narrow, tighten
 from .relaxation import ConstraintRow, Form, Relaxation, Unknown
 
 SOFTER = 1e-5

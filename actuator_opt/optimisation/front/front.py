@@ -38,9 +38,8 @@ from ..resolve.parallel_descents import (
 )
 from ..solver import KEEP, Halton, Sweep, distinct, solve, sweep
 from . import tracer
-from .even import Gap, chosen, close, lost, middles, wide
 from .objectives import Conditions, Objectives
-from .plane import fill_line, fill_plane
+from .plane import Gap, chosen, close, fill_line, fill_plane, lost, middles, wide
 from .tracer import Design, FrontSearch, Start, Tracer, knee, nondominated
 
 HOLD = 1e-10

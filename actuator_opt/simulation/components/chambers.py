@@ -4,13 +4,21 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from ...base.kinds import per_kind
 from ...base.numeric import clip, maximum, where
+from ...base.quantities import INPUTS, SCENARIOS
 from ...base.symbolic import Expression, Namespace, Symbol
+from ...design.scenario.kinds import ENDS
+from ...design.scenario.model import LoadCylinder
+from ...evaluation.circuit import Chamber
 from ...evaluation.springs import Give
-from ...models import chamber, oil_energy
+from ...models import chamber, forces, oil_energy, one_way_valve, supply, wilson
 from ...models.chamber import cavity
 from ...models.fluid import ATMOSPHERIC_PRESSURE
-from ...studies.plant import Oil
+from ...models.valve import edge_coefficient, viscosity_corrected
+from ...studies.plant import Oil, ValveData
+from ..system import System
+from . import chambers, valve
 from .circuit import Circuit
 
 DEEPEST = -12.0
@@ -188,3 +196,322 @@ def dead_volume(circuit: Circuit, volume: float, area: float, chamber: str) -> f
         f"{chamber}: dead volume taken as {least * 1e6:.2g} ml, 0.5 mm of its area"
     )
     return least
+
+
+WHOSE = "load_"
+
+
+def push(circuit: Circuit, stated: LoadCylinder, *, position: Symbol, speed: Symbol) -> Expression:
+    """Force of the load cylinder on the rod, outwards [N]; both rods move together."""
+    system = circuit.system
+    area = float(forces.annulus_area(bore=stated.bore, rod_diameter=stated.rod_diameter))
+    middle = 0.5 * (stated.supply_pressure + stated.return_pressure)
+    half = 0.5 * stated.force / area
+    a = system.pressure(f"{WHOSE}pressure a", middle + half)
+    b = system.pressure(f"{WHOSE}pressure b", middle - half)
+    data = _data(stated, circuit.plant.oil.kinematic_viscosity)
+    opening = valve.spool(circuit, data, circuit.course(stated.signal), WHOSE)
+    flows = valve.edges(
+        circuit,
+        data,
+        opening=opening,
+        supply_pressure=stated.supply_pressure,
+        return_pressure=stated.return_pressure,
+        pressure_a=a,
+        pressure_b=b,
+        whose=WHOSE,
+    )
+    given = stated.supply_pressure * flows.supply - stated.return_pressure * flows.tank
+    circuit.door("supply of the load cylinder", given, state=f"{WHOSE}supply work", into=True)
+    dead = chambers.dead_volume(circuit, stated.dead_volume, area, "load cylinder")
+    pushed = chambers.cylinder(
+        circuit,
+        pressure_a=a,
+        pressure_b=b,
+        inflow_a=flows.into_a,
+        inflow_b=flows.into_b,
+        position=position + (0.5 * stated.stroke - circuit.start.position),
+        speed=speed,
+        area_a=area,
+        area_b=area,
+        stroke=stated.stroke,
+        dead_a=dead,
+        dead_b=dead,
+        walls=Give(),
+        flexibility=0.0,
+        of=" of the load cylinder",
+    )
+    pressures = INPUTS["pressure"]
+    system.signal(f"{WHOSE}pressure_a", "pressure of the load cylinder, side A", pressures, a)
+    system.signal(f"{WHOSE}pressure_b", "pressure of the load cylinder, side B", pressures, b)
+    force = SCENARIOS["force_value"]
+    system.signal("load_cylinder_force", "force of the load cylinder", force, pushed)
+    return pushed
+
+
+def _data(stated: LoadCylinder, viscosity: float) -> ValveData:
+    """Edges of its valve, with the oil of the design."""
+    own = stated.valve
+    after = own.leakage_drop if own.tank_leakage_drop is None else own.tank_leakage_drop
+
+    def coefficient(flow: float, drop: float) -> float:
+        return float(edge_coefficient(flow=flow, pressure_drop=drop))
+
+    rated = coefficient(own.rated_flow, own.rated_drop)
+    if own.rated_viscosity is not None:
+        corrected = viscosity_corrected(
+            coefficient=rated, rated_viscosity=own.rated_viscosity, viscosity=viscosity
+        )
+        rated = float(corrected)
+    return ValveData(
+        rated=rated,
+        leakage_supply=coefficient(own.leakage_flow, own.leakage_drop),
+        leakage_tank=coefficient(own.leakage_flow, after),
+        signal=own.signal,
+        natural_frequency=own.natural_frequency,
+        damping_ratio=own.damping_ratio,
+        offset=own.offset,
+    )
+
+
+SPEED = 1e-8
+
+
+ANGLE = 1e-9
+"""Error tolerances of shaft speed [rad/s] and angle [rad]."""
+
+
+class Shaft(NamedTuple):
+    """States of the shaft."""
+
+    angle: Symbol
+    speed: Symbol
+
+
+def shaft(system: System) -> Shaft:
+    """The shaft at rest."""
+    return Shaft(
+        system.state("shaft angle", 0.0, tolerance=ANGLE),
+        system.state("shaft speed", 0.0, tolerance=SPEED),
+    )
+
+
+def turn(
+    circuit: Circuit,
+    own: Shaft,
+    *,
+    pressure_a: Symbol,
+    pressure_b: Symbol,
+    inflow_a: Expression,
+    inflow_b: Expression,
+) -> None:
+    """Pipes, motor and load; a linear circuit omits Coulomb friction."""
+    system, motor = circuit.system, circuit.scenario.motor
+    assert motor is not None
+    angle, speed = own
+    machine = motor.machine
+    across = pressure_a - pressure_b
+    common = {
+        "speed": speed,
+        "pressure_difference": across,
+        "displacement": machine.displacement,
+        "dynamic_viscosity": circuit.plant.oil.dynamic_viscosity,
+        "setting": machine.setting,
+    }
+    flow = wilson.motor_flow(**common, slip_coefficient=machine.slip)
+    torque = wilson.motor_torque(
+        **common,
+        coulomb_coefficient=0.0 if circuit.linear else machine.coulomb,
+        viscous_coefficient=machine.viscous,
+        constant_torque=0.0 if circuit.linear else machine.constant_torque,
+    )
+    for name, pressure, inflow in (
+        ("pipe A", pressure_a, inflow_a - flow),
+        ("pipe B", pressure_b, inflow_b + flow),
+    ):
+        node(circuit, name, pressure, inflow=inflow, volume=motor.pipe_volume)
+    load = circuit.course(motor.torque) + motor.damping * speed
+    system.rate(angle, speed)
+    system.rate(speed, (torque - load) / motor.inertia)
+    circuit.audit.stored.append(("motion", 0.5 * motor.inertia * speed * speed))
+    circuit.door("losses of the motor", across * flow - torque * speed, state="motor loss")
+    circuit.door("load", load * speed, state="work on the load")
+    system.signal("shaft_speed", "speed of the shaft", SCENARIOS["shaft_speed_value"], speed)
+    system.signal("shaft_angle", "angle of the shaft", SCENARIOS["shaft_angle_value"], angle)
+    system.signal("torque", "torque of the motor", SCENARIOS["torque_value"], torque)
+    system.signal("load_torque", "torque of the load", SCENARIOS["torque_value"], load)
+    system.signal("flow_motor", "flow through the motor", SCENARIOS["flow_value"], flow)
+
+
+FLOW = 1e-12
+"""Error tolerance of a flow [m^3/s]."""
+
+
+LEAST_NODE = 1e-6
+"""Volume behind a throttle if the design states none (a choice: 1 ml of fittings)."""
+
+
+REDUCING_FLOW = 20 / 60000
+"""Largest flow of the reducing valve [m^3/s] (a choice: a pilot-operated valve of size 6)."""
+
+
+class Side(NamedTuple):
+    """A chamber with its port."""
+
+    name: Chamber
+    pressure: Expression
+    """Pressure of the chamber."""
+    end: Expression
+    """Pressure at the far end, at the valve or reducing valve."""
+    lumped: float
+    """Line volume and wall that belong to the chamber."""
+    lumped_wall: float
+    line: Symbol | None
+    outer: Expression | None
+    """Pressure behind the throttle."""
+
+
+def side(circuit: Circuit, name: Chamber, ends: str, start: float) -> Side:
+    """States of a chamber and of its line.
+
+    A line has inertia if flow passes through it; behind closed ends it is only volume.
+    """
+    system, data = circuit.system, circuit.plant.lines[name]
+    throttled = circuit.plant.throttle is not None
+    near, wall = data.near_volume, data.near_wall
+    kind = ENDS[ends]
+    if kind.at_cylinder or (not throttled and (kind.shut or data.inertance == 0)):
+        if not throttled:
+            near, wall = near + data.far_volume, wall + data.far_wall
+        pressure = start if kind.holds else system.pressure(f"pressure {name}", start)
+        return Side(name, pressure, pressure, near, wall, None, None)
+    pressure = system.pressure(f"pressure {name}", start)
+    lined = data.inertance > 0 and not kind.shut
+    if throttled and kind.holds and not lined:
+        return Side(name, pressure, start, near, wall, None, start)
+    outer = system.pressure(f"behind throttle {name}", start) if throttled else None
+    line = None
+    end: Expression = outer if outer is not None else pressure
+    if lined:
+        line = system.state(f"line {name}", 0.0, tolerance=FLOW)
+        end = start
+        if not kind.holds:
+            end = system.pressure(f"far end {name}", start)
+    return Side(name, pressure, end, near, wall, line, outer)
+
+
+def connect(circuit: Circuit, one: Side, ends: str, feed: Expression, *, held: float) -> Expression:
+    """Flow into the chamber; `feed` is the flow at the end, `held` a pressure held there."""
+    feed = FEEDS[ends](circuit, one, feed, held)
+    if one.line is not None:
+        feed = _through_line(circuit, one, one.line, feed)
+    if one.outer is not None:
+        return -_through_throttle(circuit, one, one.outer, feed)
+    return feed
+
+
+def _through_line(circuit: Circuit, one: Side, flow: Symbol, feed: Expression) -> Expression:
+    """Flow of the line towards the chamber."""
+    data, word = circuit.plant.lines[one.name], one.name.upper()
+    inner = one.pressure if one.outer is None else one.outer
+    lost = data.resistance * flow
+    circuit.system.rate(flow, (one.end - inner - lost) / data.inertance)
+    circuit.door(f"line {word}", lost * flow, state=f"line loss {one.name}")
+    motion = 0.5 * data.inertance * flow * flow
+    circuit.audit.stored.append((f"oil in motion in line {word}", motion))
+    if isinstance(one.end, Symbol):
+        _far(circuit, one, f"far end {word}", one.end, feed - flow)
+    else:
+        circuit.door("held ports", one.end * flow, state=f"held work {one.name}", into=True)
+    return flow
+
+
+def _through_throttle(
+    circuit: Circuit, one: Side, outer: Expression, feed: Expression
+) -> Expression:
+    """Flow of the one-way valve out of the chamber."""
+    word = one.name.upper()
+    assert circuit.plant.throttle is not None
+    drop = one.pressure - outer
+    flow = one_way_valve.one_way_flow(pressure_difference=drop, **circuit.plant.throttle)
+    circuit.door(f"throttle {word}", drop * flow, state=f"throttle loss {one.name}")
+    circuit.system.signal(
+        f"flow_throttle_{one.name}", f"flow out of chamber {word}", SCENARIOS["flow_value"], flow
+    )
+    if isinstance(outer, Symbol):
+        _far(circuit, one, f"behind throttle {word}", outer, feed + flow)
+    else:
+        circuit.door("held ports", outer * flow, state=f"held work {one.name}")
+    return flow
+
+
+def _far(circuit: Circuit, one: Side, name: str, pressure: Symbol, inflow: Expression) -> None:
+    """Volume at the far end: half of the line behind a throttle."""
+    data = circuit.plant.lines[one.name]
+    share = 0.5 if one.outer is not None and one.line is not None else 1.0
+    if share * data.far_volume < LEAST_NODE:
+        circuit.system.notes.append(f"{name}: volume taken as {LEAST_NODE * 1e6:.2g} ml")
+    node(
+        circuit,
+        name,
+        pressure,
+        inflow=inflow,
+        volume=max(share * data.far_volume, LEAST_NODE),
+        wall=share * data.far_wall,
+    )
+
+
+def _reducing(circuit: Circuit, one: Side, held: float) -> Expression:
+    """Flow of the reducing valve into the line."""
+    system, data = circuit.system, circuit.plant.reducing_valve
+    assert data is not None
+    regulated = system.state(f"reducing valve {one.name}", 0.0, tolerance=FLOW)
+    rate = system.state(f"reducing valve rate {one.name}", 0.0, tolerance=100 * FLOW)
+    system.rate(regulated, rate)
+    system.rate(
+        rate,
+        supply.reducing_valve_acceleration(
+            flow=regulated,
+            rate=rate,
+            pressure=one.end,
+            set_pressure=held,
+            conductance=data["conductance"],
+            natural_frequency=data["natural_frequency"],
+            damping_ratio=data["damping_ratio"],
+        ),
+    )
+    flow = supply.reducing_valve_flow(
+        flow=regulated,
+        pressure=one.end,
+        set_pressure=held,
+        largest_flow=REDUCING_FLOW,
+        passive_conductance=data["passive_conductance"],
+    )
+    circuit.door("held ports", one.end * flow, state=f"reducing work {one.name}", into=True)
+    return flow
+
+
+def _given(circuit: Circuit, one: Side, feed: Expression, held: float) -> Expression:
+    """Flow from the valve, or zero."""
+    return feed
+
+
+def _nothing(circuit: Circuit, one: Side, feed: Expression, held: float) -> Expression:
+    return 0.0
+
+
+def _regulated(circuit: Circuit, one: Side, feed: Expression, held: float) -> Expression:
+    return _reducing(circuit, one, held)
+
+
+FEEDS = per_kind(
+    ENDS,
+    {
+        "valve": _given,
+        "closed": _nothing,
+        "blocked": _nothing,
+        "constant_pressure": _given,
+        "reducing_valve": _regulated,
+    },
+)
+"""Flow into the line for every kind of end."""

@@ -2,17 +2,151 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import Any, Literal, NamedTuple
 
-from ...base.symbolic import Expression, Symbol
-from ...design.scenario.model import Scenario
+import numpy as np
+
+from ...base.numeric import Array
+from ...base.quantities import INPUTS, SCENARIOS, Quantity
+from ...base.symbolic import Expression, Namespace, Symbol, jacobian
+from ...design.scenario.kinds import SHAPES, Records, height
+from ...design.scenario.model import Control, Scenario
 from ...design.scenario.signals import SignalSegment
 from ...models.loop import ControllerGains
 from ...studies.plant import Plant
-from ..loops import Loop
 from ..system import System
-from . import signals
+
+
+@dataclass(frozen=True, slots=True)
+class _Clock:
+    """The time of a system (`shapes.Clock`)."""
+
+    system: System
+
+    @property
+    def time(self) -> Expression:
+        return self.system.time
+
+    def after(self, instant: float) -> Any:
+        return self.system.after(instant)
+
+    def sine(self, angle: Expression) -> Expression:
+        return Namespace.sin(angle)
+
+    def samples(self, time: Array, values: Array) -> Expression:
+        self.system.bends += _bends(time, values)
+        course, slope = _between(time, values), _slope(time, values)
+        return self.system.graph.table(course, self.time, slope)
+
+
+def signal(system: System, parts: Sequence[SignalSegment], records: Records) -> Expression:
+    """The sum of the parts at the system's time; zero without parts."""
+    total: Expression = 0.0
+    for part in parts:
+        total = total + SHAPES[part.shape].course(_Clock(system), part, records)
+    return total
+
+
+def _between(time: Array, values: Array) -> Callable[[Any], Any]:
+    """Linear between samples, constant outside."""
+
+    def at(moment: Any) -> Any:
+        found = np.interp(moment, time, values)
+        return float(found) if np.ndim(found) == 0 else found
+
+    return at
+
+
+def _slope(time: Array, values: Array) -> Callable[[Any], Any]:
+    """Slope between samples, zero outside."""
+    run = np.diff(time)
+    rise = np.divide(np.diff(values), run, out=np.zeros(len(run)), where=run > 0)
+    steps = np.concatenate(([0.0], rise, [0.0]))
+
+    def at(moment: Any) -> Any:
+        found = steps[np.searchsorted(time, moment, side="right")]
+        return float(found) if np.ndim(found) == 0 else found
+
+    return at
+
+
+def _bends(time: Array, values: Array) -> list[float]:
+    """Samples at which the slope changes, first and last included."""
+    rise, run = np.diff(values, prepend=values[:1], append=values[-1:]), np.diff(time)
+    run = np.concatenate(([1.0], run, [1.0]))
+    slope = np.divide(rise, run, out=np.full(len(rise), np.inf), where=run > 0)
+    found: list[float] = time[slope[1:] != slope[:-1]].tolist()
+    return found
+
+
+def rate(system: System, expression: Expression) -> Expression:
+    """Time derivative of a signal between its jumps."""
+    return jacobian([expression], [system.time])[0][0]
+
+
+def steady_value(parts: Sequence[SignalSegment]) -> float:
+    """Final value of a signal: the parts that persist."""
+    return sum(height(part) for part in parts if SHAPES[part.shape].lasts)
+
+
+def at_start(parts: Sequence[SignalSegment], records: Records) -> float:
+    """Value of a signal at time zero; a missing record counts as zero."""
+    return sum(SHAPES[part.shape].initial(part, records) for part in parts)
+
+
+def acts_after(part: SignalSegment, moment: float, records: Records) -> bool:
+    """Whether a part of a signal changes after an instant."""
+    return SHAPES[part.shape].changes_after(part, moment, records)
+
+
+def frequencies(parts: Sequence[SignalSegment]) -> tuple[float, ...]:
+    """Frequencies of the sines of a signal [Hz]."""
+    return tuple(
+        part.frequency
+        for part in parts
+        if part.frequency and "frequency" in SHAPES[part.shape].needed
+    )
+
+
+Loop = Literal["position", "speed", "shaft_speed", "shaft_angle"]
+
+
+class Followed(NamedTuple):
+    """The quantity a loop controls."""
+
+    words: str
+    quantity: Quantity
+    unit: str
+    """Quantity of the loop's gain."""
+    typical: float
+    """A typical error, for tolerances (SI)."""
+
+
+def _followed(words: str, quantity: Quantity, gain: str, typical: float) -> Followed:
+    return Followed(words, quantity, SCENARIOS[gain].unit, typical)
+
+
+LOOPS: dict[Loop, Followed] = {
+    "position": _followed("position", INPUTS["position"], "position_gain", 1e-2),
+    "speed": _followed("speed", SCENARIOS["speed_value"], "speed_gain", 0.1),
+    "shaft_speed": _followed(
+        "shaft speed", SCENARIOS["shaft_speed_value"], "shaft_speed_gain", 10.0
+    ),
+    "shaft_angle": _followed(
+        "shaft angle", SCENARIOS["shaft_angle_value"], "shaft_angle_gain", 1.0
+    ),
+}
+"""Every loop, by the name of its reference and its signal."""
+
+
+def loop_of(control: Control | None) -> Loop | None:
+    """The loop that a reference closes, or None."""
+    if control is None:
+        return None
+    return next((name for name in LOOPS if getattr(control, name)), None)
+
 
 FLOW = 1e-4
 """Flow whose power at supply pressure scales energies [m^3/s], 6 l/min (a choice)."""
@@ -45,7 +179,7 @@ class Circuit:
 
     scenario: Scenario
     plant: Plant
-    records: signals.Records
+    records: Records
     start: Start
     gains: ControllerGains | None = None
     loop: Loop | None = None
@@ -60,7 +194,7 @@ class Circuit:
 
     def course(self, parts: Sequence[SignalSegment]) -> Expression:
         """A signal of the scenario over time."""
-        return signals.signal(self.system, parts, self.records)
+        return signal(self.system, parts, self.records)
 
     def door(self, name: str, power: Expression, *, state: str = "", into: bool = False) -> None:
         """Add an energy flow to the balance, out of or `into` the circuit, as integral `state`."""

@@ -17,13 +17,13 @@ from typing import Any, Final, Literal
 from ...base.errors import InputError, Unsolvable
 from ...base.progress import steps
 from ...base.tables import Displayed
+from ...design.scenario.kinds import Records
 from ...design.scenario.model import Load, Scenario
 from ...evaluation.build import evaluate
 from ...evaluation.kernel import PreparedDesign
 from ...evaluation.result import Requirement
 from ...metrics import METRICS
-from ..components.signals import Records
-from ..loops import loop_of
+from ..components.circuit import loop_of
 from ..result import Simulation
 from ..run import simulate
 from . import experiments
