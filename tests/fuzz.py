@@ -33,7 +33,7 @@ from cli_runner import BENCH, DESIGNS, Result, one_object, run
 
 import actuator_opt as ao
 from actuator_opt.api.reports import origin
-from actuator_opt.cli import faults
+from actuator_opt.cli import streams
 from actuator_opt.design.writer import init_text
 from actuator_opt.pages.report import outcome
 from actuator_opt.rendering.attachments import embed
@@ -504,14 +504,14 @@ def main() -> int:
     failed: Counter[str] = Counter()
     began = time.process_time()
     slowest = (0.0, -1)
-    unexpected = faults.unexpected
+    unexpected = streams.unexpected
 
     def told(error: Exception) -> object:
         if asked.debug:
             traceback.print_exception(error, file=sys.__stderr__)
         return unexpected(error)
 
-    with tempfile.TemporaryDirectory() as place, mock.patch.object(faults, "unexpected", told):
+    with tempfile.TemporaryDirectory() as place, mock.patch.object(streams, "unexpected", told):
         for number in numbers:
             given = made(asked.seed, number, kinds)
             folder = Path(place) / str(number)

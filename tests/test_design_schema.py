@@ -15,7 +15,7 @@ from actuator_opt.design.build import build
 from actuator_opt.design.kinds import EXAMPLES, ValueFault, example, read_quantity
 from actuator_opt.design.model import Design
 from actuator_opt.design.schema import json_schema, quantity_schema
-from actuator_opt.design.walls import entries
+from actuator_opt.design.structure import entries
 from actuator_opt.design.writer import init_text
 from actuator_opt.design.yaml_source import parse
 from actuator_opt.metrics import METRICS

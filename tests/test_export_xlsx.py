@@ -14,7 +14,7 @@ from test_export_step import SHIPPED
 import actuator_opt as ao
 from actuator_opt.exports.xlsx import xlsx
 from actuator_opt.pages.section import section
-from actuator_opt.rendering.image import images
+from actuator_opt.rendering.paper import images
 
 openpyxl = pytest.importorskip("openpyxl")
 

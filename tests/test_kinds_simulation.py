@@ -5,9 +5,9 @@ from dataclasses import replace
 import pytest
 
 from actuator_opt.base.kinds import kinds, per_kind
-from actuator_opt.design.scenario import Scenario, signals
+from actuator_opt.design.scenario import Scenario, model
 from actuator_opt.design.scenario.kinds import ENDS, FRICTIONS, LAWS, SHAPES, SUPPLIES
-from actuator_opt.design.walls import entries
+from actuator_opt.design.structure import entries
 from actuator_opt.models.loop import ziegler_nichols
 from actuator_opt.simulation.components.chambers import FEEDS
 from actuator_opt.simulation.components.motion import FORCES
@@ -40,7 +40,7 @@ def test_words_and_help_come_from_the_kinds(loc):
 @pytest.mark.parametrize("shape", SHAPES.values(), ids=lambda shape: shape.name)
 def test_a_shape_reads_keys_that_parts_have(shape):
     """Needed keys, others, and the shapes a key without effect may mean."""
-    known = entries(signals.Force)
+    known = entries(model.ForceSignal)
     assert shape.name in known["shape"].choices
     assert {*shape.needed, *shape.read} <= known.keys()
     assert {*shape.instead}.isdisjoint({*shape.needed, *shape.read})

@@ -10,8 +10,7 @@ import pytest
 from film_cases import AIR, ROUGH, drag, lip, o_ring
 
 from actuator_opt.lubrication import Contact, Elastic, Lubricant, Surface, solve_film
-from actuator_opt.models.flow_factors import pressure_flow_factor
-from actuator_opt.models.rough_surface import asperity_pressure
+from actuator_opt.models.rough_surface import asperity_pressure, pressure_flow_factor
 
 LIP_TABLE = [
     (0.002, 1123.8, 3.7191e-8), (0.05, 1180.4, 8.4565e-8), (0.3, 1217.5, 3.3244e-7),

@@ -11,7 +11,7 @@ from hypothesis import given, strategies as st
 from actuator_opt.base.errors import InputError
 from actuator_opt.design import housings, standard_sizes as standards
 from actuator_opt.design.materials import load_library
-from actuator_opt.models import extrusion, gland
+from actuator_opt.models import gland
 
 MM, BAR = 1e-3, 1e5
 VERIFIED = housings.extrusion_tables()["sealanddesign"].rows
@@ -34,7 +34,7 @@ def library():
 def test_extrusion_limits_are_the_published_ones(hardness):
     """Half the published diametral clearance at each published pressure, as rounded in the data."""
     for psi, inch in zip((500, 1000, 1500, 2000, 3000), PUBLISHED[hardness], strict=True):
-        found = extrusion.extrusion_gap_limit(
+        found = gland.extrusion_gap_limit(
             hardness=float(hardness), pressure=round(psi * PSI / BAR, 1) * BAR, table=VERIFIED
         )
         assert found == pytest.approx(inch * INCH / 2, rel=3e-3)
@@ -47,26 +47,22 @@ def test_interpolation_is_exact_at_every_tabulated_point(name):
     assert table.source
     for hardness, points in table.rows:
         for pressure, gap in points:
-            found = extrusion.extrusion_gap_limit(
+            found = gland.extrusion_gap_limit(
                 hardness=hardness, pressure=pressure, table=table.rows
             )
             assert found == pytest.approx(gap, rel=1e-12)
-            assert extrusion.gap_limit(pressure=pressure, points=points) == pytest.approx(gap)
+            assert gland.gap_limit(pressure=pressure, points=points) == pytest.approx(gap)
 
 
 @given(hardnesses, pressures, st.floats(0.1, 20), st.floats(1e4, 100e5))
 def test_harder_seals_bear_larger_gaps_and_pressure_takes_them_away(hardness, pressure, up, more):
     """Monotone in hardness and in pressure; never above a straight line between two points."""
-    limit = extrusion.extrusion_gap_limit(hardness=hardness, pressure=pressure, table=VERIFIED)
-    harder = extrusion.extrusion_gap_limit(
-        hardness=hardness + up, pressure=pressure, table=VERIFIED
-    )
-    pressed = extrusion.extrusion_gap_limit(
-        hardness=hardness, pressure=pressure + more, table=VERIFIED
-    )
+    limit = gland.extrusion_gap_limit(hardness=hardness, pressure=pressure, table=VERIFIED)
+    harder = gland.extrusion_gap_limit(hardness=hardness + up, pressure=pressure, table=VERIFIED)
+    pressed = gland.extrusion_gap_limit(hardness=hardness, pressure=pressure + more, table=VERIFIED)
     assert pressed <= limit * (1 + 1e-12) <= harder * (1 + 2e-12)
     straight = np.interp(pressure, *zip(*VERIFIED[1][1], strict=True))
-    hard = extrusion.extrusion_gap_limit(hardness=90.0, pressure=pressure, table=VERIFIED)
+    hard = gland.extrusion_gap_limit(hardness=90.0, pressure=pressure, table=VERIFIED)
     assert hard <= straight * (1 + 1e-12)
 
 
@@ -77,7 +73,7 @@ def test_the_interpolated_row_of_80_shore_a_agrees_with_another_table():
     """
     other = dict(housings.extrusion_tables()["design_program"].rows)[80.0]
     for pressure, gap in other[:4]:
-        found = extrusion.extrusion_gap_limit(hardness=80.0, pressure=pressure, table=VERIFIED)
+        found = gland.extrusion_gap_limit(hardness=80.0, pressure=pressure, table=VERIFIED)
         assert 0.88 * gap < found < gap * 1.005
 
 
@@ -88,9 +84,7 @@ def test_two_makers_judgement_at_1000_psi():
     """
     gap = 0.016 * INCH / 2
     at = {
-        hardness: extrusion.extrusion_gap_limit(
-            hardness=hardness, pressure=1000 * PSI, table=VERIFIED
-        )
+        hardness: gland.extrusion_gap_limit(hardness=hardness, pressure=1000 * PSI, table=VERIFIED)
         for hardness in (70.0, 80.0, 90.0)
     }
     assert at[70.0] < gap < at[90.0]
@@ -99,15 +93,15 @@ def test_two_makers_judgement_at_1000_psi():
 
 def test_beyond_the_table_is_held_and_told():
     """Held at the last point; the end is 206.8 bar, and 0 for a softer seal than the table has."""
-    end = extrusion.extrusion_pressure_end(hardness=np.array([69.0, 70.0, 80, 94]), table=VERIFIED)
+    end = gland.extrusion_pressure_end(hardness=np.array([69.0, 70.0, 80, 94]), table=VERIFIED)
     np.testing.assert_allclose(end, [0, 206.8e5, 206.8e5, 206.8e5])
-    held = extrusion.extrusion_gap_limit(hardness=90.0, pressure=400e5, table=VERIFIED)
+    held = gland.extrusion_gap_limit(hardness=90.0, pressure=400e5, table=VERIFIED)
     assert held == pytest.approx(0.127e-3)
-    below = extrusion.extrusion_gap_limit(hardness=70.0, pressure=1e5, table=VERIFIED)
+    below = gland.extrusion_gap_limit(hardness=70.0, pressure=1e5, table=VERIFIED)
     assert below == pytest.approx(0.203e-3)
     ragged = housings.extrusion_tables()["design_program"].rows
     for hardness, bar in ((70.0, 140), (75.0, 140), (80.0, 210), (85.0, 210), (95.0, 350)):
-        found = extrusion.extrusion_pressure_end(hardness=hardness, table=ragged)
+        found = gland.extrusion_pressure_end(hardness=hardness, table=ragged)
         assert found == pytest.approx(bar * BAR)
 
 
@@ -118,7 +112,7 @@ def test_back_up_materials_state_what_practice_bears_out(library):
         ("back_up_polyamide", 400, 0.04), ("back_up_peek", 700, 0.025),
     ):  # fmt: skip
         entry = library.get(name).properties["extrusion_gap_max"]
-        limit = extrusion.gap_limit(pressure=bar * BAR, points=entry.points)
+        limit = gland.gap_limit(pressure=bar * BAR, points=entry.points)
         assert limit == pytest.approx(gap * MM)
         assert entry.confidence == "derived"
 
@@ -302,7 +296,7 @@ def test_housings_are_found_by_diameter():
     (step,) = housings.housings_for("step_ring", "rod", 36 * MM)
     assert step.section == 3.53e-3
     assert step.is_nominal(36 * MM)
-    assert extrusion.gap_limit(pressure=200e5, points=step.gaps) == pytest.approx(0.25 * MM)
+    assert gland.gap_limit(pressure=200e5, points=step.gaps) == pytest.approx(0.25 * MM)
     (wiper,) = housings.housings_for("wiper", "rod", 36 * MM)
     assert 36 * MM + 2 * wiper.radial_depth == pytest.approx(44 * MM)
     odd = housings.housings_for("u_cup", "rod", 37 * MM)
@@ -357,11 +351,11 @@ def test_every_standard_gland_passes_its_own_check(section):
 def test_a_back_up_ring_counts_alone_where_the_seal_is_not_known():
     """Both known: the larger; past one end: the other alone; past both: the farther one."""
     known = {"seal_limit": 0.127, "seal_end": 207.0, "ring_limit": 0.076, "ring_end": 345.0}
-    found = extrusion.backed_gap_limit(pressure=np.array([100.0, 207, 208, 345, 346]), **known)
+    found = gland.backed_gap_limit(pressure=np.array([100.0, 207, 208, 345, 346]), **known)
     assert found.tolist() == [0.127, 0.127, 0.076, 0.076, 0.076]
     farther = known | {"ring_end": 100.0}
-    found = extrusion.backed_gap_limit(pressure=np.array([99.0, 101, 300]), **farther)
+    found = gland.backed_gap_limit(pressure=np.array([99.0, 101, 300]), **farther)
     assert found.tolist() == [0.127, 0.127, 0.127]
     better = known | {"ring_limit": 0.2}
-    found = extrusion.backed_gap_limit(pressure=np.array([100.0, 208, 400]), **better)
+    found = gland.backed_gap_limit(pressure=np.array([100.0, 208, 400]), **better)
     assert found.tolist() == [0.2, 0.2, 0.2]

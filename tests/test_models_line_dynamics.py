@@ -14,14 +14,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import jv, jve
 
-from actuator_opt.models import (
-    accumulator,
-    elements,
-    line_ends,
-    lines,
-    resonators,
-    transmission_line,
-)
+from actuator_opt.models import accumulator, elements, line_ends, lines, transmission_line
 
 PIPE = {"inner_diameter": 8e-3, "length": 1.2}
 SECTION = {"inner_diameter": 8e-3, "density": 865.0, "dynamic_viscosity": 0.04}
@@ -377,10 +370,10 @@ def test_accumulator_branch_resonates_with_its_neck():
 
 def test_quarter_wave_length_of_the_thesis():
     """[AaltoThesis] eq. 18: 20 Hz at 1300 m/s is 16.25 m; the inverse of the frequency."""
-    length = resonators.quarter_wave_length(frequency=20.0, sound_speed=1300.0)
+    length = transmission_line.quarter_wave_length(frequency=20.0, sound_speed=1300.0)
     assert length == 16.25
     assert elements.quarter_wave_frequency(length=length, sound_speed=1300.0) == 20.0
-    assert resonators.quarter_wave_length(
+    assert transmission_line.quarter_wave_length(
         frequency=20.0, sound_speed=1300.0, quarter_waves=2.0
     ) == pytest.approx(32.5)
 
@@ -394,7 +387,7 @@ def test_plugged_branch_without_loss(frequency):
     angle = 2 * math.pi * frequency * 16.25 / 1300.0
     at = {"frequency": frequency, "friction": "lossless", **T_PIPE}
     surge = 865.0 * 1300.0 / AREA
-    impedance = resonators.plugged_branch_impedance(**at)
+    impedance = transmission_line.plugged_branch_impedance(**at)
     assert impedance / surge == pytest.approx(-1j / math.tan(angle), rel=1e-6, abs=1e-9)
 
 
@@ -402,7 +395,7 @@ def test_plugged_branch_odd_and_even_quarter_waves():
     """Odd quarter waves: small impedance. Even: large impedance."""
     frequency = np.array([20.0, 40.0, 60.0, 80.0])
     pipe = {**T_PIPE, "dynamic_viscosity": 0.004}
-    impedance = np.abs(resonators.plugged_branch_impedance(frequency=frequency, **pipe))
+    impedance = np.abs(transmission_line.plugged_branch_impedance(frequency=frequency, **pipe))
     surge = 865.0 * 1300.0 / AREA
     assert np.all(impedance[::2] < 0.2 * surge)
     assert np.all(impedance[1::2] > 4 * surge)

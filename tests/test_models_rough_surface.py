@@ -8,13 +8,6 @@ from scipy.integrate import quad
 from scipy.special import gamma, pbdv
 from scipy.stats import norm
 
-from actuator_opt.models.flow_factors import (
-    pressure_flow_factor,
-    pressure_stress_factor,
-    shear_flow_factor,
-    shear_stress_correction,
-    shear_stress_factor,
-)
 from actuator_opt.models.rough_surface import (
     asperity_integral,
     asperity_pressure,
@@ -22,6 +15,11 @@ from actuator_opt.models.rough_surface import (
     composite_roughness,
     film_ratio_under_contact,
     mean_gap_ratio,
+    pressure_flow_factor,
+    pressure_stress_factor,
+    shear_flow_factor,
+    shear_stress_correction,
+    shear_stress_factor,
 )
 
 SEAL = {

@@ -10,14 +10,15 @@ import numpy as np
 import pytest
 
 from actuator_opt.models.strength import CRITERIA, tsai_wu_modes
-from actuator_opt.models.strength_interfibre import hashin_modes, puck_modes
 from actuator_opt.models.strength_modes import (
     PlyRatios,
     PlyStrength,
+    hashin_modes,
     load_multiplier,
     max_strain_modes,
     max_stress_modes,
     one_stress_modes,
+    puck_modes,
 )
 
 PLY = PlyStrength(1900.0, 1300.0, 55.0, 190.0, 85.0)

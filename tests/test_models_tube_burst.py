@@ -8,7 +8,7 @@ from math import pi, radians
 import numpy as np
 import pytest
 
-from actuator_opt.models import ply_discount, tube_burst, tube_elements
+from actuator_opt.models import burst_ladder, tube_burst, tube_elements
 from actuator_opt.models.burst_ladder import WallLayer
 from actuator_opt.models.layered_tube import ply_stresses_at_faces, tube_state
 from actuator_opt.models.solid_ply import solid_stiffness
@@ -61,7 +61,7 @@ def test_thin_limit_is_the_thin_ladder(axial):
     layers = [_metal(0.6e-3), HOOP, HELICAL]
     share = axial * pi * radius**2
     exact = _burst(layers, radius, share)
-    thin = ply_discount.burst_by_ply_discount(
+    thin = burst_ladder.burst_by_ply_discount(
         layers=layers, radius=radius + 1.1e-3, axial_force_per_pressure=share
     )
     assert exact.burst_pressure == pytest.approx(thin.burst_pressure, rel=5e-3)

@@ -21,7 +21,7 @@ from actuator_opt.design.scenario import Scenario, read_design_of, read_scenario
 from actuator_opt.design.scenario.faults import cross_field, part_lists
 from actuator_opt.design.scenario.kinds import SHAPES
 from actuator_opt.design.schema import json_schema, quantity_schema
-from actuator_opt.design.walls import entries
+from actuator_opt.design.structure import entries
 
 DESIGN = (Path(__file__).parent.parent / "designs" / "servo_knee.yaml").read_text("utf-8")
 

@@ -27,12 +27,12 @@ from actuator_opt.pages.sweep_figures.shared import (
     fits,
     sweep_figures,
 )
-from actuator_opt.pages.ucurves import STYLES, differences_drawn
+from actuator_opt.pages.sweep_figures.ucurves import STYLES, differences_drawn
 from actuator_opt.rendering import html, paper, terminal
 from actuator_opt.rendering.ink import Ink
-from actuator_opt.sweeps import sample
+from actuator_opt.sweeps import result
 from actuator_opt.sweeps.field import field
-from actuator_opt.sweeps.sample import Pool, better, front
+from actuator_opt.sweeps.result import Pool, better, front
 
 GRID = ["cylinder.bore=20.6..22 mm:9", "barrel.layup[1].thickness=2.2..3.6 mm:9"]
 PAIR = ("mass", "stiffness_min")
@@ -178,7 +178,7 @@ def test_the_pareto_line_is_of_every_feasible_design(knee, monkeypatch):
         for m, s in zip(mass, stiffness, strict=True)
         if not ((mass <= m) & (stiffness >= s) & ((mass < m) | (stiffness > s))).any()
     }
-    monkeypatch.setattr(sample, "MOST_POINTS", 8)
+    monkeypatch.setattr(result, "MOST_POINTS", 8)
     few = ao.sweep(knee, WAYS, method="lhs", n=300, figures=["scatter"], show=PAIR)
     assert len(few.sample.feasible.rows) <= 8
     for pair in (PAIR, PAIR[::-1]):
@@ -192,15 +192,15 @@ def test_the_pareto_line_is_of_every_feasible_design(knee, monkeypatch):
 @settings(max_examples=60, deadline=None)
 def test_what_is_kept_is_every_kth_row(sizes):
     """Whatever the chunks, the kept rows are those of numbers 0, k, 2k, ... and not too few."""
-    pool, most, total = Pool(), sample.MOST_POINTS, 0
-    sample.MOST_POINTS = 10
+    pool, most, total = Pool(), swept.MOST_POINTS, 0
+    swept.MOST_POINTS = 10
     try:
         for size in sizes:
             rows = np.arange(total, total + size, dtype=float)[:, None]
             pool.add(rows[:, 0].astype(int), rows)
             total += size
     finally:
-        sample.MOST_POINTS = most
+        swept.MOST_POINTS = most
     assert pool.rows.ravel().tolist() == list(range(0, total, pool.step))
     assert len(pool.rows) <= 10
     assert pool.step == 1 or len(pool.rows) >= 5

@@ -5,9 +5,17 @@ from .actuator import Actuator, read
 from .checking import check, examine
 from .comparing import compare, comparison_json, draw_comparison
 from .exports import explore, export
-from .fronts import pareto, write_front, write_front_csv
 from .installation import Installation, doctor
-from .optimum import Prices, evaluate, optimise, sensitivity, with_yield
+from .optimum import (
+    Prices,
+    evaluate,
+    optimise,
+    pareto,
+    sensitivity,
+    with_yield,
+    write_front,
+    write_front_csv,
+)
 from .recorded_runs import (
     Run,
     delete_run,
@@ -33,7 +41,6 @@ from .repeating import Rerun, rerun
 from .reports import save
 from .restoring import Restored, draw_run, report_run, restore
 from .results import exit_code, report
-from .seals import seal, with_contact, write_seal
 from .sessions import Curve, Prediction, Price, Session, session
 from .simulations import (
     Compared,
@@ -48,7 +55,7 @@ from .simulations import (
     write_signals,
     write_simulation,
 )
-from .studies import uncertainty, write_draws, write_uncertainty
+from .studies import seal, uncertainty, with_contact, write_draws, write_seal, write_uncertainty
 from .sweeping import draw_sweep, sweep
 
 __all__ = [

@@ -158,7 +158,7 @@ def draw_comparison(comparison: Comparison, folder: str | Path = "reports") -> l
     stiffness over the stroke of the first six designs, where any has it.
     """
     from ..pages.comparison import comparison_figure, comparison_ucurves
-    from ..rendering.image import write_ink
+    from ..rendering.paper import write_ink
 
     paths = write_ink(comparison_figure(comparison), Path(folder), "comparison")
     curves = comparison_ucurves(comparison)

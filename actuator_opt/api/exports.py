@@ -12,12 +12,11 @@ from ..base.errors import Diagnostic, InputError, UsageError
 from ..design import Design
 from ..evaluation import Evaluation
 from .actuator import Actuator, Plugins, as_actuator, plugins_of
-from .kept_sweeps import store_of
 from .optimum import evaluate
 from .recorded_runs import Run, read_run, sound
 from .reports import date_from_environment, file_name, require_date
 from .restoring import changed_plugins, named_plugins, restore
-from .sweeping import free
+from .sweeping import free, store_of
 
 if TYPE_CHECKING:
     from ..explorer import ExplorerFile

@@ -17,8 +17,7 @@ from ..evaluation import Evaluation
 from ..version import VERSION
 from . import results
 from .actuator import Actuator, Plugins, plugins_of, read_as
-from .fronts import pareto
-from .optimum import evaluate, optimise
+from .optimum import evaluate, optimise, pareto
 from .recorded_runs import Run, differing, run_fault
 from .reports import Paper, is_date, verification_tables
 

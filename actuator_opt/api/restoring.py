@@ -11,10 +11,10 @@ from ..base.errors import Diagnostic, InputError
 from ..base.tables import Displayed
 from ..version import VERSION
 from .actuator import Actuator, Plugins, plugins_of, read_as
-from .fronts import write_front, write_front_csv
-from .kept_sweeps import KeptSweep, kept_sweep, report_sweep
+from .optimum import write_front, write_front_csv
 from .recorded_runs import Run, differing, read_run, sha256, sound
 from .reports import Paper, report_design
+from .sweeping import KeptSweep, kept_sweep, report_sweep
 
 if TYPE_CHECKING:
     from ..evaluation import Evaluation
@@ -188,7 +188,7 @@ def draw_run(of: Run, folder: str | Path) -> list[Path]:
     InputError : a run of another command than optimise
     """
     from ..pages.trust import convergence_figure
-    from ..rendering.image import write_ink
+    from ..rendering.paper import write_ink
 
     if of.head.get("kind") != "optimise":
         message = f"is a run of {of.head.get('kind')}, whose search has no convergence to draw"

@@ -194,8 +194,8 @@ KINDS = kinds(
         report="api:report_run", csv=None, record=None,
     ),
     ResultKind(
-        "api.kept_sweeps:KeptSweep", lambda kept: _missed(not kept.run.head["met"]),
-        report="api.kept_sweeps:report_sweep", csv=None, record=None, data=None,
+        "api.sweeping:KeptSweep", lambda kept: _missed(not kept.run.head["met"]),
+        report="api.sweeping:report_sweep", csv=None, record=None, data=None,
     ),
     ResultKind(
         "api.restoring:Restored", lambda restored: exit_code(restored.result),

@@ -17,7 +17,7 @@ from typer.exceptions import TyperException
 
 from ..base.errors import EXIT_CODES, ActuatorError, Diagnostic, ExitCode
 from ..version import VERSION
-from . import faults, streams
+from . import streams
 
 COMMANDS = {
     "init": "design",
@@ -55,7 +55,7 @@ def _main(
         bool,
         typer.Option(
             "--debug",
-            help=f"Show tracebacks of internal errors (or set {faults.DEBUG}=1).",
+            help=f"Show tracebacks of internal errors (or set {streams.DEBUG}=1).",
         ),
     ] = False,
 ) -> None:
@@ -147,5 +147,5 @@ def main() -> None:
         if streams.interrupted():  # the interrupt caused the exception
             code = streams.faults([Diagnostic("interrupted")], ExitCode.INTERRUPTED)
         else:
-            code = streams.faults(*faults.unexpected(error))
+            code = streams.faults(*streams.unexpected(error))
     sys.exit(code)

@@ -81,7 +81,7 @@ def show_material(
         _show(blocks(material))
     if out is not None:
         from ..pages.material import fluid_figure
-        from ..rendering.image import write_ink
+        from ..rendering.paper import write_ink
 
         for path in write_ink(fluid_figure(material), out, material.name):
             streams.err(f"wrote {path}")

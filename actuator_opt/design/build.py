@@ -17,8 +17,7 @@ from .faults import cross_field, material_faults
 from .kinds import Fraction, Of, Section, ValueFault, example, what
 from .model import Design, Ply
 from .paths import put, resolve, spell
-from .view import Materials
-from .walls import Entry, Loc, child_at, entries, leaves
+from .structure import Entry, Loc, Materials, child_at, entries, leaves
 
 MOST_FAULTS = 100
 

@@ -20,8 +20,7 @@ from .material import ROLES
 from .model import Design
 from .paths import Target, resolve
 from .requirements import in_faulty_block
-from .view import Materials
-from .walls import Entry, number_of, value_at
+from .structure import Entry, Materials, number_of, value_at
 
 Value: TypeAlias = float | bool | str | Fraction
 """An allowed value: SI number, boolean, name or word, or share of the stroke."""

@@ -19,8 +19,7 @@ from . import choices, material, seal_faults, wall_faults
 from .kinds import MaterialName
 from .material import ROLES
 from .model import PLAIN_CAP, closed_length
-from .view import Materials, View, length_text
-from .walls import Loc, child, leaves
+from .structure import Loc, Materials, View, child, leaves, length_text
 
 _ROUND = math.radians(0.01)
 """Joint angles in remedies are rounded inwards to this step (rad), for short numbers."""

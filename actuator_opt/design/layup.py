@@ -22,7 +22,7 @@ from ..base.errors import Diagnostic, shown
 from .kinds import ValueFault, example, read_quantity, what
 from .model import MOST_LAYERS, Ply
 from .paths import spell
-from .walls import Loc, child, child_at, lists_of
+from .structure import Loc, child, child_at, lists_of
 from .yaml_source import Document, Shorthand, Span
 
 EXAMPLE = "[90_4 / +-25_2 / 0]s"

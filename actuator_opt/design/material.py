@@ -21,8 +21,7 @@ from ..base.numeric import STEP, Array, maximum, real, where
 from ..base.quantities import MATERIAL_PROPERTIES, Quantity
 from ..models import damping as laws
 from ..models.oil_laws import BULK_MODULUS_LAWS, VISCOSITY_LAWS
-from .view import Materials, Properties, View
-from .walls import child_at
+from .structure import Materials, Properties, View, child_at
 
 KINDS: Final = ("metal", "ply", "polymer", "fluid", "seal", "adhesive")
 CONFIDENCES: Final = ("verified", "secondary", "unverified", "derived")

@@ -20,8 +20,8 @@ from ..base.quantities import Quantity
 from ..metrics import METRICS
 from .kinds import Fraction, Section, ValueFault
 from .model import Design
+from .structure import Entry, Loc, child, child_at, entries, leaves, number_of
 from .uncertain import NUMBERS, quantity_of_entry
-from .walls import Entry, Loc, child, child_at, entries, leaves, number_of
 
 _PATH = re.compile(r"[^.\[\]=]+(\[[^\[\]=]+\])?(\.[^.\[\]=]+(\[[^\[\]=]+\])?)*")
 _TOKEN = re.compile(r"\[([^\[\]]+)\]|([^.\[\]]+)")

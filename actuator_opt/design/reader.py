@@ -19,8 +19,7 @@ from .build import MOST_FAULTS, Root, build, copy_tree
 from .kinds import Section, ValueFault
 from .model import Design
 from .paths import put, resolve, spell
-from .view import Materials
-from .walls import Loc
+from .structure import Loc, Materials
 from .yaml_source import MAX_BYTES, Document, Span, decode, parse
 
 TEXT = "<text>"

@@ -17,7 +17,7 @@ from . import sizes, uncertain_faults
 from .kinds import Section, ValueFault, example, read_quantity, what
 from .model import Design
 from .paths import Target, resolve
-from .walls import Loc, entries, number_of, value_at
+from .structure import Loc, entries, number_of, value_at
 
 _LARGEST = {
     "ratio": 1e12, "length": 1e3, "mass": 1e7, "force": 1e9, "stiffness": 1e13, "pressure": 1e12,

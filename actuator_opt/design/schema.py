@@ -33,9 +33,8 @@ from .material import ROLES
 from .model import Design, Ply, Uncertain
 from .sizes import MOST_SIZES
 from .standard_sizes import SERIES
+from .structure import Entry, Materials, entries
 from .uncertain import NUMBERS, quantity_of_entry
-from .view import Materials
-from .walls import Entry, entries
 
 Schema = dict[str, Any]
 _NUMBER = r"(\d[\d_]*\.?\d*|\.\d+)([eE][+-]?\d+)?"

@@ -18,9 +18,8 @@ from ..seals.seal_type import SealType, SizeFault
 from ..seals.u_cup import lip_faults
 from . import wall_faults
 from .seals import BACK_UPS
-from .view import Materials, Properties, View, length_text
+from .structure import Loc, Materials, Properties, View, child_at, length_text
 from .wall_faults import elements
-from .walls import Loc, child_at
 
 
 def fields(view: View) -> Iterator[Fault]:

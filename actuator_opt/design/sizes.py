@@ -18,8 +18,7 @@ from ..base.quantities import Quantity
 from .kinds import ValueFault, example, read_quantity, what
 from .paths import resolve
 from .standard_sizes import SERIES, Series
-from .view import View
-from .walls import Loc, child, child_at, number_of, value_at
+from .structure import Loc, View, child, child_at, number_of, value_at
 
 MOST_SIZES = 1000
 """Most sizes of a variable, and rows of a group."""

@@ -24,8 +24,7 @@ from ..base.quantities import INPUTS
 from ..seals.kinds import TYPES
 from . import standard_sizes as standards, yaml_source
 from .seals import BACK_UPS
-from .view import View
-from .walls import child_at
+from .structure import View, child_at
 
 Use: TypeAlias = Literal["reciprocating", "static"]
 Direction: TypeAlias = Literal["nearest", "up", "down"]

@@ -10,8 +10,8 @@ from ..base.errors import Fault
 from .kinds import ValueFault, example, read_quantity, what
 from .model import Shape
 from .paths import Target, resolve
+from .structure import number_of, value_at
 from .uncertain import KEYS, NUMBERS, misfit, quantity_of_entry
-from .walls import number_of, value_at
 
 
 def faults(tree: dict[str, Any]) -> Iterator[Fault]:

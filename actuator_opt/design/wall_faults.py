@@ -19,8 +19,18 @@ from ..joints.kinds import JOINTS
 from .material import PLY_CONSTANTS, PLY_REQUIRED, compliance_determinant, ply_constants
 from .model import Ply, Retention
 from .paths import spell
-from .view import Materials, Properties, View, length_text
-from .walls import Loc, child, child_at, entries, lists_of, number_of
+from .structure import (
+    Loc,
+    Materials,
+    Properties,
+    View,
+    child,
+    child_at,
+    entries,
+    length_text,
+    lists_of,
+    number_of,
+)
 
 PLY_STRENGTHS = (
     "strength_1_tension", "strength_1_compression", "strength_2_tension",

@@ -27,7 +27,7 @@ from .kinds import Flag, Fraction, Section, Text
 from .model import Design
 from .paths import resolve
 from .reader import LoadedDesign, Source
-from .walls import Loc, child, child_at, entries, number_of, value_at
+from .structure import Loc, child, child_at, entries, number_of, value_at
 from .yaml_source import Document, parse
 
 _PLAIN = re.compile(r"[^\W\d_][\w .()/+%-]*(?<! )")

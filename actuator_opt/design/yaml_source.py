@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import yaml
 
 from ..base.errors import Diagnostic, InputError, shown
-from .walls import Loc
+from .structure import Loc
 
 try:
     from yaml.cyaml import CParser as _Parser  # type: ignore[attr-defined]

@@ -14,7 +14,7 @@ from ..design.housings import extrusion_tables
 from ..design.material import Material
 from ..design.model import Design
 from ..design.seals import SealElement
-from ..models import elastomer, extrusion, gland
+from ..models import elastomer, gland
 from ..seals import stated_profile
 from ..seals.contact import SealContact
 from ..seals.seal_type import SealSizes
@@ -311,13 +311,13 @@ def _extrusion(v: Values, stock: MaterialValues, ring: Ring, gap: Array) -> Arra
     if stock.material(element.compound).properties.get("extrusion_gap_max") is None:
         hardness = v[f"materials.{element.compound}.hardness"]
         table = extrusion_tables()[EXTRUSION_TABLE].rows
-        allowed = extrusion.extrusion_gap_limit(hardness=hardness, pressure=pressure, table=table)
-        end = extrusion.extrusion_pressure_end(hardness=hardness, table=table)
+        allowed = gland.extrusion_gap_limit(hardness=hardness, pressure=pressure, table=table)
+        end = gland.extrusion_pressure_end(hardness=hardness, table=table)
     else:
         allowed = _stated(stock, element.compound, pressure)
         end = _stated_end(stock.material(element.compound))
     if element.back_up_material is not None:
-        allowed = extrusion.backed_gap_limit(
+        allowed = gland.backed_gap_limit(
             pressure=pressure,
             seal_limit=allowed,
             seal_end=end,
@@ -344,7 +344,7 @@ def _stated(stock: MaterialValues, name: str, pressure: Array) -> Array:
     if not limit.points:
         return scale * limit.value
     points = tuple(zip(limit.arguments, limit.values, strict=True))
-    return scale * extrusion.gap_limit(pressure=pressure, points=points)
+    return scale * gland.gap_limit(pressure=pressure, points=points)
 
 
 def extrusion_end(ring: Ring, materials: Mapping[str, Material]) -> float:
@@ -356,5 +356,5 @@ def extrusion_end(ring: Ring, materials: Mapping[str, Material]) -> float:
     else:
         table = extrusion_tables()[EXTRUSION_TABLE].rows
         hardness = compound.numbers["hardness"]
-        ends.append(float(extrusion.extrusion_pressure_end(hardness=hardness, table=table)))
+        ends.append(float(gland.extrusion_pressure_end(hardness=hardness, table=table)))
     return max(ends)

@@ -11,12 +11,7 @@ import numpy as np
 
 from ..base.numeric import Array, real
 from ..design.model import Design
-from ..models import (
-    dynamics,
-    lugre,
-    stiffness,
-    stiffness_published as published,
-)
+from ..models import dynamics, lugre, stiffness, stiffness_published as published
 from .barrel import Wall
 from .circuit import Branch, Chamber
 from .geometry import Geometry

@@ -17,7 +17,8 @@ from ..joints.kinds import JOINTS
 from ..joints.overlap import Overlap
 from ..models import end_plate, retention, rod
 from . import rod_strength, rods
-from .barrel import Wall, load_path
+from .barrel import Wall
+from .barrel.wall import largest_area
 from .geometry import Geometry, Groove, Numbers, clamped, end_at, joint_of, taken
 from .limits import MaterialValues, MetricArrays
 from .rod_strength import Beam
@@ -46,7 +47,7 @@ def held(v: Values, design: Design, stock: MaterialValues, g: Geometry, wall: Wa
     loaded = Loaded(
         end=end_at(design, Numbers(v), g),
         materials=stock,
-        force=v["supply.pressure"] * load_path.largest_area(design, g),
+        force=v["supply.pressure"] * largest_area(design, g),
         paths=wall.path.per_pressure,
         line_stiffness=wall.axial_line_stiffness,
         expansion=None if wall.expansion is None else wall.expansion[0],

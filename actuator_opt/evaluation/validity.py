@@ -19,7 +19,7 @@ from ..design.paths import quantity_of
 from ..metrics import METRICS
 from ..metrics.metric import CRITERION
 from ..metrics.table import OWN, ROWS, WALL_FED
-from ..models import contact_profile, extrusion, laminate, rough_surface, seals
+from ..models import contact_profile, gland, laminate, rough_surface, seals
 from ..models.strength import CRITERIA
 from . import linkage as joint, motion, proportions, springs, state
 from .barrel import LAMINATES, kind
@@ -216,7 +216,7 @@ def seal_models(
             doubted=worst > FILM_ERROR,
         )
     if any("extrusion_gap_max" not in subject.materials[r.element.compound].numbers for r in rings):
-        yield _use(extrusion.extrusion_gap_limit, "gap over hardness and pressure", doubted=False)
+        yield _use(gland.extrusion_gap_limit, "gap over hardness and pressure", doubted=False)
 
 
 def _contact_model(ring: Ring, *, doubted: bool) -> ModelUse:

@@ -20,7 +20,7 @@ import numpy as np
 
 from ..base.numeric import Array
 from ..design.materials import load_library
-from ..models import barrel, barrel_ends, laminate, liner, ply, ply_discount, strength, tube_burst
+from ..models import barrel, barrel_ends, burst_ladder, laminate, liner, ply, strength, tube_burst
 from ..models.autofrettage import Autofrettage
 from ..models.layered_tube import (
     TubeLayer,
@@ -809,7 +809,7 @@ def _ladder(
                 held_force=single(wall.path.held),
             )
             if exact
-            else ply_discount.burst_by_ply_discount(
+            else burst_ladder.burst_by_ply_discount(
                 layers=stack,
                 radius=float(g.inner_radius + g.outer_radius) / 2,
                 axial_force_per_pressure=load,

@@ -9,16 +9,269 @@ from __future__ import annotations
 import base64
 import hashlib
 import html
+import json
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ..base.files import write_text
+from ..base.numeric import Array
+from ..base.quantities import Quantity
 from ..base.tables import encoded
-from ..sweeps.explored import Explored
-from .payload import payload
+from ..design.paths import quantity_of
+from ..evaluation import prepare
+from ..evaluation.limits import Limit
+from ..evaluation.outline import LENGTHS, Template
+from ..evaluation.plugin import Plugin, with_own
+from ..evaluation.result import NO_RESERVE, NO_ROOM, Outline
+from ..rendering.text import SENSES, limit_text, pretty, unit_text
+from ..sweeps.explored import BEST, Explored
+from ..sweeps.result import MORE_IS_BETTER, better
+from ..version import VERSION
+
+AXES = 8
+"""Number of parallel axes shown at first."""
+
+
+TOLD = 3
+"""Most failure reasons that are listed."""
+
+
+MOST = 1e30
+"""Largest margin that is stored, which single precision can represent."""
+
+
+MM = 1000.0
+
+
+_WORDS = {"bore": "bore ⌀", "rod": "rod ⌀", "closed_length": "closed length"}
+
+
+def payload(explored: Explored, *, design: str, plugins: Sequence[str]) -> dict[str, Any]:
+    """All data of the page, as JSON."""
+    columns = _columns(explored)
+    limits, held = _limits(explored)
+    command = ["actuator-opt", "report", design]
+    for file in plugins:
+        command += ["--plugin", file]
+    best = np.where(explored.numbers[:, -1] == 1.0, explored.best, np.inf)
+    return {
+        "name": explored.study.design.name,
+        "summary": _summary(explored),
+        "rows": len(explored.numbers),
+        "thinned": explored.thinned,
+        "columns": columns,
+        "exact": _exact(explored),
+        "command": command,
+        "where": f"Run it in the folder of {design}, the base design beside this page.",
+        "limits": limits,
+        "held": held,
+        "shapes": _shapes(explored),
+        "design": explored.kept.design,
+        "start": _start(explored, columns)
+        | {"row": int(np.argmin(best)) if np.isfinite(best).any() else -1},
+    }
+
+
+def _base64(values: Array, kind: str) -> str:
+    return base64.b64encode(np.ascontiguousarray(values, dtype=kind).tobytes()).decode()
+
+
+def _column(name: str, label: str, unit: str, values: Array) -> dict[str, Any]:
+    """A column in its display unit; a single number if all rows are equal."""
+    told: dict[str, Any] = {"name": name, "label": label, "unit": unit_text(unit)}
+    if np.isfinite(values[0]) and (values == values[0]).all():
+        return told | {"value": float(np.float32(values[0]))}
+    return told | {"data": _base64(values, "<f4")}
+
+
+def _columns(explored: Explored) -> list[dict[str, Any]]:
+    """Varied inputs, then the least margin and every metric that any design has.
+
+    `better` is 1 if larger values are better, -1 if smaller values are, 0 if neither.
+    """
+    study, numbers = explored.study, explored.numbers
+    count = len(study.order)
+    found = [_texts(explored, path) for path in explored.kept.texts]
+    for k, column in enumerate(study.columns[:count]):
+        quantity = quantity_of(column.name, study.design)
+        shown = quantity.to_display(numbers[:, k])
+        found.append(_column(column.name, column.name, quantity.unit, np.asarray(shown)))
+    percent = np.round(100 * numbers[:, -3], 9) + 0.0  # no rounding errors of zero on the axis
+    margin = _column("least_margin", "least margin of all", "%", percent)
+    found.append(margin | {"better": MORE_IS_BETTER})
+    for k, name in enumerate(study.metrics, count):
+        quantity = study.quantity(name)
+        values = quantity.to_display(numbers[:, k])
+        if not np.isnan(values).all():
+            told = _column(name, quantity.label, quantity.unit, np.asarray(values))
+            found.append(told | {"better": better(study, name)})
+    return found
+
+
+def _texts(explored: Explored, path: str) -> dict[str, Any]:
+    """A column of texts, as the index of each row's text."""
+    texts = explored.kept.texts[path]
+    number = [texts.index(one[path]) for one in explored.variants]
+    codes = _base64(np.array(number)[explored.variant], "<u2")
+    return {"name": path, "label": path, "unit": "", "texts": texts, "codes": codes}
+
+
+def _exact(explored: Explored) -> list[dict[str, Any]]:
+    """Varied inputs in SI with all digits, for the command."""
+    found = []
+    for path in explored.kept.texts:
+        column = _texts(explored, path)
+        found.append({"path": path, "texts": column["texts"], "codes": column["codes"]})
+    for k in range(len(explored.study.order)):
+        name = explored.study.columns[k].name
+        found.append({"path": name, "data": _base64(explored.numbers[:, k], "<f8")})
+    return found
+
+
+def _limits(explored: Explored) -> tuple[list[dict[str, Any]], str]:
+    """Limits that exclude designs, those of the user first; and the number of other limits."""
+    study = explored.study
+    base = prepare(study.design, plugins=study.plugins).values()
+    quantities = with_own(study.plugins)
+    varied = {axis.path for axis in study.plan.axes}
+    found, held = [], 0
+    order = sorted(
+        range(len(explored.limits)),
+        key=lambda k: explored.limits[k].origin not in ("requirement", "case"),
+    )
+    for k in order:
+        limit, margin = explored.limits[k], explored.margins[k]
+        if (margin >= -1e-6).all() and limit.origin not in ("requirement", "case"):
+            held += 1
+            continue
+        moved = limit.path in varied or limit.lever in varied
+        bound = None if moved else float(limit.value(base))
+        quantity = quantities[limit.metric]
+        words = f"{SENSES[limit.sense]} a varying limit"
+        if bound is not None:
+            words = limit_text(quantity, limit.sense, bound)
+        found.append(
+            {
+                "name": limit.name,
+                "text": f"{_label(limit, quantity, study.plugins)} {words}",
+                "plain": bound == 0.0,
+                "reserve": NO_ROOM if bound == 0.0 else NO_RESERVE,
+                "margin": _base64(np.clip(margin, -MOST, MOST), "<f4"),
+            }
+        )
+    return found, f"Every design meets {held} further checks." if held else ""
+
+
+def _label(limit: Limit, quantity: Quantity, plugins: Sequence[Plugin]) -> str:
+    """A limit in words: its quantity and its load case."""
+    own = any(plugin.name == limit.name for plugin in plugins)
+    words = limit.name if own or limit.origin == "check" else quantity.label
+    return f"{words} ({limit.case})" if limit.case else words
+
+
+def _start(explored: Explored, columns: list[dict[str, Any]]) -> dict[str, Any]:
+    """Initial axes: the objective over the first selected metric, else the varied inputs."""
+    place = {column["name"]: k for k, column in enumerate(columns)}
+    study = explored.study
+    margin = place["least_margin"]
+    varied = [axis.path for axis in study.plan.axes if axis.path in place]
+    numbers = [column.name for column in study.columns[: len(study.order)]]
+    goal = next((name for name in study.goal.weights if name in place), "least_margin")
+    asked = [metric for metric in study.design.requirements if metric in place]
+    wanted = explored.shown
+    first = (*varied[: AXES - max(3, len(wanted))], *wanted, goal, *asked)
+    shown = [k for k in first if "value" not in columns[place[k]]]
+    last = [] if wanted else [margin]  # zero for every design of a front
+    axes = sorted({*(place[name] for name in dict.fromkeys(shown[: AXES - len(last)])), *last})
+    moved = next((k for k in numbers if "value" not in columns[place[k]]), varied[0])
+    across = next((k for k in asked if k != goal and "value" not in columns[place[k]]), moved)
+    if wanted:
+        across, goal, moved = (*wanted, moved)[:3]
+    return {
+        "x": place[across],
+        "y": place[goal],
+        "c": margin if across == moved else place[moved],
+        "axes": axes,
+        "asked": bool((explored.numbers[:, -1] == 1.0).any()),
+    }
+
+
+def _summary(explored: Explored) -> str:
+    """Contents of the page, omitted rows and failed designs."""
+    kept = explored.kept
+    good, shown = kept.rows - explored.failed, len(explored.numbers)
+    feasible = int((explored.numbers[:, -1] == 1.0).sum())
+    words = f"{explored.origin}, {good} design{'s' * (good != 1)} evaluated"
+    if explored.thinned:
+        words += (
+            f"; {shown} are shown: one in {-(-good // explored.most)}, spread evenly, "
+            f"and the {BEST} best feasible"
+        )
+    words += f". {feasible} of these meet every requirement and check."
+    if explored.failed:
+        reasons = list(kept.failures.items())
+        told = "; ".join(f"{times} times {reason}" for reason, times in reasons[:TOLD])
+        more = f"; and {len(reasons) - TOLD} more reasons" if len(reasons) > TOLD else ""
+        words += f" {explored.failed} failed and have no results: {told}{more}."
+    if explored.damaged:
+        words += f" {explored.damaged} damaged and left out."
+    return f"{pretty(words)} Models of version {VERSION}."
+
+
+def _shapes(explored: Explored) -> dict[str, Any]:
+    """Templates, the dimensions that move them, and the template of every row."""
+    count = len(explored.numbers)
+    which = np.full(count, -1)
+    slots: list[Array] = []
+    known: dict[str, int] = {}
+    for group in explored.groups:
+        shapes = group.shapes
+        moving = [k for k, row in enumerate(shapes.dimensions) if np.ptp(row) > 0]
+        used = [k for k in moving if any(one.slopes[:, k].any() for one in shapes.templates)]
+        while len(slots) < len(used):
+            slots.append(np.zeros(count))
+        for slot, k in enumerate(used):
+            slots[slot][group.places] = MM * shapes.dimensions[k]
+        for number, template in enumerate(shapes.templates):
+            text = json.dumps(_template(template, used), separators=(",", ":"))
+            rows = group.places[shapes.which == number]
+            which[rows] = known.setdefault(text, len(known))
+    hidden = any(axis.path.startswith("rod.fitting.") for axis in explored.study.plan.axes)
+    return {
+        "dimensions": [_base64(slot, "<f4") for slot in slots],
+        "templates": [json.loads(text) for text in known],
+        "which": _base64(which, "<i2"),
+        "lengths": [_WORDS.get(name, name) for name in LENGTHS],
+        "hidden": "the rod's fittings, because their dimensions vary" if hidden else "",
+    }
+
+
+def _template(template: Template, used: list[int]) -> dict[str, Any]:
+    """A template in mm: its numbers at zero dimensions, and their slopes by each dimension."""
+    zero = template.numbers - template.slopes[:, used] @ template.origin[used]
+    rows, places = np.nonzero(template.slopes[:, used])
+    return {
+        "parts": [_part(one) for one in template.outlines],
+        "numbers": [round(MM * float(value), 5) + 0.0 for value in zero],
+        "slopes": [
+            [int(row), int(k), round(float(template.slopes[row, used[k]]), 7)]
+            for row, k in zip(rows, places, strict=True)
+        ],
+    }
+
+
+def _part(outline: Outline) -> dict[str, Any]:
+    return {
+        "part": outline.part,
+        "kind": outline.kind,
+        "polygons": [len(polygon) for polygon in outline.polygons],
+    }
+
 
 FOLDER = Path(__file__).parent
 SCRIPTS = ("data", "front", "scatter", "axes", "section", "main")

@@ -23,7 +23,7 @@ from ..design.paths import get, quantity_of
 from ..evaluation.result import NO_RESERVE, NO_ROOM, Check, Evaluation, Requirement
 from ..metrics import METRICS
 from ..pages.section import section
-from ..rendering.image import images
+from ..rendering.paper import images
 from .words import plain
 
 TOLERANCE = "0.000001"

@@ -12,12 +12,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..base.numeric import STEP, Array, real
-from ..models.flow_factors import (
+from ..models.rough_surface import (
+    film_ratio_under_contact,
     pressure_stress_factor,
     shear_stress_correction,
     shear_stress_factor,
 )
-from ..models.rough_surface import film_ratio_under_contact
 from .newton import (
     Bed,
     FilmState,

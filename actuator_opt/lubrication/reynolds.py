@@ -23,9 +23,13 @@ from typing import Any
 import numpy as np
 
 from ..base.numeric import STEP, Array, real
-from ..models.flow_factors import pressure_flow_factor, shear_flow_factor
 from ..models.oil_laws import VISCOSITY_LAWS
-from ..models.rough_surface import asperity_stiffness, mean_gap_ratio
+from ..models.rough_surface import (
+    asperity_stiffness,
+    mean_gap_ratio,
+    pressure_flow_factor,
+    shear_flow_factor,
+)
 
 FLAT = 0.43
 """F_3/2 at film ratio 0, where the mean planes of both surfaces coincide."""

@@ -13,8 +13,15 @@ from typing import Protocol
 
 from ..base.kinds import kinds
 from ..base.numeric import Array, namespace, real, where
-from .strength_interfibre import hashin_modes, puck_modes
-from .strength_modes import PlyRatios, PlyStrength, Stress, max_strain_modes, max_stress_modes
+from .strength_modes import (
+    PlyRatios,
+    PlyStrength,
+    Stress,
+    hashin_modes,
+    max_strain_modes,
+    max_stress_modes,
+    puck_modes,
+)
 
 
 def _largest_root(square: Array, half: Array, left: Array | None) -> Array:

@@ -27,7 +27,7 @@ from ..rendering.heights import wrap
 from ..rendering.ink import BLACK, GREY, Ink, text_width
 from ..rendering.text import DASH, limit_text, number, pretty
 from .stiffness import fills
-from .ucurves import MOST, STYLES, Required, curves_drawn, has_points
+from .sweep_figures.ucurves import MOST, STYLES, Required, curves_drawn, has_points
 
 _WORST = {"lighter": "light", "stiffer": "stiff", "smoother": "smooth"}
 _NAMED = {"lighter": "mass", "stiffer": "stiffness", "smoother": "running friction"}

@@ -28,7 +28,7 @@ from ..evaluation.circuit import CHAMBERS, Chamber, Ways
 from ..evaluation.kernel import ModelRun, compute
 from ..evaluation.limits import MaterialValues
 from ..evaluation.springs import Springs
-from ..models import elements, fluid, linear, lines, loop, one_way_valve, orifice, resonators
+from ..models import elements, fluid, linear, lines, loop, one_way_valve, orifice, transmission_line
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..models.line_ends import CONSTANT_PRESSURE, LineEnd, antiresonance_frequency
 from ..models.stiffness import LoadStep, trapped_air_load_step
@@ -707,6 +707,8 @@ def dynamic_test(design: Design) -> DynamicTest:
             elements.quarter_wave_frequency(length=longest, sound_speed=PAPER.wave_speed)
         ),
         t_pipe=float(
-            resonators.quarter_wave_length(frequency=PAPER.peak, sound_speed=PAPER.wave_speed)
+            transmission_line.quarter_wave_length(
+                frequency=PAPER.peak, sound_speed=PAPER.wave_speed
+            )
         ),
     )

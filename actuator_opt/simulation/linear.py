@@ -14,8 +14,7 @@ from ..base.numeric import Array
 from ..base.quantities import INPUTS
 from ..base.symbolic import function, jacobian
 from ..design.scenario.kinds import Records
-from ..design.scenario.model import Control, Scenario
-from ..design.scenario.signals import SignalSegment
+from ..design.scenario.model import Control, Scenario, SignalSegment
 from ..models.loop import ControllerGains, margin_rules, ziegler_nichols
 from ..studies.plant import Plant
 from .assemble import assemble

@@ -14,8 +14,7 @@ from ..base.quantities import RESULTS, Quantity
 from ..base.symbolic import vectorised
 from ..base.tables import Displayed
 from ..design.scenario.kinds import SHAPES, Records
-from ..design.scenario.model import Scenario
-from ..design.scenario.signals import SignalSegment
+from ..design.scenario.model import Scenario, SignalSegment
 from ..evaluation.result import State, without_reserve
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..studies.plant import Plant

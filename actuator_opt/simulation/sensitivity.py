@@ -21,7 +21,7 @@ from ..design.build import with_values
 from ..design.kinds import Fraction, ValueFault
 from ..design.scenario.kinds import Records
 from ..design.scenario.model import Scenario
-from ..design.walls import Loc, child, child_at, leaves, number_of
+from ..design.structure import Loc, child, child_at, leaves, number_of
 from ..evaluation.build import prepare
 from ..evaluation.kernel import PreparedDesign
 from ..studies.plant import plant

@@ -22,9 +22,8 @@ from ..evaluation.build import Many, evaluate_many, limits_of, spec_hash
 from ..evaluation.plugin import Plugin
 from ..optimisation.actuator import Goal, goal_of
 from .designs import KEPT, Designs, first_fault
-from .engine import Engine, Scores
 from .plan import Plan, Points
-from .screen import roomy, screen
+from .screen import Engine, Scores, roomy, screen
 
 LOOKED = 1024
 """Designs evaluated at once when only the best of a chunk are wanted."""

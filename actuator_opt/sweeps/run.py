@@ -27,8 +27,7 @@ from ..version import VERSION
 from .chunk import Chunk, Study
 from .designs import KEPT
 from .field import on_cluster
-from .sample import Sample
-from .swept import Swept
+from .result import Sample, Swept
 
 
 class Lacking(NamedTuple):

@@ -26,7 +26,7 @@ import actuator_opt as ao
 from actuator_opt.base.numeric import maximum, sqrt
 from actuator_opt.base.tables import aligned
 from actuator_opt.models.accumulator import usable_volume
-from actuator_opt.models.extrusion import gap_limit
+from actuator_opt.models.gland import gap_limit
 from actuator_opt.models.lines import line_pressure_drop, line_volume
 from actuator_opt.models.mass import oil_mass, tube_mass
 from actuator_opt.rendering.axes import AREAS, Axes

@@ -12,11 +12,19 @@ from ...base.errors import Fault
 from ..build import how_to_add
 from ..kinds import Section, position_at
 from ..model import Design
-from ..view import View, length_text, without_effect
-from ..walls import Loc, child_at, entries
+from ..structure import Loc, View, child_at, entries, length_text, without_effect
 from .kinds import FRICTIONS, LAWS, SHAPES, SUPPLIES, ControlLaw
-from .model import FEWEST_SAMPLES, MOST_SAMPLES, SAMPLES, Control, Friction, Load, Scenario, Supply
-from .signals import SignalSegment
+from .model import (
+    FEWEST_SAMPLES,
+    MOST_SAMPLES,
+    SAMPLES,
+    Control,
+    Friction,
+    Load,
+    Scenario,
+    SignalSegment,
+    Supply,
+)
 
 _SLACK = 1e-9
 """Relative tolerance of times."""

@@ -8,8 +8,66 @@ from pydantic import Field
 
 from ..kinds import Of, Position, Section, Text
 from ..model import Limit, Valve
-from . import kinds, signals
+from . import kinds
 from .kinds import FileName, Label, StartPosition
+
+
+class SignalSegment(Section):
+    """A part of a signal; the parts of a list are added."""
+
+    shape: kinds.Shape
+    start: Annotated[float, Of("instant", "start time; for a record: time of its zero")] = 0.0
+    end: Annotated[float | None, Of("instant", "end time")] = None
+    frequency: Annotated[float | None, Of("frequency", "frequency of a sine")] = None
+    phase: Annotated[float, Of("phase", "phase of a sine at its start")] = 0.0
+    file: Annotated[
+        str | None, FileName("CSV file of a record, beside the scenario", "record.csv")
+    ] = None
+    column: Annotated[str | None, Label("column of a record, by its header", "force")] = None
+    scale: Annotated[float, Of("factor", "factor on a record")] = 1.0
+
+
+class ValveSignal(SignalSegment):
+    """A part of the valve signal."""
+
+    value: Annotated[float | None, Of("signal_value", "height, or amplitude of a sine")] = None
+
+
+class PositionSignal(SignalSegment):
+    """A part of a position over time."""
+
+    value: Annotated[float | None, Of("position_value", "height, or amplitude of a sine")] = None
+
+
+class SpeedSignal(SignalSegment):
+    """A part of a speed over time."""
+
+    value: Annotated[float | None, Of("speed_value", "height, or amplitude of a sine")] = None
+
+
+class ForceSignal(SignalSegment):
+    """A part of the load force, positive against extension."""
+
+    value: Annotated[float | None, Of("force_value", "height, or amplitude of a sine")] = None
+
+
+class TorqueSignal(SignalSegment):
+    """A part of the load torque on a shaft or joint."""
+
+    value: Annotated[float | None, Of("torque_value", "height, or amplitude of a sine")] = None
+
+
+class ShaftSpeedSignal(SignalSegment):
+    """A part of a shaft's speed over time."""
+
+    value: Annotated[float | None, Of("shaft_speed_value", "height, or amplitude of a sine")] = None
+
+
+class ShaftAngleSignal(SignalSegment):
+    """A part of a shaft's angle over time."""
+
+    value: Annotated[float | None, Of("shaft_angle_value", "height, or amplitude of a sine")] = None
+
 
 SAMPLES = 2000
 """Default number of samples of a run."""
@@ -18,7 +76,7 @@ MOST_SAMPLES = 2_000_000
 FEWEST_SAMPLES = 10
 """Fewest samples of a run, and of each sine period in it."""
 
-Parts = Annotated[tuple[signals.Signal, ...], Field(max_length=100)]
+Parts = Annotated[tuple[ValveSignal, ...], Field(max_length=100)]
 
 
 class Initial(Section):
@@ -136,7 +194,7 @@ class Motor(Section):
     inertia: Annotated[float, Of("inertia", "inertia of motor and load")]
     pipe_volume: Annotated[float, Of("oil_volume", "oil volume of each pipe")]
     damping: Annotated[float, Of("shaft_damping", "damping of the load")] = 0.0
-    torque: Annotated[tuple[signals.Torque, ...], Field(max_length=100)] = ()
+    torque: Annotated[tuple[TorqueSignal, ...], Field(max_length=100)] = ()
 
 
 class HeldPorts(Section):
@@ -149,7 +207,7 @@ class HeldPorts(Section):
 class Drive(Section):
     """An external drive of the rod: a rigid machine behind a spring, such as a load cylinder."""
 
-    position: Annotated[tuple[signals.Position, ...], Field(min_length=1, max_length=100)]
+    position: Annotated[tuple[PositionSignal, ...], Field(min_length=1, max_length=100)]
     stiffness: Annotated[float, Of("load_stiffness", "spring between machine and load")]
     damping: Annotated[float, Of("load_damping", "damper between machine and load")] = 0.0
 
@@ -167,7 +225,7 @@ class LoadCylinder(Section):
     supply_pressure: Annotated[float, Of("working_pressure", "gauge")]
     return_pressure: Annotated[float, Of("pressure", "gauge")] = 0.0
     valve: Valve
-    signal: Annotated[tuple[signals.Signal, ...], Field(max_length=100)] = ()
+    signal: Annotated[tuple[ValveSignal, ...], Field(max_length=100)] = ()
     force: Annotated[
         float, Of("force_value", "initial mean force on the rod, positive outwards")
     ] = 0.0
@@ -176,8 +234,8 @@ class LoadCylinder(Section):
 class Load(Section):
     """The load of the rod; its mass is load.mass of the design."""
 
-    force: Annotated[tuple[signals.Force, ...], Field(max_length=100)] = ()
-    torque: Annotated[tuple[signals.Torque, ...], Field(max_length=100)] = ()
+    force: Annotated[tuple[ForceSignal, ...], Field(max_length=100)] = ()
+    torque: Annotated[tuple[TorqueSignal, ...], Field(max_length=100)] = ()
     """Torque on the joint of the design's linkage."""
     stiffness: Annotated[float, Of("load_stiffness", "stiffness of a spring to ground")] = 0.0
     damping: Annotated[float, Of("load_damping", "damping to ground")] = 0.0
@@ -188,10 +246,10 @@ class Load(Section):
 class Control(Section):
     """A continuous controller of the valve signal; one of four references closes the loop."""
 
-    position: Annotated[tuple[signals.Position, ...], Field(max_length=100)] = ()
-    speed: Annotated[tuple[signals.Speed, ...], Field(max_length=100)] = ()
-    shaft_speed: Annotated[tuple[signals.ShaftSpeed, ...], Field(max_length=100)] = ()
-    shaft_angle: Annotated[tuple[signals.ShaftAngle, ...], Field(max_length=100)] = ()
+    position: Annotated[tuple[PositionSignal, ...], Field(max_length=100)] = ()
+    speed: Annotated[tuple[SpeedSignal, ...], Field(max_length=100)] = ()
+    shaft_speed: Annotated[tuple[ShaftSpeedSignal, ...], Field(max_length=100)] = ()
+    shaft_angle: Annotated[tuple[ShaftAngleSignal, ...], Field(max_length=100)] = ()
     law: kinds.Law = "p"
     tuning: kinds.Tuning = "margins"
     margin: Annotated[

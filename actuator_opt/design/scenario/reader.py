@@ -19,14 +19,12 @@ from ..kinds import Of, Section, Text, ValueFault
 from ..model import Design
 from ..paths import resolve
 from ..reader import STDIN, TEXT, LoadedDesign, Override, Source, load, opened, read_design
-from ..view import Materials
-from ..walls import child_at, entries
+from ..structure import Materials, child_at, entries
 from ..writer import scalar
 from ..yaml_source import parse
 from .faults import cross_field, design_faults, part_lists
 from .kinds import SHAPES, Records, sampled
-from .model import Scenario
-from .signals import SignalSegment
+from .model import Scenario, SignalSegment
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,6 @@
 """The barrel in an evaluation: its wall by the suitable tube model, and its axial force."""
 
 from .choice import LAMINATES, compute, kind
-from .load_path import Swelling
-from .wall import SEAL_STEP, Cycle, Wall
+from .wall import SEAL_STEP, Cycle, Swelling, Wall
 
 __all__ = ["LAMINATES", "SEAL_STEP", "Cycle", "Swelling", "Wall", "compute", "kind"]

@@ -15,7 +15,7 @@ import numpy as np
 
 from ...base.numeric import Array, maximum, real, where
 from ...design.model import Design
-from ...models import column, liner, ply_discount, rod, strength, tube_burst
+from ...models import burst_ladder, column, liner, rod, strength, tube_burst
 from ...models.autofrettage import Autofrettage, autofrettage
 from ...models.strength_modes import Stress, load_multiplier
 from .. import plies
@@ -24,9 +24,19 @@ from ..limits import MaterialValues
 from ..plies import Climate, Layer
 from ..state import LoadState
 from ..values import Values
-from . import load_path
-from .load_path import LoadPath, Swelling
-from .wall import FORCE, PRESSURE, WARMTH, Cycle, Wall, WallSolution, exact_answer, thin_answer
+from .wall import (
+    FORCE,
+    PRESSURE,
+    WARMTH,
+    Cycle,
+    LoadPath,
+    Swelling,
+    Wall,
+    WallSolution,
+    exact_answer,
+    load_path,
+    thin_answer,
+)
 
 FEW = 32
 """Batch size below which a model costs about as much for all designs as for a few."""
@@ -114,7 +124,7 @@ def compute(
         stretch=answer.axial[FORCE],
         growth_by_force=answer.growth[FORCE],
     )
-    path = load_path.derive(v, design, stock, g, state, swelling)
+    path = load_path(v, design, stock, g, state, swelling)
     free = v["supply.pressure"] * swelling.growth
     own, pulled = state.driven_pressure * swelling.growth, swelling.growth_by_force * path.cases
     bending, shear = rod.layered_section(
@@ -357,7 +367,7 @@ def _ladder(
     else:
         given["radius"] = (g.inner_radius + g.outer_radius) / 2
     some, every = distinct(given)
-    model = tube_burst.burst_of_tube if exact else ply_discount.burst_by_ply_discount
+    model = tube_burst.burst_of_tube if exact else burst_ladder.burst_by_ply_discount
     ladder = model(**some)
     paths = tuple(path.per_pressure)
     for place, pressure in _rows(states, paths, every(ladder.burst_pressure)):

@@ -15,8 +15,8 @@ from ...base.symbolic import Symbol
 from ...base.symbolic.expression import bounds_of
 from ...design.model import Design
 from ...evaluation import PreparedDesign, plies, rod_strength
-from ...evaluation.barrel import LAMINATES, Swelling, Wall, compute, kind, load_path
-from ...evaluation.barrel.load_path import LoadPath
+from ...evaluation.barrel import LAMINATES, Swelling, Wall, compute, kind, wall
+from ...evaluation.barrel.wall import LoadPath
 from ...evaluation.geometry import Geometry, clamped
 from ...evaluation.kernel import Implicit, ModelRun, Statics
 from ...evaluation.limits import MaterialValues, MetricArrays
@@ -603,19 +603,19 @@ class Envelopes:
     ) -> LoadPath:
         """Axial force in a laminated wall; between tie rods its share is unknown."""
         if not clamped(design):
-            return load_path.derive(v, design, stock, g, state, swelling)
-        name = load_path.STOP if design.cylinder.end_stop == "internal" else load_path.LARGEST
+            return wall.load_path(v, design, stock, g, state, swelling)
+        name = wall.STOP if design.cylinder.end_stop == "internal" else wall.LARGEST
         share = self.problem.unknown(
             "barrel_share", lambda done: self.number(done.wall.path.per_pressure[name])
         )
         supply = v["supply.pressure"]
         proof = v["supply.proof_ratio"] * supply
         preload = v.get("retention.preload", proof * share)
-        largest = supply * (load_path.largest_area(design, g) - share) + preload
+        largest = supply * (wall.largest_area(design, g) - share) + preload
         rods = Clamp(preload, largest, preload / (proof * share))
         barrel = 1 / (swelling.stretch * g.barrel_length)
-        whole = barrel + load_path.clamp_stiffness(v, design, stock, g)
-        return load_path.LoadPath({name: share}, 0.0, 0.0, rods, barrel / whole)
+        whole = barrel + wall.clamp_stiffness(v, design, stock, g)
+        return wall.LoadPath({name: share}, 0.0, 0.0, rods, barrel / whole)
 
 
 def refuse(design: Design) -> None:

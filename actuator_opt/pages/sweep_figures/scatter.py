@@ -11,7 +11,7 @@ from ...base.errors import Diagnostic, UsageError
 from ...base.numeric import Array
 from ...rendering.axes import Axes, even_range, even_ticks, fitted, spaced
 from ...rendering.ink import BLACK, GREY, PALE, RED, WHITE, Ink, text_width
-from ...sweeps.sample import better
+from ...sweeps.result import better
 from .shared import BETTER, INFEASIBLE, SweepFigure, SweepFigureData, heading
 
 MOST = 2000

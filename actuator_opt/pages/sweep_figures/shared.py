@@ -20,8 +20,8 @@ from ...evaluation import prepare
 from ...evaluation.limits import Limit
 from ...rendering.axes import fitted
 from ...rendering.heights import wrap
-from ...rendering.image import images
 from ...rendering.ink import GREY, PALE, Ink
+from ...rendering.paper import images
 from ...rendering.text import SENSES, limit_text, number, unit_text, with_unit
 from ...sweeps import Best, Swept
 from ...sweeps.chunk import Study

@@ -12,8 +12,7 @@ from ...base.numeric import Array
 from ...base.quantities import INPUTS, SCENARIOS, Quantity
 from ...base.symbolic import Expression, Namespace, Symbol, jacobian
 from ...design.scenario.kinds import SHAPES, Records, height
-from ...design.scenario.model import Control, Scenario
-from ...design.scenario.signals import SignalSegment
+from ...design.scenario.model import Control, Scenario, SignalSegment
 from ...models.loop import ControllerGains
 from ...studies.plant import Plant
 from ..system import System

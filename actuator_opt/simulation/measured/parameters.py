@@ -8,8 +8,7 @@ from typing import TypeAlias
 
 from ...base.errors import Diagnostic, InputError, remedy, shown
 from ...base.quantities import INPUTS, MATERIAL_PROPERTIES, RECORDS, SCENARIOS, Quantity
-from ...design.scenario.model import Scenario
-from ...design.scenario.signals import Force
+from ...design.scenario.model import ForceSignal, Scenario
 from ...studies.plant import LEAST_AIR, Plane, Plant
 from ..assemble import ends_of, start_of
 from ..components.chambers import LEAST_DEAD
@@ -309,7 +308,7 @@ def _dead(chamber: str) -> Callable[[Scenario, Plant], Entry]:
 
 def _offset(scenario: Scenario, plant: Plant) -> Entry:
     def put(s: Scenario, p: Plant, value: float) -> Case:
-        force = (*s.load.force, Force(shape="constant", value=value))
+        force = (*s.load.force, ForceSignal(shape="constant", value=value))
         return s.model_copy(update={"load": s.load.model_copy(update={"force": force})}), p
 
     most = _force(plant)

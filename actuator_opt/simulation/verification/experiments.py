@@ -20,8 +20,15 @@ import numpy as np
 
 from ...base.numeric import Array
 from ...base.polynomial import at_frequency
-from ...design.scenario.model import Control, Initial, Load, Scenario
-from ...design.scenario.signals import Force, Position, Signal
+from ...design.scenario.model import (
+    Control,
+    ForceSignal,
+    Initial,
+    Load,
+    PositionSignal,
+    Scenario,
+    ValveSignal,
+)
 from ...evaluation.kernel import ModelRun, PreparedDesign, compute
 from ...evaluation.result import Requirement
 from ...evaluation.values import of_case
@@ -143,8 +150,8 @@ class Stand:
         gain: float | None = None,
         ends: str | None = None,
         signal: float = 0.0,
-        reference: Sequence[Position] = (),
-        force: Sequence[Force] = (),
+        reference: Sequence[PositionSignal] = (),
+        force: Sequence[ForceSignal] = (),
         start: Mapping[str, float] | None = None,
     ) -> Record:
         """One run: closed with a gain, or open with the ports terminated.
@@ -170,8 +177,8 @@ class Stand:
                 "ends": ends,
                 "motor": None,
                 "held_ports": None,
-                "load": Load(force=(Force(shape="constant", value=self.force), *force)),
-                "signal": (Signal(shape="constant", value=signal),) if signal else (),
+                "load": Load(force=(ForceSignal(shape="constant", value=self.force), *force)),
+                "signal": (ValveSignal(shape="constant", value=signal),) if signal else (),
                 "control": None if gain is None else self._control(gain, reference),
                 "requirements": {},
             }
@@ -192,11 +199,11 @@ class Stand:
         last = dict(zip(names, found.states[:, -1].tolist(), strict=True))
         return Record(found.time, signals, last)
 
-    def _control(self, gain: float, reference: Sequence[Position]) -> Control:
+    def _control(self, gain: float, reference: Sequence[PositionSignal]) -> Control:
         """A proportional position loop, with the rate limit of the scenario."""
         stated = self.scenario.control
         return Control(
-            position=(*reference, Position(shape="constant", value=0.0)),
+            position=(*reference, PositionSignal(shape="constant", value=0.0)),
             tuning="stated",
             position_gain=gain,
             rate_limit=None if stated is None else stated.rate_limit,
@@ -218,7 +225,7 @@ class Stand:
             duration = SETTLED / self.bandwidth * self.gain / self.steady_gain
 
             def held(stand: Stand, error: float) -> Mapping[str, float]:
-                part = Position(shape="constant", value=error)
+                part = PositionSignal(shape="constant", value=error)
                 return stand.run(
                     duration=duration,
                     sample_time=duration / 20,
@@ -231,7 +238,7 @@ class Stand:
         return self.rested
 
     def held(
-        self, *, ends: str, duration: float, sample_time: float, force: Sequence[Force] = ()
+        self, *, ends: str, duration: float, sample_time: float, force: Sequence[ForceSignal] = ()
     ) -> Record:
         """A run with terminated ports; a valve stays where it held the force."""
         if ends != "valve" or not self.steady_gain:
@@ -251,13 +258,13 @@ class Stand:
         gain: float,
         duration: float,
         sample_time: float,
-        reference: Sequence[Position] = (),
-        force: Sequence[Force] = (),
+        reference: Sequence[PositionSignal] = (),
+        force: Sequence[ForceSignal] = (),
     ) -> Record:
         """A closed-loop run from rest; a new gain is inserted without a jump of the signal."""
         state = self.rest()
         shift = state["position"] + state["spool"] / gain - self.position
-        held = Position(shape="constant", value=shift)
+        held = PositionSignal(shape="constant", value=shift)
         return self.run(
             duration=duration,
             sample_time=sample_time,
@@ -387,7 +394,7 @@ def amplitude(stand: Stand, frequency: float, opened: complex) -> float:
 
 def sine(stand: Stand, frequency: float, size: float, cycles: float) -> Sine:
     """The loop following a sine, evaluated after some cycles, or later if not steady yet."""
-    part = Position(shape="sine", value=size, frequency=frequency)
+    part = PositionSignal(shape="sine", value=size, frequency=frequency)
     while True:
         record = stand.closed(
             gain=stand.gain,
@@ -548,7 +555,7 @@ def _growth(stand: Stand, gain: float, frequency: float, push: float) -> tuple[f
         gain=gain,
         duration=LATE[1] * period,
         sample_time=period / SAMPLES,
-        force=(Force(shape="pulse", value=push, start=0.0, end=0.5 * period),),
+        force=(ForceSignal(shape="pulse", value=push, start=0.0, end=0.5 * period),),
     )
     first, early, late = (record.within(a * period, b * period) for a, b in (FIRST, EARLY, LATE))
     pushed, before, after = (
@@ -568,7 +575,7 @@ def dynamic_stiffness(stand: Stand, ends: str, frequency: float, resonance: floa
     shares = (0.25, 0.5, 0.25) if frequency < SHAPED * resonance else (1.0,)
     swing = 2 * FORCE_SHARE * stand.full_force * stand.scale
     parts = [
-        Force(shape="sine", value=share * swing, frequency=frequency, start=k * wait)
+        ForceSignal(shape="sine", value=share * swing, frequency=frequency, start=k * wait)
         for k, share in enumerate(shares)
     ]
     if len(shares) > 1:
@@ -604,7 +611,7 @@ def decay(stand: Stand, ends: str, resonance: float) -> Measured:
         duration=SWINGS / resonance,
         sample_time=1 / (2 * SAMPLES * resonance),
         ends=ends,
-        force=(Force(shape="constant", value=push),),
+        force=(ForceSignal(shape="constant", value=push),),
     )
     facts = stand.facts(record)
     how = f"step of {push:.3g} N, amplitude {1000.0 * facts.swing:.2g} mm"
