@@ -24,8 +24,8 @@ if TYPE_CHECKING:
         Calibrated as Calibrated,
         Compared as Compared,
         Comparison as Comparison,
-        Curve as Curve,
         Installation as Installation,
+        OptimumCurve as OptimumCurve,
         Prediction as Prediction,
         Price as Price,
         Rerun as Rerun,
@@ -110,7 +110,7 @@ _PUBLIC = {
     "identification": "BendingResult Identification Record Specimen",
     "simulation": "Simulation",
     "api": """
-        Actuator Calibrated Compared Comparison Curve Installation Prediction Price Rerun
+        Actuator Calibrated Compared Comparison Installation OptimumCurve Prediction Price Rerun
         Restored Run Session Trial bending calibrate check compare compare_measured
         comparison_json delete_run doctor draw_comparison draw_run draw_sweep evaluate
         exit_code explore export identify optimise pareto prune_runs read read_record read_run

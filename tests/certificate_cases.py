@@ -13,7 +13,7 @@ from actuator_opt.evaluation import prepare
 from actuator_opt.optimisation.actuator import ActuatorProblem, build
 from actuator_opt.optimisation.certificate.certify import Relaxed, relax, trace
 from actuator_opt.optimisation.certificate.intervals import Box, Layout
-from actuator_opt.optimisation.problem import BoxProblem, Values
+from actuator_opt.optimisation.problem import BoxProblem, PointValues
 from actuator_opt.optimisation.solver import solve
 
 DESIGNS = Path(__file__).parent.parent / "designs"
@@ -58,7 +58,7 @@ class Case:
 def _inside(problem: BoxProblem, room: float, start) -> np.ndarray:
     """The best design with some room at every limit."""
 
-    def evaluate(points) -> Values:
+    def evaluate(points) -> PointValues:
         values = problem.evaluate(points)
         return replace(values, constraints=values.constraints - room)
 

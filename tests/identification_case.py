@@ -40,7 +40,7 @@ def sine(*, amplitude, frequency, periods, middle, step=1e-3):
     """A sine of position about its middle, SI."""
     time = step * np.arange(round(periods / frequency / step))
     turn = 2 * np.pi * frequency
-    return synthetic.Course(
+    return synthetic.PrescribedMotion(
         time,
         middle - amplitude * np.cos(turn * time),
         amplitude * turn * np.sin(turn * time),
@@ -87,7 +87,7 @@ def _levels() -> Record:
     """The same speeds without a load and against two loads; friction grows with pressure."""
     once = synthetic.plateaus(SPEEDS[1:], travel=0.04, begin=0.02, longest=0.5)
     count = once.time.size
-    course = synthetic.Course(
+    course = synthetic.PrescribedMotion(
         once.time[1] * np.arange(3 * count),
         np.tile(once.position, 3),
         np.tile(once.velocity, 3),
@@ -137,7 +137,7 @@ def record_of(kind: str) -> Record:
         return Record(whole.time, {**whole.channels, "x": whole["x"] - 0.5}, "outside.csv")
     if kind == "one way":
         speed = np.repeat(SPEEDS[1:], 300)
-        course = synthetic.Course(
+        course = synthetic.PrescribedMotion(
             1e-3 * np.arange(speed.size), 0.02 + 1e-3 * np.cumsum(speed), speed, 0.0 * speed
         )
         return _sensed("one_way.csv", course)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from actuator_opt.optimisation.problem import BoxProblem, ParametricProblem, Values
+from actuator_opt.optimisation.problem import BoxProblem, ParametricProblem, PointValues
 
 
 def rosen_suzuki() -> BoxProblem:
@@ -22,7 +22,7 @@ def rosen_suzuki() -> BoxProblem:
             10 - a**2 - 2 * b**2 - c**2 - 2 * d**2 + a + d,
             5 - 2 * a**2 - b**2 - c**2 - 2 * a + b + d,
         ]
-        return Values(f, np.stack(g))
+        return PointValues(f, np.stack(g))
 
     bound = np.full(4, 10.0)
     return BoxProblem(("x1", "x2", "x3", "x4"), -bound, bound, evaluate, ("g1", "g2", "g3"))
@@ -34,7 +34,7 @@ def hs71() -> BoxProblem:
     def evaluate(x):
         a, b, c, d = x
         f = a * d * (a + b + c) + c
-        return Values(f, (a * b * c * d - 25)[None], (a**2 + b**2 + c**2 + d**2 - 40)[None])
+        return PointValues(f, (a * b * c * d - 25)[None], (a**2 + b**2 + c**2 + d**2 - 40)[None])
 
     names = ("x1", "x2", "x3", "x4")
     return BoxProblem(
@@ -56,7 +56,7 @@ def stepped_cantilever() -> ParametricProblem:
 
     def evaluate(x, p):
         deflection = (CANTILEVER_COEFFICIENTS[:, None] / x**3).sum(axis=0)
-        return Values(p[1] * x.sum(axis=0), (1 - deflection / p[0])[None])
+        return PointValues(p[1] * x.sum(axis=0), (1 - deflection / p[0])[None])
 
     p = np.array([1.0, 0.0624])
     n = 5
@@ -88,7 +88,7 @@ def pressure_vessel() -> ParametricProblem:
             volume / p[2] - 1,
             1 - length / 240,
         ]
-        return Values(f, np.stack(np.broadcast_arrays(*g)))
+        return PointValues(f, np.stack(np.broadcast_arrays(*g)))
 
     p = np.array([0.0193, 0.00954, 1296000.0])
     problem = BoxProblem(
@@ -124,7 +124,7 @@ def piston_lever() -> BoxProblem:
             1 - 1.2 * travel / first,
             b / (d / 2) - 1,
         ]
-        return Values(np.pi * d**2 * travel / 4, np.stack(g))
+        return PointValues(np.pi * d**2 * travel / 4, np.stack(g))
 
     return BoxProblem(
         ("H", "B", "D", "X"),
@@ -159,7 +159,7 @@ def thrust_bearing() -> BoxProblem:
             1 - gamma / (386.4 * pressure) * (q / (2 * np.pi * r * film)) / 0.001,
             1 - capacity / (np.pi * (r**2 - r0**2)) / 5000,
         ]
-        return Values((q * pressure / 0.7 + loss) / 12, np.stack(g))
+        return PointValues((q * pressure / 0.7 + loss) / 12, np.stack(g))
 
     return BoxProblem(
         ("R", "R0", "mu", "Q"),
@@ -181,7 +181,7 @@ def two_pieces() -> BoxProblem:
         large, small = (
             (x[0] - c) ** 2 / r**2 + (x[1] - c) ** 2 / r**2 - 1 for c, r in ((7, 2.5), (2, 0.3))
         )
-        return Values(x[0] + x[1], (-large * small)[None])
+        return PointValues(x[0] + x[1], (-large * small)[None])
 
     return BoxProblem(("x", "y"), np.full(2, 0.5), np.full(2, 10.0), evaluate, ("in a disc",))
 
@@ -203,7 +203,7 @@ def geometric_programme(seed: int, n: int = 12, m: int = 24, q: int = 15) -> Par
         used = (factors[:, :, None] * np.exp(exponents @ logs)).sum(axis=1)
         limits = np.ones((m, p.shape[1]), dtype=p.dtype)
         limits[rows] = p
-        return Values(f, 1 - used / limits)
+        return PointValues(f, 1 - used / limits)
 
     problem = BoxProblem(
         tuple(f"x{i}" for i in range(n)),

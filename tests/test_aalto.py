@@ -372,7 +372,7 @@ def test_such_a_valve_needs_its_opening_to_be_stable(design, dynamic):
     assert dynamic.peak.slowest_decay < 0
     assert dynamic.without_opening > 0
     valve = dynamic.valve.model_copy(update={"passive_conductance": 0.0})
-    assert aalto_models.Bench(design, valve).slowest_decay((0.22e-4,)) > 0
+    assert aalto_models.HeldCylinder(design, valve).slowest_decay((0.22e-4,)) > 0
 
 
 @pytest.mark.parametrize("frequency", [18.5, 19.5])
@@ -386,7 +386,7 @@ def test_neighbouring_valves_do_much_the_same(design, dynamic, frequency, dampin
         damping_ratio=damping,
     )
     assert valve in [one.valve for one in dynamic.neighbours]
-    bench = aalto_models.Bench(design, valve)
+    bench = aalto_models.HeldCylinder(design, valve)
     ratio = np.abs(bench.responses("reducing_valve", 0.22e-4)[0].tested) / dynamic.static
     assert bench.slowest_decay((0.22e-4, dynamic.needle.area)) < 0
     assert np.all(ratio[:2] < 0.95)

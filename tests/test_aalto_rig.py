@@ -15,7 +15,7 @@ from script_loader import script
 
 import actuator_opt as ao
 from actuator_opt.api import simulate
-from actuator_opt.replicas.aalto_models import Bench
+from actuator_opt.replicas.aalto_models import HeldCylinder
 from actuator_opt.simulation import Simulation
 
 ROOT = Path(__file__).parents[1]
@@ -117,7 +117,7 @@ def test_every_set_that_a_head_names_is_accepted() -> None:
 def test_small_swings_without_friction_are_the_linear_model(place) -> None:
     """At 20 N the stiffness is that of the linear tier with the needle shut, within 1 %."""
     sets = {"friction.coulomb": "0 N", "friction.viscous": "0 N*s/m", "load.force[1].value": "20 N"}
-    linear = Bench(ao.read(ROOT / "designs" / "aalto_40_25_220.yaml").design)
+    linear = HeldCylinder(ao.read(ROOT / "designs" / "aalto_40_25_220.yaml").design)
     for hz in (10, 30):
         found = run("closed_ports", hz, place, sets).shaken.windows[-1].stiffness
         wanted = linear.stiffness("constant_pressure", np.array([place]), [hz], area=0.0)[0, 0]

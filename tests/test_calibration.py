@@ -12,7 +12,7 @@ from identification_case import DESIGN, identified
 
 import actuator_opt as ao
 from actuator_opt.identification import calibration
-from actuator_opt.identification.points import Point
+from actuator_opt.identification.points import FrictionPoint
 from actuator_opt.identification.stribeck_fit import fit_stribeck
 from actuator_opt.studies.bench import bench
 
@@ -36,7 +36,7 @@ def rubbed(values, *, pressures=PRESSURES, speeds=SPEEDS, offset=0.0):
             level, viscous = own.sliding(np.array(speeds), np.full(len(speeds), first),
                                          np.full(len(speeds), second))  # fmt: skip
             points += [
-                Point(way * v, max(first, second), first, second, way * float(f) + offset, 0.2, 1.0,
+                FrictionPoint(way * v, max(first, second), first, second, way * float(f) + offset, 0.2, 1.0,
                       "plateau")
                 for v, f in zip(speeds, level + viscous, strict=True)
             ]  # fmt: skip

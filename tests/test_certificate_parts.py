@@ -20,8 +20,8 @@ from actuator_opt.optimisation.certificate.relaxation import (
     Form,
     Mixed,
     Relaxation,
+    SampledFunction,
     Signomial,
-    Table,
     Tables,
     Unknown,
 )
@@ -184,7 +184,7 @@ def test_a_table_encloses_what_it_samples(rate, phase, first, second, share):
 
     # beside it two that only rise: one with a flat end, one constant
     others = [np.minimum(t, 1.0), np.full_like(t, 0.5)]
-    tables = Tables([Table.of(t, values, 1.5) for values in (wave(t), *others)])
+    tables = Tables([SampledFunction.of(t, values, 1.5) for values in (wave(t), *others)])
     low, high = sorted((-1 + 3 * first, -1 + 3 * second))
     x = low + share * (high - low)
     every = np.ones(3)

@@ -12,7 +12,7 @@ from hypothesis import given, settings, strategies as st
 
 from actuator_opt.rendering import heights, html, paper, terminal
 from actuator_opt.rendering.blocks import Chart, Column, Table
-from actuator_opt.rendering.chart import Axis, Curve, Level, Panel, Points, Surface, scale
+from actuator_opt.rendering.chart import Axis, Curve, Level, Panel, Points, ShadedMap, scale
 from actuator_opt.rendering.chart_ink import drawn
 from actuator_opt.rendering.console import Console
 
@@ -183,7 +183,7 @@ def test_panels_of_a_column_share_the_axis_below():
 def test_a_map_shades_its_points():
     """The point of the largest value is the darkest, and a scale stands beside the frame."""
     xs, ys = np.linspace(1, 2, 5), np.linspace(1, 3, 4)
-    surface = Surface(xs, ys, np.outer(ys, xs) * 10)
+    surface = ShadedMap(xs, ys, np.outer(ys, xs) * 10)
     points = Points("", [1.2, 1.8], [1.5, 2.5], shades=[18.0, 45.0])
     ink = drawn(Chart("t", [Panel("c", points=[points], surface=surface)]))
     fills = [m["fill"] for m in ink.marks if "path" in m and m["fill"] and len(m["path"][0]) == 32]

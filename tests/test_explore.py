@@ -17,7 +17,7 @@ from cli_runner import run
 from test_sweep import KNEE, NEAR
 
 import actuator_opt as ao
-from actuator_opt.base.database import Seals, study_checksum
+from actuator_opt.base.database import Checksums, study_checksum
 from actuator_opt.base.errors import InputError, UsageError
 from actuator_opt.evaluation.outline import LENGTHS
 from actuator_opt.sweeps.explored import BEST, explored
@@ -240,7 +240,7 @@ def forged(store, target, study, failure):
         base.execute("UPDATE studies SET checksum = ?", (study_checksum(*about),))
         for key, numbers in base.execute("SELECT key, numbers FROM rows").fetchall():
             kept = (None if failure else numbers, failure)
-            checksum = Seals(about[0], len(numbers) // 8).of(key, *kept)
+            checksum = Checksums(about[0], len(numbers) // 8).of(key, *kept)
             put = "UPDATE rows SET numbers = ?, failure = ?, checksum = ? WHERE key = ?"
             base.execute(put, (*kept, checksum, key))
     base.close()

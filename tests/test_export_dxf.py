@@ -15,7 +15,7 @@ from hypothesis import given, strategies as st
 from test_export_step import FITTED_ROD, SHIPPED, VARIANTS
 
 import actuator_opt as ao
-from actuator_opt.exports.dxf import Length, Paper, dxf, layer_name, rows
+from actuator_opt.exports.dxf import DrawingSizes, Length, dxf, layer_name, rows
 
 ezdxf = pytest.importorskip("ezdxf")
 bbox = pytest.importorskip("ezdxf.bbox")
@@ -280,7 +280,7 @@ def test_same_bytes_in_another_process(tmp_path):
 )
 def test_any_lengths_find_their_rows(spans, scale):
     """No text meets a text of its row, nor an extension line that passes its row."""
-    paper = Paper(scale)
+    paper = DrawingSizes(scale)
     placed = rows([Length(a, a + size, f"{size:.3f}") for a, size in spans], paper)
     for one in placed:
         half = paper.width(one.length.text) / 2

@@ -11,7 +11,7 @@ from hypothesis import given, strategies as st
 from step_reader import StepFile, volume
 
 import actuator_opt as ao
-from actuator_opt.exports.step import Body, bodies, joined, sound, step, tidy
+from actuator_opt.exports.step import SolidBody, bodies, joined, sound, step, tidy
 
 SHIPPED = sorted(DESIGNS.glob("*.yaml"))
 
@@ -156,7 +156,7 @@ def test_names_survive():
     """Quotes, backslashes and letters beyond ASCII come back as ISO 10303-21 writes them."""
     box = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))
     made = step(
-        [Body("a 'b' \\ ö 管 😀", "p", "m", box, ((0.0, 0.0, 0.0),))], name="n", program="p"
+        [SolidBody("a 'b' \\ ö 管 😀", "p", "m", box, ((0.0, 0.0, 0.0),))], name="n", program="p"
     )
     (name,) = StepFile(made).solids()
     words = r"a ''b'' \\ \X2\00F6\X0\ \X2\7BA1\X0\ \X4\0001F600\X0" + "\\"
@@ -179,7 +179,9 @@ def test_cones(name):
     profile = tuple((float(x), float(r)) for x, r in profile)
     assert sound(profile)
     (faces,) = (
-        StepFile(step([Body("c", "c", "m", profile, ((0.0, 0.0, 0.0),))], name="c", program="p"))
+        StepFile(
+            step([SolidBody("c", "c", "m", profile, ((0.0, 0.0, 0.0),))], name="c", program="p")
+        )
         .solids()
         .values()
     )
@@ -210,7 +212,9 @@ def test_any_turned_profile_is_a_solid_of_its_volume(steps, bored, sloped):
     profile = tidy([*inside, *reversed(outside)])
     assert sound(profile)
     (faces,) = (
-        StepFile(step([Body("c", "c", "m", profile, ((0.0, 0.0, 0.0),))], name="c", program="p"))
+        StepFile(
+            step([SolidBody("c", "c", "m", profile, ((0.0, 0.0, 0.0),))], name="c", program="p")
+        )
         .solids()
         .values()
     )

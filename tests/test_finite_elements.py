@@ -15,7 +15,7 @@ from actuator_opt.finite_elements import equilibrium, mesh, o_ring
 from actuator_opt.finite_elements.material import MooneyRivlin, stress, tangent
 from actuator_opt.finite_elements.o_ring import squeezed_ring
 from actuator_opt.finite_elements.result import stress_field
-from actuator_opt.finite_elements.section import Body, Section
+from actuator_opt.finite_elements.section import Assembly, MeshedBody
 from actuator_opt.models import seals
 
 SECTION, MODULUS, GROOVE = 3.53e-3, 8e6, 4.82e-3
@@ -57,7 +57,7 @@ def block(width, height, seed=3):
 
 def held(section, *conditions):
     """Equilibrium without fluid, with displacement components of chosen nodes prescribed."""
-    bounds = equilibrium.Bounds.none(section)
+    bounds = equilibrium.DisplacementBounds.none(section)
     for nodes, component, value in conditions:
         unknown = 2 * np.flatnonzero(nodes) + component
         bounds.lower[unknown] = bounds.upper[unknown] = value
@@ -93,7 +93,7 @@ def test_stress_is_the_energy_derivative_and_the_tangent_its_own():
 def test_plane_strain_tension_of_mooney_and_rivlin(stretch):
     """A block of irregular elements stretches evenly: 2 (C10 + C01)(l - l^-3), exact by hand."""
     body = MooneyRivlin(0.12, 0.05)
-    section = Section([Body(block(1.0, 1.0), body)])
+    section = Assembly([MeshedBody(block(1.0, 1.0), body)])
     x, y = section.nodes.T
     state = held(section, (x < 1e-9, 0, 0.0), (y < 1e-9, 1, 0.0), (x > 1 - 1e-9, 0, stretch - 1))
     places = section.places(state.values)
@@ -110,7 +110,9 @@ def test_thick_tube_of_neo_hookean_rubber(outward):
     """An axisymmetric tube blown up between frictionless ends: pressure integral by quadrature."""
     inner, outer, growth = 2.0, 3.0, 0.3
     sliding = inner if outward == 1 else outer
-    section = Section([Body(block(0.4, outer - inner), MooneyRivlin(0.5, 0.0))], sliding, outward)
+    section = Assembly(
+        [MeshedBody(block(0.4, outer - inner), MooneyRivlin(0.5, 0.0))], sliding, outward
+    )
     x, y = section.nodes.T
     at_bore = y < 1e-9 if outward == 1 else y > outer - inner - 1e-9
     state = held(

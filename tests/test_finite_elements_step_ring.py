@@ -9,11 +9,11 @@ import pytest
 
 from actuator_opt.base.errors import ActuatorError
 from actuator_opt.finite_elements import equilibrium, mesh
-from actuator_opt.finite_elements.equilibrium import Pair
+from actuator_opt.finite_elements.equilibrium import ContactPair
 from actuator_opt.finite_elements.material import MooneyRivlin
 from actuator_opt.finite_elements.mesh import SlideRing
 from actuator_opt.finite_elements.o_ring import squeezed_ring
-from actuator_opt.finite_elements.section import Body, Section
+from actuator_opt.finite_elements.section import Assembly, MeshedBody
 from actuator_opt.finite_elements.step_ring import squeezed_step_ring
 
 SECTION, SQUEEZE, MODULUS = 2.62e-3, 0.15, 8e6
@@ -71,15 +71,15 @@ def test_derivatives_of_section_fluid_and_pair():
     shape = SHAPE.over(SECTION)
     round_mesh = mesh.disc(diameter=1.0, around=16)
     flat_mesh = mesh.slide_ring(shape, fine=0.1, coarse=0.4)
-    section = Section(
+    section = Assembly(
         [
-            Body(round_mesh, MooneyRivlin(0.1, 0.05), (-0.7, shape.thickness + 0.49)),
-            Body(flat_mesh, MooneyRivlin(4.0, 0.0, 50.0)),
+            MeshedBody(round_mesh, MooneyRivlin(0.1, 0.05), (-0.7, shape.thickness + 0.49)),
+            MeshedBody(flat_mesh, MooneyRivlin(4.0, 0.0, 50.0)),
         ],
         sliding_radius=3.0,
     )
     back = section.nodes[section.edges[1], 1].min(axis=1) > shape.thickness - 1e-9
-    pair = Pair(section.edges[0][:, :2].ravel(), section.edges[1][back])
+    pair = ContactPair(section.edges[0][:, :2].ravel(), section.edges[1][back])
     generator = np.random.default_rng(5)
     state = 2e-3 * generator.standard_normal(section.unknowns)
     direction = generator.standard_normal(section.unknowns)

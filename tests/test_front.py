@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 from actuator_opt.optimisation.front import tracer
-from actuator_opt.optimisation.front.front import Front, Settings, front
+from actuator_opt.optimisation.front.front import Front, FrontSettings, front
 from actuator_opt.optimisation.front.objectives import Objectives
-from actuator_opt.optimisation.problem import BoxProblem, Values
+from actuator_opt.optimisation.problem import BoxProblem, PointValues
 
 
 def objectives(lower, upper, evaluate, names=("f1", "f2"), constraints=(), **more):
@@ -28,7 +28,7 @@ def objectives(lower, upper, evaluate, names=("f1", "f2"), constraints=(), **mor
 
 def found(problem, count, **more) -> Front:
     """Its front, which holds what every front must."""
-    result = front(problem, Settings(count, samples=256, **more))
+    result = front(problem, FrontSettings(count, samples=256, **more))
     assert isinstance(result, Front)
     assert result.residuals.max() <= 1e-6
     assert tracer.nondominated(result.values).all()
@@ -45,7 +45,7 @@ def two_targets(a, b, **more):
     a, b = np.array(a, dtype=float)[:, None], np.array(b, dtype=float)[:, None]
 
     def evaluate(x):
-        return Values([((x - a) ** 2).sum(axis=0), ((x - b) ** 2).sum(axis=0)])
+        return PointValues([((x - a) ** 2).sum(axis=0), ((x - b) ** 2).sum(axis=0)])
 
     return objectives([-3.0] * len(a), [3.0] * len(a), evaluate, **more)
 
@@ -87,7 +87,7 @@ def test_without_complex_numbers():
     result = found(two_targets([0, 0], [1, 0.5], **{}), 5, checks=0)
     problem = two_targets([0, 0], [1, 0.5])
     slow = replace(problem, problem=replace(problem.problem, has_complex_step=False))
-    other = front(slow, Settings(5, samples=64, checks=0))
+    other = front(slow, FrontSettings(5, samples=64, checks=0))
     assert other.warnings
     np.testing.assert_allclose(other.values, result.values, atol=1e-4)
 
@@ -96,7 +96,7 @@ def circle(**more):
     """Values x outside the unit circle: a front that bends away from the ideal."""
 
     def evaluate(x):
-        return Values([x[0], x[1]], ((x**2).sum(axis=0) - 1)[None])
+        return PointValues([x[0], x[1]], ((x**2).sum(axis=0) - 1)[None])
 
     return objectives([0, 0], [2, 2], evaluate, constraints=("outside",), **more)
 
@@ -126,7 +126,7 @@ def test_front_in_pieces():
     """f2 rises again on the way: the front jumps, and every piece of it is covered."""
 
     def evaluate(x):
-        return Values([x[0], waves(x[0]) + x[1] ** 2])
+        return PointValues([x[0], waves(x[0]) + x[1] ** 2])
 
     result = found(objectives([0, -1], [1, 1], evaluate), 40)
     dense = np.linspace(0, 1, 200_001)
@@ -167,7 +167,7 @@ def test_gaps_are_even_or_jumps(height, waves_, shift, count):
         return 1 - x - height * np.sin(2 * np.pi * waves_ * x + shift)
 
     def evaluate(x):
-        return Values([x[0], curve(x[0]) + x[1] ** 2])
+        return PointValues([x[0], curve(x[0]) + x[1] ** 2])
 
     result = found(objectives([0, -1], [1, 1], evaluate), count)
     assert all(gap.jump for gap in result.wide)
@@ -187,10 +187,10 @@ def test_bent_fronts_are_even(sharp, power, count):
     """A hyperbola of slopes up to 1e5, then a hollow power law: in one piece, with no wide gap."""
 
     def full(x):
-        return Values([x[0], 1 / (x[0] + sharp) + x[1] ** 2])
+        return PointValues([x[0], 1 / (x[0] + sharp) + x[1] ** 2])
 
     def hollow(x):
-        return Values([x[0], 1 - x[0] ** power + x[1] ** 2])
+        return PointValues([x[0], 1 - x[0] ** power + x[1] ** 2])
 
     for evaluate in (full, hollow):
         result = found(objectives([0, -1], [1, 1], evaluate), count)
@@ -204,7 +204,7 @@ def test_where_steps_stick():
     """In logarithms the ends of the hollow circle hold steps back; wide gaps are searched anew."""
 
     def evaluate(x):
-        return Values([x[0], x[1]], ((x**2).sum(axis=0) - 1)[None])
+        return PointValues([x[0], x[1]], ((x**2).sum(axis=0) - 1)[None])
 
     result = found(objectives([1e-4, 1e-4], [1, 1], evaluate, constraints=("outside",)), 12)
     np.testing.assert_allclose(np.hypot(*result.values), 1, rtol=1e-7)
@@ -217,7 +217,7 @@ def test_valley_changes_along_the_front():
 
     def evaluate(x):
         f1, valley = x
-        return Values([f1, 1 - f1 + (valley**2 - 1) ** 2 + 0.3 * valley * (f1 - 0.5)])
+        return PointValues([f1, 1 - f1 + (valley**2 - 1) ** 2 + 0.3 * valley * (f1 - 0.5)])
 
     start = np.array([0.5, 1.0])
     result = found(objectives([0, -2], [1, 2], evaluate, start=start), 25)
@@ -234,7 +234,7 @@ def test_an_end_that_its_objective_does_not_settle():
     """f1 says nothing of x1: the end is the best of the others there, not any one."""
 
     def evaluate(x):
-        return Values([x[0], 1 / x[0] + (x[1] - 0.3) ** 2])
+        return PointValues([x[0], 1 / x[0] + (x[1] - 0.3) ** 2])
 
     result = found(objectives([1, -1], [4, 1], evaluate, start=np.array([2, -1.0])), 15)
     np.testing.assert_allclose(result.values[1], 1 / result.values[0], rtol=1e-6)
@@ -245,7 +245,7 @@ def test_sphere_octant():
     """Three objectives within the ball about (1, 1, 1); all of the octant is covered."""
 
     def evaluate(x):
-        return Values(list(x), (1 - ((x - 1) ** 2).sum(axis=0))[None])
+        return PointValues(list(x), (1 - ((x - 1) ** 2).sum(axis=0))[None])
 
     problem = objectives([0] * 3, [2] * 3, evaluate, ("f1", "f2", "f3"), ("sphere",))
     result = found(problem, 60, checks=1)
@@ -271,7 +271,7 @@ def test_four_objectives():
     """The ball again, in four dimensions."""
 
     def evaluate(x):
-        return Values(list(x), (1 - ((x - 1) ** 2).sum(axis=0))[None])
+        return PointValues(list(x), (1 - ((x - 1) ** 2).sum(axis=0))[None])
 
     names = ("f1", "f2", "f3", "f4")
     result = found(objectives([0] * 4, [2] * 4, evaluate, names, ("ball",)), 40, checks=0)
@@ -283,7 +283,7 @@ def test_no_conflict_is_one_point():
     """Both objectives are best at one design."""
 
     def evaluate(x):
-        return Values([(x[0] - 0.2) ** 2 + 1, 2 * (x[0] - 0.2) ** 2 + 3])
+        return PointValues([(x[0] - 0.2) ** 2 + 1, 2 * (x[0] - 0.2) ** 2 + 3])
 
     result = found(objectives([-1], [1], evaluate), 10)
     np.testing.assert_allclose(result.values, [[1], [3]])
@@ -295,9 +295,9 @@ def test_infeasible_is_told():
     """Where nothing is feasible the search that shows it is handed back."""
 
     def evaluate(x):
-        return Values([x[0], -x[0]], (x[0] - 2)[None])
+        return PointValues([x[0], -x[0]], (x[0] - 2)[None])
 
-    result = front(objectives([0], [1], evaluate, constraints=("g",)), Settings(5))
+    result = front(objectives([0], [1], evaluate, constraints=("g",)), FrontSettings(5))
     assert not isinstance(result, Front)
     assert result.solution.violation == pytest.approx(1)
 

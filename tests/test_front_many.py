@@ -13,8 +13,8 @@ import pytest
 from test_front import objectives
 
 from actuator_opt.optimisation.front import plane as cells, tracer
-from actuator_opt.optimisation.front.front import Front, Settings, front
-from actuator_opt.optimisation.problem import Values
+from actuator_opt.optimisation.front.front import Front, FrontSettings, front
+from actuator_opt.optimisation.problem import PointValues
 
 NAMES = ("f1", "f2", "f3", "f4")
 
@@ -30,7 +30,7 @@ def full_ball(count, dense):
     """Within the ball about (1, 1, ...): the part of it that faces the ideal."""
 
     def evaluate(x):
-        return Values(list(x), (1 - ((x - 1) ** 2).sum(axis=0))[None])
+        return PointValues(list(x), (1 - ((x - 1) ** 2).sum(axis=0))[None])
 
     return evaluate, ([0] * count, [2] * count), 1 - dense / np.linalg.norm(dense, axis=0)
 
@@ -39,7 +39,7 @@ def hollow_ball(count, dense):
     """Outside the ball about 0: anchors whose objective leaves the others open."""
 
     def evaluate(x):
-        return Values(list(x), ((x**2).sum(axis=0) - 1)[None])
+        return PointValues(list(x), ((x**2).sum(axis=0) - 1)[None])
 
     return evaluate, ([0] * count, [2] * count), dense / np.linalg.norm(dense, axis=0)
 
@@ -48,7 +48,7 @@ def plane(count, dense):
     """x1 + x2 + ... >= 1: every design is best for equal weights, the anchors are any of a face."""
 
     def evaluate(x):
-        return Values(list(x), (x.sum(axis=0) - 1)[None])
+        return PointValues(list(x), (x.sum(axis=0) - 1)[None])
 
     return evaluate, ([0] * count, [2] * count), dense
 
@@ -59,7 +59,7 @@ def skew_ball(count, dense):
     factor = np.linalg.cholesky(m)
 
     def evaluate(x):
-        return Values(list(np.tensordot(factor, x, axes=1)), (1 - (x**2).sum(axis=0))[None])
+        return PointValues(list(np.tensordot(factor, x, axes=1)), (1 - (x**2).sum(axis=0))[None])
 
     there = -(m @ dense) / np.sqrt((dense * (m @ dense)).sum(axis=0))
     return evaluate, ([-1.5] * count, [1.5] * count), there
@@ -75,7 +75,7 @@ def angles(count, dense):
         for i in range(count):
             value = size * np.prod(np.cos(turned[: count - 1 - i]), axis=0)
             values.append(value * np.sin(turned[count - 1 - i]) if i else value)
-        return Values(values)
+        return PointValues(values)
 
     bounds = ([0] * (count + 1), [1] * (count + 1))
     return evaluate, bounds, dense / np.linalg.norm(dense, axis=0)
@@ -97,7 +97,7 @@ def searched(evaluate, bounds, names, count, **more) -> Front:
     """Its front, which holds what every front must."""
     constraints = () if evaluate(np.zeros((len(bounds[0]), 1))).constraints is None else ("in",)
     problem = objectives(*bounds, evaluate, names, constraints)
-    result = front(problem, Settings(count, samples=256, **more))
+    result = front(problem, FrontSettings(count, samples=256, **more))
     assert isinstance(result, Front)
     assert result.residuals.max() <= 1e-6
     assert tracer.nondominated(result.values).all()
@@ -141,7 +141,7 @@ def test_front_in_four_pieces():
         return x / 2 * (1 + np.sin(3 * np.pi * x))
 
     def evaluate(x):
-        return Values([x[0], x[1], 3 - waves(x[0]) - waves(x[1]) + x[2] ** 2])
+        return PointValues([x[0], x[1], 3 - waves(x[0]) - waves(x[1]) + x[2] ** 2])
 
     result = searched(evaluate, ([0, 0, -1], [1, 1, 1]), NAMES[:3], 60, checks=1)
     dense = np.linspace(0, 1, 100_001)

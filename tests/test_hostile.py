@@ -146,11 +146,11 @@ def test_who_may_read_what_is_written(tmp_path):
         record = run_store.write(tmp_path / "runs", "20260101-000000", {"k": 1}, {})
         assert permissions(record) == 0o600
         assert permissions(tmp_path / "runs") == 0o700
-        from actuator_opt.base.database import Column, opened
+        from actuator_opt.base.database import NumberColumn, opened
 
         rows = tmp_path / "rows.db"
         about = {"study": "s", "name": "", "design": "", "version": "1"}
-        with opened(rows, columns=[Column("x", "m")], **about):
+        with opened(rows, columns=[NumberColumn("x", "m")], **about):
             files = sorted(path.name for path in tmp_path.glob("rows.db*"))
             assert files == ["rows.db", "rows.db-shm", "rows.db-wal"]
             assert {permissions(tmp_path / name) for name in files} == {0o600}

@@ -9,7 +9,7 @@ import pytest
 import actuator_opt as ao
 from actuator_opt.optimisation.branch_and_bound import Listed, search
 from actuator_opt.optimisation.identical_problems import Evidence
-from actuator_opt.optimisation.problem import BoxProblem, Values
+from actuator_opt.optimisation.problem import BoxProblem, PointValues
 from actuator_opt.optimisation.solver import solve
 
 KNEE = Path(__file__).parent.parent / "designs" / "knee.yaml"
@@ -21,7 +21,7 @@ def _plate(*, load=1.0, weight=1.0, slack=50.0):
     def evaluate(x):
         thickness, width = x
         bears = thickness**2 * width / load - 1
-        return Values(weight * thickness * width, np.stack([bears, (slack - width) / 10]))
+        return PointValues(weight * thickness * width, np.stack([bears, (slack - width) / 10]))
 
     low, high = np.array([0.2, 0.1]), np.array([3.0, 40.0])
     return BoxProblem(("thickness", "width"), low, high, evaluate, ("bears", "narrow"))

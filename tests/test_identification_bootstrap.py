@@ -23,7 +23,7 @@ from actuator_opt.identification.bootstrap import (
 from actuator_opt.identification.calibration import FitSearch, relaxed
 from actuator_opt.identification.identify import identify
 from actuator_opt.identification.lugre import windows
-from actuator_opt.identification.points import Point
+from actuator_opt.identification.points import FrictionPoint
 from actuator_opt.identification.stribeck_fit import fit_stribeck
 from actuator_opt.studies.bench import bench
 
@@ -51,7 +51,7 @@ def points_of(rng, speeds, *, error, truth=TRUTH, uneven=0.0):
     for velocity in [*speeds, *(-one for one in speeds)]:
         own = error * (1 + uneven * rng.random())
         force = friction(velocity, truth) + own * rng.standard_normal()
-        found.append(Point(velocity, 1e6, 1e6, 0.0, force, own, 1.0, "plateau"))
+        found.append(FrictionPoint(velocity, 1e6, 1e6, 0.0, force, own, 1.0, "plateau"))
     return found
 
 

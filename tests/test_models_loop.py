@@ -90,7 +90,7 @@ def test_ultimate_gain_check_values(frequency, gain, period):
 @pytest.mark.parametrize(("omega", "zeta", "velocity"), [(800.0, 0.02, 3.0), (50.0, 0.9, 0.1)])
 def test_ultimate_gain_of_the_textbook_servo(omega, zeta, velocity):
     """Integrator and one oil pair, [Merritt1967]: K_u = 2 zeta omega/K_v, swinging at omega."""
-    textbook = loop.OpenLoop((velocity,), (0.0, 1.0, 2 * zeta / omega, 1 / omega**2))
+    textbook = loop.PositionOpenLoop((velocity,), (0.0, 1.0, 2 * zeta / omega, 1 / omega**2))
     limit = loop.ultimate_gain(loop=textbook)
     assert limit.gain == pytest.approx(2 * zeta * omega / velocity, rel=1e-9)
     assert limit.frequency == pytest.approx(omega / (2 * math.pi), rel=1e-9)
@@ -135,7 +135,7 @@ def test_a_position_that_runs_backwards_has_no_gain(number):
 
 def test_loops_without_a_crossing():
     """An integrator alone never swings, nor does a valve without flow; a NaN is never infinite."""
-    limit = loop.ultimate_gain(loop=loop.OpenLoop((1.0,), (0.0, 1.0)))
+    limit = loop.ultimate_gain(loop=loop.PositionOpenLoop((1.0,), (0.0, 1.0)))
     assert limit.gain == math.inf
     assert np.isnan(limit.frequency)
     for number in (float, lambda value: np.array([value])):
@@ -218,7 +218,7 @@ def test_phase_margin_vanishes_at_the_ultimate_gain():
 def test_slow_loops_follow_the_closed_forms():
     """A gain far below the oil: crossover and bandwidth tend to K K_v/(2 pi), margin to 90 deg."""
     velocity = 0.02
-    one = loop.OpenLoop((velocity,), (0.0, 1.0, 1e-4, 1e-6))
+    one = loop.PositionOpenLoop((velocity,), (0.0, 1.0, 1e-4, 1e-6))
     found = loop.margins(loop=one, gain=50.0)
     assert found.crossover == pytest.approx(1 / (2 * math.pi), rel=1e-4)
     assert found.bandwidth == pytest.approx(1 / (2 * math.pi), rel=1e-3)

@@ -13,7 +13,7 @@ import actuator_opt as ao
 from actuator_opt import api as verbs
 from actuator_opt.base.errors import InputError
 from actuator_opt.optimisation.actuator import Outcome
-from actuator_opt.optimisation.problem import BoxProblem, Values
+from actuator_opt.optimisation.problem import BoxProblem, PointValues
 from actuator_opt.optimisation.solver import solve
 
 
@@ -46,7 +46,9 @@ def plain():
 
 def test_a_requirement_exactly_at_its_limit():
     """A feasible set of one point, x y >= 100 in a box up to 10, is found and called optimal."""
-    found = solve(box(lambda x: Values(x[0] + x[1], (x[0] * x[1] / 100 - 1)[None]), 2, ("all",)))
+    found = solve(
+        box(lambda x: PointValues(x[0] + x[1], (x[0] * x[1] / 100 - 1)[None]), 2, ("all",))
+    )
     assert found.outcome is Outcome.OPTIMUM
     np.testing.assert_allclose(found.x, [10, 10], rtol=1e-9)
 
@@ -228,7 +230,7 @@ def test_the_best_feasible_point_of_the_sweep_is_kept():
     ISRES begins at an infeasible start and is stopped before it is anywhere.
     """
     problem = box(
-        lambda x: Values(x[0] + x[1], (1 - (x[0] - 3) ** 2 - (x[1] - 3) ** 2)[None]),
+        lambda x: PointValues(x[0] + x[1], (1 - (x[0] - 3) ** 2 - (x[1] - 3) ** 2)[None]),
         2,
         ("in the disc",),
         start=np.array([9.0, 0.2]),
@@ -249,7 +251,7 @@ def test_an_interrupt_keeps_the_best_point(after, algorithm):
         calls.append(1)
         if len(calls) == after:
             raise KeyboardInterrupt
-        return Values(x[0] + x[1], (x[0] * x[1] - 1)[None])
+        return PointValues(x[0] + x[1], (x[0] * x[1] - 1)[None])
 
     problem = box(evaluate, 2, ("product",), start=np.array([5.0, 5.0]))
     found = solve(problem, algorithm=algorithm, keep_interrupted=True)

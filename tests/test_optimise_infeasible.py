@@ -8,7 +8,7 @@ import pytest
 
 from actuator_opt.optimisation.actuator import Outcome
 from actuator_opt.optimisation.infeasibility import explain
-from actuator_opt.optimisation.problem import BoxProblem, Values
+from actuator_opt.optimisation.problem import BoxProblem, PointValues
 from actuator_opt.optimisation.solver import solve
 
 
@@ -16,7 +16,7 @@ def box(margins, names, *, relaxable=None, low=0.1, high=10.0):
     """Return a problem in two variables that minimises their sum."""
 
     def evaluate(x):
-        return Values(x[0] + x[1], np.stack(margins(*x)))
+        return PointValues(x[0] + x[1], np.stack(margins(*x)))
 
     return BoxProblem(
         ("a", "b"), np.full(2, low), np.full(2, high), evaluate, names, relaxable=relaxable

@@ -8,7 +8,7 @@ from scipy.optimize import nnls as reference_nnls
 
 from actuator_opt.optimisation import kkt
 from actuator_opt.optimisation.evaluator import Evaluator
-from actuator_opt.optimisation.problem import BoxProblem, Values
+from actuator_opt.optimisation.problem import BoxProblem, PointValues
 
 
 @given(st.integers(0, 10**6), st.integers(1, 8), st.integers(1, 14), st.booleans())
@@ -98,7 +98,7 @@ def test_polish_does_not_settle_on_a_maximum():
 
     def evaluate(x):
         logs = np.log(x)
-        return Values(3 - logs[0] ** 2 + 0.1 * logs[1] ** 2)
+        return PointValues(3 - logs[0] ** 2 + 0.1 * logs[1] ** 2)
 
     evaluator = Evaluator(BoxProblem(("a", "b"), [0.1, 0.1], [10, 10], evaluate))
     start = evaluator.point(np.array([0.01, 0.3]))
@@ -112,7 +112,7 @@ def test_curvature_names_the_second_order_condition():
 
     def evaluate(x):
         a, b = np.log(x)
-        return Values(10 + a**2 - b**2 + 0 * a, None)
+        return PointValues(10 + a**2 - b**2 + 0 * a, None)
 
     saddle = Evaluator(BoxProblem(("a", "b"), [0.1, 0.1], [10, 10], evaluate))
     quality = kkt.check(saddle, saddle.point(np.zeros(2)), curvature=True)
@@ -128,7 +128,7 @@ def test_residual_definition():
     """
 
     def evaluate(x):
-        return Values(x[0] + 2 * x[1], (x[0] * x[1] - 1)[None])
+        return PointValues(x[0] + 2 * x[1], (x[0] * x[1] - 1)[None])
 
     evaluator = Evaluator(BoxProblem(("a", "b"), [0.1, 0.1], [10, 10], evaluate, ("product",)))
     quality = kkt.check(evaluator, evaluator.point(np.zeros(2)))
@@ -141,7 +141,7 @@ def test_rows_beyond_tolerance_are_not_active():
 
     def evaluate(x):
         one = np.ones_like(x[0])
-        return Values(x[0], np.stack([5e-7 * one, 2e-6 * one]))
+        return PointValues(x[0], np.stack([5e-7 * one, 2e-6 * one]))
 
     evaluator = Evaluator(BoxProblem(("a",), [0.1], [10], evaluate, ("near", "far")))
     assert kkt.check(evaluator, evaluator.point(np.zeros(1))).active == ("near",)

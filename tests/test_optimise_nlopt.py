@@ -7,7 +7,7 @@ from actuator_opt.base.errors import UsageError
 from actuator_opt.optimisation import nlopt_wrapper
 from actuator_opt.optimisation.actuator import Outcome
 from actuator_opt.optimisation.evaluator import Evaluator
-from actuator_opt.optimisation.problem import BoxProblem, Values
+from actuator_opt.optimisation.problem import BoxProblem, PointValues
 from actuator_opt.optimisation.solver import solve
 
 LOCAL = [
@@ -32,8 +32,8 @@ def easy(n=2, constrained=True):
     def evaluate(x):
         product = x.prod(axis=0)
         if constrained:
-            return Values(x.sum(axis=0), (product - 1)[None])
-        return Values((x + 1 / x).sum(axis=0))
+            return PointValues(x.sum(axis=0), (product - 1)[None])
+        return PointValues((x + 1 / x).sum(axis=0))
 
     names = tuple(f"x{i + 1}" for i in range(n))
     rows = ("product",) if constrained else ()
@@ -45,7 +45,7 @@ def impossible():
 
     def evaluate(x):
         a, b = x
-        return Values(a + b, np.stack([a * b / 12 - 1, 1 - a / 2, 1 - b / 4]))
+        return PointValues(a + b, np.stack([a * b / 12 - 1, 1 - a / 2, 1 - b / 4]))
 
     names = ("product", "a max", "b max")
     return BoxProblem(("a", "b"), [0.1, 0.1], [10, 10], evaluate, names)
@@ -83,7 +83,7 @@ def test_nan_in_the_box_is_screened(algorithm):
     """A NaN objective (which crashes AGS) counts as a bad point and is not returned."""
 
     def evaluate(x):
-        return Values(
+        return PointValues(
             np.where(x[1].real > 3 * x[0].real, np.nan, x[0] + x[1]), (x[0] * x[1] - 1)[None]
         )
 
@@ -122,7 +122,7 @@ def test_equalities_are_refused_where_not_taken():
     """MMA takes no equality constraints."""
 
     def evaluate(x):
-        return Values(x[0], None, (x[0] * x[1] - 1)[None])
+        return PointValues(x[0], None, (x[0] * x[1] - 1)[None])
 
     problem = BoxProblem(("a", "b"), [0.1, 0.1], [10, 10], evaluate, (), ("product",))
     with pytest.raises(UsageError, match=r"does not support equality constraints.*AUGLAG\+LD_MMA"):
@@ -174,7 +174,7 @@ def impossible_from(product):
     """Minimise a + b with a b >= product: feasible, and the first steps overshoot."""
 
     def evaluate(x):
-        return Values(x[0] + x[1], (x[0] * x[1] / product - 1)[None])
+        return PointValues(x[0] + x[1], (x[0] * x[1] / product - 1)[None])
 
     return BoxProblem(("a", "b"), [0.1, 0.1], [10, 10], evaluate, ("product",))
 

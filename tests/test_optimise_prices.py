@@ -8,7 +8,7 @@ from hypothesis.extra.numpy import arrays
 
 from actuator_opt.optimisation import prices as price_table
 from actuator_opt.optimisation.prices import prices
-from actuator_opt.optimisation.problem import BoxProblem, ParametricProblem, Values
+from actuator_opt.optimisation.problem import BoxProblem, ParametricProblem, PointValues
 from actuator_opt.optimisation.resolve.steps import Descent
 from actuator_opt.optimisation.solver import solve
 
@@ -101,7 +101,7 @@ def test_holds_until_where_another_constraint_takes_over():
     """
 
     def evaluate(x, p):
-        return Values(x[0] + x[1], np.stack([x[0] * x[1] / p[0] - 1, 1 - x[0] / 2 + 0 * p[0]]))
+        return PointValues(x[0] + x[1], np.stack([x[0] * x[1] / p[0] - 1, 1 - x[0] / 2 + 0 * p[0]]))
 
     _, rows = priced(parametric(evaluate, [3.0], ("product", "a max")))
     a = np.sqrt(3)
@@ -113,7 +113,7 @@ def test_slack_requirement_is_free_until_it_binds():
     """A requirement with slack costs nothing until its limit reaches the value."""
 
     def evaluate(x, p):
-        return Values(x[0] + x[1], np.stack([x[0] * x[1] - 1 + 0 * p[0], x[0] / p[0] - 1]))
+        return PointValues(x[0] + x[1], np.stack([x[0] * x[1] - 1 + 0 * p[0], x[0] / p[0] - 1]))
 
     _, rows = priced(parametric(evaluate, [0.9], ("product", "a min")))
     row = rows["p0"]
@@ -132,7 +132,7 @@ def test_active_requirement_that_stops_binding():
     """
 
     def evaluate(x, p):
-        return Values(x[0] + 0 * p[0], np.stack([x[0] / p[0] - 1, x[0] / 1.9 - 1 + 0 * p[0]]))
+        return PointValues(x[0] + 0 * p[0], np.stack([x[0] / p[0] - 1, x[0] / 1.9 - 1 + 0 * p[0]]))
 
     _, rows = priced(parametric(evaluate, [2.0], ("first", "second"), n=1))
     row = rows["p0"]
@@ -146,7 +146,7 @@ def test_infeasible_end_is_none():
     """Where +10 % leaves no feasible point, the re-solved value is None, not a number."""
 
     def evaluate(x, p):
-        return Values(x[0] + 0 * p[0], np.stack([x[0] / p[0] - 1, 1 - x[0] / 2.1 + 0 * p[0]]))
+        return PointValues(x[0] + 0 * p[0], np.stack([x[0] / p[0] - 1, 1 - x[0] / 2.1 + 0 * p[0]]))
 
     _, rows = priced(parametric(evaluate, [2.0], ("min", "max"), n=1))
     assert rows["p0"].resolved_up is None
@@ -157,7 +157,7 @@ def test_degenerate_vertex_has_one_sided_prices():
     """With a >= p0 and a >= p1 at p0 = p1 = 2: raising either costs 1, lowering either saves 0."""
 
     def evaluate(x, p):
-        return Values(x[0] + x[1], np.stack([x[0] / p[0] - 1, x[0] / p[1] - 1]))
+        return PointValues(x[0] + x[1], np.stack([x[0] / p[0] - 1, x[0] / p[1] - 1]))
 
     _, rows = priced(parametric(evaluate, [2.0, 2.0], ("one", "two")))
     for name in ("p0", "p1"):
@@ -177,7 +177,7 @@ def test_linear_programming_agrees_with_enumeration(monkeypatch):
     def evaluate(x, p):
         a, b = x
         rows = [a - p[0], b - p[1], a * b - p[2], (a + b) / 2 - p[3], a**2 * b - p[4]]
-        return Values(a + b, np.stack(np.broadcast_arrays(*rows)))
+        return PointValues(a + b, np.stack(np.broadcast_arrays(*rows)))
 
     problem = parametric(evaluate, np.ones(5), tuple("vwxyz"))
     _, first = priced(problem, resolve=False)
@@ -197,7 +197,7 @@ def test_copies_of_a_requirement_share_one_price():
 
     def evaluate(x, p):
         margin = x[0] * x[1] / p[0] - 1
-        return Values(x[0] + x[1], np.stack([margin] * 3))
+        return PointValues(x[0] + x[1], np.stack([margin] * 3))
 
     _, rows = priced(parametric(evaluate, [4.0], ("case 1", "case 2", "case 3")))
     row = rows["p0"]
@@ -213,7 +213,7 @@ def test_parameter_without_complex_step():
 
     def evaluate(x, p):
         looked_up = np.interp(p[0].real, table, table**2)  # piecewise linear, no derivative
-        return Values(x[0] + x[1], (x[0] * x[1] / looked_up - 1)[None])
+        return PointValues(x[0] + x[1], (x[0] * x[1] / looked_up - 1)[None])
 
     _, rows = priced(parametric(evaluate, [2.5], ("product",)))
     # limit L(p) = 4 + 5 (p - 2) = 6.5, f = 2 sqrt(L), df/dp = 5/sqrt(L)
@@ -225,7 +225,7 @@ def test_idle_parameter_costs_nothing():
     """A parameter that nothing depends on has price 0 and unchanged ends."""
 
     def evaluate(x, p):
-        return Values(x[0] + x[1] + 0 * p[0], (x[0] * x[1] - 1)[None])
+        return PointValues(x[0] + x[1] + 0 * p[0], (x[0] * x[1] - 1)[None])
 
     found, rows = priced(parametric(evaluate, [0.0], ("product",)))
     row = rows["p0"]
@@ -238,7 +238,7 @@ def test_infeasible_problem_has_no_prices():
     """Without a feasible point there is nothing to price."""
 
     def evaluate(x, p):
-        return Values(x[0], np.stack([x[0] / p[0] - 1, 1 - x[0]]))
+        return PointValues(x[0], np.stack([x[0] / p[0] - 1, 1 - x[0]]))
 
     _, rows = priced(parametric(evaluate, [2.0], ("min", "max"), n=1))
     assert rows == {}
@@ -254,7 +254,7 @@ def test_equality_prices():
 
     def evaluate(x, p):
         values = base.evaluate(x)
-        return Values(values.objective, values.constraints, values.equalities + 40 - p[0])
+        return PointValues(values.objective, values.constraints, values.equalities + 40 - p[0])
 
     full = ParametricProblem(base, ("sphere",), np.array([40.0]), evaluate)
     _, rows = priced(full, change=1e-4)

@@ -12,7 +12,7 @@ from actuator_opt.optimisation import solver
 from actuator_opt.optimisation.actuator import Outcome
 from actuator_opt.optimisation.evaluator import Evaluator
 from actuator_opt.optimisation.kkt import Curvature
-from actuator_opt.optimisation.problem import BoxProblem, Space, Values
+from actuator_opt.optimisation.problem import BoxProblem, PointValues, Space
 from actuator_opt.optimisation.solver import Halton, solve
 
 
@@ -35,7 +35,9 @@ def test_unconstrained_interior_optimum():
 
     def evaluate(x):
         logs = np.log(x)
-        return Values(1 + (logs[0] - 0.5) ** 2 + (logs[1] + 0.5) ** 2 + 0.3 * logs[0] * logs[1])
+        return PointValues(
+            1 + (logs[0] - 0.5) ** 2 + (logs[1] + 0.5) ** 2 + 0.3 * logs[0] * logs[1]
+        )
 
     found = solve(box(evaluate))
     # 2(u - .5) + .3 v = 0, 2(v + .5) + .3 u = 0  ->  u = -v = 1/1.7
@@ -49,7 +51,7 @@ def test_an_optimum_at_a_bound_of_zero_is_zero():
     """A dimension that the optimum does without reads 0, not the 1e-20 of a step's rounding."""
 
     def evaluate(x):
-        return Values((x[0] + 0.3) ** 2 + (x[1] - 0.0123) ** 2)
+        return PointValues((x[0] + 0.3) ** 2 + (x[1] - 0.0123) ** 2)
 
     found = solve(box(evaluate, low=0.0, high=0.025))
     assert found.x[0] == 0.0
@@ -86,7 +88,7 @@ def test_runs_side_by_side_are_the_runs_alone(name, monkeypatch):
 
 def test_objective_zero_at_optimum():
     """An objective that vanishes at its optimum is judged against its size elsewhere."""
-    found = solve(box(lambda x: Values((x[0] - 1) ** 2 + (x[1] - 2) ** 2), low=-5.0))
+    found = solve(box(lambda x: PointValues((x[0] - 1) ** 2 + (x[1] - 2) ** 2), low=-5.0))
     assert found.outcome is Outcome.OPTIMUM
     np.testing.assert_allclose(found.x, [1, 2], atol=1e-6)
 
@@ -99,7 +101,7 @@ def test_degenerate_vertex():
 
     def evaluate(x):
         a, b = x
-        return Values(a + b, np.stack([a - 1, b - 1, a * b - 1, (a + b) / 2 - 1]))
+        return PointValues(a + b, np.stack([a - 1, b - 1, a * b - 1, (a + b) / 2 - 1]))
 
     found = solve(box(evaluate, constraints=("a", "b", "product", "sum")))
     assert found.outcome is Outcome.OPTIMUM
@@ -114,7 +116,7 @@ def test_redundant_copies():
 
     def evaluate(x):
         margin = x[0] * x[1] ** 2 - 1
-        return Values(x[0] + x[1], np.stack([margin] * 3))
+        return PointValues(x[0] + x[1], np.stack([margin] * 3))
 
     found = solve(box(evaluate, constraints=("one", "two", "three")))
     assert found.outcome is Outcome.OPTIMUM
@@ -127,7 +129,7 @@ def test_variable_without_effect():
     """A variable that no value depends on is named and keeps its start."""
 
     def evaluate(x):
-        return Values(x[0] + x[1], (x[0] * x[1] - 1)[None])
+        return PointValues(x[0] + x[1], (x[0] * x[1] - 1)[None])
 
     start = np.array([3.0, 3.0, 7.0])
     found = solve(box(evaluate, 3, constraints=("product",), start=start))
@@ -141,7 +143,7 @@ def test_flat_objective():
     """An objective that nothing affects is said to be flat; a feasible point is returned."""
 
     def evaluate(x):
-        return Values(0 * x[0] + 5.0, (x[0] * x[1] - 50)[None])
+        return PointValues(0 * x[0] + 5.0, (x[0] * x[1] - 50)[None])
 
     found = solve(box(evaluate, constraints=("product",)))
     assert found.outcome is Outcome.FLAT
@@ -152,7 +154,7 @@ def test_kink_is_not_called_an_optimum():
     """At the kink of max(x, 1/x) the slopes do not balance: feasible, with a remedy."""
 
     def evaluate(x):
-        return Values(np.where(x[0].real >= 1, x[0], 1 / x[0]))
+        return PointValues(np.where(x[0].real >= 1, x[0], 1 / x[0]))
 
     found = solve(box(evaluate, 1))
     assert found.outcome is Outcome.NOT_STATIONARY
@@ -167,7 +169,7 @@ def test_nan_in_part_of_the_box():
     """
 
     def evaluate(x):
-        return Values(x[0] + x[1], (np.sqrt(x[0] - x[1]) - 1)[None])
+        return PointValues(x[0] + x[1], (np.sqrt(x[0] - x[1]) - 1)[None])
 
     found = solve(box(evaluate, constraints=("root",)))
     assert found.outcome is Outcome.OPTIMUM
@@ -177,7 +179,7 @@ def test_nan_in_part_of_the_box():
 
 def test_nan_everywhere():
     """A model without any finite value is called undefined."""
-    found = solve(box(lambda x: Values(x[0] * np.nan)))
+    found = solve(box(lambda x: PointValues(x[0] * np.nan)))
     assert found.outcome is Outcome.UNDEFINED
     assert found.kkt is None
 
@@ -186,7 +188,7 @@ def test_infinite_margin_is_met():
     """A margin of plus infinity (nothing loads the part) is met and does not spoil gradients."""
 
     def evaluate(x):
-        return Values(x[0] + x[1], np.stack([x[0] * x[1] - 1, np.inf + 0 * x[0].real]))
+        return PointValues(x[0] + x[1], np.stack([x[0] * x[1] - 1, np.inf + 0 * x[0].real]))
 
     found = solve(box(evaluate, constraints=("product", "unloaded")))
     assert found.outcome is Outcome.OPTIMUM
@@ -207,7 +209,7 @@ def test_exception_of_the_model_surfaces(algorithm, fault):
         calls.append(1)
         if len(calls) > 10:
             raise fault("boom")
-        return Values(x[0] + x[1], (x[0] * x[1] - 1)[None])
+        return PointValues(x[0] + x[1], (x[0] * x[1] - 1)[None])
 
     with pytest.raises(fault, match="boom"):
         solve(box(evaluate, constraints=("product",)), algorithm=algorithm, samples=64)
@@ -272,12 +274,12 @@ def test_bad_problems_are_refused(change, message):
     """Reversed or missing bounds and a start outside them are input errors that name them."""
     fields = {"names": ("a", "b"), "lower": [1, 1], "upper": [2, 2]} | change
     with pytest.raises(InputError, match=message):
-        BoxProblem(evaluate=lambda x: Values(x[0]), **fields)
+        BoxProblem(evaluate=lambda x: PointValues(x[0]), **fields)
 
 
 def test_wrong_shapes_are_refused():
     """An evaluation with the wrong number of constraints is an input error that says so."""
-    problem = box(lambda x: Values(x[0], np.stack([x[0]] * 3)), constraints=("a", "b"))
+    problem = box(lambda x: PointValues(x[0], np.stack([x[0]] * 3)), constraints=("a", "b"))
     with pytest.raises(InputError, match="constraints have shape"):
         solve(problem)
 
@@ -288,10 +290,10 @@ def test_functions_without_complex_step_fall_back(style):
 
     def evaluate(x):
         if style == "abs":  # silently wrong: the modulus has no imaginary part
-            return Values(x[0] + x[1], (np.abs(x[0] * x[1]) - 1)[None])
+            return PointValues(x[0] + x[1], (np.abs(x[0] * x[1]) - 1)[None])
         if np.iscomplexobj(x):
             raise TypeError("no complex numbers, please")
-        return Values(x[0] + x[1], (x[0] * x[1] - 1)[None])
+        return PointValues(x[0] + x[1], (x[0] * x[1] - 1)[None])
 
     found = solve(box(evaluate, constraints=("product",), has_complex_step=style != "declared"))
     assert found.outcome is Outcome.OPTIMUM

@@ -11,7 +11,7 @@ import pytest
 from cli_runner import KNEE, bench, run
 
 import actuator_opt as ao
-from actuator_opt.optimisation.front.plane import Gap
+from actuator_opt.optimisation.front.plane import FrontGap
 from actuator_opt.pages.pareto import remarks
 
 PAIR = ("--objective", "mass:min", "--objective", "stiffness_min:max")
@@ -70,7 +70,7 @@ def test_jumps_are_told(front):
     """A jump is named with what it can hold and left out of the ratio; a wide gap is not."""
     gaps = [0.05] * 19
     gaps[4], gaps[9] = 0.4, 0.2
-    jump, hole = Gap(4, 0.4, 0.01, True), Gap(9, 0.2, 0.2, False)
+    jump, hole = FrontGap(4, 0.4, 0.01, True), FrontGap(9, 0.2, 0.2, False)
     told = replace(front, gaps=tuple(gaps), wide=(jump, hole))
     assert told.evenness == pytest.approx(4)
     data = told.to_dict()["gaps"]

@@ -15,7 +15,7 @@ from actuator_opt import api as verbs
 from actuator_opt.optimisation import actuator as actuator_module
 from actuator_opt.optimisation.actuator import build
 from actuator_opt.optimisation.prices import prices, ranked, sensitivities
-from actuator_opt.optimisation.problem import BoxProblem, ParametricProblem, Values
+from actuator_opt.optimisation.problem import BoxProblem, ParametricProblem, PointValues
 from actuator_opt.optimisation.solver import solve
 from actuator_opt.pages import prices as told
 from actuator_opt.pages.prices import tornado
@@ -37,7 +37,7 @@ def test_rosen_suzuki_prices_are_its_multipliers():
     def evaluate(x, p):
         values = base.evaluate(x)
         shift = np.stack(np.broadcast_arrays(*[p[i] - limits[i] + 0 * x[0] for i in range(3)]))
-        return Values(values.objective, values.constraints + shift)
+        return PointValues(values.objective, values.constraints + shift)
 
     rows = prices(parametric(base, ("a", "b", "c"), limits, evaluate), solve(base), change=1e-3)
     assert [row.price for row in rows] == pytest.approx([-1, 0, -2], abs=1e-8)
@@ -52,7 +52,7 @@ def test_hs71_price_is_its_multiplier():
 
     def evaluate(x, p):
         values = base.evaluate(x)
-        return Values(values.objective, values.constraints + 25 - p[0], values.equalities)
+        return PointValues(values.objective, values.constraints + 25 - p[0], values.equalities)
 
     found = prices(parametric(base, ("product",), [25.0], evaluate), solve(base), bounds=False)
     assert found[0].price == pytest.approx(0.552294, abs=1e-6)
@@ -62,7 +62,7 @@ def test_both_sides_of_a_kink_are_what_re_solving_finds():
     """At a >= p, a >= 2 with p = 2 the re-solved slopes at +-0.1 % are the one-sided prices."""
 
     def evaluate(x, p):
-        return Values(x[0] + 0 * p[0], np.stack([x[0] - p[0], x[0] - 2 + 0 * p[0]]))
+        return PointValues(x[0] + 0 * p[0], np.stack([x[0] - p[0], x[0] - 2 + 0 * p[0]]))
 
     problem = BoxProblem(
         ("a",),
@@ -87,7 +87,7 @@ def test_another_valley_takes_over():
     def evaluate(x, p):
         first, second = (x[0] - 1) ** 2, (x[0] - 3) ** 2
         near = second / (first + second)
-        return Values(near * p[0] + (1 - near) * (2 + p[0] / 4) + 5 * first * second, None)
+        return PointValues(near * p[0] + (1 - near) * (2 + p[0] / 4) + 5 * first * second, None)
 
     problem = BoxProblem(
         ("x",), np.array([0.2]), np.array([5.0]), lambda x: evaluate(x, np.array([[2.5]]))

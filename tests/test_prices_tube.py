@@ -28,7 +28,7 @@ import actuator_opt as ao
 from actuator_opt.models import barrel
 from actuator_opt.optimisation.actuator import build
 from actuator_opt.optimisation.prices import prices
-from actuator_opt.optimisation.problem import BoxProblem, ParametricProblem, Values
+from actuator_opt.optimisation.problem import BoxProblem, ParametricProblem, PointValues
 from actuator_opt.optimisation.solver import solve
 
 NAMES = ("strength", "pressure", "factor", "bore", "length", "density")
@@ -83,7 +83,7 @@ def tube(stress, values):
         strength, pressure, factor, bore, length, density = p
         mass = density * pi * length * x[0] * (bore + x[0])
         room = strength / (factor * stress(pressure, bore, x[0])) - 1
-        return Values(mass, room[None])
+        return PointValues(mass, room[None])
 
     p = np.array(values)
     problem = BoxProblem(("wall",), [1e-6], [1.0], lambda x: evaluate(x, p[:, None]), ("stress",))

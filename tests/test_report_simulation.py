@@ -30,7 +30,7 @@ from actuator_opt.rendering.blocks import Column, Pair, Status, Table
 from actuator_opt.rendering.ink import Ink
 from actuator_opt.rendering.origin import Origin
 from actuator_opt.simulation.integrate import Event
-from actuator_opt.simulation.result import Flow, RequirementResult, Second
+from actuator_opt.simulation.result import EnergyFlow, RequirementResult, Second
 
 ORIGIN = Origin(case.SOURCE, "a.yaml", "simulate a.yaml", "12ab")
 ABSURD = f"{'a' * 70} {'many words without an end ' * 8}".strip()
@@ -277,7 +277,7 @@ def test_energies_that_powers_do_not_confirm_are_doubted():
     found = case.simulated("step")
     assert simulation_energy.doubts(found) == []
     flows = tuple(
-        Flow(one.name, 2 * one.energy if one.name == "supply" else one.energy)
+        EnergyFlow(one.name, 2 * one.energy if one.name == "supply" else one.energy)
         for one in found.balance.flows
     )
     wrong = replace(found, requirements=(), balance=replace(found.balance, flows=flows))

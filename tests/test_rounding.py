@@ -19,7 +19,7 @@ from actuator_opt.design import read_design
 from actuator_opt.design.model import Ply
 from actuator_opt.optimisation.actuator import build
 from actuator_opt.optimisation.branch_and_bound import Listed, search
-from actuator_opt.optimisation.problem import BoxProblem, Values
+from actuator_opt.optimisation.problem import BoxProblem, PointValues
 from actuator_opt.optimisation.rounding import Wanted, misfits, plies, rounded, sizes_of
 from actuator_opt.optimisation.solver import solve
 from actuator_opt.pages.prices import quality
@@ -71,7 +71,7 @@ def quadratic(weights, middle, coupling, total):
 
     def evaluate(x):
         spread = x.sum(axis=0) - total
-        return Values((weights * (x - middle) ** 2).sum(axis=0) + coupling * spread**2)
+        return PointValues((weights * (x - middle) ** 2).sum(axis=0) + coupling * spread**2)
 
     n = len(weights)
     return BoxProblem(tuple("abcdef"[:n]), np.full(n, 0.5), np.full(n, 8.5), evaluate)
@@ -158,7 +158,7 @@ def held(problem, least):
     """The same problem with a sum of at least `least` asked for."""
 
     def evaluate(x):
-        return Values(problem.evaluate(x).objective, (x.sum(axis=0) / least - 1)[None])
+        return PointValues(problem.evaluate(x).objective, (x.sum(axis=0) / least - 1)[None])
 
     return replace(problem, evaluate=evaluate, constraint_names=("sum",))
 

@@ -21,7 +21,13 @@ from actuator_opt.base.errors import InputError
 from actuator_opt.simulation.linear import tune
 from actuator_opt.simulation.measured.fit import fit
 from actuator_opt.simulation.measured.parameters import PARAMETERS, entries
-from actuator_opt.simulation.measured.record import Course, Measured, noise, overlay, parse_measured
+from actuator_opt.simulation.measured.record import (
+    AlignedRecord,
+    SimulatedSignal,
+    noise,
+    overlay,
+    parse_measured,
+)
 from actuator_opt.simulation.run import run
 from actuator_opt.studies.plant import Plane, SealData
 
@@ -84,7 +90,7 @@ def bench(seed, **changes):
     channels = {"position": GRAIN * (np.round(signals["position"] / GRAIN + zero) - zero)}
     for name in ("pressure_a", "pressure_b"):
         channels[name] = signals[name] + PRESSURE_NOISE * rng.standard_normal(time.size)
-    return Measured({name: (time, values) for name, values in channels.items()})
+    return AlignedRecord({name: (time, values) for name, values in channels.items()})
 
 
 def case(**changes):
@@ -226,7 +232,7 @@ def test_residuals_are_what_was_added():
     time, signals = measured_signals()
     values = signals["position"] + 2e-3
     values[300] += 5e-3
-    moved = Measured({"position": (time + 0.05, values)})
+    moved = AlignedRecord({"position": (time + 0.05, values)})
     left = overlay(made, moved, lag=0.05).residuals["position"]
     assert left.count == time.size
     assert left.bias == pytest.approx(2e-3 + 5e-3 / time.size, rel=1e-4)
@@ -241,7 +247,7 @@ def test_overlay_says_where_record_and_scenario_do_not_meet():
     scene, own = case()
     scene = scene.model_copy(update={"sample_time": 0.01})
     time, signals = measured_signals()
-    record = Measured({
+    record = AlignedRecord({
         "position": (time, signals["position"] + 0.01),
         "pressure_a": (time, signals["pressure_a"]),
         "shaft_speed": (time, signals["speed"]),
@@ -258,12 +264,12 @@ def test_overlay_refuses_what_has_nothing_in_common():
     """No time or no signal in common is a fault of the record."""
     scene, own = case()
     made = run(scene, own, {}, None)
-    late = Measured({name: (t + 9.0, y) for name, (t, y) in bench(1).channels.items()})
+    late = AlignedRecord({name: (t + 9.0, y) for name, (t, y) in bench(1).channels.items()})
     with pytest.raises(InputError, match=r"covers 9 to 9\.5 s, the scenario 0 to 0\.5 s"):
         overlay(made, late)
     time, signals = measured_signals()
     with pytest.raises(InputError, match="none of its channels is simulated"):
-        overlay(made, Measured({"shaft_speed": (time, signals["speed"])}))
+        overlay(made, AlignedRecord({"shaft_speed": (time, signals["speed"])}))
 
 
 def test_a_sample_on_a_jump_may_show_either_side():
@@ -273,7 +279,7 @@ def test_a_sample_on_a_jump_may_show_either_side():
     stair = np.zeros(time.size)
     for start, value in STAIR:
         stair[time > start + 1e-9] = value
-    left = overlay(run(scene, own, {}, None), Measured({"signal": (time, stair)})).residuals
+    left = overlay(run(scene, own, {}, None), AlignedRecord({"signal": (time, stair)})).residuals
     assert left["signal"].largest == 0
 
 
@@ -281,14 +287,14 @@ def test_a_course_is_cubic_and_crosses_no_jump():
     """Parabolas on both sides of a jump are met, uneven samples or not; a sine within h^4."""
     left, right = np.array([0.0, 0.1, 0.3, 0.4, 0.5]), np.array([0.5, 0.52, 0.7, 1.0])
     time = np.concatenate([left, right])
-    course = Course(time, np.concatenate([left**2, 3 - right + right**2]))
+    course = SimulatedSignal(time, np.concatenate([left**2, 3 - right + right**2]))
     asked = np.linspace(-0.1, 1.0, 200)
     exact = np.where(asked < 0.5, np.maximum(asked, 0) ** 2, 3 - asked + asked**2)
     assert course(asked) == pytest.approx(exact, abs=1e-12)
     worst = []
     for count in (51, 101):
         time = np.linspace(0, 1, count)
-        apart = Course(time, np.sin(9 * time))(asked[20:]) - np.sin(9 * asked[20:])
+        apart = SimulatedSignal(time, np.sin(9 * time))(asked[20:]) - np.sin(9 * asked[20:])
         worst.append(np.abs(apart).max())
     assert worst[1] < worst[0] / 6
     assert worst[1] < 1e-4
@@ -428,7 +434,7 @@ def test_late_uneven_records_with_gaps_are_fitted():
         channels[name] = t[kept] + 0.04, (y + scatter * rng.standard_normal(y.size))[kept]
     names = ("air_content", "valve_capacity")
     guess = {name: GUESS[name] for name in names}
-    found = fit(*case(**guess), {}, Measured(channels), ("lag", *names))
+    found = fit(*case(**guess), {}, AlignedRecord(channels), ("lag", *names))
     lag = found.parameters["lag"].parameter
     assert lag.value == pytest.approx(0.04, abs=1e-4)
     assert lag.identifiable
@@ -442,7 +448,7 @@ def test_what_nothing_moves_is_not_identifiable():
     scene = scene.model_copy(update={"signal": ()})
     made = run(scene, own, {}, None)
     rng = np.random.default_rng(2)
-    record = Measured({
+    record = AlignedRecord({
         name: (made.time, made.signals[name] + PRESSURE_NOISE * rng.standard_normal(501))
         for name in ("pressure_a", "pressure_b")
     })  # fmt: skip
@@ -460,7 +466,9 @@ def test_a_channel_that_stands_still_is_left_out():
     """A sensor that shows one value weighs nothing and is told."""
     whole = bench(7).channels
     time, values = whole["position"]
-    record = Measured({"pressure_a": whole["pressure_a"], "position": (time, 0 * values + 0.08)})
+    record = AlignedRecord(
+        {"pressure_a": whole["pressure_a"], "position": (time, 0 * values + 0.08)}
+    )
     found = fit(*case(air_content=0.005), {}, record, ("air_content",))
     assert found.values["air_content"] == pytest.approx(0.01, rel=0.05)
     assert "position is constant in the record: not used in the fit" in found.doubts
@@ -489,7 +497,7 @@ def test_pairs_that_hide_in_each_other_are_named():
     """At one speed, one way, friction is a load: the record tells their sum."""
     whole = bench(6).channels
     part = {name: (t[80:150], y[80:150]) for name, (t, y) in whole.items()}
-    found = fit(*case(), {}, Measured(part), ("coulomb", "load_offset"))
+    found = fit(*case(), {}, AlignedRecord(part), ("coulomb", "load_offset"))
     assert found.correlations["coulomb", "load_offset"] < -0.9
     assert found.parameters["coulomb"].parameter.verdict == "not identifiable"
     assert any(
@@ -506,7 +514,7 @@ def test_a_loop_keeps_its_gains_while_its_cylinder_changes():
     made = run(scene, replace(own, mass=45.0), {}, tune(scene, own, {}))
     rng = np.random.default_rng(8)
     scatter = {"position": 3e-6, "pressure_a": PRESSURE_NOISE}
-    record = Measured({
+    record = AlignedRecord({
         name: (made.time, made.signals[name] + size * rng.standard_normal(made.time.size))
         for name, size in scatter.items()
     })  # fmt: skip

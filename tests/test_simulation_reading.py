@@ -11,7 +11,7 @@ from simulation_case import plant, scenario
 
 import actuator_opt as ao
 from actuator_opt.simulation.assemble import assemble
-from actuator_opt.simulation.linear import Law, Linear, margins, tune, ultimate
+from actuator_opt.simulation.linear import ControllerLaw, Linear, margins, tune, ultimate
 
 DESIGNS = Path(__file__).parent.parent / "designs"
 KNEE = f"name: a\ndesign: {DESIGNS / 'servo_knee.yaml'}\nduration: 0.2 s\n"
@@ -51,7 +51,7 @@ def test_a_loop_beyond_its_ultimate_gain_is_unstable():
     loop = linear.about(position=0.08).loops[0]
     limit = ultimate(loop)
     for factor in (0.97, 1.03, 1.3):
-        found = margins(loop, Law(factor * limit.gain, np.inf, 0.0, 1e-3))
+        found = margins(loop, ControllerLaw(factor * limit.gain, np.inf, 0.0, 1e-3))
         assert found.stable is (factor < 1)
         assert found.gain == pytest.approx(1 / factor, rel=1e-6)
 

@@ -13,7 +13,7 @@ import pytest
 import actuator_opt as ao
 from actuator_opt.base.errors import InputError
 from actuator_opt.design.model import Limit
-from actuator_opt.design.scenario.model import Load, Scenario
+from actuator_opt.design.scenario.model import Scenario, ScenarioLoad
 from actuator_opt.evaluation.build import prepare
 from actuator_opt.evaluation.springs import Give
 from actuator_opt.pages import verification as pages
@@ -384,9 +384,9 @@ def test_what_is_left_out_of_the_experiments_is_named():
     words = ("force of the load", "torque on the joint", "spring", "damper", "external machine",
              "load cylinder")  # fmt: skip
     for (name, value), word in zip((full | {"cylinder": rig}).items(), words, strict=True):
-        assert _left_out(Load.model_validate({name: value})) == word
-    assert _left_out(Load.model_validate(full)) == ", ".join(words[:-1])
-    nothing = Load.model_validate({"force": [{"shape": "constant", "value": 0.0}]})
+        assert _left_out(ScenarioLoad.model_validate({name: value})) == word
+    assert _left_out(ScenarioLoad.model_validate(full)) == ", ".join(words[:-1])
+    nothing = ScenarioLoad.model_validate({"force": [{"shape": "constant", "value": 0.0}]})
     assert _left_out(nothing) == ""
 
 

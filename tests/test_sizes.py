@@ -23,7 +23,7 @@ from actuator_opt.design.standard_sizes import SERIES
 from actuator_opt.design.writer import to_yaml
 from actuator_opt.optimisation.actuator import build
 from actuator_opt.optimisation.branch_and_bound import Listed, search
-from actuator_opt.optimisation.problem import BoxProblem, Values
+from actuator_opt.optimisation.problem import BoxProblem, PointValues
 from actuator_opt.optimisation.solver import solve
 from actuator_opt.pages.optimum import rounding_notes
 
@@ -241,7 +241,7 @@ def test_gear_train():
     """
 
     def evaluate(x, scale=1.0):
-        return Values(scale * (1 / 6.931 - x[0] * x[1] / (x[2] * x[3])) ** 2)
+        return PointValues(scale * (1 / 6.931 - x[0] * x[1] / (x[2] * x[3])) ** 2)
 
     teeth = np.arange(12.0, 61.0)
     listed = [Listed((k,), teeth[:, None]) for k in range(4)]
@@ -276,7 +276,7 @@ def test_spring_of_listed_wire():
             1 - (1000 / rate + 1.05 * (coils + 2) * wire) / 14,
             1 - mean / 3, index / 3 - 1, 1 - 300 / rate / 6, 700 / rate / 1.25 - 1,
         ]  # fmt: skip
-        return Values(np.pi**2 / 4 * mean * wire**2 * (coils + 2), np.stack(margins))
+        return PointValues(np.pi**2 / 4 * mean * wire**2 * (coils + 2), np.stack(margins))
 
     lower, upper = np.array([1, 0.6, 0.2]), np.array([30, 3, 0.5])
     problem = BoxProblem(("coils", "mean", "wire"), lower, upper, evaluate, tuple("abcdef"))

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given, strategies as st
 
 from actuator_opt.base.numeric import STEP
-from actuator_opt.base.surrogate import Axis, Interpolation, surrogate
+from actuator_opt.base.surrogate import Interpolation, SurrogateAxis, surrogate
 
-AXES = (Axis("speed", 1e-3, 1.0, 5), Axis("pressure", 1e5, 4e7, 4))
+AXES = (SurrogateAxis("speed", 1e-3, 1.0, 5), SurrogateAxis("pressure", 1e5, 4e7, 4))
 BASE = {"speed": 0.1, "pressure": 1e6, "modulus": 8e6}
 
 
@@ -103,7 +103,7 @@ def test_slopes_are_met_too():
         value = np.array([np.exp(np.log(point["speed"]) / 3)])
         return Interpolation(value, {"speed": value / 3})
 
-    axis = Axis("speed", 0.08, 0.125, 2, hermite=True)
+    axis = SurrogateAxis("speed", 0.08, 0.125, 2, hermite=True)
     fitted = surrogate(wave, base={"speed": 0.1}, axes=(axis,))
     for speed in (0.08, 0.0913, 0.1, 0.12):
         assert fitted({"speed": speed})[0] == pytest.approx(speed ** (1 / 3), rel=1e-5)

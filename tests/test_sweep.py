@@ -21,7 +21,7 @@ import pytest
 from cli_runner import run as cli
 
 import actuator_opt as ao
-from actuator_opt.base.database import Column, Rows, opened
+from actuator_opt.base.database import NumberColumn, StoredNumbers, opened
 from actuator_opt.base.errors import InputError, UsageError
 from actuator_opt.evaluation import compute
 from actuator_opt.optimisation.actuator import goal_of
@@ -204,7 +204,7 @@ def test_designs_without_a_value_of_the_objective_are_not_the_best(knee):
     rows[np.arange(64) % 7 > 0, place] = np.nan
     found = Swept(study, 64)
     for first in range(0, 64, 16):
-        found.add(study.judged(first, Rows(rows[first : first + 16], {}), 16), 5)
+        found.add(study.judged(first, StoredNumbers(rows[first : first + 16], {}), 16), 5)
     assert found.feasible == swept.feasible > 10
     masses = rows[rows[:, -1] == 1, place]
     assert [one.objective for one in found.best] == np.sort(masses[~np.isnan(masses)])[:5].tolist()
@@ -441,11 +441,11 @@ def test_a_store_called_memory_is_a_file(tmp_path, monkeypatch):
 
 def test_a_long_axis_takes_no_memory():
     """Its values are found from their numbers, bit for bit those of all of them at once."""
-    from actuator_opt.sweeps.plan import Axis, plan
+    from actuator_opt.sweeps.plan import SweepAxis, plan
 
-    axis = Axis("p", np.array([0.018, 0.040]), range=True, count=977)
+    axis = SweepAxis("p", np.array([0.018, 0.040]), range=True, count=977)
     assert (axis.numbers() == np.linspace(0.018, 0.040, 977)).all()
-    long = Axis("p", np.array([0.018, 0.040]), range=True, count=10**11)
+    long = SweepAxis("p", np.array([0.018, 0.040]), range=True, count=10**11)
     points = plan([long], method="grid", count=None).points(10**11 - 3, 8)
     assert points.numbers[0, -1] == 0.040
     assert points.numbers.shape == (1, 3)
@@ -577,9 +577,9 @@ def _open_at(path: Path, moment: float) -> str:
         pass
     try:
         with opened(
-            path, study="s", name="n", design="d", columns=[Column("x", "1")], version="0"
+            path, study="s", name="n", design="d", columns=[NumberColumn("x", "1")], version="0"
         ) as base:
-            base.put([os.urandom(8)], Rows(np.ones((1, 1)), {}))
+            base.put([os.urandom(8)], StoredNumbers(np.ones((1, 1)), {}))
     except InputError as error:
         return str(error)
     return ""

@@ -14,7 +14,7 @@ from cli_runner import run as terminal
 from test_sweep import KNEE, NEAR, STEEL, WAYS
 
 import actuator_opt as ao
-from actuator_opt.base.database import Rows
+from actuator_opt.base.database import StoredNumbers
 from actuator_opt.base.errors import ActuatorError, InputError, UsageError
 from actuator_opt.pages.sweep import SweepColumns, about
 from actuator_opt.rendering import series as parquet_file
@@ -138,7 +138,7 @@ def test_memory_does_not_grow_with_the_rows(tmp_path):
         columns = SweepColumns(study)
         with ParquetFile(columns.fields, about(study), tmp_path / "many.parquet") as table:
             for k in range(count):
-                given = Rows(rows, {})
+                given = StoredNumbers(rows, {})
                 chunk = Chunk(4096 * k, given, 4096, rows[:, 0], rows[:, -1] == 1.0)
                 table.add(columns.values(chunk))
                 held = max(held, arrow.total_allocated_bytes())

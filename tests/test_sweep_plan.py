@@ -10,19 +10,19 @@ from scipy.stats import qmc
 from actuator_opt.base.errors import InputError, UsageError
 from actuator_opt.design import read_design
 from actuator_opt.sweeps import plan, read_axis
-from actuator_opt.sweeps.plan import Axis
+from actuator_opt.sweeps.plan import SweepAxis
 
 KNEE = read_design("designs/knee.yaml").design.model_copy(update={"variables": {}})
 
 
 def numbers(path, low, high, count=None):
     """A range."""
-    return Axis(path, np.array([low, high]), range=True, count=count)
+    return SweepAxis(path, np.array([low, high]), range=True, count=count)
 
 
 def names(path, size):
     """A list of texts."""
-    return Axis(path, None, tuple(f"name{k}" for k in range(size)))
+    return SweepAxis(path, None, tuple(f"name{k}" for k in range(size)))
 
 
 def rows(chosen, first=0, count=None):

@@ -15,7 +15,7 @@ from actuator_opt.design.uncertain import REACH
 from actuator_opt.models.elastomer import modulus_gent, modulus_ruess
 from actuator_opt.uncertainties import estimate
 from actuator_opt.uncertainties.estimate import about
-from actuator_opt.uncertainties.inputs import Model, inputs, without_basis
+from actuator_opt.uncertainties.inputs import UncertainModel, inputs, without_basis
 from actuator_opt.uncertainties.study import draw
 
 WIDE = (-math.inf, math.inf)
@@ -196,7 +196,7 @@ def test_yield_covers_for_repeated_seeds():
     """The exact bounds hold the exact yield for nearly all of 40 seeds."""
     actuator = ao.read(case.only(DIAMETERS), plugins=[sum_of_diameters(36.4)])
     subject = actuator.subject()
-    model = Model(subject, inputs(subject))
+    model = UncertainModel(subject, inputs(subject))
     exact = norm.cdf(0.8)
     held = 0
     for seed in range(40):
@@ -232,7 +232,7 @@ def test_more_draws_than_are_kept_are_counted():
     """Counts run over all draws; what is kept for quantiles is bounded."""
     actuator = ao.read(case.only(DIAMETERS), plugins=[sum_of_diameters(36.5)])
     subject = actuator.subject()
-    model = Model(subject, inputs(subject))
+    model = UncertainModel(subject, inputs(subject))
     tally = draw(model, 5000, 0, keep=1000)
     assert tally.each == 5000
     assert tally.kept.margins.shape[1] == tally.kept.values.shape[1] == 1000

@@ -41,7 +41,7 @@ from .repeating import Rerun, rerun
 from .reports import save
 from .restoring import Restored, draw_run, report_run, restore
 from .results import exit_code, report
-from .sessions import Curve, Prediction, Price, Session, session
+from .sessions import OptimumCurve, Prediction, Price, Session, session
 from .simulations import (
     Compared,
     Trial,
@@ -63,8 +63,8 @@ __all__ = [
     "Calibrated",
     "Compared",
     "Comparison",
-    "Curve",
     "Installation",
+    "OptimumCurve",
     "Prediction",
     "Price",
     "Prices",

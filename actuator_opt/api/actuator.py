@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..base.errors import Diagnostic, InputError
-from ..design import Design, LoadedDesign, Source, read_design, with_values
+from ..design import Design, FileSource, LoadedDesign, read_design, with_values
 from ..design.reader import TEXT
 from ..evaluation import PreparedDesign, compute, prepare
 from ..evaluation.plugin import Plugin, View, collect, load, with_own
@@ -28,7 +28,7 @@ class Actuator:
     """A design as read: the design, the locations of its values, and the user's own metrics."""
 
     design: Design
-    source: Source | None = None
+    source: FileSource | None = None
     plugins: tuple[Plugin, ...] = ()
 
     def subject(self) -> PreparedDesign:

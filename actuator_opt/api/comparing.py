@@ -14,7 +14,7 @@ from ..evaluation.comparison import Comparison, DesignState
 from .actuator import Actuator, Plugins, is_optimum, read
 from .optimum import evaluate
 from .recorded_runs import Run
-from .reports import Paper, file_name, report_files
+from .reports import ReportArguments, file_name, report_files
 from .restoring import Restored, restore
 
 if TYPE_CHECKING:
@@ -139,7 +139,7 @@ def comparison_json(comparison: Comparison) -> dict[str, Any]:
     return comparison.to_dict() | {"answers": answers, "notes": said[len(answers) :]}
 
 
-def report_comparison(comparison: Comparison, **paper: Unpack[Paper]) -> list[ReportFile]:
+def report_comparison(comparison: Comparison, **paper: Unpack[ReportArguments]) -> list[ReportFile]:
     """Draw a comparison as its report: PNG and SVG carry no title block."""
     folder, form = Path(paper.get("folder", "reports")), paper.get("format", "pdf")
     files = [] if form == "html" else report_files(draw_comparison(comparison, folder))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Unpack
 
 from ..design import Design
 from .actuator import Actuator, Plugins, answered, located, place
-from .reports import Paper, page_of, report_files
+from .reports import ReportArguments, page_of, report_files
 
 if TYPE_CHECKING:
     from ..optimisation.pareto import ParetoFront
@@ -203,7 +203,7 @@ def write_front_csv(front: ParetoFront, path: str | Path) -> ReportFile:
     return write_csv(series(front), Path(path))
 
 
-def write_front(front: ParetoFront, **paper: Unpack[Paper]) -> list[ReportFile]:
+def write_front(front: ParetoFront, **paper: Unpack[ReportArguments]) -> list[ReportFile]:
     """Write the page of a front (PDF and PNG) and its figure (PNG and SVG).
 
     A front without designs writes nothing. Parameters as `report`.

@@ -355,7 +355,7 @@ def runs(
     design: str | None = None,
     command: str | None = None,
     folder: str | Path | None = None,
-) -> tuple[list[run_store.Entry], list[Diagnostic]]:
+) -> tuple[list[run_store.StoredRun], list[Diagnostic]]:
     """Recorded runs, newest first, and faults of records that cannot be read.
 
     Parameters

@@ -11,7 +11,7 @@ from ..base.errors import Diagnostic, InputError
 from ..base.tables import Displayed
 from ..design import Design
 from .actuator import Actuator, as_actuator
-from .reports import Paper, page_of
+from .reports import ReportArguments, page_of
 
 if TYPE_CHECKING:
     from ..identification import BendingResult, Calibration, Identification, Record, Specimen
@@ -322,7 +322,7 @@ def _require_use(
 
 
 def write_identification(
-    identification: Identification, **paper: Unpack[Paper]
+    identification: Identification, **paper: Unpack[ReportArguments]
 ) -> list[ReportFile]:
     """Write the page of an identification (PDF and PNG); parameters as `report`."""
     from ..pages.identification import page, samples_hash
@@ -344,7 +344,7 @@ def write_series(identification: Identification, path: str | Path) -> ReportFile
     return write_csv(series(identification), Path(path))
 
 
-def write_calibration(calibrated: Calibrated, **paper: Unpack[Paper]) -> list[ReportFile]:
+def write_calibration(calibrated: Calibrated, **paper: Unpack[ReportArguments]) -> list[ReportFile]:
     """Write the page of a calibration (PDF and PNG), the new design attached.
 
     Parameters as `report`; the attached design is the calibrated one.

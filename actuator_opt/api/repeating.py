@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, Unpack
 
-from ..base.bounds import CHECKS, FRONT, SEED, STARTS, Bounds
+from ..base.bounds import CHECKS, FRONT, SEED, STARTS, IntegerRange
 from ..base.errors import Diagnostic, InputError, shown
 from ..base.tables import Displayed
 from ..evaluation import Evaluation
@@ -19,7 +19,7 @@ from . import results
 from .actuator import Actuator, Plugins, plugins_of, read_as
 from .optimum import evaluate, optimise, pareto
 from .recorded_runs import Run, differing, run_fault
-from .reports import Paper, is_date, verification_tables
+from .reports import ReportArguments, is_date, verification_tables
 
 if TYPE_CHECKING:
     from ..optimisation.pareto import ParetoFront
@@ -75,7 +75,7 @@ class Rerun(Displayed):
         """The terminal output of the command."""
         return results.text(self.subject, **style)
 
-    def report(self, **paper: Unpack[Paper]) -> list[ReportFile]:
+    def report(self, **paper: Unpack[ReportArguments]) -> list[ReportFile]:
         """Write the report again, with the original command and date."""
         paper |= {"actuator": self.actuator, "command": self.command, "date": self.date}
         tables: dict[str, Any] = {"extra_tables": self.tables} if self.tables else {}
@@ -220,7 +220,7 @@ def parsed(command: str) -> tuple[str, argparse.Namespace]:
     return verb, asked
 
 
-def _within(bounds: Bounds) -> Callable[[str], int]:
+def _within(bounds: IntegerRange) -> Callable[[str], int]:
     """A function that reads a whole number within bounds, as the terminal does."""
 
     def whole(text: str) -> int:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Required, TypedDict, Unpack
 
 from ..base.errors import Diagnostic, UsageError, remedy, shown
-from ..design import Design, Source
+from ..design import Design, FileSource
 from ..evaluation import Evaluation, PreparedDesign, prepare
 from ..evaluation.plugin import with_own
 from ..metrics import METRICS
@@ -48,7 +48,7 @@ def _seal_studies(subject: PreparedDesign) -> list[SealStudy]:
     return [study(subject, x, curves=True, mapped=True) for x in asked if moving]
 
 
-class Paper(TypedDict, total=False):
+class ReportArguments(TypedDict, total=False):
     """Arguments common to all reports; see `report`."""
 
     folder: str | Path
@@ -60,7 +60,7 @@ class Paper(TypedDict, total=False):
     format: str
 
 
-class Target(TypedDict, total=False):
+class ReportPlace(TypedDict, total=False):
     """Folder and name of the files of a page, without suffix; which files."""
 
     folder: Required[Path]
@@ -81,7 +81,7 @@ def page_of(
     date: str | None = None,
     all_pages: bool = False,
     format: str = "pdf",
-) -> tuple[Origin, Target]:
+) -> tuple[Origin, ReportPlace]:
     """Title block of a page, and its target.
 
     Parameters
@@ -101,7 +101,7 @@ def page_of(
     source = None if actuator is None else actuator.source
     named = f"{Path(beside or file_name(design, source)).stem}{tail}"
     page = origin(design, source, command=command, date=date)
-    place: Target = {"folder": Path(folder), "stem": stem or named}
+    place: ReportPlace = {"folder": Path(folder), "stem": stem or named}
     if all_pages:
         place["all_pages"] = True
     if format != "pdf":
@@ -121,7 +121,7 @@ def report_design(
     *,
     extra_tables: Sequence[Table] = (),
     dynamics_verified: Verification | None = None,
-    **paper: Unpack[Paper],
+    **paper: Unpack[ReportArguments],
 ) -> list[ReportFile]:
     """Write the report of an evaluation or an optimisation; parameters as `report`."""
     from ..pages.report import outcome, page
@@ -172,7 +172,7 @@ def report_files(paths: Iterable[Path]) -> list[ReportFile]:
     return [ReportFile(path, hashlib.sha256(path.read_bytes()).hexdigest(), 1) for path in paths]
 
 
-def file_name(design: Design, source: Source | None) -> str:
+def file_name(design: Design, source: FileSource | None) -> str:
     """Name of the design's file; without a file, the design's own name made suitable."""
     if source is not None and not source.file.startswith("<"):
         return Path(source.file).name
@@ -181,7 +181,7 @@ def file_name(design: Design, source: Source | None) -> str:
 
 
 def origin(
-    design: Design, source: Source | None, *, command: str = "", date: str | None = None
+    design: Design, source: FileSource | None, *, command: str = "", date: str | None = None
 ) -> Origin:
     """Origin of a page about a design: the file as read, else the design's text."""
     from ..design.writer import to_yaml
@@ -240,7 +240,7 @@ def save(
     design: Actuator | Design | Evaluation | Optimisation | str | Path,
     path: str | Path,
     *,
-    source: Source | None = None,
+    source: FileSource | None = None,
 ) -> Path:
     """Write a design file with full precision, keeping comments and order if possible.
 

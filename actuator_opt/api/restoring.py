@@ -13,7 +13,7 @@ from ..version import VERSION
 from .actuator import Actuator, Plugins, plugins_of, read_as
 from .optimum import write_front, write_front_csv
 from .recorded_runs import Run, differing, read_run, sha256, sound
-from .reports import Paper, report_design
+from .reports import ReportArguments, report_design
 from .sweeping import KeptSweep, kept_sweep, report_sweep
 
 if TYPE_CHECKING:
@@ -137,7 +137,7 @@ def _doubts(found: Run, now: Evaluation) -> list[str]:
 
 
 def report_run(
-    of: Restored | Run | str | Path, *, plugins: Plugins = (), **paper: Unpack[Paper]
+    of: Restored | Run | str | Path, *, plugins: Plugins = (), **paper: Unpack[ReportArguments]
 ) -> list[ReportFile]:
     """Write the report of a recorded run, identical to that of its command.
 
@@ -157,7 +157,7 @@ def report_run(
         return _reported(found, paper)
 
 
-def _reported(found: Restored, paper: Paper) -> list[ReportFile]:
+def _reported(found: Restored, paper: ReportArguments) -> list[ReportFile]:
     from ..optimisation.result import Optimisation
     from ..rendering.blocks import text_table
 

@@ -147,7 +147,7 @@ KINDS = kinds(
         data="api:comparison_json",
     ),
     ResultKind(
-        "sweeps.swept:Swept", lambda swept: _missed(not swept.best),
+        "sweeps.result:Swept", lambda swept: _missed(not swept.best),
         page="pages.sweep:page",
         report=None, csv=None, record="api:record_sweep",
         writes=lambda swept: False,  # rows are written as they come, figures by draw_sweep

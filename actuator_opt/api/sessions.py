@@ -88,7 +88,7 @@ class Price:
 
 
 @dataclass(frozen=True, slots=True)
-class Curve:
+class OptimumCurve:
     """Optima along values of one number, in SI.
 
     Parameters
@@ -165,7 +165,7 @@ class Session:
         from ..optimisation.rounding import Wanted, sizes_of
         from ..optimisation.run import result_of
         from ..optimisation.solver import solve
-        from ..optimisation.warm_start import Effort, WarmStart
+        from ..optimisation.warm_start import SearchEffort, WarmStart
         from .optimum import estimated
 
         began = time.perf_counter()
@@ -193,7 +193,7 @@ class Session:
         found = result_of(subject, problem, solution, prices=False, seed=seed, began=began)
         self.optimum: Optimisation = estimated(found, actuator.plugins)
         self._differentiable: dict[str, bool] = {}
-        self._warm = WarmStart(problem, solution, Effort(STARTS, SAMPLES, seed))
+        self._warm = WarmStart(problem, solution, SearchEffort(STARTS, SAMPLES, seed))
 
     def __repr__(self) -> str:
         """Name and objective of the design."""
@@ -317,7 +317,7 @@ class Session:
         values: Sequence[float | str],
         *,
         stop: Callable[[], bool] | None = None,
-    ) -> Curve:
+    ) -> OptimumCurve:
         """Compute the optima along values of one number, together, outwards from the optimum.
 
         The search stops at the first value without a design.
@@ -344,7 +344,7 @@ class Session:
         goal = self._warm.actuator.goal
         metrics = self.optimum.evaluation.metrics
         single = goal.single
-        return Curve(
+        return OptimumCurve(
             path=path,
             quantity=quantity_of(path, self._actuator.design),
             values=tuple(wanted),

@@ -15,7 +15,7 @@ from ..design import Design
 from ..studies.plant import plant
 from .actuator import Actuator, as_actuator
 from .records import Units
-from .reports import Paper, Target, page_of
+from .reports import ReportArguments, ReportPlace, page_of
 
 if TYPE_CHECKING:
     from ..design.scenario import LoadedScenario, Scenario
@@ -334,7 +334,7 @@ def write_simulation(
     *,
     measured: Compared | None = None,
     sensitivities: Sensitivities | None = None,
-    **paper: Unpack[Paper],
+    **paper: Unpack[ReportArguments],
 ) -> list[ReportFile]:
     """Write the page of a simulation (PDF and PNG); the scenario is attached.
 
@@ -371,7 +371,7 @@ def write_comparison(
     *,
     title: str,
     notes: Sequence[str] = (),
-    **paper: Unpack[Paper],
+    **paper: Unpack[ReportArguments],
 ) -> list[ReportFile]:
     """Write one page that compares several simulations (PDF and PNG).
 
@@ -396,8 +396,8 @@ def write_comparison(
 
 
 def _page(
-    scenario: Trial, simulation: Simulation, tail: str, paper: Paper
-) -> tuple[Origin, Target]:
+    scenario: Trial, simulation: Simulation, tail: str, paper: ReportArguments
+) -> tuple[Origin, ReportPlace]:
     """`page_of` for a scenario, which is attached and names the page."""
     source = scenario.loaded.source
     name = "scenario.yaml" if source.file.startswith("<") else Path(source.file).name

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Unpack
 
 from ..design import Design
 from .actuator import Actuator, as_actuator
-from .reports import Paper, page_of
+from .reports import ReportArguments, page_of
 
 if TYPE_CHECKING:
     from ..evaluation.rings import Place
@@ -70,7 +70,7 @@ def uncertainty(
         )
 
 
-def write_uncertainty(study: Uncertainty, **paper: Unpack[Paper]) -> list[ReportFile]:
+def write_uncertainty(study: Uncertainty, **paper: Unpack[ReportArguments]) -> list[ReportFile]:
     """Write the page of an uncertainty study as PDF and PNG; parameters as `report`.
 
     Raises
@@ -157,7 +157,9 @@ def with_contact(actuator: Actuator, study: SealStudy) -> Actuator:
     return Actuator(design, actuator.source, actuator.plugins)
 
 
-def write_seal(study: SealStudy, *, sheet: bool = True, **paper: Unpack[Paper]) -> list[ReportFile]:
+def write_seal(
+    study: SealStudy, *, sheet: bool = True, **paper: Unpack[ReportArguments]
+) -> list[ReportFile]:
     """Write the sheet of a seal (PDF and PNG), and its map, if any, as CSV.
 
     Parameters

@@ -10,7 +10,7 @@ from ..base.errors import Diagnostic, InputError, UsageError
 from ..base.tables import Displayed
 from .actuator import Actuator
 from .recorded_runs import Run
-from .reports import Paper, file_name, report_files
+from .reports import ReportArguments, file_name, report_files
 
 if TYPE_CHECKING:
     from ..pages import ReportFile
@@ -272,11 +272,11 @@ def kept_sweep(run: Run, actuator: Actuator) -> KeptSweep:
 def _plan(run: Run) -> Plan:
     import numpy as np
 
-    from ..sweeps.plan import Axis, plan
+    from ..sweeps.plan import SweepAxis, plan
 
     told: dict[str, Any] = run.body["plan"]
     axes = [
-        Axis(
+        SweepAxis(
             one["path"],
             None if one["values"] is None else np.array(one["values"], dtype=float),
             tuple(one["texts"]),
@@ -323,7 +323,7 @@ def store_of(run: Run) -> tuple[Path, str]:
     return path, kept["study"]
 
 
-def report_sweep(kept: KeptSweep, **paper: Unpack[Paper]) -> list[ReportFile]:
+def report_sweep(kept: KeptSweep, **paper: Unpack[ReportArguments]) -> list[ReportFile]:
     """Write the figures and tables of a recorded sweep again, from the rows in its store.
 
     The figures are those of the sweep, else parallel axes if a design is feasible. The CSV

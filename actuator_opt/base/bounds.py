@@ -5,26 +5,26 @@ from __future__ import annotations
 from typing import NamedTuple
 
 
-class Bounds(NamedTuple):
+class IntegerRange(NamedTuple):
     """Lower and upper bound of a whole number."""
 
     least: int
     most: int
 
 
-STARTS = Bounds(1, 1000)
+STARTS = IntegerRange(1, 1000)
 """Number of local searches."""
 
 
-CHECKS = Bounds(0, 100)
+CHECKS = IntegerRange(0, 100)
 """Number of full searches for a front."""
 
 
-SEED = Bounds(0, 2**32 - 1)
+SEED = IntegerRange(0, 2**32 - 1)
 """Seeds that every generator accepts: NLopt's is an unsigned long, which may have 32 bits."""
 
 
-FRONT = Bounds(3, 2000)
+FRONT = IntegerRange(3, 2000)
 """Number of designs on a front."""
 
 

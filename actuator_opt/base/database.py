@@ -64,21 +64,21 @@ CREATE TABLE IF NOT EXISTS texts (
 """
 
 
-class Column(NamedTuple):
+class NumberColumn(NamedTuple):
     """A number of a row: name and SI unit."""
 
     name: str
     unit: str
 
 
-class Rows(NamedTuple):
+class StoredNumbers(NamedTuple):
     """Numbers (n, columns) of several keys; NaN and a reason where a design failed."""
 
     numbers: Array
     failures: dict[int, str]
 
 
-class Seals:
+class Checksums:
     """Computes and checks the checksums of a study's rows."""
 
     def __init__(self, study: str, width: int) -> None:
@@ -109,7 +109,7 @@ class Database:
         self, connection: sqlite3.Connection, number: int, study: str, width: int, path: Path
     ) -> None:
         self.connection, self.number, self.path = connection, number, path
-        self.width, self.seals = width, Seals(study, width)
+        self.width, self.seals = width, Checksums(study, width)
 
     def missing(self, keys: Sequence[bytes]) -> tuple[list[int], int]:
         """Indices of the keys without an intact row, and how many of their rows are damaged."""
@@ -146,7 +146,7 @@ class Database:
                 kept[row[0]] = row[1:3] if self.seals.fits(*row) else None
         return kept
 
-    def put(self, keys: Sequence[bytes], rows: Rows) -> None:
+    def put(self, keys: Sequence[bytes], rows: StoredNumbers) -> None:
         """Store a chunk completely or not at all; damaged rows are replaced."""
         width = 8 * self.width
         data = np.ascontiguousarray(rows.numbers, dtype="<f8").tobytes()
@@ -168,7 +168,7 @@ def opened(
     study: str,
     name: str,
     design: str,
-    columns: Sequence[Column],
+    columns: Sequence[NumberColumn],
     version: str,
     texts: Iterable[tuple[str, str]] = (),
 ) -> Iterator[Database]:
@@ -322,7 +322,7 @@ class StoredRows(NamedTuple):
     hash: str
     name: str
     design: str
-    columns: tuple[Column, ...]
+    columns: tuple[NumberColumn, ...]
     rows: int
     """Number of stored rows, intact or damaged."""
     failures: dict[str, int]
@@ -361,10 +361,10 @@ class Reader:
         rows = self.connection.execute(count, (number,)).fetchone()[0]
         if not rows:
             raise refused(self.path, f"study {number} has no rows yet", "run its sweep first")
-        failures = self._failures(number, Seals(hashed, len(told)))
+        failures = self._failures(number, Checksums(hashed, len(told)))
         return StoredRows(number, hashed, name, design, told, rows, failures, self._texts(number))
 
-    def _failures(self, number: int, seals: Seals) -> dict[str, int]:
+    def _failures(self, number: int, seals: Checksums) -> dict[str, int]:
         """Number of failed designs by reason, the most frequent first; damaged rows are ignored."""
         select = f"{_SELECT} AND failure IS NOT NULL"
         reasons = Counter(
@@ -386,16 +386,16 @@ class Reader:
             raise refused(self.path, message, "run the sweep again with --store")
         return int(row[0])
 
-    def _columns(self, text: str) -> tuple[Column, ...]:
+    def _columns(self, text: str) -> tuple[NumberColumn, ...]:
         try:
             told = json.loads(text)
         except (TypeError, ValueError, RecursionError):
             told = None
         if not isinstance(told, list) or not all(
-            isinstance(one, list) and len(one) == len(Column._fields) for one in told
+            isinstance(one, list) and len(one) == len(NumberColumn._fields) for one in told
         ):
             raise refused(self.path, "does not name the columns of its rows", "run the sweep again")
-        return tuple(Column(*one) for one in told)
+        return tuple(NumberColumn(*one) for one in told)
 
     def _texts(self, number: int) -> dict[str, tuple[str, ...]]:
         tables = {row[0] for row in self.connection.execute("SELECT name FROM sqlite_master")}
@@ -416,7 +416,7 @@ class Reader:
         select = f"{_SELECT} AND failure IS NULL ORDER BY key"
         cursor = self.connection.execute(select, (study.number,))
         width = len(study.columns)
-        seals = Seals(study.hash, width)
+        seals = Checksums(study.hash, width)
         while every := cursor.fetchmany(SOME):
             some = [row for row in every if seals.fits(*row)]
             data = b"".join(row[1] for row in some)

@@ -112,7 +112,7 @@ def rated(value: float, lower: float, upper: float, standard_error: float) -> Pa
     return Parameter(value, lower, upper, standard_error, bool(near))
 
 
-class Known(NamedTuple):
+class FittedParameters(NamedTuple):
     """Fitted parameters and their covariance; infinite variance for undetermined parameters."""
 
     parameters: dict[str, Parameter]
@@ -136,7 +136,7 @@ def known(
     sizes: Array,
     *,
     spare: float | None = None,
-) -> Known:
+) -> FittedParameters:
     """Bounds of the linearised model with Student's t [SeberWild1989].
 
     Covariance s^2 (J^T J)^-1, s^2 = sum r^2/(n - p), in the directions that the points resolve; a
@@ -176,4 +176,4 @@ def known(
         near = half <= max(WEAK * abs(value), ROUNDING * float(sizes[k]))
         middle = float(value)
         parameters[name] = Parameter(middle, middle - half, middle + half, error, bool(near))
-    return Known(parameters, covariance, rank, t)
+    return FittedParameters(parameters, covariance, rank, t)

@@ -36,7 +36,7 @@ _SEAL = "blake2b"
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class StoredRun:
     """A listed record: its file and its head."""
 
     path: Path
@@ -131,9 +131,9 @@ def _claim(part: Path, path: Path) -> None:
         part.replace(path)
 
 
-def entries(place: Path) -> tuple[list[Entry], list[Diagnostic]]:
+def entries(place: Path) -> tuple[list[StoredRun], list[Diagnostic]]:
     """Records of a folder, newest first, and the faults of unreadable records."""
-    found: list[tuple[int, str, Entry]] = []
+    found: list[tuple[int, str, StoredRun]] = []
     faults = []
     try:
         paths = sorted(path for path in place.iterdir() if is_record(path))
@@ -148,7 +148,7 @@ def entries(place: Path) -> tuple[list[Entry], list[Diagnostic]]:
         try:
             with path.open("rb") as stream:
                 line, written = stream.readline(_HEAD), os.fstat(stream.fileno()).st_mtime_ns
-            entry = Entry(path, _parsed(line, path)[0])
+            entry = StoredRun(path, _parsed(line, path)[0])
         except FileNotFoundError:  # deleted in the meantime
             continue
         except OSError as error:

@@ -35,7 +35,7 @@ class Interpolation:
 
 
 @dataclass(frozen=True, slots=True)
-class Axis:
+class SurrogateAxis:
     """An axis of the polynomial in the logarithm of an input: 0 < lower < upper, and its nodes.
 
     With `hermite` the fit also matches the slopes along the axis, with twice as many terms.
@@ -97,7 +97,7 @@ class Surrogate:
     failed : reasons of failed points, which are left out of the fit
     """
 
-    axes: tuple[Axis, ...]
+    axes: tuple[SurrogateAxis, ...]
     base: dict[str, float]
     coefficients: np.ndarray
     linear: tuple[str, ...]
@@ -132,7 +132,7 @@ def surrogate(
     function: Callable[[dict[str, float]], Interpolation],
     *,
     base: Mapping[str, float],
-    axes: Sequence[Axis],
+    axes: Sequence[SurrogateAxis],
 ) -> Surrogate | None:
     """Fit a surrogate at the Chebyshev nodes of the axes; None if too many points failed.
 
@@ -174,7 +174,7 @@ def surrogate(
 
 
 def _fitted(
-    axes: Sequence[Axis],
+    axes: Sequence[SurrogateAxis],
     points: Sequence[Mapping[str, float]],
     values: Sequence[np.ndarray],
     answers: Sequence[Interpolation],
@@ -190,7 +190,7 @@ def _fitted(
 
 
 def _basis(
-    axes: Sequence[Axis], points: Sequence[Mapping[str, float]], slope: str = ""
+    axes: Sequence[SurrogateAxis], points: Sequence[Mapping[str, float]], slope: str = ""
 ) -> np.ndarray:
     """Products of the polynomials at points (points, all terms); their slopes along an axis."""
     matrix = np.ones((len(points), 1))

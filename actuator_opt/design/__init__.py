@@ -6,13 +6,13 @@ from .build import to_tree, with_values
 from .kinds import Fraction, position_at
 from .model import Design
 from .paths import canonical, get, numbers, quantity_of, split_assignment
-from .reader import LoadedDesign, Source, is_scenario, read_design
+from .reader import FileSource, LoadedDesign, is_scenario, read_design
 
 __all__ = [
     "Design",
+    "FileSource",
     "Fraction",
     "LoadedDesign",
-    "Source",
     "canonical",
     "get",
     "is_scenario",

@@ -17,7 +17,7 @@ from .faults import cross_field, material_faults
 from .kinds import Fraction, Of, Section, ValueFault, example, what
 from .model import Design, Ply
 from .paths import put, resolve, spell
-from .structure import Entry, Loc, Materials, child_at, entries, leaves
+from .structure import KeyEntry, Loc, MaterialLookup, child_at, entries, leaves
 
 MOST_FAULTS = 100
 
@@ -55,7 +55,7 @@ class Checked(Generic[Root]):
 def build(
     tree: Mapping[str, Any],
     *,
-    materials: Materials | None = None,
+    materials: MaterialLookup | None = None,
     metrics: Mapping[str, Quantity] | None = None,
     contradictions: bool = True,
 ) -> Built:
@@ -148,10 +148,10 @@ def _unless_known(faults: Iterable[Fault], known: Sequence[Fault]) -> list[Fault
     return new
 
 
-def _section_at(root: type[Section], loc: Loc) -> tuple[type[Section] | None, Entry | None]:
+def _section_at(root: type[Section], loc: Loc) -> tuple[type[Section] | None, KeyEntry | None]:
     """Section and entry of the model at a place (None inside tables)."""
     section: type[Section] | None = root
-    entry: Entry | None = None
+    entry: KeyEntry | None = None
     for key in loc:
         if isinstance(key, int):
             continue
@@ -218,7 +218,7 @@ def _unknown_key(loc: Loc, root: type[Section]) -> Fault:
     return Fault(loc, "unknown key", errors.remedy(str(loc[-1]), names), at_key=True)
 
 
-def how_to_add(name: str, entry: Entry | None) -> str:
+def how_to_add(name: str, entry: KeyEntry | None) -> str:
     """A line that adds a missing key."""
     if entry is None:
         return f'add "{name}: …"'
@@ -253,7 +253,7 @@ def with_values(
     design: Design,
     values: Mapping[str, float | str | Fraction],
     *,
-    materials: Materials | None = None,
+    materials: MaterialLookup | None = None,
     metrics: Mapping[str, Quantity] | None = None,
     contradictions: bool = True,
 ) -> Design:

@@ -20,7 +20,7 @@ from .material import ROLES
 from .model import Design
 from .paths import Target, resolve
 from .requirements import in_faulty_block
-from .structure import Entry, Materials, number_of, value_at
+from .structure import KeyEntry, MaterialLookup, number_of, value_at
 
 Value: TypeAlias = float | bool | str | Fraction
 """An allowed value: SI number, boolean, name or word, or share of the stroke."""
@@ -116,7 +116,7 @@ def _values(loc: tuple[str, str], values: list[Any], target: Target) -> Iterator
         good.append((index, value))
 
 
-def _read(raw: Any, entry: Entry) -> Value:
+def _read(raw: Any, entry: KeyEntry) -> Value:
     """A value as its target field reads it; raises `ValueFault`."""
     if entry.choices:
         if raw in entry.choices:
@@ -141,7 +141,7 @@ def same(one: Value, other: Value) -> bool:
     return math.isclose(first, second, rel_tol=1e-9, abs_tol=1e-15)
 
 
-def material_faults(tree: Any, materials: Materials) -> Iterator[Fault]:
+def material_faults(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
     """Unknown materials, and materials that do not suit their place."""
     block = tree.get("choices")
     for path, values in block.items() if isinstance(block, dict) else ():

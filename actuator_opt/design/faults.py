@@ -1,6 +1,6 @@
 """Contradictions between values of a design, each reported at one of the values.
 
-Every check is a small function of a `View`. It yields nothing if a required value is missing or
+Every check is a small function of a `FileView`. It yields nothing if a required value is missing or
 already faulty, so the checks also run on a file with other faults. More checks are in
 `wall_faults` (barrel and rod), `retention_faults` (joints of caps and head), `seal_faults` and
 `linkage_faults` (robot joints).
@@ -19,7 +19,7 @@ from . import choices, material, seal_faults, wall_faults
 from .kinds import MaterialName
 from .material import ROLES
 from .model import PLAIN_CAP, closed_length
-from .structure import Loc, Materials, View, child, leaves, length_text
+from .structure import FileView, Loc, MaterialLookup, child, leaves, length_text
 
 _ROUND = math.radians(0.01)
 """Joint angles in remedies are rounded inwards to this step (rad), for short numbers."""
@@ -35,7 +35,7 @@ class _Reach(NamedTuple):
     offset: float
 
 
-def _closed(view: View) -> float | None:
+def _closed(view: FileView) -> float | None:
     """Pin-to-pin length of the retracted actuator; None if a part is unknown."""
     stroke, piston = view.number("cylinder", "stroke"), view.number("piston", "length")
     head = view.number("head", "length") if view.has("head") else piston
@@ -55,7 +55,7 @@ def _closed(view: View) -> float | None:
     )
 
 
-def _reach(view: View) -> _Reach | None:
+def _reach(view: FileView) -> _Reach | None:
     if not view.has("linkage"):
         return None
     values = (
@@ -69,7 +69,7 @@ def _reach(view: View) -> _Reach | None:
     return _Reach(*numbers) if len(numbers) == len(values) else None
 
 
-def linkage(view: View) -> Iterator[Fault]:
+def linkage(view: FileView) -> Iterator[Fault]:
     """No dead point between the stops: |a - r| < l < a + r."""
     found = _reach(view)
     if found is None:
@@ -93,7 +93,7 @@ def linkage(view: View) -> Iterator[Fault]:
         )
 
 
-def inertia(view: View) -> Iterator[Fault]:
+def inertia(view: FileView) -> Iterator[Fault]:
     """A joint speed, torque or inertia needs a linkage."""
     if view.number("load", "inertia") and not view.has("linkage"):
         yield _no_linkage(("load", "inertia"), "load.mass")
@@ -104,7 +104,7 @@ def _no_linkage(loc: Loc, instead: str) -> Fault:
     return Fault(loc, "no linkage stated", remedy, at_key=True)
 
 
-def linkage_load_cases(view: View) -> Iterator[Fault]:
+def linkage_load_cases(view: FileView) -> Iterator[Fault]:
     """A case has an angle or a position, one speed, and stays within the range of the joint."""
     for index, case in enumerate(view.items("load_cases")):
         if not isinstance(case, dict):
@@ -119,7 +119,7 @@ def linkage_load_cases(view: View) -> Iterator[Fault]:
         yield from _angle(view, loc)
 
 
-def _angle(view: View, loc: Loc) -> Iterator[Fault]:
+def _angle(view: FileView, loc: Loc) -> Iterator[Fault]:
     """The joint angle of a case is between those of both stops."""
     angle, found = view.number(*loc, "angle"), _reach(view)
     if angle is None or found is None:
@@ -146,14 +146,14 @@ def _angle(view: View, loc: Loc) -> Iterator[Fault]:
     )
 
 
-LINKAGE_CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
+LINKAGE_CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
     linkage,
     inertia,
     linkage_load_cases,
 )
 
 
-def lines(view: View) -> Iterator[Fault]:
+def lines(view: FileView) -> Iterator[Fault]:
     """Every line has a wall; a line beyond the throttle requires a throttle."""
     for index in range(len(view.items("lines"))):
         inner = view.number("lines", index, "inner_diameter")
@@ -175,7 +175,7 @@ def lines(view: View) -> Iterator[Fault]:
 ENDS = get_args(get_args(choices.End)[0])
 
 
-def ports(view: View) -> Iterator[Fault]:
+def ports(view: FileView) -> Iterator[Fault]:
     """The selected end of the lines is described."""
     end = view.text("ports", "end")
     if end not in ENDS:  # a separate fault, reported at its place
@@ -203,7 +203,7 @@ def ports(view: View) -> Iterator[Fault]:
         )
 
 
-def valve(view: View) -> Iterator[Fault]:
+def valve(view: FileView) -> Iterator[Fault]:
     """The centred valve leaks less than the open valve passes, at the same pressure drop."""
     numbers = [
         view.number("valve", name)
@@ -222,7 +222,7 @@ def valve(view: View) -> Iterator[Fault]:
         )
 
 
-def stiffness(view: View) -> Iterator[Fault]:
+def stiffness(view: FileView) -> Iterator[Fault]:
     """The published topologies do not include sticking seals."""
     published = view.text("stiffness", "topology") != "per_chamber"
     if published and view.text("stiffness", "seals") == "sticking":
@@ -233,7 +233,7 @@ def stiffness(view: View) -> Iterator[Fault]:
         )
 
 
-def control(view: View) -> Iterator[Fault]:
+def control(view: FileView) -> Iterator[Fault]:
     """A position loop needs a valve."""
     if view.has("control") and not view.has("valve"):
         yield Fault(
@@ -241,7 +241,7 @@ def control(view: View) -> Iterator[Fault]:
         )
 
 
-def held_pressures(view: View) -> Iterator[Fault]:
+def held_pressures(view: FileView) -> Iterator[Fault]:
     """Held pressures are given for both chambers or for neither."""
     for index in range(len(view.items("load_cases"))):
         loc = ("load_cases", index)
@@ -265,7 +265,7 @@ def held_pressures(view: View) -> Iterator[Fault]:
                 )
 
 
-CIRCUIT_CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
+CIRCUIT_CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
     lines,
     ports,
     valve,
@@ -276,7 +276,7 @@ CIRCUIT_CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
 
 
 def _smaller(
-    view: View, inner: Loc, outer: Loc, *, factor: float = 1.0, why: str = ""
+    view: FileView, inner: Loc, outer: Loc, *, factor: float = 1.0, why: str = ""
 ) -> Iterator[Fault]:
     """`inner` must be smaller than `factor` times `outer`."""
     small, large = view.number(*inner), view.number(*outer)
@@ -290,7 +290,7 @@ def _smaller(
     )
 
 
-def rod(view: View) -> Iterator[Fault]:
+def rod(view: FileView) -> Iterator[Fault]:
     """The rod fits the bore, its bore and its thread fit the rod."""
     yield from _smaller(view, ("rod", "outer_diameter"), ("cylinder", "bore"))
     yield from _smaller(view, ("rod", "inner_diameter"), ("rod", "outer_diameter"))
@@ -315,7 +315,7 @@ def rod(view: View) -> Iterator[Fault]:
         )
 
 
-def barrel_length(view: View) -> Iterator[Fault]:
+def barrel_length(view: FileView) -> Iterator[Fault]:
     """The barrel has room for stroke, piston and head."""
     length = view.number("barrel", "length")
     parts = [
@@ -332,7 +332,7 @@ def barrel_length(view: View) -> Iterator[Fault]:
         )
 
 
-def supply(view: View) -> Iterator[Fault]:
+def supply(view: FileView) -> Iterator[Fault]:
     """The supply exceeds the return; proof is not below supply pressure."""
     pressure, back = view.number("supply", "pressure"), view.number("supply", "return_pressure")
     ratio = view.number("supply", "proof_ratio")
@@ -351,7 +351,7 @@ def supply(view: View) -> Iterator[Fault]:
         )
 
 
-def environment(view: View) -> Iterator[Fault]:
+def environment(view: FileView) -> Iterator[Fault]:
     """The coldest temperature is below the hottest."""
     low = view.number("environment", "temperature_min")
     high = view.number("environment", "temperature_max")
@@ -364,7 +364,7 @@ def environment(view: View) -> Iterator[Fault]:
         )
 
 
-def _case_pressure(view: View, index: int) -> Iterator[Fault]:
+def _case_pressure(view: FileView, index: int) -> Iterator[Fault]:
     """The driven port of a case has at least return and at most supply pressure."""
     loc = ("load_cases", index, "pressure")
     pressure, supply = view.number(*loc), view.number("supply", "pressure")
@@ -380,7 +380,7 @@ def _case_pressure(view: View, index: int) -> Iterator[Fault]:
         yield Fault(loc, message, f"write {text(back)} to {text(supply)}")
 
 
-def load_cases(view: View) -> Iterator[Fault]:
+def load_cases(view: FileView) -> Iterator[Fault]:
     """Names are unique; force or torque with its lever; pressures and positions are in range."""
     seen: dict[str, int] = {}
     stroke = view.number("cylinder", "stroke")
@@ -425,7 +425,7 @@ def _case_force(loc: Loc, case: dict[str, Any], *, linked: bool) -> Iterator[Fau
         yield Fault((*loc, "force"), "missing", remedy)
 
 
-CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
+CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
     rod,
     barrel_length,
     wall_faults.skirts,
@@ -443,7 +443,7 @@ CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
 
 def cross_field(tree: Any) -> Iterator[Fault]:
     """All contradictions between values of a tree in SI."""
-    view = View(tree)
+    view = FileView(tree)
     for check in CHECKS:
         yield from check(view)
 
@@ -452,7 +452,7 @@ def _a(word: str | None) -> str:
     return f"{'an' if word and word[0] in 'aeiou' else 'a'} {word}"
 
 
-def material_faults(tree: Any, materials: Materials) -> Iterator[Fault]:
+def material_faults(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
     """All faults that depend on the material library."""
     yield from _material_names(tree, materials)
     yield from wall_faults.of_materials(tree, materials)
@@ -461,9 +461,9 @@ def material_faults(tree: Any, materials: Materials) -> Iterator[Fault]:
     yield from material.of_fluid(tree, materials)
 
 
-def _material_names(tree: Any, materials: Materials) -> Iterator[Fault]:
+def _material_names(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
     """Unknown materials, and materials that do not suit their place."""
-    joint = wall_faults.joint_of(View(tree))
+    joint = wall_faults.joint_of(FileView(tree))
     for loc, entry, name in leaves(tree):
         if not isinstance(entry.kind, MaterialName) or not isinstance(name, str):
             continue

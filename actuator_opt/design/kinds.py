@@ -162,7 +162,7 @@ def what(value: object) -> str:
     return "a text" if isinstance(value, str) else type(value).__name__
 
 
-class Kind:
+class ValueKind:
     """A kind of value; `help` is the meaning of its field."""
 
     help: str = ""
@@ -186,7 +186,7 @@ class Kind:
         return core_schema.nullable_schema(schema) if type(None) in get_args(source) else schema
 
 
-class Of(Kind):
+class Of(ValueKind):
     """A float of a stated quantity: text needs its unit, a Python number is SI."""
 
     def __init__(self, quantity: str, help: str = "") -> None:
@@ -206,7 +206,7 @@ class Fraction:
     value: float
 
 
-class PositionKind(Kind):
+class PositionKind(ValueKind):
     """``worst``, a length from the cap end, or a fraction of the stroke (``50 %``)."""
 
     help = "piston position from the cap end: worst, a length, or a share of the stroke (50 %)"
@@ -247,7 +247,7 @@ def position_at(position: Position, stroke: Array) -> Array | None:
     return None if isinstance(position, str) else position
 
 
-class Text(Kind):
+class Text(ValueKind):
     """Free text of at most `longest` characters; `multiline` for notes."""
 
     example = "robot knee"
@@ -274,7 +274,7 @@ class Text(Kind):
         return value
 
 
-class Flag(Kind):
+class Boolean(ValueKind):
     """A boolean."""
 
     example = "false"
@@ -296,7 +296,7 @@ class Flag(Kind):
         raise ValueFault(f"need true or false, not {word}", "write true or false")
 
 
-class Choice(Kind):
+class Choice(ValueKind):
     """A word from a short list; `help` states the meaning of each word.
 
     Parameters
@@ -355,7 +355,7 @@ class MaterialName(Text):
         self.example = MATERIAL_EXAMPLES[role]
 
 
-class Sizes(Kind):
+class SizesKind(ValueKind):
     """The sizes of a variable: a series by name, or a list."""
 
     help = "allowed sizes: a series such as iso_3320, or a list of values"
@@ -370,7 +370,7 @@ class Sizes(Kind):
         return tuple(value)
 
 
-class Goal(Kind):
+class ObjectiveKind(ValueKind):
     """A metric, or a block of metrics with positive weights."""
 
     help = "a metric, or several with weights (each is divided by its value in the design)"

@@ -23,7 +23,7 @@ from .kinds import ValueFault, example, read_quantity, what
 from .model import MOST_LAYERS, Ply
 from .paths import spell
 from .structure import Loc, child, child_at, lists_of
-from .yaml_source import Document, Shorthand, Span
+from .yaml_source import Document, NodeSpan, Shorthand
 
 EXAMPLE = "[90_4 / +-25_2 / 0]s"
 MOST_REPEATS = 999
@@ -45,7 +45,7 @@ class NotationFault(ValueFault):
         self.offset = offset
 
 
-class Layer(NamedTuple):
+class PlyGroup(NamedTuple):
     """Neighbouring plies of one angle; `offset` is their position in the notation."""
 
     angle: str
@@ -53,12 +53,12 @@ class Layer(NamedTuple):
     plies: int
     offset: int
 
-    def same(self, other: Layer) -> bool:
+    def same(self, other: PlyGroup) -> bool:
         """Whether two layers are equal but for their number of plies."""
         return (float(self.angle), self.balanced) == (float(other.angle), other.balanced)
 
 
-def read_notation(text: str, most: int = MOST_LAYERS) -> tuple[Layer, ...]:
+def read_notation(text: str, most: int = MOST_LAYERS) -> tuple[PlyGroup, ...]:
     """Layers of a notation, from the inside outwards.
 
     Raises
@@ -82,9 +82,9 @@ def read_notation(text: str, most: int = MOST_LAYERS) -> tuple[Layer, ...]:
     return tuple(layers)
 
 
-def _joined(layers: Sequence[Layer]) -> list[Layer]:
+def _joined(layers: Sequence[PlyGroup]) -> list[PlyGroup]:
     """Layers with neighbours of equal angle merged."""
-    joined: list[Layer] = []
+    joined: list[PlyGroup] = []
     for layer in layers:
         if joined and joined[-1].same(layer):
             joined[-1] = joined[-1]._replace(plies=joined[-1].plies + layer.plies)
@@ -128,7 +128,7 @@ class _Parser:
             remedy = 'remove it, or open a "["'
         return NotationFault(self.offset, f'"{shown(text)}" where {wanted} is expected', remedy)
 
-    def layup(self, depth: int) -> list[Layer]:
+    def layup(self, depth: int) -> list[PlyGroup]:
         """Items between slashes."""
         layers = self.item(depth)
         while self.text == "/":
@@ -136,7 +136,7 @@ class _Parser:
             layers = [*layers, *self.item(depth)]
         return self.limited(layers)
 
-    def limited(self, layers: Sequence[Layer]) -> list[Layer]:
+    def limited(self, layers: Sequence[PlyGroup]) -> list[PlyGroup]:
         """Neighbours merged; at most the allowed number of layers."""
         joined = _joined(layers)
         if len(joined) > self.most:
@@ -144,7 +144,7 @@ class _Parser:
             raise NotationFault(joined[self.most].offset, message, "write fewer")
         return joined
 
-    def item(self, depth: int) -> list[Layer]:
+    def item(self, depth: int) -> list[PlyGroup]:
         """A ply, a pair or a group, with its repeats."""
         if self.text != "[":
             layer = self.ply()
@@ -182,7 +182,7 @@ class _Parser:
         self.at += 1
         return count
 
-    def ply(self) -> Layer:
+    def ply(self) -> PlyGroup:
         """An angle with its sign."""
         offset, pair = self.offset, self.kind == "pair"
         signed, sign = self.kind in ("pair", "sign"), "-" if self.text == "-" else ""
@@ -196,7 +196,7 @@ class _Parser:
         plain = size in (0.0, 90.0)
         angle = self.text if plain else sign + self.text
         self.at += 1
-        return Layer(angle, pair or plain, 2 if pair else 1, offset)
+        return PlyGroup(angle, pair or plain, 2 if pair else 1, offset)
 
 
 def expanded(document: Document) -> Document:
@@ -216,7 +216,7 @@ def _in_full(document: Document, wall: Loc, items: Sequence[Any]) -> Document:
     """Expand a list entry by entry; the old index i becomes `starts[i]`."""
     whole: list[Any] = []
     starts: list[int] = []
-    places: dict[Loc, Span] = {}
+    places: dict[Loc, NodeSpan] = {}
     faults: list[Diagnostic] = []
     unusable: set[Loc] = set()
     shorthands: list[Shorthand] = []
@@ -316,7 +316,7 @@ def _diagnostic(document: Document, loc: Loc, wrong: _Wrong, now: Loc) -> Diagno
     return document.diagnostic(span, wrong.message, wrong.remedy, spell((*now, wrong.key)))
 
 
-def _character(document: Document, loc: Loc, offset: int) -> Span | None:
+def _character(document: Document, loc: Loc, offset: int) -> NodeSpan | None:
     """Place of a character of a text; of the whole text if it is folded or has escapes."""
     span, value = document.values.get(loc), child_at(document.data, loc)
     if span is None or not isinstance(value, str):
@@ -325,11 +325,11 @@ def _character(document: Document, loc: Loc, offset: int) -> Span | None:
         start = span.start + quote
         if document.text.startswith(value, start) and span.start <= start + len(value) <= span.end:
             at = quote + offset
-            return Span(span.line, span.column + at, span.start + at, span.end)
+            return NodeSpan(span.line, span.column + at, span.start + at, span.end)
     return span
 
 
-def _entries(item: Mapping[str, Any], layers: Sequence[Layer]) -> Iterator[dict[str, Any]]:
+def _entries(item: Mapping[str, Any], layers: Sequence[PlyGroup]) -> Iterator[dict[str, Any]]:
     """Entries in list form; unknown keys stay in the first."""
     number, unit = units.split(item["ply_thickness"])
     for layer in layers:
@@ -343,7 +343,7 @@ def _entries(item: Mapping[str, Any], layers: Sequence[Layer]) -> Iterator[dict[
         yield entry | {"ply_thickness": item["ply_thickness"]}
 
 
-def _places(document: Document, loc: Loc, now: Loc, layer: Layer) -> dict[Loc, Span]:
+def _places(document: Document, loc: Loc, now: Loc, layer: PlyGroup) -> dict[Loc, NodeSpan]:
     """Places of the values of a layer: those of the notation at its angle."""
     said = _character(document, (*loc, "plies"), layer.offset)
     found = {now: said} | {(*now, key): said for key in ("angle", "thickness", "balanced")}
@@ -353,7 +353,7 @@ def _places(document: Document, loc: Loc, now: Loc, layer: Layer) -> dict[Loc, S
     return {place: span for place, span in found.items() if span is not None}
 
 
-def _extent(document: Document, loc: Loc) -> Span:
+def _extent(document: Document, loc: Loc) -> NodeSpan:
     """Extent of a compact entry: from its first key to the end of its last value."""
     span = document.values[loc]
     if document.text.startswith("{", span.start):

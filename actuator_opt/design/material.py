@@ -21,7 +21,7 @@ from ..base.numeric import STEP, Array, maximum, real, where
 from ..base.quantities import MATERIAL_PROPERTIES, Quantity
 from ..models import damping as laws
 from ..models.oil_laws import BULK_MODULUS_LAWS, VISCOSITY_LAWS
-from .structure import Materials, Properties, View, child_at
+from .structure import FileView, MaterialLookup, Properties, child_at
 
 KINDS: Final = ("metal", "ply", "polymer", "fluid", "seal", "adhesive")
 CONFIDENCES: Final = ("verified", "secondary", "unverified", "derived")
@@ -341,9 +341,9 @@ def viscosity_law(stated: str | None, known: Container[str]) -> str:
     return stated or ("roelands" if "pressure_viscosity" in known else "none")
 
 
-def of_fluid(tree: Any, materials: Materials) -> Iterator[Fault]:
+def of_fluid(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
     """Stated laws of the oil without the data they need in library or design."""
-    view = View(tree)
+    view = FileView(tree)
     name = view.text("fluid", "material")
     if name is None or not isinstance(materials, Properties) or materials.kind(name) != "fluid":
         return
@@ -381,7 +381,7 @@ LARGEST_POWER = 300.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Fit:
+class LawFit:
     """A fitted law B(v), SI.
 
     `r_squared` is 1 - sum w (B - B_fit)^2/sum w (B - mean)^2; None if all points are equal.
@@ -436,7 +436,7 @@ class Fit:
         return middle - half, middle + half
 
 
-def fit_power_law(speed: Array, damping: Array, weights: Array | None = None) -> Fit:
+def fit_power_law(speed: Array, damping: Array, weights: Array | None = None) -> LawFit:
     """Fit B = a v^b [Huang2017].
 
     Parameters
@@ -467,7 +467,7 @@ def fit_power_law(speed: Array, damping: Array, weights: Array | None = None) ->
     return assess("power law", laws.power_law, values, v, b, w, least={"exponent": 1.0})
 
 
-def fit_double_exponential(speed: Array, damping: Array, weights: Array | None = None) -> Fit:
+def fit_double_exponential(speed: Array, damping: Array, weights: Array | None = None) -> LawFit:
     """Fit B = a1 e^(b1 v) + a2 e^(b2 v) [Huang2017]; the steeper exponential first.
 
     Parameters
@@ -518,7 +518,7 @@ def assess(
     *,
     least: Mapping[str, float] | None = None,
     doubts: tuple[str, ...] = (),
-) -> Fit:
+) -> LawFit:
     """Fitted law from least-squares values: bounds, R-squared, undetermined parameters.
 
     Parameters
@@ -552,7 +552,7 @@ def assess(
         weak = [key for key, one in found.parameters.items() if not one.identifiable]
         if weak:
             reasons.append(f"bounds of {', '.join(weak)} wider than {WEAK:.0%} of the value")
-    return Fit(
+    return LawFit(
         name=name,
         law=law,
         parameters=found.parameters,

@@ -17,17 +17,17 @@ from ..models import mass
 from . import choices
 from .choices import Paper
 from .kinds import (
+    Boolean,
     CaseName,
     Choice,
-    Flag,
     Fraction,
-    Goal,
     MaterialName,
+    ObjectiveKind,
     Of,
     Position,
     PositionKind,
     Section,
-    Sizes,
+    SizesKind,
     Text,
 )
 from .seals import Seals
@@ -42,9 +42,9 @@ class Line(Section):
     inner_diameter: Annotated[float, Of("diameter", "inner diameter")]
     outer_diameter: Annotated[float, Of("diameter", "outer diameter")]
     material: Annotated[str, MaterialName("isotropic")]
-    rigid: Annotated[bool, Flag("rigid wall: only the oil is compliant")] = False
+    rigid: Annotated[bool, Boolean("rigid wall: only the oil is compliant")] = False
     beyond_throttle: Annotated[
-        bool, Flag("the line is between the throttle and the line's end")
+        bool, Boolean("the line is between the throttle and the line's end")
     ] = False
 
 
@@ -116,7 +116,7 @@ class Ports(Section):
     accumulators: Annotated[tuple[Accumulator, ...], Field(max_length=8)] = ()
 
 
-class Control(Section):
+class PositionLoop(Section):
     """The position loop: signal = gain x position error, measured at the load."""
 
     gain: Annotated[
@@ -161,11 +161,11 @@ class Variable(Section):
     lower: float
     upper: float
     start: float
-    sizes: Annotated[str | tuple[float, ...] | None, Sizes()] = None
+    sizes: Annotated[str | tuple[float, ...] | None, SizesKind()] = None
     step: float | None = None
 
 
-class Measured(Section):
+class TestBounds(Section):
     """Test result for a value of the design: its 95 % bounds.
 
     SI; in the file, units by PATH.
@@ -242,7 +242,7 @@ class Environment(Section):
     assembly_temperature: Annotated[
         float, Of("temperature", "temperature at assembly and oil filling")
     ] = 293.15
-    wet: Annotated[bool, Flag("whether the laminate is saturated with moisture")] = True
+    wet: Annotated[bool, Boolean("whether the laminate is saturated with moisture")] = True
     trapped_rise: Annotated[
         float | None, Of("temperature_rise", "temperature rise of the oil with blocked ports")
     ] = None
@@ -290,7 +290,7 @@ class Ply(Section):
     ] = 0.0
     balanced: Annotated[
         bool,
-        Flag(
+        Boolean(
             "true: a balanced +-angle pair; false: one ply at the signed angle, the wall may twist"
         ),
     ] = True
@@ -548,8 +548,8 @@ class Limit(Section):
 class Objective(Section):
     """A metric, or several with weights (each divided by its value in the original design)."""
 
-    minimise: Annotated[str | dict[str, float] | None, Goal()] = None
-    maximise: Annotated[str | dict[str, float] | None, Goal()] = None
+    minimise: Annotated[str | dict[str, float] | None, ObjectiveKind()] = None
+    maximise: Annotated[str | dict[str, float] | None, ObjectiveKind()] = None
 
     @property
     def aim(self) -> Sense:
@@ -605,7 +605,7 @@ class Design(Section):
     stiffness: Stiffness = Stiffness()
     valve: Valve | None = None
     ports: Ports = Ports()
-    control: Control | None = None
+    control: PositionLoop | None = None
     load: Load = Load()
     linkage: Linkage | None = None
     load_cases: Annotated[tuple[LoadCase, ...], Field(min_length=1, max_length=100)]
@@ -613,7 +613,7 @@ class Design(Section):
     choices: dict[str, tuple[float | bool | str | Fraction, ...]] = {}  # noqa: RUF012 (pydantic copies it)
     requirements: dict[str, Limit] = {}  # noqa: RUF012 (pydantic copies it)
     waivers: dict[str, Annotated[str, Text("why the check does not apply")]] = {}  # noqa: RUF012 (pydantic copies it)
-    measured: dict[str, Measured] = {}  # noqa: RUF012 (pydantic copies it)
+    measured: dict[str, TestBounds] = {}  # noqa: RUF012 (pydantic copies it)
     """Bounds of values from a test record, by PATH."""
     uncertainty: dict[str, Uncertain] = {}  # noqa: RUF012 (pydantic copies it)
     """Scatter of values by PATH, in addition to the scatter of libraries and practice."""

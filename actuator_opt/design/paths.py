@@ -20,7 +20,7 @@ from ..base.quantities import Quantity
 from ..metrics import METRICS
 from .kinds import Fraction, Section, ValueFault
 from .model import Design
-from .structure import Entry, Loc, child, child_at, entries, leaves, number_of
+from .structure import KeyEntry, Loc, child, child_at, entries, leaves, number_of
 from .uncertain import NUMBERS, quantity_of_entry
 
 _PATH = re.compile(r"[^.\[\]=]+(\[[^\[\]=]+\])?(\.[^.\[\]=]+(\[[^\[\]=]+\])?)*")
@@ -52,7 +52,7 @@ class Target:
     path: str
     loc: Loc
     quantity: Quantity | None
-    entry: Entry | None = None
+    entry: KeyEntry | None = None
 
 
 def spell(loc: Loc, tree: Any = None) -> str:

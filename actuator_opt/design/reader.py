@@ -19,8 +19,8 @@ from .build import MOST_FAULTS, Root, build, copy_tree
 from .kinds import Section, ValueFault
 from .model import Design
 from .paths import put, resolve, spell
-from .structure import Loc, Materials
-from .yaml_source import MAX_BYTES, Document, Span, decode, parse
+from .structure import Loc, MaterialLookup
+from .yaml_source import MAX_BYTES, Document, NodeSpan, decode, parse
 
 TEXT = "<text>"
 STDIN = "<stdin>"
@@ -46,7 +46,7 @@ class Override(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Source:
+class FileSource:
     """Places of the values of a file, for later faults (from an evaluation or a plug-in)."""
 
     document: Document
@@ -93,9 +93,9 @@ class Source:
     def place(self, fault: Fault) -> tuple[int, int]:
         """Line and column of a fault, for sorting."""
         found = self._find(fault)
-        return found[:2] if isinstance(found, Span) else (0, 0)
+        return found[:2] if isinstance(found, NodeSpan) else (0, 0)
 
-    def _find(self, fault: Fault) -> Span | Override | None:
+    def _find(self, fault: Fault) -> NodeSpan | Override | None:
         """Nearest place in the text at or above a fault, or the value that replaced it."""
         for depth in range(len(fault.loc), -1, -1):
             loc = fault.loc[:depth]
@@ -118,14 +118,14 @@ class LoadedDesign:
     """A design and its source."""
 
     design: Design
-    source: Source
+    source: FileSource
 
 
 def read_design(
     source: str | Path,
     *,
     overrides: Iterable[Override | tuple[str, str]] = (),
-    materials: Materials | None = None,
+    materials: MaterialLookup | None = None,
     metrics: Mapping[str, Quantity] | None = None,
 ) -> LoadedDesign:
     """Read a design file, or its text.
@@ -153,7 +153,7 @@ def read_document(
     document: Document,
     *,
     overrides: Iterable[Override | tuple[str, str]] = (),
-    materials: Materials | None = None,
+    materials: MaterialLookup | None = None,
     metrics: Mapping[str, Quantity] | None = None,
 ) -> LoadedDesign:
     """The design of a parsed YAML document; parameters as for `read_design`."""
@@ -172,7 +172,7 @@ def load(
     made: Callable[[dict[str, Any]], tuple[Root | None, Sequence[Fault]]],
     overrides: Iterable[Override | tuple[str, str]] = (),
     metrics: Mapping[str, Quantity] | None = None,
-) -> tuple[Root, Source]:
+) -> tuple[Root, FileSource]:
     """The section that a document describes, and the places of its values.
 
     Parameters
@@ -203,7 +203,7 @@ def load(
         except ValueFault as fault:
             message, shown = fault.message.removeprefix(f"{path}: "), errors.shown(path, 120)
             faults.append(override.diagnostic(message, fault.remedy, shown, at_key=True))
-    source = Source(document, places, root, metrics)
+    source = FileSource(document, places, root, metrics)
     section, all_found = made(tree)
     found = _once([f for f in all_found if not _unusable(f, document)], document)
     if section is None or faults or found:
@@ -251,7 +251,7 @@ def _once(faults: Sequence[Fault], document: Document) -> list[Fault]:
 
 
 def _in_order(
-    source: Source, said: Sequence[Diagnostic], found: Sequence[Fault]
+    source: FileSource, said: Sequence[Diagnostic], found: Sequence[Fault]
 ) -> list[Diagnostic]:
     """Faults by line and column, at most `MOST_FAULTS`, with the number of omitted faults.
 
@@ -289,7 +289,7 @@ def opened(source: str | Path, what: str = "design") -> tuple[str, str]:
     return decode(data, name, what), name
 
 
-def library() -> Materials:
+def library() -> MaterialLookup:
     """The shipped material library, loaded when a design is read."""
     from .materials import load_library
 

@@ -17,23 +17,23 @@ from ..base.quantities import Quantity
 from ..metrics import METRICS
 from . import choice_list, layup, requirements as wishes
 from .kinds import (
+    Boolean,
     CaseName,
-    Flag,
-    Kind,
     MaterialName,
     Of,
     PositionKind,
     Section,
-    Sizes,
+    SizesKind,
     Text,
     ValueFault,
+    ValueKind,
     example,
 )
 from .material import ROLES
 from .model import Design, Ply, Uncertain
 from .sizes import MOST_SIZES
 from .standard_sizes import SERIES
-from .structure import Entry, Materials, entries
+from .structure import KeyEntry, MaterialLookup, entries
 from .uncertain import NUMBERS, quantity_of_entry
 
 Schema = dict[str, Any]
@@ -97,7 +97,7 @@ def quantity_schema(quantity: Quantity, help: str = "") -> Schema:
     return schema
 
 
-def _takes(kind: Kind, text: str) -> bool:
+def _takes(kind: ValueKind, text: str) -> bool:
     try:
         kind.validate(text)
     except ValueFault:
@@ -105,7 +105,7 @@ def _takes(kind: Kind, text: str) -> bool:
     return True
 
 
-def value_schema(kind: Kind | None, materials: Materials | None) -> Schema:
+def value_schema(kind: ValueKind | None, materials: MaterialLookup | None) -> Schema:
     """Schema of a single value."""
     if isinstance(kind, Of):
         return quantity_schema(kind.quantity, kind.help)
@@ -124,7 +124,7 @@ def value_schema(kind: Kind | None, materials: Materials | None) -> Schema:
             "examples": [*named, "50 %", "55 mm"],
         }
     help = kind.help if kind is not None else ""
-    if isinstance(kind, Flag):
+    if isinstance(kind, Boolean):
         words = [*kind.words, True, False]
         return {"description": help, "enum": words, "examples": [True, False]}
     schema: Schema = {"description": help, "type": "string"}
@@ -144,7 +144,7 @@ def value_schema(kind: Kind | None, materials: Materials | None) -> Schema:
     return schema
 
 
-def entry_schema(entry: Entry, materials: Materials | None) -> Schema:
+def entry_schema(entry: KeyEntry, materials: MaterialLookup | None) -> Schema:
     """Schema of the value of a section's key."""
     if entry.shape == "choice":
         help = entry.kind.help if entry.kind is not None else ""
@@ -167,7 +167,7 @@ def entry_schema(entry: Entry, materials: Materials | None) -> Schema:
     return schema
 
 
-def section_schema(section: type[Section], materials: Materials | None) -> Schema:
+def section_schema(section: type[Section], materials: MaterialLookup | None) -> Schema:
     """A block of keys; the required keys are offered as a snippet."""
     known = entries(section)
     schema: Schema = {
@@ -206,7 +206,7 @@ def _with_notation(schema: Schema) -> Schema:
     return schema
 
 
-def _snippet(entry: Entry) -> Any:
+def _snippet(entry: KeyEntry) -> Any:
     if entry.section is not None:
         below = {n: _snippet(e) for n, e in entries(entry.section).items() if e.required}
         return [below] if entry.shape == "list" else below
@@ -227,7 +227,7 @@ _OF_TABLES = (
 def json_schema(
     root: type[Section] = Design,
     *,
-    materials: Materials | None = None,
+    materials: MaterialLookup | None = None,
     metrics: Mapping[str, Quantity] | None = None,
 ) -> Schema:
     """JSON Schema of a design file, or of a file with another root section.
@@ -263,9 +263,9 @@ def json_schema(
     }
 
 
-def _of_parts(section: type[Section] = Design, prefix: str = "") -> dict[str, Entry]:
+def _of_parts(section: type[Section] = Design, prefix: str = "") -> dict[str, KeyEntry]:
     """PATHs of all values of a part; ``[*]`` is the index of a list."""
-    found: dict[str, Entry] = {}
+    found: dict[str, KeyEntry] = {}
     for name, entry in entries(section).items():
         path = f"{prefix}.{name}" if prefix else name
         if entry.section is not None and entry.shape in ("section", "list"):
@@ -334,7 +334,7 @@ def _start_and_sizes(quantity: Quantity, path: str) -> Schema:
             "description": "step of the variable, which takes its multiples",
             "allOf": [value],
         },
-        "sizes": {"description": Sizes.help, "anyOf": [*options, some | {"items": value}]},
+        "sizes": {"description": SizesKind.help, "anyOf": [*options, some | {"items": value}]},
     }
 
 
@@ -395,7 +395,7 @@ def _shared(quantity: Quantity, definitions: Schema) -> Schema:
     return schema
 
 
-def _set(materials: Materials | None, definitions: Schema) -> Schema:
+def _set(materials: MaterialLookup | None, definitions: Schema) -> Schema:
     known: Schema = {}
     for path, entry in _of_parts().items():
         known[path] = entry_schema(entry, materials)
@@ -486,7 +486,7 @@ def _waivers(metrics: Mapping[str, Quantity]) -> Schema:
     }
 
 
-def _materials(materials: Materials | None) -> Schema:
+def _materials(materials: MaterialLookup | None) -> Schema:
     changed = {
         "type": "object",
         "additionalProperties": False,

@@ -18,11 +18,11 @@ from ..seals.seal_type import SealType, SizeFault
 from ..seals.u_cup import lip_faults
 from . import wall_faults
 from .seals import BACK_UPS
-from .structure import Loc, Materials, Properties, View, child_at, length_text
+from .structure import FileView, Loc, MaterialLookup, Properties, child_at, length_text
 from .wall_faults import elements
 
 
-def fields(view: View) -> Iterator[Fault]:
+def fields(view: FileView) -> Iterator[Fault]:
     """Every seal has the sizes of its type, and no others; a piston has no wiper."""
     for loc in elements(view):
         kind = _kind(view, loc)
@@ -38,12 +38,12 @@ def fields(view: View) -> Iterator[Fault]:
         )
 
 
-def _kind(view: View, loc: Loc) -> SealType | None:
+def _kind(view: FileView, loc: Loc) -> SealType | None:
     """Seal type of an element; None if unknown."""
     return TYPES.get(view.text(*loc, "type") or "")
 
 
-def _sizes(view: View, loc: Loc, kind: SealType) -> Iterator[Fault]:
+def _sizes(view: FileView, loc: Loc, kind: SealType) -> Iterator[Fault]:
     """Missing and superfluous sizes of a type; every type accepts a groove width."""
     for size in SIZES:
         if size.key in kind.needed and not view.has(*loc, size.key):
@@ -62,7 +62,7 @@ def _sizes(view: View, loc: Loc, kind: SealType) -> Iterator[Fault]:
             )
 
 
-def _back_ups(view: View, loc: Loc) -> Iterator[Fault]:
+def _back_ups(view: FileView, loc: Loc) -> Iterator[Fault]:
     """Back-up rings need material and thickness, which have no effect without rings."""
     stated = view.text(*loc, "back_up") != "none"
     for field, example in (("back_up_material", "back_up_ptfe"), ("back_up_thickness", "1.4 mm")):
@@ -81,7 +81,7 @@ def _back_ups(view: View, loc: Loc) -> Iterator[Fault]:
             )
 
 
-def widths(view: View) -> Iterator[Fault]:
+def widths(view: FileView) -> Iterator[Fault]:
     """The parts in a groove fit its width; a land is not wider than its ring."""
     for loc in elements(view):
         kind = _kind(view, loc)
@@ -112,7 +112,7 @@ def widths(view: View) -> Iterator[Fault]:
             )
 
 
-def _grooves(view: View, seal: str) -> Iterator[tuple[Loc, float, float]]:
+def _grooves(view: FileView, seal: str) -> Iterator[tuple[Loc, float, float]]:
     """Place of a fault, depth at nominal squeeze and least width of every groove of a seal."""
     for loc in elements(view):
         if loc[1] != seal:
@@ -141,7 +141,7 @@ def _grooves(view: View, seal: str) -> Iterator[tuple[Loc, float, float]]:
         yield (*at, "width"), thickness, count * width
 
 
-def grooves(view: View) -> Iterator[Fault]:
+def grooves(view: FileView) -> Iterator[Fault]:
     """The seal grooves lie inside piston and head and leave a core and a wall."""
     bore, rod_diameter = view.number("cylinder", "bore"), view.number("rod", "outer_diameter")
     for seal, part in (("piston", "piston"), ("rod", "head")):
@@ -180,7 +180,7 @@ def grooves(view: View) -> Iterator[Fault]:
             )
 
 
-def clearances(view: View) -> Iterator[Fault]:
+def clearances(view: FileView) -> Iterator[Fault]:
     """The gap behind a ring is smaller than the groove depth, or the ring is not held."""
     for seal, part in (("piston", "piston"), ("rod", "head")):
         gap = view.number(part, "clearance")
@@ -198,7 +198,7 @@ def clearances(view: View) -> Iterator[Fault]:
             )
 
 
-def squeeze(view: View) -> Iterator[Fault]:
+def squeeze(view: FileView) -> Iterator[Fault]:
     """The nominal squeeze of an O-ring is in the range of its law; others have squeeze > 0."""
     for loc in elements(view):
         value, kind = view.number(*loc, "squeeze"), _kind(view, loc)
@@ -220,7 +220,7 @@ def squeeze(view: View) -> Iterator[Fault]:
             )
 
 
-def shapes(view: View) -> Iterator[Fault]:
+def shapes(view: FileView) -> Iterator[Fault]:
     """Inner dimensions of a ring fit its section."""
     for loc in elements(view):
         kind = _kind(view, loc)
@@ -250,7 +250,7 @@ def _said(loc: Loc, found: Iterable[SizeFault]) -> Iterator[Fault]:
         yield Fault((*loc, one.key), one.message, one.remedy)
 
 
-def films(view: View) -> Iterator[Fault]:
+def films(view: FileView) -> Iterator[Fault]:
     """Both elements of a pair have the same friction law; a film needs a single ring or a pair."""
     for name in ("piston", "rod"):
         both: list[Loc] = [("seals", name)]
@@ -288,9 +288,9 @@ SLIDING_RING = 3.0
 rubber; that of a hard polyurethane is about 1."""
 
 
-def sliding_rings(tree: Any, materials: Materials) -> Iterator[Fault]:
+def sliding_rings(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
     """A step ring needs a compound with a sliding ring; other types need a compound without."""
-    view = View(tree)
+    view = FileView(tree)
     if not isinstance(materials, Properties):
         return
     for loc in elements(view):

@@ -17,8 +17,8 @@ from ..base.errors import Fault
 from ..base.quantities import Quantity
 from .kinds import ValueFault, example, read_quantity, what
 from .paths import resolve
-from .standard_sizes import SERIES, Series
-from .structure import Loc, View, child, child_at, number_of, value_at
+from .standard_sizes import SERIES, SizeSeries
+from .structure import FileView, Loc, child, child_at, number_of, value_at
 
 MOST_SIZES = 1000
 """Most sizes of a variable, and rows of a group."""
@@ -28,7 +28,7 @@ ROOM = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
-class Group:
+class VariableGroup:
     """Variables by PATH, the source of their sizes, and the allowed combinations (SI)."""
 
     paths: tuple[str, ...]
@@ -131,7 +131,7 @@ def _read_list(
 
 def groups(
     tree: Any, *, plies: bool = False, standard: bool = False
-) -> tuple[tuple[Group, ...], tuple[Fault, ...]]:
+) -> tuple[tuple[VariableGroup, ...], tuple[Fault, ...]]:
     """Variables with discrete sizes; dependent variables share a group.
 
     Parameters
@@ -145,7 +145,7 @@ def groups(
     -------
     the groups, and the faults of variables without a suitable size
     """
-    view = View(tree)
+    view = FileView(tree)
     rules = {path: rule for path in _paths(tree) if (rule := _rule(view, path, plies, standard))}
     found, faults = [], []
     for members in _families(rules):
@@ -189,7 +189,7 @@ def _paths(tree: Any) -> list[str]:
     return good
 
 
-def _rule(view: View, path: str, plies: bool, standard: bool) -> _Rule | None:
+def _rule(view: FileView, path: str, plies: bool, standard: bool) -> _Rule | None:
     """Rule for the sizes of a variable, by file or option; None if free."""
     sizes, step = (child_at(view.tree, ("variables", path, key)) for key in ("sizes", "step"))
     lower, upper = _bounds(view, path)
@@ -215,7 +215,7 @@ def _rule(view: View, path: str, plies: bool, standard: bool) -> _Rule | None:
     return None
 
 
-def _of(series: Series, view: View, path: str) -> _Rule:
+def _of(series: SizeSeries, view: FileView, path: str) -> _Rule:
     bounds, parent = _bounds(view, path), series.parent(path)
     return _Rule(
         path,
@@ -227,7 +227,7 @@ def _of(series: Series, view: View, path: str) -> _Rule:
     )
 
 
-def _bounds(view: View, path: str) -> tuple[float, float]:
+def _bounds(view: FileView, path: str) -> tuple[float, float]:
     lower, upper = (child_at(view.tree, ("variables", path, key)) for key in ("lower", "upper"))
     return float(lower), float(upper)
 
@@ -257,7 +257,7 @@ def _families(rules: dict[str, _Rule]) -> Iterator[list[_Rule]]:
             yield list(below(top.path))
 
 
-def _group(view: View, members: Sequence[_Rule]) -> Group:
+def _group(view: FileView, members: Sequence[_Rule]) -> VariableGroup:
     """All allowed combinations of a group; raises `_NoSize`."""
     rows: list[tuple[float, ...]] = [()]
     column = {rule.path: index for index, rule in enumerate(members)}
@@ -280,10 +280,10 @@ def _group(view: View, members: Sequence[_Rule]) -> Group:
             raise _NoSize(rule.path, message, f"narrow the bounds, for at most {MOST_SIZES}")
         rows = wider
     paths, labels = tuple(rule.path for rule in members), tuple(rule.label for rule in members)
-    return Group(paths, labels, tuple(sorted(set(rows))))
+    return VariableGroup(paths, labels, tuple(sorted(set(rows))))
 
 
-def _fixed(view: View, rule: _Rule, column: dict[str, int]) -> float | None:
+def _fixed(view: FileView, rule: _Rule, column: dict[str, int]) -> float | None:
     """Value of a parent that is not a variable; None without a parent, or if it is free."""
     if rule.parent is None or rule.parent in column:
         return None
@@ -298,7 +298,7 @@ def _fixed(view: View, rule: _Rule, column: dict[str, int]) -> float | None:
     return None
 
 
-def _none_fits(view: View, rule: _Rule, values: Sequence[float]) -> _NoSize:
+def _none_fits(view: FileView, rule: _Rule, values: Sequence[float]) -> _NoSize:
     """No size between the bounds: states the nearest sizes."""
     quantity = resolve(rule.path, view.tree).quantity
     assert quantity is not None

@@ -24,7 +24,7 @@ from ..base.quantities import INPUTS
 from ..seals.kinds import TYPES
 from . import standard_sizes as standards, yaml_source
 from .seals import BACK_UPS
-from .structure import View, child_at
+from .structure import FileView, child_at
 
 Use: TypeAlias = Literal["reciprocating", "static"]
 Direction: TypeAlias = Literal["nearest", "up", "down"]
@@ -349,7 +349,7 @@ Bounds = tuple[float, float]
 
 
 @dataclass(frozen=True)
-class Series:
+class SizeSeries:
     """A series of sizes.
 
     Parameters
@@ -367,7 +367,7 @@ class Series:
     asked: Literal["file", "plies", "standard"] = "file"
     needs_parent: bool = False
 
-    def fault(self, view: View, path: str) -> tuple[str, str] | None:
+    def fault(self, view: FileView, path: str) -> tuple[str, str] | None:
         """Why the series does not apply to a variable, and the remedy."""
         return None
 
@@ -375,12 +375,12 @@ class Series:
         """The parent variable, on which the sizes of a variable depend."""
         return None
 
-    def each(self, view: View, path: str) -> str:
+    def each(self, view: FileView, path: str) -> str:
         """Name of a single size."""
         return f"{self.label} size"
 
     def values(
-        self, view: View, path: str, parent: float | None, bounds: Bounds
+        self, view: FileView, path: str, parent: float | None, bounds: Bounds
     ) -> Sequence[float]:
         """The sizes for a value of the parent (None: no parent, or a free parent)."""
         raise NotImplementedError
@@ -391,28 +391,28 @@ def along(angle: float) -> bool:
     return abs(math.sin(2 * angle)) <= WHOLE
 
 
-def _layer(view: View, path: str, key: str) -> float | None:
+def _layer(view: FileView, path: str, key: str) -> float | None:
     """A number of the layer of a PATH."""
     match = re.match(r"(barrel|rod)\.layup\[(\d+)\]", path)
     assert match is not None
     return view.number(match[1], "layup", int(match[2]), key)
 
 
-class _Iso3320(Series):
+class _Iso3320(SizeSeries):
     def values(
-        self, view: View, path: str, parent: float | None, bounds: Bounds
+        self, view: FileView, path: str, parent: float | None, bounds: Bounds
     ) -> Sequence[float]:
         sizes = standards.bores() if path == "cylinder.bore" else standards.rods()
         return [size.value for size in sizes]
 
 
-class _Pairs(Series):
+class _Pairs(SizeSeries):
     """Bore and rod of a catalogue cylinder: both, or either with the other fixed."""
 
     def _other(self, path: str) -> str:
         return "cylinder.bore" if path != "cylinder.bore" else "rod.outer_diameter"
 
-    def fault(self, view: View, path: str) -> tuple[str, str] | None:
+    def fault(self, view: FileView, path: str) -> tuple[str, str] | None:
         other = self._other(path)
         variable = child_at(view.tree, ("variables", other))
         if variable is None or child_at(variable, ("sizes",)) == self.name:
@@ -424,7 +424,7 @@ class _Pairs(Series):
         return "cylinder.bore" if path != "cylinder.bore" else None
 
     def values(
-        self, view: View, path: str, parent: float | None, bounds: Bounds
+        self, view: FileView, path: str, parent: float | None, bounds: Bounds
     ) -> Sequence[float]:
         pairs = standards.cylinder_pairs(self.label)
         if path != "cylinder.bore":
@@ -439,10 +439,10 @@ def _same(one: float, other: float | None) -> bool:
     return other is not None and math.isclose(one, other, rel_tol=1e-9)
 
 
-class _Walls(Series):
+class _Walls(SizeSeries):
     """Walls of drawn steel tube, of a metal layer or of a hollow rod."""
 
-    def fault(self, view: View, path: str) -> tuple[str, str] | None:
+    def fault(self, view: FileView, path: str) -> tuple[str, str] | None:
         if path == "rod.inner_diameter" or _layer(view, path, "ply_thickness") is None:
             return None
         return f"{self.name} has tube walls, but this layer consists of plies", "write whole_plies"
@@ -451,7 +451,7 @@ class _Walls(Series):
         return "rod.outer_diameter" if path == "rod.inner_diameter" else None
 
     def values(
-        self, view: View, path: str, parent: float | None, bounds: Bounds
+        self, view: FileView, path: str, parent: float | None, bounds: Bounds
     ) -> Sequence[float]:
         walls = [size.value for size in standards.tube_walls()]
         if path != "rod.inner_diameter":
@@ -461,13 +461,13 @@ class _Walls(Series):
         return [hole for hole in holes if hole > 0]
 
 
-class _Glands(Series):
+class _Glands(SizeSeries):
     """O-ring sections, with squeeze and groove of their gland at mid-tolerance."""
 
     def _seal(self, path: str) -> tuple[str, ...]:
         return tuple(path.split(".")[:-1])
 
-    def fault(self, view: View, path: str) -> tuple[str, str] | None:
+    def fault(self, view: FileView, path: str) -> tuple[str, str] | None:
         kind = TYPES.get(view.text(*self._seal(path), "type") or "")
         if kind is None or kind.o_ring_gland:
             return None
@@ -479,7 +479,7 @@ class _Glands(Series):
         return None if last == "section" else f"{head}.section"
 
     def values(
-        self, view: View, path: str, parent: float | None, bounds: Bounds
+        self, view: FileView, path: str, parent: float | None, bounds: Bounds
     ) -> Sequence[float]:
         if path.endswith(".section"):
             return standards.ring_sections()
@@ -495,8 +495,8 @@ class _Glands(Series):
             return []
 
 
-class _WholePlies(Series):
-    def fault(self, view: View, path: str) -> tuple[str, str] | None:
+class _WholePlies(SizeSeries):
+    def fault(self, view: FileView, path: str) -> tuple[str, str] | None:
         if _layer(view, path, "ply_thickness") is not None:
             return None
         remedy = 'add e.g. "ply_thickness: 0.2 mm" to it; for a metal layer write a step'
@@ -505,7 +505,7 @@ class _WholePlies(Series):
     def parent(self, path: str) -> str | None:
         return path.removesuffix("thickness") + "angle"
 
-    def _singly(self, view: View, path: str, angle: float | None) -> bool:
+    def _singly(self, view: FileView, path: str, angle: float | None) -> bool:
         """Whether plies count singly: not balanced, or at 0 or 90 degrees."""
         balanced = view.flag(*self._loc(path), "balanced")
         return balanced is False or (angle is not None and along(angle))
@@ -515,14 +515,14 @@ class _WholePlies(Series):
         assert match is not None
         return match[1], "layup", int(match[2])
 
-    def each(self, view: View, path: str) -> str:
+    def each(self, view: FileView, path: str) -> str:
         angle = _layer(view, path, "angle")
         pairs = "" if self._singly(view, path, angle) else "pairs of "
         one = INPUTS["ply_thickness"].text(_layer(view, path, "ply_thickness") or 0.0)
         return f"whole number of {pairs}plies of {one}"
 
     def values(
-        self, view: View, path: str, parent: float | None, bounds: Bounds
+        self, view: FileView, path: str, parent: float | None, bounds: Bounds
     ) -> Sequence[float]:
         one = _layer(view, path, "ply_thickness") or 0.0
         step = 1 if self._singly(view, path, parent) else 2
@@ -531,17 +531,17 @@ class _WholePlies(Series):
         return [float(count * Decimal(repr(one))) for count in counts]
 
 
-class _Angles(Series):
-    def fault(self, view: View, path: str) -> tuple[str, str] | None:
+class _Angles(SizeSeries):
+    def fault(self, view: FileView, path: str) -> tuple[str, str] | None:
         if view.items("barrel", "allowed_angles"):
             return None
         return "the barrel has no allowed_angles", 'add e.g. "allowed_angles: [20 deg, 45 deg]"'
 
-    def each(self, view: View, path: str) -> str:
+    def each(self, view: FileView, path: str) -> str:
         return "allowed angle"
 
     def values(
-        self, view: View, path: str, parent: float | None, bounds: Bounds
+        self, view: FileView, path: str, parent: float | None, bounds: Bounds
     ) -> Sequence[float]:
         angles = view.items("barrel", "allowed_angles")
         return sorted({sign * angle + 0.0 for angle in angles for sign in (1, -1)})
@@ -551,7 +551,7 @@ _BORE_AND_ROD = re.compile(r"cylinder\.bore|rod\.outer_diameter")
 _THICKNESS = r"(barrel|rod)\.layup\[\d+\]\.thickness"
 _O_RING = re.compile(r"seals\.(piston|rod)\.(secondary\.)?(section|squeeze|groove_width)")
 _BOTH = "cylinder.bore and rod.outer_diameter"
-SERIES: Mapping[str, Series] = {
+SERIES: Mapping[str, SizeSeries] = {
     series.name: series
     for series in (
         _Iso3320("iso_3320", "ISO 3320", _BOTH, _BORE_AND_ROD, "standard"),

@@ -14,7 +14,7 @@ from typing import Any, Literal, Protocol, TypeAlias, Union, get_args, get_origi
 from ..base import quantities
 from ..base.errors import Fault
 from ..base.quantities import Quantity
-from .kinds import Choice, Fraction, Kind, Of, PositionKind, Section
+from .kinds import Choice, Fraction, Of, PositionKind, Section, ValueKind
 from .model import Design
 
 Loc: TypeAlias = tuple[str | int, ...]
@@ -24,7 +24,7 @@ Shape: TypeAlias = Literal["value", "choice", "section", "list", "table"]
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class KeyEntry:
     """A key of a section.
 
     `kind` is set for a value, a list of values or a choice; `choices` for a choice; `section` for a
@@ -36,7 +36,7 @@ class Entry:
     shape: Shape
     required: bool
     default: Any
-    kind: Kind | None = None
+    kind: ValueKind | None = None
     choices: tuple[str, ...] = ()
     section: type[Section] | None = None
     least: int = 0
@@ -51,41 +51,41 @@ class Entry:
 
 
 @cache
-def entries(section: type[Section]) -> Mapping[str, Entry]:
+def entries(section: type[Section]) -> Mapping[str, KeyEntry]:
     """All keys of a section, in file order."""
     return {name: _entry(name, info) for name, info in section.model_fields.items()}
 
 
-def _entry(name: str, info: Any) -> Entry:
+def _entry(name: str, info: Any) -> KeyEntry:
     required = info.is_required()
     default = None if required else info.default
     kind = _kind(info.metadata)
     if kind is not None and not isinstance(kind, Choice):
-        return Entry(name, "value", required, default, kind)
+        return KeyEntry(name, "value", required, default, kind)
     least = next((m.min_length for m in info.metadata if hasattr(m, "min_length")), 0)
     most = next((m.max_length for m in info.metadata if hasattr(m, "max_length")), None)
     if kind is not None and kind.words:
-        return Entry(name, "choice", required, default, kind, choices=kind.words)
+        return KeyEntry(name, "choice", required, default, kind, choices=kind.words)
     options = [a for a in _options(info.annotation) if a is not type(None)]
     annotation = options[0]
     origin, arguments = get_origin(annotation), get_args(annotation)
     if origin is Literal:
-        return Entry(name, "choice", required, default, kind, choices=arguments)
+        return KeyEntry(name, "choice", required, default, kind, choices=arguments)
     if origin is tuple:
         kind = _kind(getattr(arguments[0], "__metadata__", ()))
         section = None if kind else arguments[0]
-        return Entry(name, "list", required, default, kind, (), section, least, most)
+        return KeyEntry(name, "list", required, default, kind, (), section, least, most)
     if origin is dict:
         inner = arguments[1]
         section = inner if isinstance(inner, type) and issubclass(inner, Section) else None
-        return Entry(name, "table", required, default, section=section)
+        return KeyEntry(name, "table", required, default, section=section)
     if isinstance(annotation, type) and issubclass(annotation, Section):
-        return Entry(name, "section", required, default, section=annotation)
-    return Entry(name, "value", required, default)
+        return KeyEntry(name, "section", required, default, section=annotation)
+    return KeyEntry(name, "value", required, default)
 
 
-def _kind(metadata: Iterable[Any]) -> Kind | None:
-    return next((item for item in metadata if isinstance(item, Kind)), None)
+def _kind(metadata: Iterable[Any]) -> ValueKind | None:
+    return next((item for item in metadata if isinstance(item, ValueKind)), None)
 
 
 def _options(annotation: Any) -> tuple[Any, ...]:
@@ -129,7 +129,7 @@ def lists_of(wanted: type[Section], section: type[Section] = Design) -> tuple[Lo
 
 def leaves(
     node: Any, section: type[Section] = Design, loc: Loc = ()
-) -> Iterator[tuple[Loc, Entry, Any]]:
+) -> Iterator[tuple[Loc, KeyEntry, Any]]:
     """All present values and choices below a node: (loc, entry, value).
 
     Tables of free names (variables, requirements, …) are skipped, as are parts of a faulty dict
@@ -177,7 +177,7 @@ def value_at(tree: Any, loc: Loc, section: type[Section] = Design) -> Any:
     return default if node is None else node
 
 
-class Materials(Protocol):
+class MaterialLookup(Protocol):
     """Interface of the material library for input checks (`materials.Library` implements it)."""
 
     def __contains__(self, name: object) -> bool: ...
@@ -200,7 +200,7 @@ class Properties(Protocol):
         ...
 
 
-class View:
+class FileView:
     """A tree in SI, read by dotted keys, with the defaults of the model; None if unusable."""
 
     def __init__(self, tree: Any, root: type[Section] = Design) -> None:
@@ -236,7 +236,7 @@ class View:
 
 
 def without_effect(
-    view: View, loc: Loc, keys: Iterable[str], where: str, remedy: str = "remove the line"
+    view: FileView, loc: Loc, keys: Iterable[str], where: str, remedy: str = "remove the line"
 ) -> Iterator[Fault]:
     """A fault for each of these keys below a place that the file states."""
     for key in keys:

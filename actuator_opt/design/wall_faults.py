@@ -20,10 +20,10 @@ from .material import PLY_CONSTANTS, PLY_REQUIRED, compliance_determinant, ply_c
 from .model import Ply, Retention
 from .paths import spell
 from .structure import (
+    FileView,
     Loc,
-    Materials,
+    MaterialLookup,
     Properties,
-    View,
     child,
     child_at,
     entries,
@@ -44,7 +44,7 @@ _WITHOUT_PLIES = ("isotropic", "as_published")
 _ELASTIC = (*PLY_CONSTANTS, "youngs_modulus", "poissons_ratio", "shear_modulus")
 
 
-def signs(view: View) -> Iterator[Fault]:
+def signs(view: FileView) -> Iterator[Fault]:
     """A balanced pair has no sign, neither in its angle nor in its bounds."""
     for wall in lists_of(Ply):
         for index in range(len(view.items(*wall))):
@@ -65,7 +65,7 @@ def signs(view: View) -> Iterator[Fault]:
                     )
 
 
-def barrel_model(view: View) -> Iterator[Fault]:
+def barrel_model(view: FileView) -> Iterator[Fault]:
     """The isotropic wall model has a single layer."""
     layers = len(view.items("barrel", "layup"))
     if view.text("barrel", "model") == "isotropic" and layers > 1:
@@ -76,7 +76,7 @@ def barrel_model(view: View) -> Iterator[Fault]:
         )
 
 
-def autofrettage(view: View) -> Iterator[Fault]:
+def autofrettage(view: FileView) -> Iterator[Fault]:
     """The liner yields above the supply pressure, inside layers that contain it."""
     loc = ("barrel", "autofrettage_pressure")
     pressure, supply = view.number(*loc), view.number("supply", "pressure")
@@ -96,7 +96,7 @@ def autofrettage(view: View) -> Iterator[Fault]:
         )
 
 
-def laminated_rod(view: View) -> Iterator[Fault]:
+def laminated_rod(view: FileView) -> Iterator[Fault]:
     """The bore of a laminated rod follows from its layers; fittings need both."""
     layers = len(view.items("rod", "layup"))
     if not layers:
@@ -135,7 +135,7 @@ def laminated_rod(view: View) -> Iterator[Fault]:
         )
 
 
-CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
+CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
     signs,
     barrel_model,
     autofrettage,
@@ -143,9 +143,9 @@ CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
 )
 
 
-def of_materials(tree: Any, materials: Materials) -> Iterator[Fault]:
+def of_materials(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
     """Faults of the walls that depend on the material library."""
-    view = View(tree)
+    view = FileView(tree)
     yield from _kinds(view, materials)
     if isinstance(materials, Properties):
         known = _Known(view, materials)
@@ -153,11 +153,11 @@ def of_materials(tree: Any, materials: Materials) -> Iterator[Fault]:
         yield from _stiffness(view, known)
 
 
-def _names(view: View, wall: Loc) -> list[str | None]:
+def _names(view: FileView, wall: Loc) -> list[str | None]:
     return [view.text(*wall, index, "material") for index in range(len(view.items(*wall)))]
 
 
-def _kinds(view: View, materials: Materials) -> Iterator[Fault]:
+def _kinds(view: FileView, materials: MaterialLookup) -> Iterator[Fault]:
     """Autofrettage needs a metal liner; a laminated rod needs metal fittings."""
     first = next(iter(_names(view, ("barrel", "layup"))), None)
     stated = view.number("barrel", "autofrettage_pressure") is not None
@@ -180,7 +180,7 @@ def _kinds(view: View, materials: Materials) -> Iterator[Fault]:
 class _Known:
     """Properties of the library, overridden by the design."""
 
-    def __init__(self, view: View, materials: Properties) -> None:
+    def __init__(self, view: FileView, materials: Properties) -> None:
         self.own = child(view.tree, "materials")
         self.materials = materials
 
@@ -198,12 +198,12 @@ class _Known:
             return {}
 
 
-def known_numbers(view: View, materials: Properties, name: str) -> dict[str, float]:
+def known_numbers(view: FileView, materials: Properties, name: str) -> dict[str, float]:
     """Properties of a material from library and design; empty if missing or faulty."""
     return _Known(view, materials).numbers(name)
 
 
-def _strengths(view: View, known: _Known) -> Iterator[Fault]:
+def _strengths(view: FileView, known: _Known) -> Iterator[Fault]:
     """Every ply of the barrel has the strengths of the selected criterion."""
     criterion = view.text("barrel", "criterion")
     if not view.has("barrel", "criterion") or view.text("barrel", "model") in _WITHOUT_PLIES:
@@ -219,7 +219,7 @@ def _strengths(view: View, known: _Known) -> Iterator[Fault]:
             )
 
 
-def _stiffness(view: View, known: _Known) -> Iterator[Fault]:
+def _stiffness(view: FileView, known: _Known) -> Iterator[Fault]:
     """Changed elastic constants keep the stiffness positive definite."""
     for name in known.own if isinstance(known.own, Mapping) else ():
         changed = [key for key in known.changed(name) if key in _ELASTIC]
@@ -236,7 +236,7 @@ def _stiffness(view: View, known: _Known) -> Iterator[Fault]:
             )
 
 
-def elements(view: View) -> Iterator[Loc]:
+def elements(view: FileView) -> Iterator[Loc]:
     """Place of every sealing element the file states."""
     for name in ("piston", "rod"):
         yield ("seals", name)
@@ -244,7 +244,7 @@ def elements(view: View) -> Iterator[Loc]:
             yield ("seals", name, "secondary")
 
 
-def profiles(view: View) -> Iterator[Fault]:
+def profiles(view: FileView) -> Iterator[Fault]:
     """Stated contact pressures: positions increase from 0, one stress each, sorted by pressure."""
     for loc in elements(view):
         last = -1.0
@@ -285,7 +285,7 @@ def profiles(view: View) -> Iterator[Fault]:
                 )
 
 
-def reach(view: View) -> Iterator[Fault]:
+def reach(view: FileView) -> Iterator[Fault]:
     """Stated profiles extend from zero pressure to the supply pressure."""
     supply, text = view.number("supply", "pressure"), INPUTS["pressure"].text
     for loc in elements(view):
@@ -310,12 +310,12 @@ PROFILE_CHECKS = (profiles, reach)
 _TYPE = ("retention", "type")
 
 
-def joint_of(view: View) -> Joint | None:
+def joint_of(view: FileView) -> Joint | None:
     """The joint of a file; None if unknown."""
     return JOINTS.get(view.text(*_TYPE) or "")
 
 
-def keys(view: View) -> Iterator[Fault]:
+def keys(view: FileView) -> Iterator[Fault]:
     """All keys that the joint needs are stated, and no others."""
     joint = joint_of(view)
     if joint is None:
@@ -328,7 +328,7 @@ def keys(view: View) -> Iterator[Fault]:
             yield Fault(loc, field.missing, field.remedy)
 
 
-def _unused(view: View, joint: Joint) -> Iterator[Fault]:
+def _unused(view: FileView, joint: Joint) -> Iterator[Fault]:
     """Keys that neither the joint nor an alternative among the choices uses, except defaults."""
     offered = [JOINTS.get(name) for name in view.items("choices", ".".join(_TYPE))]
     used = _keys(one for one in (joint, *offered) if one is not None)
@@ -354,7 +354,7 @@ def _have(joints: list[Joint]) -> str:
     return "have" if len(joints) > 1 or joints[0].plural else "has"
 
 
-def skirts(view: View) -> Iterator[Fault]:
+def skirts(view: FileView) -> Iterator[Fault]:
     """The skirts of both ends do not meet on the barrel."""
     joint = joint_of(view)
     if joint is None or not joint.skirts:
@@ -373,7 +373,7 @@ def skirts(view: View) -> Iterator[Fault]:
         )
 
 
-def values(view: View) -> Iterator[Fault]:
+def values(view: FileView) -> Iterator[Fault]:
     """Faults that the joint reports for the values of the file."""
     joint = joint_of(view)
     if joint is not None:
@@ -383,7 +383,7 @@ def values(view: View) -> Iterator[Fault]:
 class _KnownEnds:
     """The library, overridden by the properties that the design states."""
 
-    def __init__(self, view: View, materials: Materials) -> None:
+    def __init__(self, view: FileView, materials: MaterialLookup) -> None:
         self._view, self._materials = view, materials
 
     def kind(self, name: str) -> str | None:
@@ -397,9 +397,9 @@ class _KnownEnds:
         return ()
 
 
-def of_end_materials(tree: Any, materials: Materials) -> Iterator[Fault]:
+def of_end_materials(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
     """Faults of the joint that depend on the material library."""
-    view = View(tree)
+    view = FileView(tree)
     joint = joint_of(view)
     if joint is not None:
         yield from joint.material_faults(view, _KnownEnds(view, materials))

@@ -23,10 +23,10 @@ from ..seals.kinds import TYPES
 from . import layup
 from .build import build, to_tree
 from .choice_list import quantity_of_choice
-from .kinds import Flag, Fraction, Section, Text
+from .kinds import Boolean, Fraction, Section, Text
 from .model import Design
 from .paths import resolve
-from .reader import LoadedDesign, Source
+from .reader import FileSource, LoadedDesign
 from .structure import Loc, child, child_at, entries, number_of, value_at
 from .yaml_source import Document, parse
 
@@ -81,7 +81,7 @@ def _candidates(value: float, of: units.Unit) -> Iterator[str]:
 
 def to_yaml(
     design: Design,
-    source: Source | None = None,
+    source: FileSource | None = None,
     *,
     metrics: Mapping[str, Quantity] | None = None,
 ) -> str:
@@ -167,7 +167,7 @@ class _Leaves:
         """Whether the text `old` already has this `value`."""
         number = number_of(value)
         if isinstance(value, bool):
-            return Flag.words.get(old.strip().lower()) == value
+            return Boolean.words.get(old.strip().lower()) == value
         if number is None:
             return bool(value == old)
         quantity = self.quantity(loc, value)

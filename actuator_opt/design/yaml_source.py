@@ -42,7 +42,7 @@ _START = {
 }
 
 
-class Span(NamedTuple):
+class NodeSpan(NamedTuple):
     """Place of a node: line and column from 1, and its characters ``text[start:end]``."""
 
     line: int
@@ -57,7 +57,7 @@ class Shorthand(NamedTuple):
     wall: Loc
     first: int
     layers: int
-    entry: Span
+    entry: NodeSpan
 
 
 @dataclass(slots=True)
@@ -67,8 +67,8 @@ class Document:
     file: str
     text: str
     data: dict[str, Any] = field(default_factory=dict)
-    values: dict[Loc, Span] = field(default_factory=dict)
-    keys: dict[Loc, Span] = field(default_factory=dict)
+    values: dict[Loc, NodeSpan] = field(default_factory=dict)
+    keys: dict[Loc, NodeSpan] = field(default_factory=dict)
     lines: list[str] = field(default_factory=list)
     faults: list[Diagnostic] = field(default_factory=list)
     """Faults that do not stop the parser: duplicate keys, tags, anchors."""
@@ -90,7 +90,7 @@ class Document:
         return None
 
     def diagnostic(
-        self, span: Span | None, message: str, remedy: str = "", path: str | None = None
+        self, span: NodeSpan | None, message: str, remedy: str = "", path: str | None = None
     ) -> Diagnostic:
         """A fault at a place of this file."""
         line, column = (span.line, span.column) if span else (None, None)
@@ -132,7 +132,7 @@ def parse(text: str, file: str, what: str = "design") -> Document:
     control = _CONTROL.search(text)
     if control is not None:
         line, column = _line_column(text, control.start())
-        span = Span(line, column, control.start(), control.end())
+        span = NodeSpan(line, column, control.start(), control.end())
         name = f"U+{ord(control[0]):04X}"
         raise InputError(document.diagnostic(span, f"control character {name}", "remove it"))
     try:
@@ -193,7 +193,7 @@ class _Builder:
                 self._node(event)
             elif isinstance(event, (yaml.MappingEndEvent, yaml.SequenceEndEvent)):
                 self._close(event)
-        span, what = Span(1, 1, 0, 0), self.document.what
+        span, what = NodeSpan(1, 1, 0, 0), self.document.what
         start = _START[what]
         if self.root is None:
             self._stop_at(span, "the file is empty", start)
@@ -296,13 +296,13 @@ class _Builder:
     def _stop(self, event: Any, message: str, remedy: str) -> None:
         self._stop_at(_span(event), message, remedy)
 
-    def _stop_at(self, span: Span, message: str, remedy: str) -> None:
+    def _stop_at(self, span: NodeSpan, message: str, remedy: str) -> None:
         raise _Stop(self.document.diagnostic(span, message, remedy))
 
 
-def _span(event: Any) -> Span:
+def _span(event: Any) -> NodeSpan:
     start = event.start_mark
-    return Span(start.line + 1, start.column + 1, start.index, event.end_mark.index)
+    return NodeSpan(start.line + 1, start.column + 1, start.index, event.end_mark.index)
 
 
 _SYNTAX = (
@@ -339,7 +339,7 @@ def _syntax_fault(document: Document, error: yaml.MarkedYAMLError) -> Diagnostic
     before = "".join(document.lines[mark.line : mark.line + 1])[: mark.column].rstrip()
     if before.endswith(("]", "}")) and "does not fit the lines above" in message:
         message, remedy = f'text after "{before[-1]}"', "put the whole value in quotes"
-    span = Span(mark.line + 1, mark.column + 1, mark.index, mark.index)
+    span = NodeSpan(mark.line + 1, mark.column + 1, mark.index, mark.index)
     character = document.text[mark.index : mark.index + 1]
     if "cannot start any token" in problem:
         if character == "\t":

@@ -27,9 +27,9 @@ from .film import floats
 from .kernel import ModelRun, PreparedDesign, compute, governing
 from .limits import (
     ALL_CASES,
-    Limit,
     LimitRow,
     MetricArrays,
+    MetricLimit,
     all_limits,
     allowances,
     by_case,
@@ -317,7 +317,7 @@ def _worst(rows: Iterable[LimitRow]) -> LimitRow | None:
     )
 
 
-def _requirement(limit: Limit, computed: MetricArrays, v: Values) -> Requirement:
+def _requirement(limit: MetricLimit, computed: MetricArrays, v: Values) -> Requirement:
     row = _worst(rows_of(limit, computed, v))
     bound = float(np.squeeze(limit.value(v)))
     if row is None or not _finite(float(row.value[0])):
@@ -370,7 +370,7 @@ def _checks(
 def _check(
     name: str,
     metric: MetricRow,
-    limit: Limit | None,
+    limit: MetricLimit | None,
     computed: MetricArrays,
     v: Values,
     requirements: tuple[Requirement, ...],
@@ -445,7 +445,7 @@ class Many:
     metrics: dict[str, Array]
     margin: Array
     missed: Array
-    limits: tuple[Limit, ...]
+    limits: tuple[MetricLimit, ...]
     read: frozenset[str]
 
     @property
@@ -516,7 +516,7 @@ def margins_many(
 
 
 def _margins(
-    limits: Sequence[Limit], computed: MetricArrays, v: Values, count: int
+    limits: Sequence[MetricLimit], computed: MetricArrays, v: Values, count: int
 ) -> Iterator[tuple[int, Array]]:
     """Index of a limit, with its margins (designs,) in one case at one place."""
     for number, limit in enumerate(limits):
@@ -524,7 +524,7 @@ def _margins(
             yield number, np.broadcast_to(row.margin, (count,))
 
 
-def limits_of(subject: PreparedDesign) -> tuple[Limit, ...]:
+def limits_of(subject: PreparedDesign) -> tuple[MetricLimit, ...]:
     """Requirements and checks of a feasible design."""
     every = all_limits(subject.design, subject.plugins)
     return tuple(limit for limit in every if limit.origin != "advice")

@@ -22,7 +22,7 @@ CHAMBERS: tuple[Chamber, Chamber] = ("a", "b")
 
 
 @dataclass(frozen=True, slots=True)
-class Branch:
+class ChamberLines:
     """The lines of one chamber, lumped; compliances of oil and wall in m^3/Pa."""
 
     volume: Array = 0.0
@@ -51,7 +51,7 @@ def wall_compliance(v: Values, line: Line, at: str) -> Array:
     )
 
 
-def branches(v: Values, design: Design, state: LoadState) -> dict[Chamber, Branch]:
+def branches(v: Values, design: Design, state: LoadState) -> dict[Chamber, ChamberLines]:
     """Lines of chambers a and b, with the oil in motion."""
     throttled = design.ports.throttle is not None
     modulus = {"a": state.bulk_modulus_a, "b": state.bulk_modulus_b}
@@ -78,7 +78,7 @@ def branches(v: Values, design: Design, state: LoadState) -> dict[Chamber, Branc
         if line.beyond_throttle or not throttled:
             share = 1.0 if throttled else 0.5
             count(chamber, "far", share * (volume / modulus[chamber] + wall))
-    return {name: Branch(**total[name]) for name in CHAMBERS}
+    return {name: ChamberLines(**total[name]) for name in CHAMBERS}
 
 
 class Ways(NamedTuple):

@@ -11,7 +11,7 @@ from .barrel import Wall
 from .geometry import Geometry
 from .limits import MaterialValues, MetricArrays
 from .linkage import Demand
-from .rods import Rod
+from .rods import RodSection
 from .state import LoadState
 from .strength import Held
 from .values import Values
@@ -27,7 +27,7 @@ def compute(
     g: Geometry,
     state: LoadState,
     wall: Wall,
-    section: Rod,
+    section: RodSection,
     held: Held | None,
     stop: Demand,
     net: Array,
@@ -50,7 +50,7 @@ def _endurance(
     stock: MaterialValues,
     design: Design,
     wall: Wall,
-    section: Rod,
+    section: RodSection,
     held: Held | None,
     supply: Array,
     push: Array,

@@ -426,7 +426,7 @@ class _Loop:
     index: int
     place: str
     gain: float
-    open_loop: loop.OpenLoop
+    open_loop: loop.PositionOpenLoop
     governs: tuple[str, ...]
 
     @classmethod

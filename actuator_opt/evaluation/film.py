@@ -23,16 +23,16 @@ import numpy as np
 
 from ..base.errors import Diagnostic, Unsolvable
 from ..base.numeric import STEP, Array, maximum
-from ..base.surrogate import Axis, Interpolation, Surrogate, surrogate
+from ..base.surrogate import Interpolation, Surrogate, SurrogateAxis, surrogate
 from ..design.model import Design
 from ..lubrication import (
     Contact,
     Elastic,
     Film,
     Lubricant,
-    SealElement,
     Surface,
     Tandem,
+    TandemSeal,
     sensitivities,
     solve_film,
     solve_tandem,
@@ -262,13 +262,13 @@ def _opened(ring: Ring) -> str:
 def _tandem(row: FilmRow, start: Tandem | None) -> Tandem:
     first, second = row.rings
 
-    def element(ring: Ring) -> SealElement:
+    def element(ring: Ring) -> TandemSeal:
         def static(sealed: float, outer: float) -> tuple[float, np.ndarray]:
             own = ring.at(pressure=sealed - outer, outer_pressure=outer - ATMOSPHERIC_PRESSURE)
             width, pressure = static_profile(own, NODES)
             return width, pressure + ATMOSPHERIC_PRESSURE
 
-        return SealElement(static, _elastic(ring), _surface(ring))
+        return TandemSeal(static, _elastic(ring), _surface(ring))
 
     outer_pressure = second["outer_pressure"] + ATMOSPHERIC_PRESSURE
     return solve_tandem(
@@ -363,7 +363,7 @@ class Running:
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class FilmTable:
     """Surrogate of a row's films in a case, and its error."""
 
     surrogate: Surrogate
@@ -423,7 +423,7 @@ class _Walker:
         return Interpolation(found.values, by_input)
 
 
-def table(row: FilmRow, samples: Sequence[FilmRow]) -> Table:
+def table(row: FilmRow, samples: Sequence[FilmRow]) -> FilmTable:
     """Surrogate of a row over the box that other rows span.
 
     Raises
@@ -442,7 +442,7 @@ def table(row: FilmRow, samples: Sequence[FilmRow]) -> Table:
     if found is None:
         raise _unsolved(row, "too many points within the variable bounds have no solution")
     points = [base, *(point for point in others[:CHECKS] if base.keys() <= point.keys())]
-    return Table(found, row, _errors(walker, found, points), float(here.values[-2]))
+    return FilmTable(found, row, _errors(walker, found, points), float(here.values[-2]))
 
 
 def _unsolved(row: FilmRow, why: str) -> Unsolvable:
@@ -458,7 +458,7 @@ def _axes(
     base: Mapping[str, float],
     others: Sequence[Mapping[str, Array]],
     here: Interpolation,
-) -> tuple[Axis, ...]:
+) -> tuple[SurrogateAxis, ...]:
     """The speed, and the inputs with the largest first-order errors."""
     spans = {
         name: (min(values), max(values))
@@ -471,11 +471,11 @@ def _axes(
             continue
         missed = max(_missed(walker, base, here, name, end) for end in (lower, upper))
         if missed > MISSED:
-            found.append((missed, Axis(name, lower, upper, POINTS)))
+            found.append((missed, SurrogateAxis(name, lower, upper, POINTS)))
     found.sort(key=lambda pair: -pair[0])
     lower, upper = spans["speed"]
     nodes = SPEEDS if upper <= lower * (1 + 1e-9) else POINTS
-    speed = Axis("speed", lower / SPEED_ROOM, upper * SPEED_ROOM, nodes, hermite=True)
+    speed = SurrogateAxis("speed", lower / SPEED_ROOM, upper * SPEED_ROOM, nodes, hermite=True)
     return (speed, *(axis for _, axis in found[:MOST_AXES]))
 
 
@@ -558,7 +558,7 @@ def floats(ring: Ring, case: int, sample: int = 0) -> Ring:
 
 def tables(
     design: Design, values: Callable[..., Values], rings_of: Callable[[Values], tuple[Ring, ...]]
-) -> dict[Key, Table]:
+) -> dict[Key, FilmTable]:
     """All film tables of a design.
 
     Parameters
@@ -575,7 +575,7 @@ def tables(
         spread = _with_corners(design, spread, rings_of(values(spread)))
         others = rings_of(values(spread))
         count = next(iter(spread.values())).size
-    found: dict[Key, Table] = {}
+    found: dict[Key, FilmTable] = {}
     for key, row in _rows(design, here):
         place, case, stroke = key
         sampled = of_place(others, place)
@@ -588,18 +588,18 @@ def tables(
 
 
 @lru_cache(maxsize=64)
-def _table(inputs: bytes) -> Table:
+def _table(inputs: bytes) -> FilmTable:
     """`table` of pickled inputs, cached: equal films of a report or comparison are solved once."""
     return table(*pickle.loads(inputs))
 
 
-def unsolved(design: Design, rings: tuple[Ring, ...]) -> dict[Key, Table]:
+def unsolved(design: Design, rings: tuple[Ring, ...]) -> dict[Key, FilmTable]:
     """Tables of all films of a design without solutions: they return NaN."""
     found = {}
     for key, row in _rows(design, rings):
         inputs = {name: float(value) for name, value in row.inputs().items()}
         nothing = np.full((3 * len(row.rings) + 2, 1 + len(inputs)), np.nan)
-        found[key] = Table(Surrogate((), inputs, nothing, tuple(inputs)), row, {})
+        found[key] = FilmTable(Surrogate((), inputs, nothing, tuple(inputs)), row, {})
     return found
 
 
@@ -657,7 +657,7 @@ def _with_corners(
 
 
 def running(
-    tables: Mapping[Key, Table], rings: Sequence[Ring], stroke: Stroke, cases: int
+    tables: Mapping[Key, FilmTable], rings: Sequence[Ring], stroke: Stroke, cases: int
 ) -> tuple[Running, ...]:
     """Films of a place's rings in every case, (cases, designs); 0 for a case at rest.
 

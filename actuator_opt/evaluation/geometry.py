@@ -15,7 +15,7 @@ from ..base.numeric import Array, absolute, maximum
 from ..design.material import Material
 from ..design.model import Design, Ply, Retention, closed_length
 from ..design.seals import Seal, SealElement
-from ..joints.joint import BarrelLayer, End, Fit, Joint, JointSizes
+from ..joints.joint import BarrelLayer, End, EndDimensions, Joint, JointSizes
 from ..joints.kinds import JOINTS
 from ..models import forces, gland, mass
 from .values import Values
@@ -38,7 +38,7 @@ class Numbers:
         return self._v.get(f"retention.{key}", default)
 
 
-class Stated:
+class RetentionNumbers:
     """Numbers of `retention` by key, as stated in a design."""
 
     def __init__(self, section: Retention) -> None:
@@ -93,7 +93,7 @@ def end_of(
     )
 
 
-class Piece(NamedTuple):
+class GroovePart(NamedTuple):
     """A ring in a groove: material, free section [m^2], depth of its centre under the face [m]."""
 
     material: str
@@ -114,14 +114,14 @@ class Groove:
     width: Array
     ring_width: Array
     count: Array
-    pieces: tuple[Piece, ...]
+    pieces: tuple[GroovePart, ...]
 
 
 def _element(v: Values, place: str, path: str, element: SealElement) -> Groove:
     sizes = {key: v[path + key] for key in ("section", "squeeze", *element.seal_type.needed)}
     own = element.seal_type.groove(sizes)
     default = own.width
-    pieces = [Piece(element.compound, piece.area, piece.depth) for piece in own.pieces]
+    pieces = [GroovePart(element.compound, piece.area, piece.depth) for piece in own.pieces]
     if element.back_ups:
         assert element.back_up_material is not None
         thickness = v[f"{path}back_up_thickness"]
@@ -129,7 +129,7 @@ def _element(v: Values, place: str, path: str, element: SealElement) -> Groove:
             groove_width=default, thickness=thickness, count=element.back_ups
         )
         area = element.back_ups * thickness * own.depth
-        pieces.append(Piece(element.back_up_material, area, own.depth / 2))
+        pieces.append(GroovePart(element.back_up_material, area, own.depth / 2))
     return Groove(
         place=place,
         path=path,
@@ -163,7 +163,7 @@ def grooves(v: Values, design: Design, name: Literal["piston", "rod"]) -> tuple[
                 width=v[f"{path}width"],
                 ring_width=v[f"{path}width"],
                 count=v[f"{path}count"],
-                pieces=(Piece(seal.guide.material, depth * v[f"{path}width"], depth / 2),),
+                pieces=(GroovePart(seal.guide.material, depth * v[f"{path}width"], depth / 2),),
             )
         )
     found.append(_element(v, f"{name} seal", at, seal))
@@ -184,7 +184,7 @@ def grooves(v: Values, design: Design, name: Literal["piston", "rod"]) -> tuple[
                 width=width,
                 ring_width=width,
                 count=1.0,
-                pieces=(Piece(seal.wiper.compound, section * width, depth / 2),),
+                pieces=(GroovePart(seal.wiper.compound, section * width, depth / 2),),
             )
         )
     return tuple(found)
@@ -223,7 +223,7 @@ class Geometry:
     head_length: Array
     head_clearance: Array
     plate: Array
-    fit: Fit
+    fit: EndDimensions
     """Dimensions from the joint of caps and head, the same at both ends."""
     has_skirts: bool
     barrel_length: Array
@@ -254,7 +254,7 @@ def derive(v: Values, design: Design) -> Geometry:
     plate = v["caps.thickness"]
     extension = v["rod.extension"]
     joint = joint_of(design)
-    fit = Fit(plate_radius=outer_radius, radius=outer_radius)
+    fit = EndDimensions(plate_radius=outer_radius, radius=outer_radius)
     if joint is not None:
         end = end_of(
             design,

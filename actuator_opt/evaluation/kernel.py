@@ -33,13 +33,13 @@ from . import (
 )
 from .barrel import Wall
 from .circuit import wall_compliance
-from .film import Key, Running, Table
+from .film import FilmTable, Key, Running
 from .geometry import Geometry
 from .limits import ENDS, MaterialValues, MetricArrays, by_case, margin
 from .plugin import Plugin, with_own
 from .rings import Ring
 from .rod_strength import Beam
-from .rods import Rod
+from .rods import RodSection
 from .state import LoadState
 from .values import Values
 
@@ -214,7 +214,7 @@ class PreparedDesign:
     """Whether a raising user metric gives NaN with the reason, instead of a fault: in a search."""
     constants: dict[str, dict[str, Array]] = field(default_factory=dict, compare=False)
     """Ply constants by material, cached."""
-    films: dict[Key, Table] = field(default_factory=dict, compare=False)
+    films: dict[Key, FilmTable] = field(default_factory=dict, compare=False)
     """Tables of the seals' oil films, cached."""
 
     @property
@@ -245,7 +245,7 @@ class ModelRun:
     state: LoadState
     wall: Wall
     rings: tuple[Ring, ...]
-    rod: Rod
+    rod: RodSection
     held: strength.Held | None
     beam: Beam
     springs: springs.Springs
@@ -297,11 +297,11 @@ class Statics:
     """All results that do not depend on the softest position, and the moving mass."""
 
     base: Base
-    rod: Rod
+    rod: RodSection
     held: strength.Held | None
     mass_parts: dict[str, Array]
     breakaway: Array
-    branches: dict[circuit.Chamber, circuit.Branch]
+    branches: dict[circuit.Chamber, circuit.ChamberLines]
     springs: springs.Springs
     moving: Array
     """Mass that moves with the rod, including the load."""
@@ -417,7 +417,7 @@ def _at_stops(
     v: Values,
     design: Design,
     found: Base,
-    rod: Rod,
+    rod: RodSection,
     breakaway: Array,
     parts: dict[str, Array],
     out: MetricArrays,
@@ -453,7 +453,7 @@ def without_films(subject: PreparedDesign) -> PreparedDesign:
     return replace(subject, films=film.unsolved(subject.design, rings))
 
 
-def _films(subject: PreparedDesign) -> dict[Key, Table]:
+def _films(subject: PreparedDesign) -> dict[Key, FilmTable]:
     """Tables of the oil films, made on first use."""
     design = subject.design
     if not film.films_asked(design):

@@ -24,7 +24,7 @@ from .values import Values
 
 
 @dataclass(frozen=True, slots=True)
-class Limit:
+class MetricLimit:
     """A limit of a metric: a number of the design (`path`) or a constant.
 
     For a load case with a joint torque, `path` is the torque and `lever` the PATH of its lever arm.
@@ -54,7 +54,7 @@ OWN_PLACE = "position of the case"
 """Places of a joint torque: both stops, and the stated position of a load case."""
 
 
-def requirement_limits(design: Design) -> list[Limit]:
+def requirement_limits(design: Design) -> list[MetricLimit]:
     """Limits in the file: `requirements`, and the force or torque of every load case."""
     limits = []
     for metric, limit in design.requirements.items():
@@ -63,16 +63,16 @@ def requirement_limits(design: Design) -> list[Limit]:
                 both = limit.min is not None and limit.max is not None
                 name = f"{metric} ({sense})" if both else metric
                 path = f"requirements.{metric}.{sense}"
-                limits.append(Limit(name, metric, sense, path))
+                limits.append(MetricLimit(name, metric, sense, path))
     return limits + [_case_limit(case) for case in design.load_cases]
 
 
-def _case_limit(case: LoadCase) -> Limit:
+def _case_limit(case: LoadCase) -> MetricLimit:
     """The force of a load case, or its torque if it acts through the linkage."""
     at = f"load_cases[{case.name}]"
     if case.through_linkage:
         placed = case.angle is not None or case.position != "worst"
-        return Limit(
+        return MetricLimit(
             name=f"torque[{case.name}]",
             metric="joint_torque_min",
             sense="min",
@@ -85,7 +85,7 @@ def _case_limit(case: LoadCase) -> Limit:
     path, lever = f"{at}.force", None
     if case.force is None:
         path, lever = f"{at}.joint_torque", f"{at}.lever_arm"
-    return Limit(
+    return MetricLimit(
         name=f"force[{case.name}]",
         metric=f"{case.direction}_force",
         sense="min",
@@ -97,7 +97,7 @@ def _case_limit(case: LoadCase) -> Limit:
     )
 
 
-def check_limits(design: Design) -> list[Limit]:
+def check_limits(design: Design) -> list[MetricLimit]:
     """Limits of the check list that the design neither replaces nor waives."""
     limits = []
     for metric, check in CHECKS:
@@ -107,7 +107,7 @@ def check_limits(design: Design) -> list[Limit]:
         if requirement is not None and getattr(requirement, metric.worst) is not None:
             continue
         limits.append(
-            Limit(
+            MetricLimit(
                 name=check.name,
                 metric=metric.name,
                 sense=metric.worst,
@@ -128,10 +128,10 @@ def default_limits() -> dict[str, float]:
     }
 
 
-def geometry_limits() -> list[Limit]:
+def geometry_limits() -> list[MetricLimit]:
     """Walls and clearances that must stay positive for a valid geometry."""
     return [
-        Limit(
+        MetricLimit(
             name,
             name,
             "min",
@@ -144,10 +144,10 @@ def geometry_limits() -> list[Limit]:
     ]
 
 
-def all_limits(design: Design, plugins: Iterable[Plugin] = ()) -> list[Limit]:
+def all_limits(design: Design, plugins: Iterable[Plugin] = ()) -> list[MetricLimit]:
     """All limits of a design: requirements, check list, geometry and user constraints."""
     own = [
-        Limit(plugin.name, plugin.name, plugin.sense, constant=0.0, source="user constraint")
+        MetricLimit(plugin.name, plugin.name, plugin.sense, constant=0.0, source="user constraint")
         for plugin in plugins
         if plugin.sense is not None
     ]
@@ -207,7 +207,7 @@ class MetricArrays:
 class LimitRow:
     """A limit in one case at one place: `value`, `limit` and `margin` are (designs,)."""
 
-    limit_of: Limit
+    limit_of: MetricLimit
     case: str
     place: str
     value: Array
@@ -237,7 +237,7 @@ def by_case(
             yield case, array[i]
 
 
-def rows_of(limit: Limit, computed: MetricArrays, v: Values) -> Iterator[LimitRow]:
+def rows_of(limit: MetricLimit, computed: MetricArrays, v: Values) -> Iterator[LimitRow]:
     """All rows of a limit; none if the metric was not computed."""
     bound = limit.value(v)
     for place, array in computed.metrics.get(limit.metric, {}).items():

@@ -24,7 +24,7 @@ METRICS = ("joint_torque_min", "joint_range", "geometry_dead_point", "geometry_j
 
 
 @dataclass(frozen=True, slots=True)
-class Joint:
+class DrivenJoint:
     """The linkage of a design; floats or arrays (designs,)."""
 
     base_radius: Array
@@ -51,7 +51,7 @@ class Joint:
         """Piston travel per joint angle at a piston position."""
         return self._at(self.angle(position)).lever_arm
 
-    def _at(self, angle: Array) -> linkage.Linkage:
+    def _at(self, angle: Array) -> linkage.LinkageGeometry:
         return linkage.linkage(
             base_radius=self.base_radius,
             crank_radius=self.crank_radius,
@@ -84,11 +84,11 @@ class Demand:
     """Mass of the load at the rod, including the inertia of a joint."""
 
 
-def derive(v: Values, design: Design, g: Geometry) -> Joint | None:
+def derive(v: Values, design: Design, g: Geometry) -> DrivenJoint | None:
     """The joint of a design; None without a linkage."""
     if design.linkage is None:
         return None
-    return Joint(
+    return DrivenJoint(
         base_radius=v["linkage.base_radius"],
         crank_radius=v["linkage.crank_radius"],
         angle_offset=v["linkage.angle_offset"],
@@ -97,7 +97,7 @@ def derive(v: Values, design: Design, g: Geometry) -> Joint | None:
     )
 
 
-def arms(joint: Joint, positions: Sequence[Array | None]) -> dict[str, Array]:
+def arms(joint: DrivenJoint, positions: Sequence[Array | None]) -> dict[str, Array]:
     """Lever arm of every case (cases, designs) at both stops and at its largest.
 
     A case with a stated position has the lever arm of that position.
@@ -136,7 +136,7 @@ def demand(v: Values, design: Design, lever_arm: Array = None) -> Demand:
 
 
 def demands(
-    v: Values, design: Design, joint: Joint | None, positions: Sequence[Array | None]
+    v: Values, design: Design, joint: DrivenJoint | None, positions: Sequence[Array | None]
 ) -> dict[str, Demand]:
     """Demand of every load case: worst, where its force is largest, and at both stops."""
     if joint is None:
@@ -176,7 +176,7 @@ def open_cases(v: Values, design: Design, positions: Sequence[Array | None]) -> 
 
 def compute(
     design: Design,
-    joint: Joint | None,
+    joint: DrivenJoint | None,
     positions: Sequence[Array | None],
     net: Array,
     out: MetricArrays,
@@ -212,7 +212,7 @@ def compute(
             out.skip(f"{direction}_force", "stated as a joint torque: torque[NAME]")
 
 
-def _dead_points(joint: Joint) -> dict[str, Array]:
+def _dead_points(joint: DrivenJoint) -> dict[str, Array]:
     """Length between a stop and the dead point behind it."""
     base, crank = joint.base_radius, joint.crank_radius
     return {
@@ -221,7 +221,7 @@ def _dead_points(joint: Joint) -> dict[str, Array]:
     }
 
 
-def warnings(design: Design, joint: Joint | None) -> Iterable[tuple[str, str]]:
+def warnings(design: Design, joint: DrivenJoint | None) -> Iterable[tuple[str, str]]:
     """(metric, sentence) for properties taken at a single place of the stroke."""
     if joint is None or not design.load.inertia > 0:
         return

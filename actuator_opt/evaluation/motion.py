@@ -19,8 +19,8 @@ from ..models.line_ends import LineEnd
 from ..models.linear import LinearActuator, Side
 from .circuit import (
     CHAMBERS,
-    Branch,
     Chamber,
+    ChamberLines,
     LinearValve,
     Ways,
     accumulator_ends,
@@ -46,7 +46,7 @@ class Motion:
     damping: Array
     """Incremental friction and oil damping at the piston [N s/m]."""
     leakage: Array
-    branches: dict[Chamber, Branch]
+    branches: dict[Chamber, ChamberLines]
     throttles: dict[Chamber, Ways]
     """Conductance of the throttles at their operating point [m^3/s/Pa]; empty without throttles."""
     push: Array
@@ -98,7 +98,7 @@ class Motion:
             flexibility=s.series_compliance(),
         )
 
-    def position_loop(self, position: Array, *, extending: Array) -> loop.OpenLoop:
+    def position_loop(self, position: Array, *, extending: Array) -> loop.PositionOpenLoop:
         """Open position loop at unit gain."""
         assert self.spool is not None
         frequency, damping = self.spool
@@ -124,7 +124,7 @@ def derive(
     design: Design,
     state: LoadState,
     springs: Springs,
-    branches: dict[Chamber, Branch],
+    branches: dict[Chamber, ChamberLines],
     mass: Array,
     damping: Array,
     leakage: Array,

@@ -12,9 +12,9 @@ import numpy as np
 from ..base.numeric import Array
 from ..design.material import Material
 from ..design.model import Design
-from ..joints.joint import Fit, Polygon, Span, rectangle
+from ..joints.joint import EndDimensions, EndSpan, Polygon, rectangle
 from . import geometry as geometry_module, outline
-from .geometry import Geometry, Groove, Stated, end_at, end_of, joint_of, taken
+from .geometry import Geometry, Groove, RetentionNumbers, end_at, end_of, joint_of, taken
 from .kernel import PreparedDesign
 from .result import Outline
 from .rods import end_material
@@ -140,9 +140,9 @@ def _ends(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     others: dict[tuple[str, str, int], list[Polygon]] = {}
     joint = joint_of(design)
     if joint is not None and design.retention is not None:
-        end = end_at(design, Stated(design.retention), g)
+        end = end_at(design, RetentionNumbers(design.retention), g)
         face, back = at.face, at.end + plate
-        for span in (Span(at.start, 1, face, back), Span(at.end, -1, back, face)):
+        for span in (EndSpan(at.start, 1, face, back), EndSpan(at.end, -1, back, face)):
             for piece in joint.outline(end, g.fit, span):
                 if piece.part == "caps":
                     caps.append(piece.shape)
@@ -265,7 +265,7 @@ def notes(design: Design, lengths: Mapping[str, float]) -> list[str]:
         return []
     end = end_of(
         design,
-        Stated(design.retention),
+        RetentionNumbers(design.retention),
         inner_radius=lengths["bore"] / 2,
         outer_radius=lengths["barrel_outer_diameter"] / 2,
         thicknesses=[ply.thickness for ply in design.barrel.layup],
@@ -439,15 +439,15 @@ def _changed(geometry: Geometry, change: _Change) -> Geometry:
         value = getattr(geometry, field.name)
         if isinstance(value, tuple):
             values[field.name] = tuple(_changed_one(one, change) for one in value)
-        elif isinstance(value, Fit):
+        elif isinstance(value, EndDimensions):
             values[field.name] = _changed_fit(value, change)
         else:
             values[field.name] = value if isinstance(value, bool) else change(value)
     return Geometry(**values)
 
 
-def _changed_fit(fit: Fit, change: _Change) -> Fit:
-    return Fit(
+def _changed_fit(fit: EndDimensions, change: _Change) -> EndDimensions:
+    return EndDimensions(
         plate_radius=change(fit.plate_radius),
         radius=change(fit.radius),
         length=change(fit.length),

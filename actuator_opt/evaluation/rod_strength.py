@@ -21,7 +21,7 @@ from . import plies, weight
 from .barrel import Cycle, Wall
 from .geometry import Geometry
 from .limits import MaterialValues, MetricArrays
-from .rods import FORCE, OUTSIDE, WARMTH, Rod
+from .rods import FORCE, OUTSIDE, WARMTH, RodSection
 from .state import LoadState, overhang
 from .values import Values
 
@@ -65,7 +65,7 @@ def lengths(g: Geometry, state: LoadState) -> tuple[Array, Array]:
     return cylinder, maximum(state.reach + g.rod_extension + g.eye_offset, LEAST)
 
 
-CriticalLoad: TypeAlias = Callable[[Design, Wall, Rod, tuple[Array, Array]], Array]
+CriticalLoad: TypeAlias = Callable[[Design, Wall, RodSection, tuple[Array, Array]], Array]
 """Critical load of a design from wall, rod and the lengths of cylinder and exposed rod."""
 
 
@@ -75,7 +75,7 @@ def derive(
     g: Geometry,
     state: LoadState,
     wall: Wall,
-    rod: Rod,
+    rod: RodSection,
     parts: Mapping[str, Array],
     *,
     critical_load: CriticalLoad,
@@ -89,7 +89,9 @@ def derive(
     )
 
 
-def critical_load(design: Design, wall: Wall, rod: Rod, lengths: tuple[Array, Array]) -> Array:
+def critical_load(
+    design: Design, wall: Wall, rod: RodSection, lengths: tuple[Array, Array]
+) -> Array:
     """Critical load of barrel and rod, or of the rod alone if mounted at the head; with shear."""
     mount = design.cylinder.mount
     if mount.startswith("head"):
@@ -123,7 +125,7 @@ def _weight(
     design: Design,
     g: Geometry,
     state: LoadState,
-    rod: Rod,
+    rod: RodSection,
     parts: Mapping[str, Array],
     lengths: tuple[Array, Array],
 ) -> Array:
@@ -153,7 +155,12 @@ def _weight(
 
 
 def yields(
-    stock: MaterialValues, design: Design, g: Geometry, state: LoadState, section: Rod, beam: Beam
+    stock: MaterialValues,
+    design: Design,
+    g: Geometry,
+    state: LoadState,
+    section: RodSection,
+    beam: Beam,
 ) -> dict[str, Array]:
     """Yield over working stress of a single-metal rod, at the pressure of every case."""
     if section.layers:
@@ -170,7 +177,7 @@ def yields(
 
 def compute(
     design: Design,
-    section: Rod,
+    section: RodSection,
     beam: Beam,
     supply: Array,
     push: Array,
@@ -196,7 +203,7 @@ def compute(
 
 def _layers(
     design: Design,
-    section: Rod,
+    section: RodSection,
     moments: tuple[Array, Array],
     supply: Array,
     push: Array,
@@ -233,7 +240,9 @@ DIRECTIONS = {"push": slice(0, 2), "pull": slice(2, 6)}
 """Sides of the bent rod in either direction; pulling with and without outside pressure."""
 
 
-def _factors(design: Design, section: Rod, forces: Array, pressures: Array) -> dict[str, Array]:
+def _factors(
+    design: Design, section: RodSection, forces: Array, pressures: Array
+) -> dict[str, Array]:
     """Factors of all layers; forces and outside pressures are (sides, cases, designs)."""
     factors: dict[str, Array] = {}
     brittle = [i for i, layer in enumerate(section.layers) if layer.strengths]
@@ -259,7 +268,7 @@ def _factors(design: Design, section: Rod, forces: Array, pressures: Array) -> d
     return factors
 
 
-def _rows(section: Rod, label: str, used: Array) -> dict[str, Array]:
+def _rows(section: RodSection, label: str, used: Array) -> dict[str, Array]:
     """A factor for each climate and direction of (faces, climates, sides, cases, designs)."""
     rows = {}
     for direction, sides in DIRECTIONS.items():
@@ -271,7 +280,7 @@ def _rows(section: Rod, label: str, used: Array) -> dict[str, Array]:
 
 
 def cycles(
-    design: Design, section: Rod, supply: Array, push: Array, pull: Array
+    design: Design, section: RodSection, supply: Array, push: Array, pull: Array
 ) -> dict[str, Cycle]:
     """Stress of the rod's metals between push and pull; a compressive mean gives no credit.
 
@@ -306,19 +315,19 @@ def _stress(parts: Sequence[Array]) -> Stress:
     return one, two, three, slip
 
 
-def _unit_load(section: Rod, rows: list[int], load: int) -> list[Array]:
+def _unit_load(section: RodSection, rows: list[int], load: int) -> list[Array]:
     """Ply stresses of these layers per unit load, (faces, layers, 1, 1, 1, designs)."""
     assert section.unit is not None
     return [part[:, rows][:, :, load][:, :, None, None, None] for part in section.unit]
 
 
-def _load(section: Rod, rows: list[int], forces: Array, pressures: Array) -> Stress:
+def _load(section: RodSection, rows: list[int], forces: Array, pressures: Array) -> Stress:
     """Stresses of the load, (faces, layers, 1, sides, cases, designs)."""
     units = (_unit_load(section, rows, load) for load in (FORCE, OUTSIDE))
     return _stress([f * forces + p * pressures for f, p in zip(*units, strict=True)])
 
 
-def _residual(section: Rod, rows: list[int]) -> Stress | None:
+def _residual(section: RodSection, rows: list[int]) -> Stress | None:
     """Cure stresses, (faces, layers, climates, 1, 1, designs)."""
     if not section.cured:
         return None

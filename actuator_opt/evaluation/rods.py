@@ -1,6 +1,6 @@
 """Section of the rod, a bar of one metal or a layered tube, and the bonds of its metal fittings.
 
-Only this module distinguishes the two; all later code works with a `Rod`.
+Only this module distinguishes the two; all later code works with a `RodSection`.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ OUTSIDE, FORCE, WARMTH = range(3)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Rod:
+class RodSection:
     """Section of the rod, (designs,).
 
     EA [N], EI [N m^2], kappa G A [N] and kg/m; `shell_modulus` and `shell_ratio` are those of an
@@ -88,12 +88,12 @@ def end_material(design: Design) -> str:
     return (fitting.material if fitting is not None else None) or design.rod.material
 
 
-def derive(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> Rod:
+def derive(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> RodSection:
     """Section of a design's rod."""
     return _tube(v, design, stock, g) if design.rod.layup else _bar(v, design, stock, g)
 
 
-def _bar(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> Rod:
+def _bar(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> RodSection:
     """A bar or tube of a single material."""
     name = design.rod.material
     modulus = stock.get(name, "youngs_modulus", "youngs_modulus_1")
@@ -102,7 +102,7 @@ def _bar(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> Rod:
     area = rod.section_area(**size)
     shear = stock.get(name, "shear_modulus", default=modulus / (2 * (1 + ratio))) * area
     path = "rod.inner_diameter"
-    return Rod(
+    return RodSection(
         **size,
         hollow=design.rod.inner_diameter > 0 or path in design.variables or path in v.varied,
         axial_stiffness=modulus * area,
@@ -119,7 +119,7 @@ def _bar(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> Rod:
     )
 
 
-def _tube(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> Rod:
+def _tube(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> RodSection:
     """The exact layered tube."""
     missing: list[str] = []
     states = plies.climates(v, design)
@@ -146,7 +146,7 @@ def _tube(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> Rod:
     stretch = state.axial_strain[FORCE]
     contraction = -state.hoop_strain[0, 0, FORCE] / stretch
     modulus, ratio = _shell(tube, layers)
-    return Rod(
+    return RodSection(
         outer_diameter=g.rod_diameter,
         inner_diameter=g.rod_inner_diameter,
         hollow=True,
@@ -216,7 +216,7 @@ def _mass(v: Values, design: Design, g: Geometry) -> Array:
     return total
 
 
-def fittings(v: Values, stock: MaterialValues, design: Design, rod: Rod) -> Overlap | str:
+def fittings(v: Values, stock: MaterialValues, design: Design, rod: RodSection) -> Overlap | str:
     """End fittings in a laminated rod, or a reason why the rod has none."""
     fitting = design.rod.fitting
     if fitting is None:
@@ -234,14 +234,14 @@ def fittings(v: Values, stock: MaterialValues, design: Design, rod: Rod) -> Over
     )
 
 
-def fitting_hole(v: Values, design: Design, rod: Rod) -> Array:
+def fitting_hole(v: Values, design: Design, rod: RodSection) -> Array:
     """Inner diameter of a fitting: zero for a plug or a sleeve that fills the bore."""
     if design.rod.fitting is None or design.rod.fitting.wall is None:
         return 0.0 * rod.inner_diameter
     return maximum(rod.inner_diameter - 2 * v["rod.fitting.wall"], 0.0)
 
 
-def fitting_area(v: Values, design: Design, rod: Rod) -> Array:
+def fitting_area(v: Values, design: Design, rod: RodSection) -> Array:
     """Cross-section of a fitting in the overlap."""
     return section_area(
         outer_diameter=rod.inner_diameter, inner_diameter=fitting_hole(v, design, rod)

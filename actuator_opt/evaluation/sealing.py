@@ -18,7 +18,7 @@ from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..seals.contact import SealContact
 from ..seals.kinds import TYPES
 from .barrel import SEAL_STEP, Wall
-from .film import Key, Running, Stroke, Table, of_place, running as run
+from .film import FilmTable, Key, Running, Stroke, of_place, running as run
 from .geometry import Geometry, Groove
 from .limits import MaterialValues, MetricArrays
 from .rings import INCOMPRESSIBLE, Place, Ring, face_modulus, gland_metrics, places, seal_contact
@@ -26,7 +26,7 @@ from .state import LoadState, side_reactions
 from .values import Values
 
 if TYPE_CHECKING:
-    from ..finite_elements.result import Contact
+    from ..finite_elements.result import MountedContact
 
 
 def compute(
@@ -92,7 +92,7 @@ Films = Mapping[str, Running]
 
 
 def films_of(
-    tables: Mapping[Key, Table], rings: tuple[Ring, ...], stroke: Stroke, cases: int
+    tables: Mapping[Key, FilmTable], rings: tuple[Ring, ...], stroke: Stroke, cases: int
 ) -> dict[str, Running]:
     """Films of all rings on a stroke."""
     places: tuple[Place, ...] = ("piston", "rod")
@@ -231,7 +231,7 @@ def closed_form(ring: Ring) -> SealContact:
     return seal_contact(bare.at(squeeze_left=ring["squeeze"], pressure=abs(ring["pressure"])))
 
 
-def contacts(ring: Ring, supply: float) -> tuple[Contact, ...]:
+def contacts(ring: Ring, supply: float) -> tuple[MountedContact, ...]:
     """Finite elements of a ring of floats, mounted and at fractions of the supply pressure.
 
     Back-up rings are as rigid as the groove.
@@ -266,7 +266,7 @@ def contacts(ring: Ring, supply: float) -> tuple[Contact, ...]:
     return found.contacts
 
 
-def profiles(found: Iterable[Contact]) -> tuple[ContactProfile, ...]:
+def profiles(found: Iterable[MountedContact]) -> tuple[ContactProfile, ...]:
     """The contacts in the form of a design file."""
     return tuple(_profile(one.pressure, one.positions, one.contact_pressure) for one in found)
 

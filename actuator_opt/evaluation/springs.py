@@ -13,10 +13,10 @@ from ..base.numeric import Array, real
 from ..design.model import Design
 from ..models import dynamics, lugre, stiffness, stiffness_published as published
 from .barrel import Wall
-from .circuit import Branch, Chamber
+from .circuit import Chamber, ChamberLines
 from .geometry import Geometry
 from .limits import MetricArrays
-from .rods import Rod
+from .rods import RodSection
 from .state import LoadState
 from .values import Values
 
@@ -195,9 +195,9 @@ def springs(
     geometry: Geometry,
     state: LoadState,
     wall: Wall,
-    rod: Rod,
+    rod: RodSection,
     breakaway: Array,
-    branches: dict[Chamber, Branch],
+    branches: dict[Chamber, ChamberLines],
 ) -> Springs:
     """Compliance of chambers, lines, rod, mount, seals and load cell.
 

@@ -18,7 +18,7 @@ from ..models.oil_laws import BULK_MODULUS_LAWS, VISCOSITY_LAWS
 from . import linkage as joint_module, state as oil_laws
 from .geometry import Geometry
 from .limits import MaterialValues, MetricArrays
-from .linkage import WORST, Demand, Joint
+from .linkage import WORST, Demand, DrivenJoint
 from .values import Values, stacked
 
 Law: TypeAlias = Callable[..., Array]
@@ -183,7 +183,7 @@ class LoadState:
     """
 
     push: np.ndarray
-    joint: Joint | None
+    joint: DrivenJoint | None
     positions: tuple[Array | None, ...]
     """Piston position of every case; None for the worst."""
     reach: Array
@@ -226,7 +226,7 @@ def side_reactions(g: Geometry, state: LoadState) -> dict[str, Array]:
 
 
 def _positions(
-    v: Values, design: Design, geometry: Geometry, joint: Joint | None
+    v: Values, design: Design, geometry: Geometry, joint: DrivenJoint | None
 ) -> tuple[Array | None, ...]:
     """Piston position of every case, from its joint angle or stated; None for the worst."""
     rows: list[Array | None] = []

@@ -22,7 +22,7 @@ from .barrel.wall import largest_area
 from .geometry import Geometry, Groove, Numbers, clamped, end_at, joint_of, taken
 from .limits import MaterialValues, MetricArrays
 from .rod_strength import Beam
-from .rods import Rod
+from .rods import RodSection
 from .state import LoadState, side_reactions
 from .values import Values
 
@@ -63,7 +63,7 @@ def compute(
     g: Geometry,
     state: LoadState,
     wall: Wall,
-    section: Rod,
+    section: RodSection,
     beam: Beam,
     held: Held | None,
     out: MetricArrays,
@@ -130,7 +130,7 @@ def _pressure_factors(
 
 
 def _fitting_yield(
-    v: Values, stock: MaterialValues, design: Design, section: Rod, push: Array
+    v: Values, stock: MaterialValues, design: Design, section: RodSection, push: Array
 ) -> dict[str, Array]:
     """Yield over working stress of the rod fittings."""
     strength = stock.allowable(section.end_material, "yield_strength")
@@ -140,7 +140,12 @@ def _fitting_yield(
 
 
 def _rod_end(
-    v: Values, stock: MaterialValues, design: Design, section: Rod, pull: Array, out: MetricArrays
+    v: Values,
+    stock: MaterialValues,
+    design: Design,
+    section: RodSection,
+    pull: Array,
+    out: MetricArrays,
 ) -> None:
     strength = stock.allowable(section.end_material, "yield_strength")
     if design.rod.thread is None or strength is None:

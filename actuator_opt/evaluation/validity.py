@@ -23,7 +23,7 @@ from ..models import contact_profile, gland, laminate, rough_surface, seals
 from ..models.strength import CRITERIA
 from . import linkage as joint, motion, proportions, springs, state
 from .barrel import LAMINATES, kind
-from .film import Table
+from .film import FilmTable
 from .kernel import ModelRun, PreparedDesign
 from .result import Metric, ModelUse, Unverified
 from .rings import Ring, extrusion_end, seal_contact
@@ -32,7 +32,7 @@ from .values import Values
 
 
 @dataclass(frozen=True, slots=True)
-class Model:
+class ModelDocumentation:
     """A model function with the contents of its docstring."""
 
     name: str
@@ -46,7 +46,7 @@ _REFERENCES = re.compile(r"References\n\s*-+\n(.*?)(?:\n\s*\n|\Z)", re.DOTALL)
 
 
 @cache
-def describe(function: Callable[..., object]) -> Model:
+def describe(function: Callable[..., object]) -> ModelDocumentation:
     """Name, first sentence, source and valid range of a model function."""
     doc = function.__doc__ or ""
     valid = _VALID.search(doc)
@@ -56,7 +56,7 @@ def describe(function: Callable[..., object]) -> Model:
         return " ".join(match[1].split()) if match else ""
 
     module = function.__module__.rpartition(".")[2]
-    return Model(
+    return ModelDocumentation(
         name=f"{module}.{function.__name__}",
         summary=doc.strip().partition("\n")[0].rstrip("."),
         reference=flat(reference),
@@ -74,7 +74,7 @@ def function_of(name: str) -> Callable[..., object]:
 
 def model_of(
     metric: str, *, wall: str, criterion: str = "max_stress", place: str | None = None
-) -> Model | None:
+) -> ModelDocumentation | None:
     """Model of a metric at its governing place; None for plain geometry and inputs.
 
     `wall` is the barrel's model, `criterion` that of its plies.
@@ -152,7 +152,7 @@ def _leak_at_rest(subject: PreparedDesign) -> Iterable[tuple[str, str]]:
         )
 
 
-def _film(name: str, table: Table) -> Iterable[tuple[str, str]]:
+def _film(name: str, table: FilmTable) -> Iterable[tuple[str, str]]:
     """A surrogate with a large error, beyond its box, or with points without solution."""
     for what, metric in _SURROGATES.items():
         if table.errors[what] > FILM_ERROR:

@@ -377,7 +377,7 @@ class LayerRow:
 
 
 @dataclass(frozen=True, slots=True)
-class Profile:
+class WallProfile:
     """Stresses [Pa] through the wall under one load, each (layers, points) from the bore.
 
     `used` is 1/SR by the criterion of the design (metals: yield), including the cure stress of the
@@ -455,8 +455,8 @@ class WallStudy:
     layers: tuple[LayerRow, ...]
     criterion: str
     radius: Array
-    profiles: tuple[Profile, ...]
-    rest: tuple[Profile, ...]
+    profiles: tuple[WallProfile, ...]
+    rest: tuple[WallProfile, ...]
     """Cure stress and clamp without pressure, by climate; empty without such stresses."""
     ratios: tuple[Ratio, ...]
     shares: Shares | None
@@ -733,7 +733,7 @@ def _ratios(used: _Used, sight: _Sight) -> list[Ratio]:
     return rows
 
 
-def _profiles(sight: _Sight, used: Sequence[_Used]) -> tuple[Profile, ...]:
+def _profiles(sight: _Sight, used: Sequence[_Used]) -> tuple[WallProfile, ...]:
     """Stresses of every load path, with their utilisation of the strength."""
     found = []
     for p, path in enumerate(sight.paths):
@@ -741,18 +741,18 @@ def _profiles(sight: _Sight, used: Sequence[_Used]) -> tuple[Profile, ...]:
         for one in used:
             share[list(one.layers)] = np.max(one.values[..., p], axis=(0, 3)).T
         axial, hoop, radial = (part[..., p] for part in sight.tube)
-        found.append(Profile(path, hoop, axial, radial, share))
+        found.append(WallProfile(path, hoop, axial, radial, share))
     return tuple(found)
 
 
-def _at_rest(sight: _Sight) -> tuple[Profile, ...]:
+def _at_rest(sight: _Sight) -> tuple[WallProfile, ...]:
     """Stresses of every climate without pressure."""
     found = []
     noise = 1e-6 * max(np.max(np.abs(part[..., : len(sight.paths)])) for part in sight.tube)
     for s, state in enumerate(sight.states, len(sight.paths)):
         axial, hoop, radial = (part[..., s] for part in sight.tube)
         if np.max(np.abs(hoop)) > noise or np.max(np.abs(axial)) > noise:
-            found.append(Profile(state.name, hoop, axial, radial))
+            found.append(WallProfile(state.name, hoop, axial, radial))
     return tuple(found)
 
 

@@ -7,7 +7,7 @@ from ..design.model import Design
 from ..models import mass
 from .geometry import Geometry, Numbers, end_at, joint_of
 from .limits import MaterialValues
-from .rods import Rod, fitting_hole
+from .rods import RodSection, fitting_hole
 from .values import Values
 
 PARTS = ("barrel", "rod", "piston", "caps", "glands", "seals", "fastening", "clevises")
@@ -76,7 +76,7 @@ def _seals(v: Values, g: Geometry) -> Array:
     return rings
 
 
-def _rod_ends(v: Values, design: Design, rod: Rod) -> Array:
+def _rod_ends(v: Values, design: Design, rod: RodSection) -> Array:
     """Stud and plugs of a hollow rod, each one thread diameter long, and its bonded fittings.
 
     A plug closes each end; a fitting is itself a plug, or a sleeve around a plug.
@@ -99,7 +99,7 @@ def _rod_ends(v: Values, design: Design, rod: Rod) -> Array:
 
 
 def parts(
-    v: Values, design: Design, stock: MaterialValues, geometry: Geometry, rod: Rod
+    v: Values, design: Design, stock: MaterialValues, geometry: Geometry, rod: RodSection
 ) -> dict[str, Array]:
     """Mass of every dry part, kg."""
     g = geometry

@@ -24,7 +24,7 @@ from ..base.quantities import Quantity
 from ..base.tables import encoded
 from ..design.paths import quantity_of
 from ..evaluation import prepare
-from ..evaluation.limits import Limit
+from ..evaluation.limits import MetricLimit
 from ..evaluation.outline import LENGTHS, Template
 from ..evaluation.plugin import Plugin, with_own
 from ..evaluation.result import NO_RESERVE, NO_ROOM, Outline
@@ -167,7 +167,7 @@ def _limits(explored: Explored) -> tuple[list[dict[str, Any]], str]:
     return found, f"Every design meets {held} further checks." if held else ""
 
 
-def _label(limit: Limit, quantity: Quantity, plugins: Sequence[Plugin]) -> str:
+def _label(limit: MetricLimit, quantity: Quantity, plugins: Sequence[Plugin]) -> str:
     """A limit in words: its quantity and its load case."""
     own = any(plugin.name == limit.name for plugin in plugins)
     words = limit.name if own or limit.origin == "check" else quantity.label

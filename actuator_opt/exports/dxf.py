@@ -6,7 +6,7 @@ They measure the drawing itself (DIMLFAC 1): if a line is moved in CAD, its dime
 
 Layout of the section's dimensions without overlaps, independent of the file format.
 
-All lengths are in mm of the drawing; `Paper` gives the size of letters and gaps.
+All lengths are in mm of the drawing; `DrawingSizes` gives the size of letters and gaps.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ LETTER = 0.95
 
 
 @dataclass(frozen=True, slots=True)
-class Paper:
+class DrawingSizes:
     """Sizes of drawing elements at the intended print scale."""
 
     scale: float
@@ -81,7 +81,7 @@ def _clear(middle: float, half: float, lines: Sequence[float]) -> bool:
     return all(abs(middle - x) > half for x in lines)
 
 
-def _middle(length: Length, paper: Paper, lines: Sequence[float]) -> tuple[float, bool]:
+def _middle(length: Length, paper: DrawingSizes, lines: Sequence[float]) -> tuple[float, bool]:
     """Centre of a text over its own dimension line, else beside it, clear of all lines."""
     half, pad = paper.width(length.text) / 2, 0.5 * paper.letter
     centre = (length.start + length.end) / 2
@@ -101,7 +101,7 @@ def _middle(length: Length, paper: Paper, lines: Sequence[float]) -> tuple[float
     return length.end + beside, True
 
 
-def rows(lengths: Sequence[Length], paper: Paper) -> list[Placed]:
+def rows(lengths: Sequence[Length], paper: DrawingSizes) -> list[Placed]:
     """Assign every length to a row: short lengths next to the parts, long lengths outside.
 
     Extension lines of a length cross all rows nearer to the parts, so a text must not overlap the
@@ -162,7 +162,7 @@ def number(value: float) -> str:
     return f"{value:.3f}".rstrip("0").rstrip(".")
 
 
-def set_up(document: Any, paper: Paper) -> None:
+def set_up(document: Any, paper: DrawingSizes) -> None:
     """Add the layer and the dimension style: true lengths, ISO arrows."""
     document.layers.add(LAYER, color=_COLOUR, lineweight=18)
     style = document.dimstyles.new(STYLE)
@@ -219,7 +219,7 @@ def lengths_below(
     evaluated: Mapping[str, float],
     skirts: Sequence[tuple[float, float]],
     profiles: Sequence[Profile],
-    paper: Paper,
+    paper: DrawingSizes,
 ) -> float:
     """Draw dimension lengths below the parts, row by row.
 
@@ -286,7 +286,7 @@ def _wanted(evaluated: Mapping[str, float], profiles: Sequence[Profile]) -> list
 
 
 def diameters_above(
-    space: Any, evaluated: Mapping[str, float], profiles: Sequence[Profile], paper: Paper
+    space: Any, evaluated: Mapping[str, float], profiles: Sequence[Profile], paper: DrawingSizes
 ) -> float:
     """Draw diameters, with texts in one row above the parts; returns the highest y used."""
     wanted = _wanted(evaluated, profiles)
@@ -333,13 +333,13 @@ _Corner: TypeAlias = tuple[float, float, float]
 """x, y and bulge of a polyline: tan of a quarter of the arc to the next corner."""
 
 
-def paper_for(length: float) -> Paper:
+def paper_for(length: float) -> DrawingSizes:
     """The largest ISO 5455 scale at which a length (mm) fits the sheet.
 
     >>> paper_for(200.0).scale, paper_for(880.0).scale
     (1.0, 5.0)
     """
-    return Paper(next((one for one in _SCALES if length <= one * _SHEET), _SCALES[-1]))
+    return DrawingSizes(next((one for one in _SCALES if length <= one * _SHEET), _SCALES[-1]))
 
 
 def layer_name(part: str) -> str:
@@ -425,7 +425,9 @@ def _across(angle: float, spacing: float) -> tuple[float, float]:
     return spacing * cos(turn), spacing * sin(turn)
 
 
-def _parts(space: Any, evaluation: Evaluation, outlines: Sequence[Outline], paper: Paper) -> None:
+def _parts(
+    space: Any, evaluation: Evaluation, outlines: Sequence[Outline], paper: DrawingSizes
+) -> None:
     looks = _hatches(outlines)
     layers = space.doc.layers
     for index, outline in enumerate(outlines):
@@ -442,7 +444,7 @@ def _parts(space: Any, evaluation: Evaluation, outlines: Sequence[Outline], pape
             space.add_lwpolyline(line, format="xyb", close=True, dxfattribs={"layer": layer})
 
 
-def _axis(space: Any, first: float, last: float, paper: Paper) -> None:
+def _axis(space: Any, first: float, last: float, paper: DrawingSizes) -> None:
     space.doc.layers.add("axis", color=1, linetype="CENTER", lineweight=18)
     space.doc.header["$LTSCALE"] = 0.4 * paper.scale
     over = 5.0 * paper.scale
@@ -450,7 +452,7 @@ def _axis(space: Any, first: float, last: float, paper: Paper) -> None:
 
 
 def _words(
-    space: Any, evaluation: Evaluation, outlines: Sequence[Outline], paper: Paper,
+    space: Any, evaluation: Evaluation, outlines: Sequence[Outline], paper: DrawingSizes,
     corner: tuple[float, float], made: str,
 ) -> None:  # fmt: skip
     """Title and parts list, line by line below the dimensions."""

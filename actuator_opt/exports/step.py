@@ -38,7 +38,7 @@ NOT_TURNED = ("oil", *_RINGS, *EYES)
 
 
 @dataclass(frozen=True, slots=True)
-class Body:
+class SolidBody:
     """A body of revolution about the x axis; lengths in mm.
 
     `profile` starts at the first face of the body; `places` are the positions of its origin in the
@@ -177,14 +177,14 @@ def _fault(part: str) -> InputError:
     return InputError(Diagnostic(f"{part}: its section crosses itself or has no wall", remedy))
 
 
-def _bars(outline: Outline) -> Body:
+def _bars(outline: Outline) -> SolidBody:
     """Round bars evenly spaced about the axis, the first in the plane of the section."""
     profile = tidy(millimetres(outline.polygons[0]))
     first, low = profile[0]
     last, high = max(profile)
     radius, ring = (high - low) / 2, (low + high) / 2
     turns = [2 * pi * k / outline.bars for k in range(outline.bars)]
-    return Body(
+    return SolidBody(
         name=outline.part.removesuffix("s"),
         part=outline.part,
         material=outline.material,
@@ -193,7 +193,7 @@ def _bars(outline: Outline) -> Body:
     )
 
 
-def _bodies(outline: Outline) -> Iterator[Body]:
+def _bodies(outline: Outline) -> Iterator[SolidBody]:
     part = outline.part
     own = title(part)
     loops = joined(millimetres(polygon) for polygon in outline.polygons)
@@ -204,17 +204,17 @@ def _bodies(outline: Outline) -> Iterator[Body]:
         name = names[index] if len(names) == len(loops) else f"{own} {index + 1}"
         start = loop[0][0]
         moved = tuple((round(x - start, _DIGITS), r) for x, r in loop)
-        yield Body(name, part, outline.material, moved, ((start, 0.0, 0.0),))
+        yield SolidBody(name, part, outline.material, moved, ((start, 0.0, 0.0),))
 
 
-def bodies(evaluation: Evaluation) -> list[Body]:
+def bodies(evaluation: Evaluation) -> list[SolidBody]:
     """All turned parts of an evaluation, without oil, seals in grooves and eyes.
 
     Raises
     ------
     InputError : a part's section crosses itself
     """
-    found: list[Body] = []
+    found: list[SolidBody] = []
     for outline in evaluation.outlines:
         if outline.bars:
             found.append(_bars(outline))
@@ -447,7 +447,7 @@ def _placed(
     r.add(f"CONTEXT_DEPENDENT_SHAPE_REPRESENTATION({relation},{used})")
 
 
-def step(bodies: Sequence[Body], *, name: str, program: str, date: str | None = None) -> str:
+def step(bodies: Sequence[SolidBody], *, name: str, program: str, date: str | None = None) -> str:
     """An assembly as a STEP file.
 
     Parameters

@@ -9,25 +9,25 @@ from .equilibrium import Booleans, ElementState, NotConverged
 from .material import Floats
 from .mesh import Integers
 from .result import contact_end
-from .section import Section
+from .section import Assembly
 
 HOLDING = 0.05
 """Share of the fluid pressure by which contact pressure may fall below it and still seal."""
 
 
-def boundary_nodes(section: Section, body: int) -> Integers:
+def boundary_nodes(section: Assembly, body: int) -> Integers:
     """Boundary nodes of a body in order, anticlockwise."""
     return np.asarray(section.edges[body][:, :2].ravel())
 
 
-def middle_node(section: Section, nodes: int) -> int:
+def middle_node(section: Assembly, nodes: int) -> int:
     """Node at the centre of a round section, which is the first body."""
     places = section.nodes[:nodes]
     middle = (places.min(axis=0) + places.max(axis=0)) / 2
     return int(np.argmin(np.sum((places - middle) ** 2, axis=1)))
 
 
-def level_pair(section: Section, nodes: int, middle: float) -> tuple[int, int]:
+def level_pair(section: Assembly, nodes: int, middle: float) -> tuple[int, int]:
     """Two inner nodes of a round section, left and right of its centre at the same height."""
     places = section.nodes[:nodes]
     centre = float(places[:, 0].min() + places[:, 0].max()) / 2
@@ -42,7 +42,7 @@ def level_pair(section: Section, nodes: int, middle: float) -> tuple[int, int]:
     return left, right
 
 
-def wall_pressing(section: Section, state: ElementState) -> Floats:
+def wall_pressing(section: Assembly, state: ElementState) -> Floats:
     """Force of walls above and below on every node."""
     force = state.reaction.reshape(-1, 2)[:, 1]
     lower = state.at_lower.reshape(-1, 2)[:, 1]
@@ -50,7 +50,7 @@ def wall_pressing(section: Section, state: ElementState) -> Floats:
 
 
 def barriers(
-    section: Section, state: ElementState, places: Floats, pressing: Floats, pressure: float
+    section: Assembly, state: ElementState, places: Floats, pressing: Floats, pressure: float
 ) -> Floats:
     """Contact pressure at every node from its force and the fluid behind it."""
     length = np.abs(equilibrium.shares(section, places)[:, 0]) * section.radii(places)
@@ -88,7 +88,7 @@ def reached(
 
 
 def profile_on_face(
-    section: Section,
+    section: Assembly,
     state: ElementState,
     places: Floats,
     boundary: Integers,

@@ -26,8 +26,8 @@ from scipy.sparse.linalg import splu
 from ..base.errors import ActuatorError, Diagnostic
 from .material import Floats, MooneyRivlin
 from .mesh import Integers
-from .result import Contact, SealSolution
-from .section import Section
+from .result import MountedContact, SealSolution
+from .section import Assembly
 
 SLOPES = np.array([[-1.5, 2.0, -0.5], [-0.5, 0.0, 0.5], [0.5, -2.0, 1.5]])
 """d(position)/d(xi) at the three nodes of an edge from their positions, xi from -1 to 1."""
@@ -41,7 +41,7 @@ def tangents(edges: Integers, places: Floats) -> Floats:
     return np.asarray(SIMPSON[:, None] * (SLOPES @ places[edges]))
 
 
-def shares(section: Section, places: Floats) -> Floats:
+def shares(section: Assembly, places: Floats) -> Floats:
     """Directed length of each node's share of the boundary, nodes x 2 [m]."""
     total = np.zeros_like(places)
     for edges in section.edges:
@@ -49,7 +49,7 @@ def shares(section: Section, places: Floats) -> Floats:
     return total
 
 
-def load(section: Section, places: Floats, pressure: Floats) -> tuple[Floats, Floats]:
+def load(section: Assembly, places: Floats, pressure: Floats) -> tuple[Floats, Floats]:
     """Nodal forces of a fluid, and minus their derivative for every edge.
 
     Parameters
@@ -86,7 +86,7 @@ Booleans = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True)
-class Rows:
+class PairContribution:
     """Contribution of a pair to Newton's equations.
 
     Parameters
@@ -113,7 +113,7 @@ class _Under:
     along: Floats
 
 
-class Pair:
+class ContactPair:
     """Upper nodes and lower edges; the edges run towards decreasing x, as on an upper surface.
 
     Parameters
@@ -187,7 +187,9 @@ class Pair:
         )
         return mean, derivative
 
-    def rows(self, places: Floats, touching: Booleans, force: Floats, unknowns: int) -> Rows:
+    def rows(
+        self, places: Floats, touching: Booleans, force: Floats, unknowns: int
+    ) -> PairContribution:
         """Gaps, directions and stiffness of the touching nodes."""
         chosen = np.flatnonzero(touching)
         under = self._under(places)
@@ -225,7 +227,7 @@ class Pair:
         slope_change = local.multiply(bend[:, None]) + picked @ slope_derivative
         change = sparse(by_slope).T @ slope_change + sparse(by_place).T @ local
         steep = along[:, 1] / along[:, 0]
-        return Rows(
+        return PairContribution(
             sparse(spread(steep)).tocsc(), sparse(spread(smooth)).tocsc(), csc_matrix(-change)
         )
 
@@ -246,14 +248,14 @@ FLATTEST = 0.2
 
 
 @dataclass(slots=True)
-class Bounds:
+class DisplacementBounds:
     """Bounds of all displacements; equal bounds fix a node."""
 
     lower: Floats
     upper: Floats
 
     @classmethod
-    def none(cls, section: Section) -> Bounds:
+    def none(cls, section: Assembly) -> DisplacementBounds:
         """No walls."""
         size = section.displacements
         return cls(np.full(size, -np.inf), np.full(size, np.inf))
@@ -317,11 +319,11 @@ class ElementProblem:
         without effect; None if nothing can roll
     """
 
-    section: Section
-    bounds: Bounds
+    section: Assembly
+    bounds: DisplacementBounds
     wet_part: WetPart
     level: tuple[int, int] | None = None
-    pair: Pair | None = None
+    pair: ContactPair | None = None
     steps: int = 0
     iterations: int = 0
     worst_residual: float = 0.0
@@ -563,7 +565,7 @@ def check_inputs(
         raise ActuatorError(found)
 
 
-class Seal(Protocol):
+class ElementSeal(Protocol):
     """A seal that can be mounted, moved to the outer groove wall, and evaluated."""
 
     problem: ElementProblem
@@ -576,12 +578,12 @@ class Seal(Protocol):
 
     def contact(
         self, state: ElementState, pressure: float, length: float, modulus: float
-    ) -> Contact:
+    ) -> MountedContact:
         """Contact on the sliding face, with dimensions."""
 
 
 def follow(
-    seal: Seal,
+    seal: ElementSeal,
     squeeze: float,
     groove_width: float,
     pressures: Sequence[float],
@@ -598,7 +600,7 @@ def follow(
     pressures : increasing pressures [Pa]
     length, modulus : the units [m], [Pa]
     """
-    contacts: list[Contact] = []
+    contacts: list[MountedContact] = []
     failure, reached = None, 0.0
     try:
         state = seal.mount(squeeze, groove_width)

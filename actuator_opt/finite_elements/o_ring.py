@@ -20,7 +20,7 @@ from .contact import (
 )
 from .equilibrium import (
     SQUEEZE_STEP,
-    Bounds,
+    DisplacementBounds,
     ElementProblem,
     ElementState,
     NotConverged,
@@ -29,8 +29,8 @@ from .equilibrium import (
 )
 from .material import Floats, MooneyRivlin
 from .mesh import disc
-from .result import Contact, SealSolution, stress_field
-from .section import Body, Section
+from .result import MountedContact, SealSolution, stress_field
+from .section import Assembly, MeshedBody
 
 MOST_FILL = 0.98
 """Largest fill of the groove by an incompressible section: corners stay open."""
@@ -43,7 +43,7 @@ class RoundRing:
     ----------
     rubber : strain energy, modulus 1
     around : elements around the section
-    sliding_radius, outward : as in `Section`
+    sliding_radius, outward : as in `Assembly`
     """
 
     def __init__(
@@ -54,10 +54,10 @@ class RoundRing:
         outward: int,
     ) -> None:
         mesh = disc(diameter=1.0, around=around)
-        self.section = Section([Body(mesh, rubber, (0.0, 0.5))], sliding_radius, outward)
+        self.section = Assembly([MeshedBody(mesh, rubber, (0.0, 0.5))], sliding_radius, outward)
         self.boundary = boundary_nodes(self.section, 0)
         level = level_pair(self.section, len(mesh.nodes), 0.5)
-        bounds = Bounds.none(self.section)
+        bounds = DisplacementBounds.none(self.section)
         self.problem = ElementProblem(self.section, bounds, self.wet_part, level)
         self.centre = middle_node(self.section, len(mesh.nodes))
         bounds.lower[2 * self.boundary + 1] = -self.section.nodes[self.boundary, 1]
@@ -110,7 +110,7 @@ class RoundRing:
 
     def contact(
         self, state: ElementState, pressure: float, length: float, modulus: float
-    ) -> Contact:
+    ) -> MountedContact:
         """Contact on the sliding face, with dimensions."""
         places = self.section.places(state.values)
         force = state.reaction.reshape(-1, 2)
@@ -121,7 +121,7 @@ class RoundRing:
         start, positions, contact_pressure, line_load = profile
         top = state.at_upper.reshape(-1, 2)[:, 1]
         side = state.at_upper.reshape(-1, 2)[:, 0]
-        return Contact(
+        return MountedContact(
             pressure=pressure * modulus,
             positions=positions * length,
             contact_pressure=contact_pressure * modulus,

@@ -9,7 +9,7 @@ import numpy as np
 from . import material
 from .material import Floats
 from .mesh import Integers
-from .section import Section
+from .section import Assembly
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ class StressField:
 
 
 @dataclass(frozen=True, slots=True)
-class Contact:
+class MountedContact:
     """A seal in its groove at one sealed pressure; pressures are relative to the outer side.
 
     Parameters
@@ -73,14 +73,14 @@ class SealSolution:
     residual : largest unbalanced force, relative to modulus times section
     """
 
-    contacts: tuple[Contact, ...]
+    contacts: tuple[MountedContact, ...]
     failure: str | None
     steps: int
     iterations: int
     residual: float
 
 
-def stress_field(section: Section, values: Floats, length: float, modulus: float) -> StressField:
+def stress_field(section: Assembly, values: Floats, length: float, modulus: float) -> StressField:
     """Deformed mesh and stress of a solution in units of a length and a modulus."""
     gradient, multiplier = section.gradient(values)
     stress = material.von_mises(gradient, multiplier, section.c10, section.c01)

@@ -14,7 +14,7 @@ from .mesh import Integers, Mesh
 
 
 @dataclass(frozen=True, slots=True)
-class Body:
+class MeshedBody:
     """A mesh with its material and position.
 
     Parameters
@@ -29,7 +29,7 @@ class Body:
     place: tuple[float, float] = (0.0, 0.0)
 
 
-class Section:
+class Assembly:
     """All bodies with a common vector of unknowns: displacements 2 i, 2 i + 1 of node i, then q.
 
     Parameters
@@ -41,7 +41,7 @@ class Section:
 
     def __init__(
         self,
-        bodies: Sequence[Body],
+        bodies: Sequence[MeshedBody],
         sliding_radius: float | None = None,
         outward: int = 1,
     ) -> None:
@@ -76,7 +76,7 @@ class Section:
         self._shape(bodies)
         self._pattern()
 
-    def _shape(self, bodies: Sequence[Body]) -> None:
+    def _shape(self, bodies: Sequence[MeshedBody]) -> None:
         """Derivative of the five components by the twelve displacements; weights."""
         gradients = np.concatenate([b.mesh.gradients for b in bodies])
         self.weights: Floats = np.concatenate([b.mesh.weights for b in bodies])

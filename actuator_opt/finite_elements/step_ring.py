@@ -20,18 +20,18 @@ from .contact import (
 )
 from .equilibrium import (
     SQUEEZE_STEP,
-    Bounds,
+    ContactPair,
+    DisplacementBounds,
     ElementProblem,
     ElementState,
     NotConverged,
-    Pair,
     check_inputs,
     follow,
 )
 from .material import Floats, MooneyRivlin
 from .mesh import SlideRing, disc, slide_ring
-from .result import Contact, SealSolution, stress_field
-from .section import Body, Section
+from .result import MountedContact, SealSolution, stress_field
+from .section import Assembly, MeshedBody
 
 COARSE = 0.12
 """Largest element size of the slide ring, over the section of the rubber ring."""
@@ -51,7 +51,7 @@ class StepRing:
     shape : dimensions of the slide ring
     around : elements around the rubber's section
     fine : element size at the ends of the land
-    sliding_radius, outward : as in `Section`
+    sliding_radius, outward : as in `Assembly`
     """
 
     def __init__(
@@ -69,17 +69,20 @@ class StepRing:
             disc(diameter=1.0, around=around),
             slide_ring(shape, fine=fine, coarse=COARSE),
         )
-        self.section = Section(
-            [Body(round_mesh, rubber, (-shape.width / 2, middle)), Body(flat_mesh, plastic)],
+        self.section = Assembly(
+            [
+                MeshedBody(round_mesh, rubber, (-shape.width / 2, middle)),
+                MeshedBody(flat_mesh, plastic),
+            ],
             sliding_radius,
             outward,
         )
         self.round, self.flat = (boundary_nodes(self.section, body) for body in (0, 1))
         nodes = self.section.nodes
         back = nodes[self.section.edges[1], 1].min(axis=1) > shape.thickness - 1e-9
-        self.pair = Pair(self.round, self.section.edges[1][back])
+        self.pair = ContactPair(self.round, self.section.edges[1][back])
         level = level_pair(self.section, len(round_mesh.nodes), middle)
-        bounds = Bounds.none(self.section)
+        bounds = DisplacementBounds.none(self.section)
         self.problem = ElementProblem(self.section, bounds, self.wet_part, level, self.pair)
         self.centre = middle_node(self.section, len(round_mesh.nodes))
         at_end = self.flat[nodes[self.flat, 0] > -1e-9]
@@ -173,7 +176,7 @@ class StepRing:
 
     def contact(
         self, state: ElementState, pressure: float, length: float, modulus: float
-    ) -> Contact:
+    ) -> MountedContact:
         """Contact on the rod, with dimensions."""
         places = self.section.places(state.values)
         force = state.reaction.reshape(-1, 2)
@@ -182,7 +185,7 @@ class StepRing:
             self.section, state, places, self.flat, held, pressure, force[:, 1]
         )
         upper = state.at_upper.reshape(-1, 2)
-        return Contact(
+        return MountedContact(
             pressure=pressure * modulus,
             positions=positions * length,
             contact_pressure=contact_pressure * modulus,

@@ -9,10 +9,10 @@ from ..models import friction
 from ..seals.contact import SealContact
 from ..seals.seal_type import SealSizes
 from . import coefficient
-from .law import Film, Friction
+from .law import Friction, MovingFilm
 
 
-def _friction(seal: SealSizes, contact: SealContact, film: Film | None) -> Friction:
+def _friction(seal: SealSizes, contact: SealContact, film: MovingFilm | None) -> Friction:
     """Friction on an oil film; at rest the oil is squeezed out and the contact is dry."""
     own = seal["asperity_friction"]
     dry = friction.seal_friction(

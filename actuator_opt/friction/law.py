@@ -28,7 +28,7 @@ class Friction:
         )
 
 
-class Film(Protocol):
+class MovingFilm(Protocol):
     """Oil film of a ring in motion, over the whole circumference."""
 
     @property
@@ -77,7 +77,7 @@ class FrictionLaw:
     breakaway: Callable[[SealSizes, Array], Array]
     level: Callable[[SealSizes, Array, Array], Array]
     slope: Callable[[SealSizes, Array, Array], Array]
-    film: Callable[[SealSizes, SealContact, Film | None], Friction] | None
+    film: Callable[[SealSizes, SealContact, MovingFilm | None], Friction] | None
 
     def friction(
         self, seal: SealSizes, contact: SealContact, load: Array, speed: Array

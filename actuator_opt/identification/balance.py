@@ -11,7 +11,7 @@ import numpy as np
 from ..base.errors import Diagnostic, InputError
 from ..base.numeric import Array
 from ..studies.bench import Bench
-from .conditioning import Motion, Piece
+from .conditioning import ConditionedRecord, RecordSection
 
 RESTING, CREEP = 3.0, 2e-5
 """Noise multiple, in standard deviations of the velocity, below which the rod may be at rest, and
@@ -41,7 +41,7 @@ class Sliding:
     resting : velocity below which the rod may be at rest [m/s]
     """
 
-    piece: Piece
+    piece: RecordSection
     hydraulic: Array
     resisting: Array
     pressure: Array
@@ -58,7 +58,7 @@ class Sliding:
         return self.piece.sound & (np.abs(self.piece.velocity) > self.resting)
 
 
-def velocity_noise(motion: Motion) -> float:
+def velocity_noise(motion: ConditionedRecord) -> float:
     """Standard deviation of the velocity due to noise and resolution of the position [m/s].
 
     White noise s of a sample, filtered to f_c and differentiated: s_v = 2 pi f_c s sqrt(2 f_c dt/3)
@@ -70,7 +70,9 @@ def velocity_noise(motion: Motion) -> float:
     return float(2 * np.pi * motion.cutoff * sample * np.sqrt(band / 3))
 
 
-def slide(motion: Motion, bench: Bench, *, mass: float, load_force: float | None) -> list[Sliding]:
+def slide(
+    motion: ConditionedRecord, bench: Bench, *, mass: float, load_force: float | None
+) -> list[Sliding]:
     """Friction along every section of a record.
 
     F_r = p_1 A_1 - p_2 A_2 - F_L - m a, [Huang2017] eq. 1; areas in the bore as grown.
@@ -90,7 +92,9 @@ def slide(motion: Motion, bench: Bench, *, mass: float, load_force: float | None
     return [_one(piece, bench, mass, load_force or 0.0, resting) for piece in motion.pieces]
 
 
-def _one(piece: Piece, bench: Bench, mass: float, load_force: float, resting: float) -> Sliding:
+def _one(
+    piece: RecordSection, bench: Bench, mass: float, load_force: float, resting: float
+) -> Sliding:
     first = piece["p1"]
     second = piece["p2"] if "p2" in piece else np.zeros_like(first)
     highest = np.maximum(np.maximum(first, second), 0.0)
@@ -191,7 +195,7 @@ def _turned(
     if force and "F_L" in channels:
         channels["F_L"] = -channels["F_L"]
     sign = -1.0 if way else 1.0
-    other = Piece(
+    other = RecordSection(
         piece.time, channels, sign * piece.velocity, sign * piece.acceleration, piece.sound
     )
     load = one.resisting[0] - mass * piece.acceleration[0] if "F_L" not in channels else 0.0

@@ -31,7 +31,7 @@ from ..base.fitting import CONFIDENCE, WEAK, Parameter, quantile
 from ..base.numeric import STEP as COMPLEX_STEP, Array
 from .balance import Sliding
 from .calibration import FitSearch, relaxed
-from .conditioning import Motion
+from .conditioning import ConditionedRecord
 from .lugre import (
     BENDS,
     LAG,
@@ -44,7 +44,7 @@ from .lugre import (
     sizes,
     windows,
 )
-from .points import SETTLED, Point
+from .points import SETTLED, FrictionPoint
 from .stribeck_fit import EXPONENTS, SPEEDS, STATIC_MOST, Steady, StribeckFit
 
 FEWEST = 80
@@ -74,8 +74,8 @@ AT_END = 1e-6
 
 def resampled(
     slidings: Sequence[Sliding],
-    motion: Motion,
-    points: Sequence[Point],
+    motion: ConditionedRecord,
+    points: Sequence[FrictionPoint],
     stribeck: StribeckFit | str,
     lugre: LuGreFit | str,
     *,
@@ -126,7 +126,7 @@ def resampled(
 
 
 def resampled_stribeck(
-    points: Sequence[Point], fit: StribeckFit, *, count: int, rng: np.random.Generator
+    points: Sequence[FrictionPoint], fit: StribeckFit, *, count: int, rng: np.random.Generator
 ) -> StribeckFit:
     """A Stribeck curve with bounds by resampling its points."""
     names = tuple(fit.parameters)
@@ -162,7 +162,7 @@ def resampled_stribeck(
 
 def _lugre(
     found: Windows,
-    points: Sequence[Point],
+    points: Sequence[FrictionPoint],
     stribeck: StribeckFit | None,
     fit: LuGreFit,
     count: int,
@@ -226,7 +226,11 @@ class LuGreResiduals:
     """Weighted residuals of points and windows as functions of the searched numbers."""
 
     def __init__(
-        self, found: Windows, points: Sequence[Point], stribeck: StribeckFit | None, fit: LuGreFit
+        self,
+        found: Windows,
+        points: Sequence[FrictionPoint],
+        stribeck: StribeckFit | None,
+        fit: LuGreFit,
     ) -> None:
         self.names, self.values = tuple(fit.parameters), fit.values
         best = searched(self.names, self.values)

@@ -13,12 +13,12 @@ from ..base.errors import Diagnostic, InputError
 from ..base.fitting import Parameter, quantile, rated
 from ..base.numeric import Array
 from ..base.quantities import INPUTS
-from ..design.model import Design, Measured
+from ..design.model import Design, TestBounds
 from ..friction.coefficient import STRIBECK_EXPONENT
 from ..models import friction
 from ..studies.bench import Bench
 from .lugre import LuGreFit
-from .points import Point
+from .points import FrictionPoint
 from .result import Identification
 from .stribeck_fit import StribeckFit
 
@@ -31,7 +31,7 @@ third of what makes a parameter weakly identifiable)."""
 
 
 def of_curve(
-    points: Sequence[Point], stribeck: StribeckFit, level: Array, stated: Array
+    points: Sequence[FrictionPoint], stribeck: StribeckFit, level: Array, stated: Array
 ) -> Iterator[str]:
     """Effects that the design's friction omits: an offset, another pressure dependence."""
     offset = stribeck.parameters.get("offset")
@@ -52,7 +52,7 @@ def of_curve(
         )
 
 
-def _shape(points: Sequence[Point], stribeck: StribeckFit) -> Iterator[str]:
+def _shape(points: Sequence[FrictionPoint], stribeck: StribeckFit) -> Iterator[str]:
     """Deviation of the Stribeck exponent from the design's, and the resulting error of friction."""
     found = stribeck.parameters.get("exponent")
     if found is None or found.lower <= STRIBECK_EXPONENT <= found.upper:
@@ -71,7 +71,7 @@ def _shape(points: Sequence[Point], stribeck: StribeckFit) -> Iterator[str]:
     )
 
 
-def extrapolated(bench: Bench, points: Sequence[Point]) -> Iterator[str]:
+def extrapolated(bench: Bench, points: Sequence[FrictionPoint]) -> Iterator[str]:
     """Duties of the design beyond the record."""
     fastest = max(case.speed for case in bench.design.load_cases)
     speed, pressure = max(one.speed for one in points), max(one.pressure for one in points)
@@ -178,11 +178,11 @@ class Calibration:
         """New numbers by PATH, SI."""
         return {path: value for one in self.learned for path, value in one.values().items()}
 
-    def measured(self) -> dict[str, Measured]:
+    def measured(self) -> dict[str, TestBounds]:
         """Their bounds by PATH."""
         name = self.identification.record.file_name
         return {
-            path: Measured(lower=low, upper=high, record=name)
+            path: TestBounds(lower=low, upper=high, record=name)
             for one in self.learned
             for path, (low, high) in one.bounds().items()
         }
@@ -282,7 +282,7 @@ def refuse_films(design: Design) -> None:
                 raise InputError(Diagnostic(message, remedy, path=f"seals.{place}.{tail}friction"))
 
 
-def _pressures(points: Sequence[Point]) -> tuple[Array, Array]:
+def _pressures(points: Sequence[FrictionPoint]) -> tuple[Array, Array]:
     """Chamber pressures of the points [Pa]."""
     return (
         np.array([one.pressure_1 for one in points]),
@@ -330,7 +330,9 @@ def _from_fits(
     return learned, left, level
 
 
-def _from_level(bench: Bench, points: Sequence[Point]) -> tuple[list[Learned], Array, list[str]]:
+def _from_level(
+    bench: Bench, points: Sequence[FrictionPoint]
+) -> tuple[list[Learned], Array, list[str]]:
     """The factor alone, from friction at one speed; other speeds follow the design.
 
     If the speed is within the design's Stribeck rise, the upper bound assumes no rise.

@@ -14,7 +14,7 @@ from ..base.units import UnitError
 from ..studies.bench import Bench
 from .balance import Sliding
 from .column_units import NONE, ColumnUnits
-from .conditioning import Motion
+from .conditioning import ConditionedRecord
 from .record import CHANNELS, column_of, contradicted, converted, header_cells, numbers, read_sheet
 
 FEWEST = 2
@@ -133,7 +133,9 @@ class Coefficient:
     speeds: tuple[float, float]
 
 
-def coefficient(slidings: Sequence[Sliding], motion: Motion, bench: Bench) -> Coefficient | str:
+def coefficient(
+    slidings: Sequence[Sliding], motion: ConditionedRecord, bench: Bench
+) -> Coefficient | str:
     """The friction coefficient of a record, or the reason for none.
 
     mu = F_r/sum f_i pi D_i, f the line loads of the design's contact laws at the chamber pressures.
@@ -174,7 +176,7 @@ def coefficient(slidings: Sequence[Sliding], motion: Motion, bench: Bench) -> Co
     )
 
 
-def _windows(sliding: Sliding, motion: Motion) -> Array:
+def _windows(sliding: Sliding, motion: ConditionedRecord) -> Array:
     """Friction along motion, both pressures and speed of every window (windows, 4)."""
     size = max(round(WINDOW / motion.sample_time), 1)
     piece = sliding.piece

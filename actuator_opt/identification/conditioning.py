@@ -46,7 +46,7 @@ NEEDED = ("p1", "p2", "x", "F_L")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Piece:
+class RecordSection:
     """An uninterrupted section of a record, evenly sampled, SI; arrays (samples).
 
     `channels` are filtered; `sound` excludes the ends where the filter is inaccurate.
@@ -66,10 +66,10 @@ class Piece:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Motion:
+class ConditionedRecord:
     """A conditioned record: its sections, and the notes on conditioning."""
 
-    pieces: tuple[Piece, ...]
+    pieces: tuple[RecordSection, ...]
     sample_time: float
     cutoff: float
     order: int
@@ -135,8 +135,8 @@ def condition(
     order: int = ORDER,
     compensated: bool = True,
     pressure_lag: float = 0.0,
-    before: Motion | None = None,
-) -> Motion:
+    before: ConditionedRecord | None = None,
+) -> ConditionedRecord:
     """Evenly sampled, cleaned and filtered sections of a record.
 
     Parameters
@@ -198,7 +198,9 @@ def condition(
         for name, one in quality.items()
     }
     notes += [note for name, one in quality.items() for note in one.told(name, time.size)]
-    return Motion(tuple(pieces), step, cutoff, order, compensated, quality, tuple(notes), cleaned)
+    return ConditionedRecord(
+        tuple(pieces), step, cutoff, order, compensated, quality, tuple(notes), cleaned
+    )
 
 
 def _timing(steps: Array, step: float, cutoff: float) -> list[str]:
@@ -342,7 +344,7 @@ def _piece(
     cutoff: float,
     sections: Array,
     pressure_lag: float,
-) -> Piece:
+) -> RecordSection:
     """One section resampled at even time steps, filtered and differentiated."""
     count = int(np.floor((time[-1] - time[0]) / step + 1e-6)) + 1
     even = time[0] + step * np.arange(count)
@@ -359,10 +361,10 @@ def _piece(
     edge = int(np.ceil(EDGE / (cutoff * step)))
     sound = np.zeros(count, dtype=bool)
     sound[edge : count - edge] = True
-    return Piece(even, smooth, velocity, np.gradient(velocity, step), sound)
+    return RecordSection(even, smooth, velocity, np.gradient(velocity, step), sound)
 
 
-def _noise(time: Array, values: Array, name: str, pieces: Sequence[Piece]) -> float:
+def _noise(time: Array, values: Array, name: str, pieces: Sequence[RecordSection]) -> float:
     """Robust standard deviation of a sample about the filtered channel."""
     apart = []
     for piece in pieces:
@@ -385,7 +387,7 @@ PADDING = 1.5
 within 0.5 % there)."""
 
 
-def velocities(piece: Piece, motion: Motion, first: int, last: int) -> Array:
+def velocities(piece: RecordSection, motion: ConditionedRecord, first: int, last: int) -> Array:
     """Velocity along a section at the record's cut-off and at lower ones.
 
     A cut-off that moves the position by more than the sensor's errors is replaced by the cut-off
@@ -419,7 +421,7 @@ def velocities(piece: Piece, motion: Motion, first: int, last: int) -> Array:
     return np.stack(found)
 
 
-def position_error(velocity: Array, motion: Motion) -> float:
+def position_error(velocity: Array, motion: ConditionedRecord) -> float:
     """Mean square error of the filtered position along a velocity [m^2].
 
     White noise s^2 passes the filter by 2 f_c dt. Steps q pass fully, as q^2/12, if the rod takes

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..base.fitting import WEAK, Parameter, quantile
 from ..base.numeric import Array
-from .points import ALIKE, Point
+from .points import ALIKE, FrictionPoint
 
 REACH = 1.5
 """Stribeck speeds that a record must reach to separate F_C from sigma_2: there the Stribeck part is
@@ -82,13 +82,13 @@ class Unequal(NamedTuple):
         )
 
 
-def spread(points: Sequence[Point], pressures: Sequence[float], area: float) -> float:
+def spread(points: Sequence[FrictionPoint], pressures: Sequence[float], area: float) -> float:
     """Pressure range relative to the least one that shows an effect."""
     own = APART * max(abs(one.friction) for one in points) / area
     return (max(pressures) - min(pressures)) / max(SPREAD * max(pressures), own, 1.0)
 
 
-def unequal(points: Sequence[Point], area: float) -> Unequal | None:
+def unequal(points: Sequence[FrictionPoint], area: float) -> Unequal | None:
     """Detect a share of the hydraulic force in the friction: areas or sensors are wrong.
 
     Least squares F = sgn v [f_k + s (p - p_0)] + F_0 + e A p_i, f_k free at every speed; friction

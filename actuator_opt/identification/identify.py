@@ -10,15 +10,24 @@ import numpy as np
 
 from ..base.errors import InputError
 from ..base.fitting import Parameter, quantile
-from ..design.material import Fit, fit_double_exponential, fit_power_law
+from ..design.material import LawFit, fit_double_exponential, fit_power_law
 from ..studies.bench import Bench
 from .balance import Sliding, check_signs, slide, velocity_noise
 from .bootstrap import resampled
 from .column import coefficient
-from .conditioning import Motion, condition
+from .conditioning import ConditionedRecord, condition
 from .doubtful import opened
 from .lugre import BENDS, LAG, LuGreFit, fit_lugre, settling_distance
-from .points import BLURRED, LASTING, SETTLED, SETTLING, Point, independent, settled, steady_points
+from .points import (
+    BLURRED,
+    LASTING,
+    SETTLED,
+    SETTLING,
+    FrictionPoint,
+    independent,
+    settled,
+    steady_points,
+)
 from .record import Record
 from .result import Identification, Mean, Settings
 from .straight import spectrum
@@ -192,7 +201,11 @@ def identify(record: Record, bench: Bench, settings: Settings | None = None) -> 
 
 
 def _moving(
-    record: Record, motion: Motion, slidings: Sequence[Sliding], bench: Bench, mass: float
+    record: Record,
+    motion: ConditionedRecord,
+    slidings: Sequence[Sliding],
+    bench: Bench,
+    mass: float,
 ) -> None:
     """Reject a record of a rod at rest, beyond its stroke, or with wrong signs."""
     travel = max(float(np.ptp(one["x"][one.sound])) for one in motion.pieces)
@@ -216,9 +229,9 @@ def _moving(
 def _remarks(
     record: Record,
     bench: Bench,
-    motion: Motion,
+    motion: ConditionedRecord,
     slidings: Sequence[Sliding],
-    points: Sequence[Point],
+    points: Sequence[FrictionPoint],
 ) -> list[str]:
     """Notes for the reader, beyond the quality of the record."""
     return [
@@ -242,7 +255,7 @@ def _outside(slidings: Sequence[Sliding], bench: Bench) -> list[str]:
     ]
 
 
-def _blurred(points: Sequence[Point], motion: Motion) -> list[str]:
+def _blurred(points: Sequence[FrictionPoint], motion: ConditionedRecord) -> list[str]:
     """A note if a low cut-off leaves no points."""
     shortest = 2 * BLURRED / motion.cutoff + LASTING / 2
     if points or shortest <= 2 * LASTING:
@@ -267,7 +280,7 @@ def _warmth(record: Record, bench: Bench) -> list[str]:
     ]
 
 
-def _pace(motion: Motion) -> list[str]:
+def _pace(motion: ConditionedRecord) -> list[str]:
     """A note if channel v is not the slope of x, by least squares over moving samples.
 
     v = k dx/dt, k = sum v x'/sum x'^2 with the noise of x' taken off.
@@ -288,11 +301,11 @@ def _pace(motion: Motion) -> list[str]:
 
 def _models(
     slidings: Sequence[Sliding],
-    motion: Motion,
+    motion: ConditionedRecord,
     area: float,
     lag_known: bool,
     settling: float = SETTLED,
-) -> tuple[tuple[Point, ...], StribeckFit | str, LuGreFit | str]:
+) -> tuple[tuple[FrictionPoint, ...], StribeckFit | str, LuGreFit | str]:
     """Points of steady sliding, and the models fitted to them."""
     points = steady_points(slidings, motion, settling)
     stribeck = fit_stribeck(points, area)
@@ -340,8 +353,8 @@ def _read(
     settings: Settings,
     mass: float,
     lag: float,
-    before: Motion | None,
-) -> tuple[Motion, list[Sliding]]:
+    before: ConditionedRecord | None,
+) -> tuple[ConditionedRecord, list[Sliding]]:
     """The conditioned record with its friction; `before` is the same with another lag."""
     motion = condition(
         record,
@@ -355,7 +368,7 @@ def _read(
 
 
 def _sizes(
-    slidings: Sequence[Sliding], motion: Motion, settling: float
+    slidings: Sequence[Sliding], motion: ConditionedRecord, settling: float
 ) -> tuple[Mean, float, bool]:
     """Mean |F_r| in sliding, by batch means, its largest value, and whether the rod slides.
 
@@ -377,7 +390,7 @@ def _sizes(
     return Mean(middle, middle - half, middle + half), largest, slides
 
 
-def _fits(points: Sequence[Point]) -> dict[str, Fit | str]:
+def _fits(points: Sequence[FrictionPoint]) -> dict[str, LawFit | str]:
     """Fits of the secant damping over speed, weighted by relative errors."""
     speeds = different([one.speed for one in points])
     if len(speeds) < LEAST_SPEEDS:
@@ -385,7 +398,7 @@ def _fits(points: Sequence[Point]) -> dict[str, Fit | str]:
         return dict.fromkeys(LAWS, why)
     speed = np.array([one.speed for one in points])
     damping = np.array([one.damping for one in points])
-    found: dict[str, Fit | str] = {}
+    found: dict[str, LawFit | str] = {}
     for name, fit in LAWS.items():
         positive = damping > 0
         try:

@@ -16,9 +16,9 @@ from ..base.fitting import NORMAL, Parameter, known, quantile
 from ..base.numeric import Array
 from ..models import friction
 from .balance import Sliding
-from .conditioning import SLOWEST, Motion, low_pass, velocities, zero_phase
+from .conditioning import SLOWEST, ConditionedRecord, low_pass, velocities, zero_phase
 from .doubtful import PARTED, agreed, hidden, opened, widened
-from .points import SETTLED, SETTLING, Point, settled
+from .points import SETTLED, SETTLING, FrictionPoint, settled
 from .stribeck_fit import (
     EXPONENT,
     EXPONENTS,
@@ -202,7 +202,7 @@ class Windows:
 
 def windows(
     slidings: Sequence[Sliding],
-    motion: Motion,
+    motion: ConditionedRecord,
     reference: float,
     slowest: float = np.inf,
     settling: float = SETTLED,
@@ -266,14 +266,14 @@ def windows(
     )
 
 
-def _kept(motion: Motion, step: float, count: int) -> Array:
+def _kept(motion: ConditionedRecord, step: float, count: int) -> Array:
     """Independent samples of a window, away from its ends."""
     edge = round(1 / (motion.cutoff * step))
     apart = max(1, round(1 / (2 * motion.cutoff * step)))
     return np.arange(edge, count - edge, apart)
 
 
-def no_windows(motion: Motion) -> str:
+def no_windows(motion: ConditionedRecord) -> str:
     """Why a record has no window: one has `LEAST` samples for (T - 2/f) 2 f = n, f = (n + 4)/2T.
 
     The filter affects the ends of a window, 1/f each; 2 f samples per second are independent.
@@ -303,7 +303,7 @@ def _grain(places: Sequence[float], step: float) -> float:
     return float(step / np.sqrt(12) * max(share, GRAIN))
 
 
-def _sections(motion: Motion, step: float) -> Array:
+def _sections(motion: ConditionedRecord, step: float) -> Array:
     """The record's filter at the windows' sampling."""
     return low_pass(
         cutoff=motion.cutoff, order=motion.order, sample_time=step, compensated=motion.compensated
@@ -311,7 +311,7 @@ def _sections(motion: Motion, step: float) -> Array:
 
 
 def _lanes(
-    slidings: Sequence[Sliding], motion: Motion, room: tuple[int, int]
+    slidings: Sequence[Sliding], motion: ConditionedRecord, room: tuple[int, int]
 ) -> list[tuple[Sliding, int]]:
     """Sections and samples of windows: reversals and starts, else spread over the record."""
     places = [(one, at) for one in slidings for at in _turns(one, motion) if _fits(one, at, room)]
@@ -342,7 +342,7 @@ def _fits(sliding: Sliding, at: int, room: tuple[int, int]) -> bool:
     return first >= 0 and last < sound.size and bool(sound[first] and sound[last])
 
 
-def _turns(sliding: Sliding, motion: Motion) -> list[int]:
+def _turns(sliding: Sliding, motion: ConditionedRecord) -> list[int]:
     """Samples at which lasting sliding begins, after a reversal or rest."""
     way = np.where(sliding.moving, np.sign(sliding.piece.velocity), 0.0)
     begins = np.flatnonzero((way != 0) & (np.diff(way, prepend=0.0) != 0))
@@ -432,7 +432,7 @@ class LugreProblem:
     def __init__(
         self,
         found: Windows,
-        points: Sequence[Point],
+        points: Sequence[FrictionPoint],
         stribeck: StribeckFit | None,
         lag_known: bool,
         lag_seen: bool,
@@ -792,8 +792,8 @@ def settling_distance(lugre: LuGreFit | str) -> float:
 
 def fit_lugre(
     slidings: Sequence[Sliding],
-    motion: Motion,
-    points: Sequence[Point],
+    motion: ConditionedRecord,
+    points: Sequence[FrictionPoint],
     stribeck: StribeckFit | str,
     *,
     lag_known: bool,
@@ -899,7 +899,9 @@ def _any_exponent(fit: LuGreFit, found: Windows, lag_known: bool, lag_seen: bool
     return replace(fit, parameters=parameters, doubts=(*fit.doubts, doubt))
 
 
-def _as_the_points(fit: LuGreFit, stribeck: StribeckFit, points: Sequence[Point]) -> LuGreFit:
+def _as_the_points(
+    fit: LuGreFit, stribeck: StribeckFit, points: Sequence[FrictionPoint]
+) -> LuGreFit:
     """The model without parameters that the points of steady sliding rule out."""
     level, speed = stribeck.parameters["coulomb"], fit.parameters.get("stribeck_speed")
     doubts = list(fit.doubts)
@@ -921,7 +923,7 @@ def _as_the_points(fit: LuGreFit, stribeck: StribeckFit, points: Sequence[Point]
 
 def _parted(
     fit: LuGreFit,
-    points: Sequence[Point],
+    points: Sequence[FrictionPoint],
     stribeck: StribeckFit,
     found: Windows,
     lag_known: bool,

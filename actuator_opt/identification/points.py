@@ -9,7 +9,7 @@ import numpy as np
 
 from ..base.numeric import Array
 from .balance import Sliding
-from .conditioning import Motion, velocities
+from .conditioning import ConditionedRecord, velocities
 
 STEADY, FLOOR = 0.04, 2e-5
 """Speed tolerance of a plateau, relative and absolute [m/s] (choices: viscous friction then changes
@@ -45,7 +45,7 @@ points have four)."""
 Kind = Literal["plateau", "sweep"]
 
 
-class Point(NamedTuple):
+class FrictionPoint(NamedTuple):
     """Friction in steady sliding, with the sign of the velocity; SI.
 
     `error` is the standard error of the friction; `weight` its duration [s]; `pressure` the higher
@@ -75,8 +75,8 @@ class Point(NamedTuple):
 
 
 def steady_points(
-    slidings: Sequence[Sliding], motion: Motion, settling: float = SETTLED
-) -> tuple[Point, ...]:
+    slidings: Sequence[Sliding], motion: ConditionedRecord, settling: float = SETTLED
+) -> tuple[FrictionPoint, ...]:
     """Points of steady sliding: from plateaus if present, else from sweeps through the speeds.
 
     A record counts as plateaus if these contain three speeds or most of the moving time.
@@ -106,16 +106,16 @@ def steady_points(
     return _ordered(_swept(slidings, motion, settling)) or _ordered(merged)
 
 
-def _ordered(points: Sequence[Point]) -> tuple[Point, ...]:
+def _ordered(points: Sequence[FrictionPoint]) -> tuple[FrictionPoint, ...]:
     return tuple(sorted(points, key=lambda one: (one.velocity < 0, one.pressure, one.speed)))
 
 
-def independent(count: float, motion: Motion) -> float:
+def independent(count: float, motion: ConditionedRecord) -> float:
     """Independent samples among `count` filtered ones: 2 f_c per second."""
     return max(count * min(2 * motion.cutoff * motion.sample_time, 1.0), 1.0)
 
 
-def _moderated(points: Sequence[Point], motion: Motion) -> list[Point]:
+def _moderated(points: Sequence[FrictionPoint], motion: ConditionedRecord) -> list[FrictionPoint]:
     """Points with errors shrunk towards the record's usual scatter, as few samples are unreliable.
 
     s^2 = (n_0 s_0^2 + n s_i^2)/(n_0 + n), s_0^2 the median [Smyth2004].
@@ -129,7 +129,9 @@ def _moderated(points: Sequence[Point], motion: Motion) -> list[Point]:
     return [one._replace(error=float(error)) for one, error in zip(points, errors, strict=True)]
 
 
-def _plateaus(sliding: Sliding, motion: Motion, settling: float) -> Iterator[tuple[Point, float]]:
+def _plateaus(
+    sliding: Sliding, motion: ConditionedRecord, settling: float
+) -> Iterator[tuple[FrictionPoint, float]]:
     """Sections of constant velocity, with the remainder of the bristles' settling."""
     from scipy.signal import savgol_filter
 
@@ -178,7 +180,7 @@ def _unsettled(friction: float, gone: Array, settling: float) -> float:
     return float(2 * abs(friction) * np.mean(np.exp(-SETTLING * np.abs(gone) / settling)))
 
 
-def _point(sliding: Sliding, motion: Motion, at: Array, kind: Kind) -> Point:
+def _point(sliding: Sliding, motion: ConditionedRecord, at: Array, kind: Kind) -> FrictionPoint:
     """The mean over samples, with the standard error of filtered ones."""
     piece = sliding.piece
     friction = sliding.hydraulic[at] - sliding.resisting[at]
@@ -189,7 +191,7 @@ def _point(sliding: Sliding, motion: Motion, at: Array, kind: Kind) -> Point:
     first = piece["p1"][at]
     second = piece["p2"][at] if "p2" in piece else np.zeros_like(first)
     size = independent(at.size, motion)
-    return Point(
+    return FrictionPoint(
         velocity,
         float(np.mean(sliding.pressure[at])),
         float(np.mean(first)),
@@ -201,10 +203,10 @@ def _point(sliding: Sliding, motion: Motion, at: Array, kind: Kind) -> Point:
     )
 
 
-def _merged(points: Sequence[Point]) -> list[Point]:
+def _merged(points: Sequence[FrictionPoint]) -> list[FrictionPoint]:
     """Points of similar velocity and pressure merged, weighted by their duration."""
     highest = max((one.pressure for one in points), default=0.0)
-    groups: list[list[Point]] = []
+    groups: list[list[FrictionPoint]] = []
     for one in sorted(points, key=lambda x: x.velocity):
         for group in groups:
             lead = group[0]
@@ -217,7 +219,7 @@ def _merged(points: Sequence[Point]) -> list[Point]:
     return [_mean(group) for group in groups]
 
 
-def _mean(group: Sequence[Point]) -> Point:
+def _mean(group: Sequence[FrictionPoint]) -> FrictionPoint:
     """One point from several of similar velocity and pressure; includes their scatter."""
     if len(group) == 1:
         return group[0]
@@ -231,10 +233,12 @@ def _mean(group: Sequence[Point]) -> Point:
     )
     error = float(max(within, apart))
     v, p, p1, p2, mean = map(float, middle)
-    return Point(v, p, p1, p2, mean, error, float(weights.sum()), group[0].kind)
+    return FrictionPoint(v, p, p1, p2, mean, error, float(weights.sum()), group[0].kind)
 
 
-def _swept(slidings: Sequence[Sliding], motion: Motion, settling: float) -> list[Point]:
+def _swept(
+    slidings: Sequence[Sliding], motion: ConditionedRecord, settling: float
+) -> list[FrictionPoint]:
     """Means over bins of velocity and pressure, with equal weight of rising and falling speed.
 
     A bin passed in one way only is left out, as a lag would count as friction there. The velocity
@@ -262,7 +266,7 @@ def _swept(slidings: Sequence[Sliding], motion: Motion, settling: float) -> list
     found, inverse = np.unique(keys, axis=0, return_inverse=True)
     order = np.argsort(inverse.reshape(-1), kind="stable")
     groups = np.split(order, np.cumsum(np.bincount(inverse.reshape(-1)))[:-1])
-    own: list[Point] = []
+    own: list[FrictionPoint] = []
     for at in groups[: len(found)]:
         halves = _alike(at, np.abs(velocity[at]), rising[at])
         if halves is None or min(independent(one.size, motion) for one in halves) < 3:
@@ -275,7 +279,7 @@ def _swept(slidings: Sequence[Sliding], motion: Motion, settling: float) -> list
                 float(np.mean(one[half])) for one in (velocity, pressure, first, second, friction)
             )
             own.append(
-                Point(
+                FrictionPoint(
                     v,
                     p,
                     p1,
@@ -301,7 +305,7 @@ def _alike(at: Array, speed: Array, rising: Array) -> tuple[Array, Array] | None
     return at[inside & rising], at[inside & ~rising]
 
 
-def _halves(both: Sequence[Point]) -> Point:
+def _halves(both: Sequence[FrictionPoint]) -> FrictionPoint:
     """Rising and falling speed as one point of equal weights, so that a lag cancels.
 
     To first order: a quarter of their difference counts as error (a choice).
@@ -312,7 +316,9 @@ def _halves(both: Sequence[Point]) -> Point:
     v, p, p1, p2, mean = map(float, numbers)
     apart = (both[0].velocity - both[1].velocity) / 2
     spread = float(np.sqrt((both[0].spread ** 2 + both[1].spread ** 2) / 2 + apart**2))
-    return Point(v, p, p1, p2, mean, error, sum(one.weight for one in both), "sweep", spread)
+    return FrictionPoint(
+        v, p, p1, p2, mean, error, sum(one.weight for one in both), "sweep", spread
+    )
 
 
 def settled(sliding: Sliding, settling: float = SETTLED) -> Array:
@@ -327,7 +333,7 @@ def settled(sliding: Sliding, settling: float = SETTLED) -> Array:
     return np.flatnonzero(moving & (gone > settling))
 
 
-def by_pressure(points: Sequence[Point]) -> list[list[Point]]:
+def by_pressure(points: Sequence[FrictionPoint]) -> list[list[FrictionPoint]]:
     """Points by level of pressure, the lowest first: each within `LEVELS` of the highest pressure.
 
     Parameters
@@ -335,7 +341,7 @@ def by_pressure(points: Sequence[Point]) -> list[list[Point]]:
     points : of steady sliding
     """
     highest = max((one.pressure for one in points), default=0.0)
-    groups: list[list[Point]] = []
+    groups: list[list[FrictionPoint]] = []
     for one in sorted(points, key=lambda point: point.pressure):
         if groups and one.pressure - groups[-1][0].pressure <= LEVELS * highest:
             groups[-1].append(one)

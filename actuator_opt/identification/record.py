@@ -428,7 +428,7 @@ def parse_record(
     return Record(time, values, name, tuple(notes), first, lines if broken else None)
 
 
-class Column(NamedTuple):
+class RecordColumn(NamedTuple):
     """Column and unit of a channel."""
 
     place: int
@@ -444,9 +444,9 @@ class Column(NamedTuple):
             return np.where(np.abs(found) < _LARGEST, found, np.nan)
 
 
-def converted(unit: str, dimension: str, place: int) -> Column:
+def converted(unit: str, dimension: str, place: int) -> RecordColumn:
     """A column with a unit as written in a header; raises `UnitError`."""
-    return Column(place, *_unit(unit, dimension))
+    return RecordColumn(place, *_unit(unit, dimension))
 
 
 def header_cells(sheet: Sheet) -> list[tuple[str, str]]:
@@ -540,7 +540,7 @@ def _columns(
     channels: Mapping[str, Channel],
     given: ColumnUnits,
     needed: Collection[str],
-) -> tuple[dict[str, Column], list[str]]:
+) -> tuple[dict[str, RecordColumn], list[str]]:
     """Column and unit of every channel; notes on columns left out or read by `given`."""
     faults: list[Diagnostic] = []
 
@@ -554,7 +554,7 @@ def _columns(
     before = own
     own = [(name, unit or given.stated.get(name, "")) for name, unit in before]
     _place_by_header(sheet, own, places, stated, channels, fault)
-    read: dict[str, Column] = {}
+    read: dict[str, RecordColumn] = {}
     unitless: list[int] = []
     for channel, i in places.items():
         known, (name, unit) = channels[channel], own[i]
@@ -635,7 +635,7 @@ def _column_notes(sheet: Sheet, used: set[int], unitless: Sequence[str]) -> list
     return notes
 
 
-def contradicted(column: Column, name: str, given: ColumnUnits) -> str:
+def contradicted(column: RecordColumn, name: str, given: ColumnUnits) -> str:
     """The unit in `given` that contradicts a column's own; empty if it agrees."""
     stated = given.stated.get(name, "")
     if not stated:

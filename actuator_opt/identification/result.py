@@ -11,14 +11,14 @@ import numpy as np
 from ..base.fitting import Parameter
 from ..base.numeric import Array
 from ..base.tables import Displayed
-from ..design.material import Fit
+from ..design.material import LawFit
 from ..studies.bench import Bench
 from ..version import VERSION
 from .balance import Sliding
 from .column import Coefficient
-from .conditioning import CUTOFF, ORDER, Motion
+from .conditioning import CUTOFF, ORDER, ConditionedRecord
 from .lugre import LuGreFit
-from .points import Point
+from .points import FrictionPoint
 from .record import Record
 from .straight import Spectrum
 from .stribeck_fit import StribeckFit
@@ -82,7 +82,7 @@ class Identification(Displayed):
     record: Record
     bench: Bench
     settings: Settings
-    motion: Motion
+    motion: ConditionedRecord
     slidings: tuple[Sliding, ...]
     mass: float
     pressure_lag: float
@@ -92,11 +92,11 @@ class Identification(Displayed):
     largest: float
     slides: bool
     area: float
-    points: tuple[Point, ...]
+    points: tuple[FrictionPoint, ...]
     coefficient: Coefficient | str
     stribeck: StribeckFit | str
     lugre: LuGreFit | str
-    fits: Mapping[str, Fit | str]
+    fits: Mapping[str, LawFit | str]
     notes: tuple[str, ...]
 
     def stiffness_along(self, sliding: Sliding) -> Array:
@@ -207,7 +207,7 @@ def _model(name: str, found: StribeckFit | LuGreFit | str) -> dict[str, Any]:
     }
 
 
-def _point(one: Point) -> dict[str, Any]:
+def _point(one: FrictionPoint) -> dict[str, Any]:
     return {
         "velocity": one.velocity,
         "pressure": one.pressure,
@@ -220,7 +220,7 @@ def _point(one: Point) -> dict[str, Any]:
     }
 
 
-def _fit(fit: Fit | str) -> dict[str, Any]:
+def _fit(fit: LawFit | str) -> dict[str, Any]:
     if isinstance(fit, str):
         return {"why": fit}
     return {

@@ -12,7 +12,7 @@ import numpy as np
 from ..base.fitting import quantile
 from ..base.numeric import Array
 from .cleaning import ROBUST
-from .conditioning import Motion
+from .conditioning import ConditionedRecord
 from .record import Record
 
 TERMS = 8
@@ -53,7 +53,7 @@ CUTS = ((0.0, 1.0), (0.25, 1.0), (0.0, 0.75), (0.5, 1.0), (0.25, 0.75), (0.0, 0.
 toe before the top)."""
 
 
-class Branch(NamedTuple):
+class DeflectionBranch(NamedTuple):
     """Samples between two reversals of the deflection."""
 
     samples: slice
@@ -87,7 +87,7 @@ def despiked(values: Array) -> Array:
     return out
 
 
-def branches(deflection: Array, least: float) -> list[Branch]:
+def branches(deflection: Array, least: float) -> list[DeflectionBranch]:
     """Sections between reversals after which the deflection returns by `least` or more."""
     values = deflection.tolist()
     turns: list[int] = []
@@ -103,7 +103,7 @@ def branches(deflection: Array, least: float) -> list[Branch]:
             way, high = 1, k
     turns.append(high if way > 0 else low)
     return [
-        Branch(slice(first, end + 1), values[end] > values[first])
+        DeflectionBranch(slice(first, end + 1), values[end] > values[first])
         for first, end in pairwise(turns)
         if abs(values[end] - values[first]) >= least
     ]
@@ -219,14 +219,16 @@ class Loop:
         self.least = BACK * float(np.ptp(self.deflection))
         self.branches = [self._kept(one) for one in branches(self.deflection, self.least)]
 
-    def _kept(self, branch: Branch) -> Branch:
+    def _kept(self, branch: DeflectionBranch) -> DeflectionBranch:
         """A loading branch up to its highest force; slip or failure follows."""
         if not branch.loading:
             return branch
         first, force = branch.samples.start, self.force[branch.samples]
         most = float(np.max(force))
         high = most - (1 - TOP) * abs(most - self.floor)
-        return Branch(slice(first, first + int(np.flatnonzero(force >= high)[-1]) + 1), True)
+        return DeflectionBranch(
+            slice(first, first + int(np.flatnonzero(force >= high)[-1]) + 1), True
+        )
 
     def cut(self, low: float, high: float, zeros: Sequence[float]) -> list[Part]:
         """Samples of every branch between two deflections from its zero."""
@@ -444,7 +446,7 @@ class Spectrum(NamedTuple):
         return f"99.9 % of the motion lies below {self.motion:.3g} Hz, within the cut-off"
 
 
-def spectrum(record: Record, motion: Motion) -> Spectrum:
+def spectrum(record: Record, motion: ConditionedRecord) -> Spectrum:
     """Frequencies at which motion ends and noise begins, by Welch's method on the longest section.
 
     Uses the velocity's spectrum less that of white noise of the position, (2 sin(pi f dt)/dt)^2

@@ -12,7 +12,7 @@ from ..base.fitting import Parameter, known
 from ..base.numeric import STEP, Array
 from ..models import friction
 from .doubtful import PARTED, hidden, misled, opened, spread, unequal, ways, widened
-from .points import Point
+from .points import FrictionPoint
 
 STATIC_MOST = 3.0
 """Largest F_S relative to the largest friction measured (a choice: a higher one is a guess)."""
@@ -117,7 +117,7 @@ def curve(
     )
 
 
-def fit_stribeck(points: Sequence[Point], area: float) -> StribeckFit | str:
+def fit_stribeck(points: Sequence[FrictionPoint], area: float) -> StribeckFit | str:
     """The Stribeck curve through points of steady sliding, or the reason for none.
 
     Fitted are F_C and sigma_2; F_S and v_s with five speeds or more if they improve the fit
@@ -175,7 +175,7 @@ def fit_stribeck(points: Sequence[Point], area: float) -> StribeckFit | str:
     return _doubted(replace(best, doubts=tuple(doubts)), points, area)
 
 
-def _doubted(fit: StribeckFit, points: Sequence[Point], area: float) -> StribeckFit:
+def _doubted(fit: StribeckFit, points: Sequence[FrictionPoint], area: float) -> StribeckFit:
     """The fit with doubts about the friction itself: areas, sensors, other influences."""
     even = unequal(points, area)
     plunger = all(one.pressure_2 == 0 for one in points)
@@ -188,7 +188,7 @@ def _doubted(fit: StribeckFit, points: Sequence[Point], area: float) -> Stribeck
     return replace(fit, parameters=parameters, doubts=doubts, doubted=doubted)
 
 
-def _unsure(fit: StribeckFit, points: Sequence[Point]) -> StribeckFit:
+def _unsure(fit: StribeckFit, points: Sequence[FrictionPoint]) -> StribeckFit:
     """The fit with bounds that allow for another exponent than the fixed one."""
     names = tuple(name for name in fit.parameters if name != "exponent")
     more = held_error(fit.parameters, _fit(points, names, OTHER).values)
@@ -213,7 +213,7 @@ def different(speeds: Sequence[float]) -> list[float]:
     return found
 
 
-def _beside(points: Sequence[Point], area: float) -> list[str]:
+def _beside(points: Sequence[FrictionPoint], area: float) -> list[str]:
     """Offset and pressure effect, if the points can show them."""
     ways = {one.velocity > 0 for one in points}
     found = ["offset"] if len(ways) == 2 else []
@@ -227,7 +227,7 @@ def _beside(points: Sequence[Point], area: float) -> list[str]:
 class Steady:
     """Points as arrays, with weights 1/error; their curve is the mean over each point's spread."""
 
-    def __init__(self, points: Sequence[Point], error: Array | None = None) -> None:
+    def __init__(self, points: Sequence[FrictionPoint], error: Array | None = None) -> None:
         self.velocity = np.array([one.velocity for one in points])
         self.spread = np.array([one.spread for one in points])
         pressure = np.array([one.pressure for one in points])
@@ -261,7 +261,7 @@ def _held(names: Sequence[str], coulomb: float, exponent: float) -> dict[str, fl
     return {name: value for name, value in held.items() if name not in names}
 
 
-def _fit(points: Sequence[Point], names: tuple[str, ...], exponent: float) -> StribeckFit:
+def _fit(points: Sequence[FrictionPoint], names: tuple[str, ...], exponent: float) -> StribeckFit:
     """Least squares for some parameters, from the best of a grid of speeds and exponents."""
     data = Steady(points)
     start = _search(data, names, exponent)

@@ -54,7 +54,7 @@ class Sensors:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Course:
+class PrescribedMotion:
     """A prescribed motion: time, position, velocity, acceleration (samples), SI."""
 
     time: Array
@@ -72,7 +72,7 @@ def plateaus(
     ramp: float = 0.05,
     rest: float = 0.1,
     longest: float = 3.0,
-) -> Course:
+) -> PrescribedMotion:
     """Constant speeds out and back, each over `travel` or `longest` seconds, with smooth ramps.
 
     Parameters
@@ -98,14 +98,14 @@ def plateaus(
     return course(np.concatenate(parts), begin=begin, step=step)
 
 
-def course(velocity: Array, *, begin: float, step: float) -> Course:
+def course(velocity: Array, *, begin: float, step: float) -> PrescribedMotion:
     """The motion of a velocity from an initial position, SI."""
     time = step * np.arange(velocity.size)
     gone = np.concatenate([[0.0], np.cumsum((velocity[1:] + velocity[:-1]) / 2) * step])
-    return Course(time, begin + gone, velocity, np.gradient(velocity, step))
+    return PrescribedMotion(time, begin + gone, velocity, np.gradient(velocity, step))
 
 
-def friction_along(truth: Truth, course: Course, pressure: Array) -> Array:
+def friction_along(truth: Truth, course: PrescribedMotion, pressure: Array) -> Array:
     """True friction along a motion at the higher chamber pressures [N]."""
     between = (course.velocity[1:] + course.velocity[:-1]) / 2
     change = (pressure[1:] + pressure[:-1]) / 2 - truth.reference_pressure
@@ -135,7 +135,7 @@ def friction_along(truth: Truth, course: Course, pressure: Array) -> Array:
 
 
 def pressures(
-    bench: Bench, course: Course, force: Array, *, back_pressure: float, mass: float
+    bench: Bench, course: PrescribedMotion, force: Array, *, back_pressure: float, mass: float
 ) -> tuple[Array, Array]:
     """Chamber pressures that drive a mass against a force [Pa], the lower one at `back_pressure`.
 
@@ -159,7 +159,7 @@ def pressures(
 
 def record(
     bench: Bench,
-    course: Course,
+    course: PrescribedMotion,
     friction_force: Array,
     *,
     load: Array = 0.0,

@@ -8,13 +8,13 @@ from ..base.numeric import Array
 from . import overlap
 from .joint import (
     End,
+    EndDimensions,
     Fatigue,
-    Fit,
     Joint,
     JointField,
     Judged,
     Loaded,
-    Materials,
+    MaterialProperties,
     Strength,
     WallPressures,
     nothing,
@@ -22,11 +22,11 @@ from .joint import (
 from .overlap import Overlap, mismatch
 
 
-def _fit(end: End) -> Fit:
+def _fit(end: End) -> EndDimensions:
     return overlap.fit(end, end.outer_radius)
 
 
-def _mass(end: End, materials: Materials) -> dict[str, Array]:
+def _mass(end: End, materials: MaterialProperties) -> dict[str, Array]:
     return {"caps": overlap.weight(end, materials, end.outer_radius)}
 
 

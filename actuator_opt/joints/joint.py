@@ -35,7 +35,7 @@ class JointSizes(Protocol):
         ...
 
 
-class Materials(Protocol):
+class MaterialProperties(Protocol):
     """Material properties by material name, in SI."""
 
     def kind(self, name: str) -> str:
@@ -51,7 +51,7 @@ class Materials(Protocol):
         ...
 
 
-class Stated(Protocol):
+class StatedValues(Protocol):
     """A design file during fault checks: values by place, None if unusable."""
 
     def has(self, *loc: str | int) -> bool:
@@ -71,7 +71,7 @@ class Stated(Protocol):
         ...
 
 
-class Known(Protocol):
+class KnownMaterials(Protocol):
     """Data of the materials that a design file names."""
 
     def kind(self, name: str) -> str | None:
@@ -144,7 +144,7 @@ class End:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Fit:
+class EndDimensions:
     """Dimensions that the joint gives cap and barrel, and all that the drawing uses.
 
     A skirt has `length`, `wall` and an inner `radius`, to which a larger barrel is turned down.
@@ -158,7 +158,7 @@ class Fit:
     own: tuple[Array, ...] = ()
 
 
-class Span(NamedTuple):
+class EndSpan(NamedTuple):
     """Position of an end in the drawing [m]: barrel face, direction into the barrel (1 or -1).
 
     `outside` and `opposite` are the outer faces of this end plate and of the other.
@@ -184,7 +184,7 @@ def rectangle(start: float, stop: float, low: float, high: float) -> Polygon:
     return ((start, low), (stop, low), (stop, high), (start, high))
 
 
-class Drawn(NamedTuple):
+class DrawnPart(NamedTuple):
     """A part of the half-section; `bars` counts round bars about the axis, 0 is a turned part."""
 
     part: str
@@ -215,7 +215,7 @@ class Loaded:
     """
 
     end: End
-    materials: Materials
+    materials: MaterialProperties
     force: Array
     paths: Mapping[str, Array]
     line_stiffness: Array
@@ -288,18 +288,18 @@ class Joint:
     """Allowed kinds of `retention.material`; empty: no material."""
     without: Mapping[str, tuple[str, str]]
     """Specific fault and remedy of an unused key, in place of the general text."""
-    faults: Callable[[Stated], Iterable[Fault]]
+    faults: Callable[[StatedValues], Iterable[Fault]]
     """Faults of the values of a file."""
-    material_faults: Callable[[Stated, Known], Iterable[Fault]]
+    material_faults: Callable[[StatedValues, KnownMaterials], Iterable[Fault]]
     """Faults that depend on the material library."""
     skirts: bool
     """Whether the caps have skirts over the outside of the barrel."""
-    fit: Callable[[End], Fit]
-    stiffness: Callable[[End, Materials], Array] | None
+    fit: Callable[[End], EndDimensions]
+    stiffness: Callable[[End, MaterialProperties], Array] | None
     """Axial stiffness of the clamp of the barrel between both ends [N/m]; None: no clamp."""
-    mass: Callable[[End, Materials], Mapping[str, Array]]
+    mass: Callable[[End, MaterialProperties], Mapping[str, Array]]
     """Mass [kg] of the joint at one end, by part: barrel, caps or fastening."""
-    outline: Callable[[End, Fit, Span], Iterable[Drawn]]
+    outline: Callable[[End, EndDimensions, EndSpan], Iterable[DrawnPart]]
     """Its parts in the half-section at one end."""
     notes: Callable[[End], Iterable[str]]
     """Sentences on details that the section does not show."""
@@ -352,12 +352,12 @@ def check(joints: Iterable[Joint]) -> None:
             seen[claim] = joint.name
 
 
-def chosen(stated: Stated, path: str) -> bool:
+def chosen(stated: StatedValues, path: str) -> bool:
     """Whether a file lists this value among its choices."""
     return stated.has("choices", path)
 
 
-def judged_later(stated: Stated, moved: Iterable[str]) -> bool:
+def judged_later(stated: StatedValues, moved: Iterable[str]) -> bool:
     """Whether choices vary these sizes (PATHs) in every combination, as the search keeps limits."""
     paths = tuple(moved)
     free = any(stated.has("variables", path) for path in paths)

@@ -14,7 +14,7 @@ from math import pi
 from ..base.numeric import Array, absolute
 from ..models import lap_joint, mass
 from ..models.strength_modes import load_multiplier
-from .joint import Drawn, End, Fit, Loaded, Materials, Span, Thermal
+from .joint import DrawnPart, End, EndDimensions, EndSpan, Loaded, MaterialProperties, Thermal
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +33,7 @@ class Overlap:
     mismatch: Array
     names: tuple[str, str]
 
-    def _adhesive(self, materials: Materials) -> dict[str, Array]:
+    def _adhesive(self, materials: MaterialProperties) -> dict[str, Array]:
         """The overlap as input of the models."""
         return {
             "length": self.length,
@@ -41,7 +41,7 @@ class Overlap:
             "bond_thickness": materials.get(self.adhesive, "bond_thickness", default=0.15e-3),
         }
 
-    def edge_factors(self, materials: Materials, force: Array) -> dict[str, Array]:
+    def edge_factors(self, materials: MaterialProperties, force: Array) -> dict[str, Array]:
         """Strength over elastic shear at both edges under a force."""
         strength = materials.allowable(self.adhesive, "bond_strength")
         tube, metal = self.names
@@ -60,18 +60,18 @@ class Overlap:
             factors[f"bond at the {edge}'s edge"] = strength / stress
         return factors
 
-    def least_peak_ratio(self, materials: Materials, stiffness: Array) -> Array:
+    def least_peak_ratio(self, materials: MaterialProperties, stiffness: Array) -> Array:
         """Lower bound of peak over mean shear, from the stiffness of either wall."""
         return lap_joint.least_bond_peak_ratio(
             membrane_stiffness=stiffness, **self._adhesive(materials)
         )
 
-    def mean_factor(self, materials: Materials, force: Array) -> Array:
+    def mean_factor(self, materials: MaterialProperties, force: Array) -> Array:
         """Strength over mean shear under a force."""
         strength = materials.allowable(self.adhesive, "bond_strength")
         return strength * (pi * self.diameter * self.length) / force
 
-    def thermal_factor(self, materials: Materials, warming: Array, cold: bool) -> Array:
+    def thermal_factor(self, materials: MaterialProperties, warming: Array, cold: bool) -> Array:
         """Strength over edge shear without load, from joining temperature to a temperature."""
         stress = lap_joint.bond_thermal_shear(
             strain_difference=self.mismatch * warming,
@@ -82,37 +82,39 @@ class Overlap:
         strength = materials.allowable(self.adhesive, "bond_strength", cold=cold)
         return load_multiplier(absolute(stress) / strength)
 
-    def thermal(self, materials: Materials) -> Thermal | str:
+    def thermal(self, materials: MaterialProperties) -> Thermal | str:
         """`thermal_factor` of these materials, or why it is unknown."""
         if self.mismatch is None:
             return f"thermal expansion of the {' or of the '.join(self.names)} is not known"
         return partial(self.thermal_factor, materials)
 
 
-def mismatch(materials: Materials, metal: str, along: Array) -> Array:
+def mismatch(materials: MaterialProperties, metal: str, along: Array) -> Array:
     """Axial expansion of the metal minus that of the tube; None if unknown."""
     own = materials.get(metal, "thermal_expansion")
     return None if own is None or along is None else own - along
 
 
-def fit(end: End, radius: Array) -> Fit:
+def fit(end: End, radius: Array) -> EndDimensions:
     """A skirt with this inner radius over the end of the barrel."""
     wall = end.sizes["wall"]
-    return Fit(plate_radius=radius + wall, radius=radius, length=end.sizes["length"], wall=wall)
+    return EndDimensions(
+        plate_radius=radius + wall, radius=radius, length=end.sizes["length"], wall=wall
+    )
 
 
-def weight(end: End, materials: Materials, radius: Array) -> Array:
+def weight(end: End, materials: MaterialProperties, radius: Array) -> Array:
     """Mass of a skirt [kg]."""
     density = materials.get(end.cap, "density")
     section = mass.layer_area(inner_radius=radius, thickness=end.sizes["wall"])
     return density * section * end.sizes["length"]
 
 
-def outline(end: End, fit: Fit, span: Span) -> Iterator[Drawn]:
+def outline(end: End, fit: EndDimensions, span: EndSpan) -> Iterator[DrawnPart]:
     """The skirt at one end."""
     length, inner = float(fit.length), float(fit.radius)
     if length > 0:
-        yield Drawn("caps", end.cap, span.over(length, inner, inner + float(fit.wall)))
+        yield DrawnPart("caps", end.cap, span.over(length, inner, inner + float(fit.wall)))
 
 
 def yields(loaded: Loaded) -> dict[str, Array]:

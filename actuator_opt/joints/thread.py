@@ -25,16 +25,16 @@ from .joint import (
     NOT_BONDED,
     ROUNDING,
     End,
+    EndDimensions,
     Fatigue,
-    Fit,
     Joint,
     JointField,
     Judged,
-    Known,
+    KnownMaterials,
     Loaded,
-    Materials,
+    MaterialProperties,
     Pulsed,
-    Stated,
+    StatedValues,
     Strength,
     Usual,
     WallPressures,
@@ -77,12 +77,12 @@ def _text(length: float) -> str:
     return INPUTS["length"].text(length)
 
 
-def _layer(view: Stated) -> tuple[str, str, int]:
+def _layer(view: StatedValues) -> tuple[str, str, int]:
     """Place of the outermost layer of the barrel."""
     return ("barrel", "layup", len(view.items("barrel", "layup")) - 1)
 
 
-def _stated(view: Stated) -> _Stated | None:
+def _stated(view: StatedValues) -> _Stated | None:
     """Sizes of the joint; None if a size is missing or faulty."""
     count = len(view.items("barrel", "layup"))
     layers = [view.number("barrel", "layup", index, "thickness") for index in range(count)]
@@ -96,7 +96,7 @@ def _stated(view: Stated) -> _Stated | None:
     return _Stated(outside, known[-1], outside if stated is None else stated, pitch, wall)
 
 
-def _faults(view: Stated) -> Iterator[Fault]:
+def _faults(view: StatedValues) -> Iterator[Fault]:
     """The thread fits the outside of the barrel, and its turns engage."""
     pitch, length = view.number("retention", "thread", "pitch"), view.number("retention", "length")
     if pitch is not None and length is not None and length < (1 + thread.RUN_OUT) * pitch:
@@ -123,7 +123,7 @@ def _faults(view: Stated) -> Iterator[Fault]:
         )
 
 
-def _material_faults(view: Stated, known: Known) -> Iterator[Fault]:
+def _material_faults(view: StatedValues, known: KnownMaterials) -> Iterator[Fault]:
     """Both threads are cut into a metal with known strengths, and leave enough metal."""
     sizes, layer = _stated(view), _layer(view)
     caps = "caps" if view.has("caps") else "piston"  # the default material of the caps
@@ -141,13 +141,13 @@ def _material_faults(view: Stated, known: Known) -> Iterator[Fault]:
     yield from _into(view, known, (caps, "material"), "the caps' skirts, which are", caps)
 
 
-def _metal(view: Stated, known: Known, loc: tuple[str | int, ...]) -> bool:
+def _metal(view: StatedValues, known: KnownMaterials, loc: tuple[str | int, ...]) -> bool:
     name = view.text(*loc)
     return name is not None and known.kind(name) == "metal"
 
 
 def _into(
-    view: Stated, known: Known, loc: tuple[str | int, ...], part: str, path: str
+    view: StatedValues, known: KnownMaterials, loc: tuple[str | int, ...], part: str, path: str
 ) -> Iterator[Fault]:
     """A thread in a material that is no metal or has no strengths; `path` is that of the part."""
     name = view.text(*loc)
@@ -172,7 +172,7 @@ def _into(
         )
 
 
-def _under(view: Stated, sizes: _Stated) -> Iterator[Fault]:
+def _under(view: StatedValues, sizes: _Stated) -> Iterator[Fault]:
     """Too little metal under the thread, in its layer."""
     root = thread.root_diameter(diameter=min(sizes.diameter, sizes.outside), pitch=sizes.pitch)
     left = sizes.layer - (sizes.outside - root) / 2
@@ -189,7 +189,7 @@ def _under(view: Stated, sizes: _Stated) -> Iterator[Fault]:
         )
 
 
-def _over(view: Stated, sizes: _Stated) -> Iterator[Fault]:
+def _over(view: StatedValues, sizes: _Stated) -> Iterator[Fault]:
     """Too little metal around the thread of the skirts."""
     if sizes.wall < LEAST_METAL * (1 - ROUNDING) and not judged_later(view, ["retention.wall"]):
         yield Fault(
@@ -199,7 +199,7 @@ def _over(view: Stated, sizes: _Stated) -> Iterator[Fault]:
         )
 
 
-def _moved(view: Stated) -> Iterator[str]:
+def _moved(view: StatedValues) -> Iterator[str]:
     """PATHs of the sizes that determine the wall under the thread and its crests."""
     outermost = _layer(view)[-1]
     yield "retention.thread.pitch"
@@ -221,11 +221,11 @@ def _radius(end: End) -> Array:
     return end.outer_radius
 
 
-def _fit(end: End) -> Fit:
+def _fit(end: End) -> EndDimensions:
     return overlap.fit(end, _radius(end))
 
 
-def _mass(end: End, materials: Materials) -> dict[str, Array]:
+def _mass(end: End, materials: MaterialProperties) -> dict[str, Array]:
     """The skirt, minus the ring that is turned off the barrel."""
     radius = _radius(end)
     caps = {"caps": overlap.weight(end, materials, radius)}
@@ -247,7 +247,7 @@ def _notes(end: End) -> Iterator[str]:
 
 
 @dataclass(frozen=True, slots=True)
-class Thread:
+class EndThread:
     """The thread of an end: sizes [m], areas [m^2], and metals."""
 
     male: str
@@ -270,15 +270,15 @@ class Thread:
     bore_radius: Array
 
 
-def derive(end: End) -> Thread:
+def derive(end: End) -> EndThread:
     """The thread of an end, derived once."""
     if "thread" not in end.known:
         end.known["thread"] = _derived(end)
-    found: Thread = end.known["thread"]
+    found: EndThread = end.known["thread"]
     return found
 
 
-def _derived(end: End) -> Thread:
+def _derived(end: End) -> EndThread:
     pitch = end.sizes["thread.pitch"]
     diameter = end.sizes.get("thread.diameter", 2 * end.outer_radius)
     radius, wall = _radius(end), end.sizes["wall"]
@@ -288,7 +288,7 @@ def _derived(end: End) -> Thread:
     root = thread.root_diameter(**size)
     layer = end.outer_radius - end.layers[-1].thickness
     outer = 2 * (radius + wall)
-    return Thread(
+    return EndThread(
         male=end.layers[-1].material,
         female=end.cap,
         diameter=diameter,
@@ -306,23 +306,23 @@ def _derived(end: End) -> Thread:
     )
 
 
-def _strengths(materials: Materials, name: str) -> tuple[Array, Array]:
+def _strengths(materials: MaterialProperties, name: str) -> tuple[Array, Array]:
     return (
         materials.allowable(name, "yield_strength"),
         materials.allowable(name, "ultimate_strength"),
     )
 
 
-def _judged(loaded: Loaded) -> Thread | str:
+def _judged(loaded: Loaded) -> EndThread | str:
     """The thread of an end, or why it has no factor; assessed once."""
     known = loaded.end.known
     if "judged" not in known:
         known["judged"] = _verdict(loaded)
-    found: Thread | str = known["judged"]
+    found: EndThread | str = known["judged"]
     return found
 
 
-def _verdict(loaded: Loaded) -> Thread | str:
+def _verdict(loaded: Loaded) -> EndThread | str:
     cut, materials = derive(loaded.end), loaded.materials
     for name in (cut.male, cut.female):
         if materials.kind(name) != "metal":
@@ -354,7 +354,7 @@ def _own(loaded: Loaded) -> dict[str, Array]:
     return dict(zip(LANDS, walls, strict=True)) | {CREST: cut.overlap}
 
 
-def _working(materials: Materials, cut: Thread, force: Array) -> dict[str, Array]:
+def _working(materials: MaterialProperties, cut: EndThread, force: Array) -> dict[str, Array]:
     """Elastic limit over stress: shear of both threads, and flank pressure."""
     male, female = (_strengths(materials, name)[0] for name in (cut.male, cut.female))
     return {
@@ -364,7 +364,7 @@ def _working(materials: Materials, cut: Thread, force: Array) -> dict[str, Array
     }
 
 
-def _burst(materials: Materials, cut: Thread, force: Array) -> dict[str, Array]:
+def _burst(materials: MaterialProperties, cut: EndThread, force: Array) -> dict[str, Array]:
     """Ultimate strength over force: both threads, and the skirt, which they tear and spread."""
     male, female = (_strengths(materials, name)[1] for name in (cut.male, cut.female))
     ratio = female * cut.female_area / (male * cut.male_area)

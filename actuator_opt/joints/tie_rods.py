@@ -13,17 +13,17 @@ from ..models import endurance, mass, retention
 from .joint import (
     NOT_BONDED,
     Clamp,
-    Drawn,
+    DrawnPart,
     End,
+    EndDimensions,
+    EndSpan,
     Fatigue,
-    Fit,
     Joint,
     JointField,
     Judged,
     Life,
     Loaded,
-    Materials,
-    Span,
+    MaterialProperties,
     Strength,
     WallPressures,
     nothing,
@@ -31,10 +31,10 @@ from .joint import (
 )
 
 
-def _fit(end: End) -> Fit:
+def _fit(end: End) -> EndDimensions:
     """End plates wider than the barrel by two rod diameters."""
     radius = end.outer_radius
-    return Fit(plate_radius=radius + 2 * end.sizes["thread.diameter"], radius=radius)
+    return EndDimensions(plate_radius=radius + 2 * end.sizes["thread.diameter"], radius=radius)
 
 
 def _length(end: End) -> Array:
@@ -42,7 +42,7 @@ def _length(end: End) -> Array:
     return end.barrel_length + 2 * end.plate
 
 
-def _stiffness(end: End, materials: Materials) -> Array:
+def _stiffness(end: End, materials: MaterialProperties) -> Array:
     """Stiffness of all rods: n E (pi d^2/4)/L."""
     assert end.material is not None
     modulus = materials.get(end.material, "youngs_modulus")
@@ -50,7 +50,7 @@ def _stiffness(end: End, materials: Materials) -> Array:
     return end.sizes["count"] * modulus * pi * diameter * diameter / 4 / _length(end)
 
 
-def _mass(end: End, materials: Materials) -> dict[str, Array]:
+def _mass(end: End, materials: MaterialProperties) -> dict[str, Array]:
     """Half of the rods, for each end."""
     assert end.material is not None
     rods = mass.tie_rod_mass(
@@ -62,13 +62,13 @@ def _mass(end: End, materials: Materials) -> dict[str, Array]:
     return {"fastening": rods / 2}
 
 
-def _outline(end: End, fit: Fit, span: Span) -> Iterator[Drawn]:
+def _outline(end: End, fit: EndDimensions, span: EndSpan) -> Iterator[DrawnPart]:
     """One rod in the plane of the section, between the outer faces of both plates."""
     if span.inwards < 0 or end.material is None:
         return
     low, size = float(fit.radius), (float(fit.plate_radius) - float(fit.radius)) / 2
     shape = rectangle(span.outside, span.opposite, low + size / 2, low + 3 * size / 2)
-    yield Drawn("tie rods", end.material, shape, bars=round(float(end.sizes["count"])))
+    yield DrawnPart("tie rods", end.material, shape, bars=round(float(end.sizes["count"])))
 
 
 def _notes(end: End) -> Iterator[str]:

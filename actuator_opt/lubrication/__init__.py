@@ -6,7 +6,7 @@ NumPy only. Pressures are absolute; forces are per circumference unless stated o
 from .film import Film, sensitivities, solve_film
 from .reynolds import Contact, Elastic, Lubricant, Surface
 from .smooth import Gap, SmoothFilm, solve_gap
-from .tandem import SealElement, Tandem, solve_tandem
+from .tandem import Tandem, TandemSeal, solve_tandem
 
 __all__ = [
     "Contact",
@@ -14,10 +14,10 @@ __all__ = [
     "Film",
     "Gap",
     "Lubricant",
-    "SealElement",
     "SmoothFilm",
     "Surface",
     "Tandem",
+    "TandemSeal",
     "sensitivities",
     "solve_film",
     "solve_gap",

@@ -21,16 +21,16 @@ from ..models.rough_surface import (
 from .newton import (
     Bed,
     FilmState,
-    Linear,
-    Outcome,
-    Residual,
+    LinearSystem,
+    NewtonResidual,
+    NewtonResult,
     contact_pressure,
     follow,
     newton,
     residual,
     weights,
 )
-from .reynolds import Contact, Flow, Vector, fault, flux
+from .reynolds import Contact, ReynoldsProblem, Vector, fault, flux
 
 LEAST_CONTACT = 1e-12
 """Static pressure over asperity stiffness below which the surfaces count as barely touching."""
@@ -97,7 +97,7 @@ def pressure_scale(contact: Contact) -> float:
     return max(float(real(p)) for p in pressures) - float(real(contact.cavitation_pressure))
 
 
-def scaled(contact: Contact, scales: Contact | None = None) -> tuple[Flow, Bed]:
+def scaled(contact: Contact, scales: Contact | None = None) -> tuple[ReynoldsProblem, Bed]:
     """Scaled equations of a contact; `scales` sets fixed scales, for complex steps."""
     base = scales or contact
     pressure = pressure_scale(base)
@@ -107,7 +107,7 @@ def scaled(contact: Contact, scales: Contact | None = None) -> tuple[Flow, Bed]:
     per_gradient = film**3 * pressure / 12
     flow_scale = per_gradient / (base_viscosity * base.width) + abs(base.speed) * film / 2
     ratio = contact.surface.roughness / film
-    flow = Flow(
+    flow = ReynoldsProblem(
         nodes=len(contact.static_pressure),
         width=contact.width,
         lubricant=contact.lubricant,
@@ -139,7 +139,7 @@ def _bed(contact: Contact, pressure: float, film: float, ratio: Array) -> Bed:
     )
 
 
-def outputs(flow: Flow, bed: Bed, state: FilmState) -> tuple[Array, Array, Array, Array]:
+def outputs(flow: ReynoldsProblem, bed: Bed, state: FilmState) -> tuple[Array, Array, Array, Array]:
     """Viscous drag and contact load [N/m], flow [m^2/s] and mean film [m] of a state."""
     sliding, pushing = 1.0, 1.0
     if flow.rod_share is not None:
@@ -192,11 +192,11 @@ def _rescaled(start: Film, contact: Contact) -> FilmState:
     return FilmState(pressure, cavitation, state.film * ratio, state.shift * ratio)
 
 
-def _solved(contact: Contact, state: FilmState) -> Outcome:
+def _solved(contact: Contact, state: FilmState) -> NewtonResult:
     return newton(*scaled(contact), state)
 
 
-def _cold(contact: Contact) -> Outcome:
+def _cold(contact: Contact) -> NewtonResult:
     """Solution from rest directly, or else by continuation in speed."""
     _, bed = scaled(contact)
     rest = _at_rest(contact, bed)
@@ -206,7 +206,7 @@ def _cold(contact: Contact) -> Outcome:
         return outcome
     sign = -1.0 if contact.speed < 0 else 1.0
 
-    def at(speed: float, state: FilmState) -> Outcome:
+    def at(speed: float, state: FilmState) -> NewtonResult:
         flow, _ = scaled(replace(contact, speed=sign * speed))
         return newton(flow, bed, state)
 
@@ -229,7 +229,9 @@ def solve_film(contact: Contact, start: Film | None = None) -> Film:
     wrong = fault(contact)
     if wrong:
         nothing = np.full(np.shape(contact.static_pressure), np.nan)
-        return _film(contact, Outcome(FilmState(nothing, nothing, nothing, np.nan), wrong, 0, 1, 1))
+        return _film(
+            contact, NewtonResult(FilmState(nothing, nothing, nothing, np.nan), wrong, 0, 1, 1)
+        )
     nodes = len(contact.static_pressure)
     if start is not None and start.converged and len(start.state.film) == nodes:
         outcome = _solved(contact, _rescaled(start, contact))
@@ -238,7 +240,7 @@ def solve_film(contact: Contact, start: Film | None = None) -> Film:
     return _film(contact, _cold(contact))
 
 
-def _film(contact: Contact, outcome: Outcome) -> Film:
+def _film(contact: Contact, outcome: NewtonResult) -> Film:
     values: tuple[Array, ...] = (np.nan, np.nan, np.nan, np.nan)
     if not outcome.reason:
         values = outputs(*scaled(contact), outcome.state)
@@ -283,7 +285,7 @@ def sensitivities(film: Film, stepped: Sequence[Contact]) -> Vector:
         raise ValueError(f"no slopes for a film that did not converge: {film.reason}")
     problems = [scaled(contact, film.contact) for contact in stepped]
     steps = [_imaginary(residual(flow, bed, film.state)) for flow, bed in problems]
-    changes = Linear(*scaled(film.contact), film.state).solve(steps)
+    changes = LinearSystem(*scaled(film.contact), film.state).solve(steps)
     slopes = []
     for (flow, bed), change in zip(problems, changes, strict=True):
         values = outputs(flow, bed, _moved(film.state, change))
@@ -291,13 +293,13 @@ def sensitivities(film: Film, stepped: Sequence[Contact]) -> Vector:
     return np.array(slopes).reshape(len(slopes), 4)
 
 
-def _imaginary(found: Residual) -> Residual:
+def _imaginary(found: NewtonResidual) -> NewtonResidual:
     """Derivatives of residuals along a step."""
     flow, complementarity, bent = (
         np.imag(part) / STEP for part in (found.flow, found.complementarity, found.film)
     )
     ends = (float(np.imag(found.ends[0])) / STEP, float(np.imag(found.ends[1])) / STEP)
-    return Residual(flow, complementarity, bent, float(np.imag(found.load)) / STEP, ends)
+    return NewtonResidual(flow, complementarity, bent, float(np.imag(found.load)) / STEP, ends)
 
 
 def _moved(state: FilmState, change: FilmState) -> FilmState:

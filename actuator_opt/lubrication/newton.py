@@ -24,7 +24,7 @@ import numpy as np
 
 from ..base.numeric import Array
 from ..models.rough_surface import asperity_integral
-from .reynolds import Flow, Vector, banded, faces, flux
+from .reynolds import ReynoldsProblem, Vector, banded, faces, flux
 
 TOLERANCE = 1e-9
 """Largest scaled residual of a converged film."""
@@ -66,7 +66,7 @@ class FilmState:
 
 
 @dataclass(frozen=True, slots=True)
-class Residual:
+class NewtonResidual:
     """Scaled residuals: flow (inner nodes), complementarity, film, load, and the two ends."""
 
     flow: Vector
@@ -77,7 +77,7 @@ class Residual:
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class NewtonResult:
     """Final state of Newton's method; `reason` is empty if it converged."""
 
     state: FilmState
@@ -119,7 +119,7 @@ def contact_pressure(bed: Bed, film: Vector) -> Vector:
     return bed.stiffness * asperity_integral(film_ratio=film / bed.roughness_ratio)
 
 
-def residual(flow: Flow, bed: Bed, state: FilmState) -> Residual:
+def residual(flow: ReynoldsProblem, bed: Bed, state: FilmState) -> NewtonResidual:
     """Residuals of a state, real or under a complex step."""
     pressure, theta = state.pressure, state.cavitation
     excess = pressure + contact_pressure(bed, state.film) - bed.static_pressure
@@ -127,7 +127,7 @@ def residual(flow: Flow, bed: Bed, state: FilmState) -> Residual:
     inner = pressure[1:-1] + theta[1:-1]
     root = np.sqrt(pressure[1:-1] ** 2 + theta[1:-1] ** 2)
     load = state.shift if bed.held else weights(flow.nodes) @ excess
-    return Residual(
+    return NewtonResidual(
         flow=np.diff(flux(flow, pressure, theta, state.film)),
         complementarity=inner - root,
         film=state.film - bed.rest_film - state.shift - bent,
@@ -168,10 +168,10 @@ def _widened(bands: tuple[Vector, Vector, Vector]) -> Vector:
     return result
 
 
-class Linear:
+class LinearSystem:
     """Linearised equations at a state; `solve` gives the change that cancels residuals."""
 
-    def __init__(self, flow: Flow, bed: Bed, state: FilmState) -> None:
+    def __init__(self, flow: ReynoldsProblem, bed: Bed, state: FilmState) -> None:
         nodes = self.nodes = flow.nodes
         slope = faces(flow, state.pressure, state.cavitation, state.film)
         self.softness = np.zeros(nodes)  # d(contact pressure)/d(film)
@@ -229,7 +229,7 @@ class Linear:
             matrix[nodes, :nodes] = weights(nodes)
         return matrix
 
-    def solve(self, residuals: list[Residual]) -> list[FilmState]:
+    def solve(self, residuals: list[NewtonResidual]) -> list[FilmState]:
         """Changes of the state that cancel each residual to first order."""
         nodes, full = self.nodes, ~self.empty
         holes = np.flatnonzero(self.empty) + 1
@@ -264,7 +264,7 @@ def _allowed(state: FilmState, change: FilmState) -> float:
 
 
 def _measures(
-    flow: Flow, bed: Bed, state: FilmState, found: Residual
+    flow: ReynoldsProblem, bed: Bed, state: FilmState, found: NewtonResidual
 ) -> tuple[float, float, float]:
     """Relative flux spread, load residual, and the largest of the other scaled residuals."""
     passing = flux(flow, state.pressure, state.cavitation, state.film)
@@ -276,27 +276,29 @@ def _measures(
     return spread, load, max(film, ends, np.max(np.abs(found.complementarity)))
 
 
-def newton(flow: Flow, bed: Bed, state: FilmState) -> Outcome:
+def newton(flow: ReynoldsProblem, bed: Bed, state: FilmState) -> NewtonResult:
     """Solve the film from a starting state; a failure returns a reason."""
     with np.errstate(all="ignore"):
         return _newton(flow, bed, state)
 
 
-def _newton(flow: Flow, bed: Bed, state: FilmState) -> Outcome:
+def _newton(flow: ReynoldsProblem, bed: Bed, state: FilmState) -> NewtonResult:
     spread = load = np.inf
     for iteration in range(MOST_ITERATIONS + 1):
         found = residual(flow, bed, state)
         spread, load, rest = _measures(flow, bed, state, found)
         if spread < TOLERANCE and load < TOLERANCE and rest < TOLERANCE:
-            return Outcome(state, "", iteration, spread, load)
+            return NewtonResult(state, "", iteration, spread, load)
         if not np.isfinite(spread + load + rest):
-            return Outcome(state, "the film left the range of its laws", iteration, spread, load)
+            return NewtonResult(
+                state, "the film left the range of its laws", iteration, spread, load
+            )
         if iteration == MOST_ITERATIONS:
             break
         try:
-            (change,) = Linear(flow, bed, state).solve([found])
+            (change,) = LinearSystem(flow, bed, state).solve([found])
         except np.linalg.LinAlgError:
-            return Outcome(state, "the linearised film is singular", iteration, spread, load)
+            return NewtonResult(state, "the linearised film is singular", iteration, spread, load)
         part = _allowed(state, change)
         state = FilmState(
             state.pressure + part * change.pressure,
@@ -306,12 +308,12 @@ def _newton(flow: Flow, bed: Bed, state: FilmState) -> Outcome:
         )
     residuals = f"flux spread {spread:.1e}, load {load:.1e}"
     reason = f"no equilibrium within {MOST_ITERATIONS} iterations ({residuals})"
-    return Outcome(state, reason, MOST_ITERATIONS, spread, load)
+    return NewtonResult(state, reason, MOST_ITERATIONS, spread, load)
 
 
 def follow(
-    solve: Callable[[float, FilmState], Outcome], state: FilmState, first: float, last: float
-) -> Outcome:
+    solve: Callable[[float, FilmState], NewtonResult], state: FilmState, first: float, last: float
+) -> NewtonResult:
     """Continuation of a film from the first to the last positive value, with adaptive factors.
 
     Parameters

@@ -214,7 +214,7 @@ Vector = Any
 
 
 @dataclass(frozen=True, slots=True)
-class Flow:
+class ReynoldsProblem:
     """A scaled Reynolds problem on uniform nodes.
 
     `conductance` = film_scale^3 pressure_scale/(12 eta_0 L) and `drive` = U film_scale/2, both over
@@ -255,7 +255,7 @@ class Flow:
 
 
 @dataclass(frozen=True, slots=True)
-class Faces:
+class FaceFlux:
     """Flux through the faces, and its derivatives by the states of both neighbouring nodes."""
 
     flux: Vector
@@ -264,7 +264,7 @@ class Faces:
     cavitation: tuple[Vector, Vector]
 
 
-def flux(flow: Flow, pressure: Vector, cavitation: Vector, film: Vector) -> Vector:
+def flux(flow: ReynoldsProblem, pressure: Vector, cavitation: Vector, film: Vector) -> Vector:
     """Scaled mass flux through every face."""
     density, fluidity = flow.oil(pressure)
     opening, carried = flow.gap(film)
@@ -275,7 +275,7 @@ def flux(flow: Flow, pressure: Vector, cavitation: Vector, film: Vector) -> Vect
     return flow.drive / 2 * (moved[:-1] + moved[1:]) * full - mean * np.diff(pressure)
 
 
-def faces(flow: Flow, pressure: Vector, cavitation: Vector, film: Vector) -> Faces:
+def faces(flow: ReynoldsProblem, pressure: Vector, cavitation: Vector, film: Vector) -> FaceFlux:
     """Flux and its derivatives for a real state; local laws use a complex step."""
     density, fluidity = flow.oil(pressure + 1j * STEP)
     opening, carried = flow.gap(film + 1j * STEP)
@@ -300,7 +300,7 @@ def faces(flow: Flow, pressure: Vector, cavitation: Vector, film: Vector) -> Fac
 
     over_pressure = slopes(opening * fluidity_slope, density_slope * carried)
     none, lost = np.zeros(flow.nodes - 1), -flow.drive / 2 * both
-    return Faces(
+    return FaceFlux(
         flux=value,
         pressure=(over_pressure[0] + mean, over_pressure[1] - mean),
         film=slopes(opening_slope * fluidity, density * carried_slope),

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .film import outputs
-from .newton import Bed, FilmState, Outcome, follow, kernel, newton, weights
-from .reynolds import Elastic, Flow, Lubricant, Vector
+from .newton import Bed, FilmState, NewtonResult, follow, kernel, newton, weights
+from .reynolds import Elastic, Lubricant, ReynoldsProblem, Vector
 
 _NARROWEST = 0.04
 """Square of the smallest relative half width of the initial pressure."""
@@ -108,7 +108,7 @@ def solve_gap(gap: Gap, nodes: int = 0) -> SmoothFilm:
     reason = fault(gap)
     if reason:
         nothing = np.full(len(gap.profile), np.nan)
-        lost = Outcome(FilmState(nothing, nothing, nothing, np.nan), reason, 0, 1.0, 1.0)
+        lost = NewtonResult(FilmState(nothing, nothing, nothing, np.nan), reason, 0, 1.0, 1.0)
         return _found(gap, 1.0, 1.0, lost)
     if gap.line_load is None:
         film = float(np.mean(gap.profile))
@@ -126,12 +126,12 @@ def _scales(gap: Gap) -> float:
     return float(max(highest, 1.0))
 
 
-def _scaled(gap: Gap, film: float, pressure: float) -> tuple[Flow, Bed]:
+def _scaled(gap: Gap, film: float, pressure: float) -> tuple[ReynoldsProblem, Bed]:
     nodes = len(gap.profile)
     viscosity = gap.lubricant.dynamic_viscosity
     conductance = film**3 * pressure / (12 * viscosity * gap.width)
     scale = conductance + abs(gap.speed) * film / 2
-    flow = Flow(
+    flow = ReynoldsProblem(
         nodes=nodes,
         width=gap.width,
         lubricant=gap.lubricant,
@@ -178,7 +178,7 @@ def _loaded(gap: Gap) -> SmoothFilm:
     film = math.sqrt(8 * viscosity * abs(gap.speed) / (9 * rise))
     speed, taken = abs(gap.speed), 0
 
-    def at(value: float, state: FilmState) -> Outcome:
+    def at(value: float, state: FilmState) -> NewtonResult:
         return newton(
             *_scaled(replace(gap, speed=math.copysign(value, gap.speed)), film, pressure), state
         )
@@ -195,7 +195,7 @@ def _loaded(gap: Gap) -> SmoothFilm:
     return _found(gap, film, pressure, replace(outcome, reason=reason, iterations=taken))
 
 
-def _dry(gap: Gap, flow: Flow, bed: Bed, least: float) -> FilmState:
+def _dry(gap: Gap, flow: ReynoldsProblem, bed: Bed, least: float) -> FilmState:
     """Elliptic pressure over the contact width of a cylinder, and the film above it."""
     place = np.linspace(0, 1, flow.nodes)
     ends = bed.sealed + (bed.outer - bed.sealed) * place
@@ -212,7 +212,9 @@ def _dry(gap: Gap, flow: Flow, bed: Bed, least: float) -> FilmState:
     return FilmState(pressure, np.zeros(flow.nodes), bent + shift, shift)
 
 
-def _found(gap: Gap, film: float, pressure: float, outcome: Outcome, taken: int = 0) -> SmoothFilm:
+def _found(
+    gap: Gap, film: float, pressure: float, outcome: NewtonResult, taken: int = 0
+) -> SmoothFilm:
     state = outcome.state
     drag = load = passing = np.nan
     absolute = gap.cavitation_pressure + pressure * state.pressure

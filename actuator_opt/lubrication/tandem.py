@@ -29,7 +29,7 @@ _NO_SUPPLY = "at {:.4g} Pa oil leaves the space between the seals on both sides:
 
 
 @dataclass(frozen=True, slots=True)
-class SealElement:
+class TandemSeal:
     """A seal of a row.
 
     Parameters
@@ -61,8 +61,8 @@ class Tandem:
 class _Row:
     """Both films at an interseal pressure, each starting from the previous solution."""
 
-    inner: SealElement
-    outer: SealElement
+    inner: TandemSeal
+    outer: TandemSeal
     lubricant: Lubricant
     speed: float
     sealed_pressure: float
@@ -86,7 +86,7 @@ class _Row:
         return first, second
 
     def _film(
-        self, seal: SealElement, sealed: float, outer: float, start: Film | None, **ends: float
+        self, seal: TandemSeal, sealed: float, outer: float, start: Film | None, **ends: float
     ) -> Film:
         width, static = seal.static(sealed, outer)
         contact = Contact(
@@ -106,8 +106,8 @@ class _Row:
 
 def solve_tandem(
     *,
-    inner: SealElement,
-    outer: SealElement,
+    inner: TandemSeal,
+    outer: TandemSeal,
     lubricant: Lubricant,
     speed: float,
     sealed_pressure: float,

@@ -14,7 +14,7 @@ from ..base.numeric import Array, angle, geometry, namespace, real, sqrt, where
 from .forces import crank, joint_force
 
 
-class Linkage(NamedTuple):
+class LinkageGeometry(NamedTuple):
     """Actuator length over the joint angle with its first and second derivative."""
 
     length: Array
@@ -27,7 +27,7 @@ class Linkage(NamedTuple):
 @geometry
 def linkage(
     *, base_radius: Array, crank_radius: Array, joint_angle: Array, angle_offset: Array = 0.0
-) -> Linkage:
+) -> LinkageGeometry:
     """Length, lever arm and its slope, l^2 = a^2 + r^2 - 2 a r cos(theta + theta_0).
 
     l' = a r sin(theta + theta_0)/l, l'' = (a r cos(theta + theta_0) - l'^2)/l.
@@ -61,7 +61,7 @@ def linkage(
     arm = crank(base_radius=base_radius, crank_radius=crank_radius, joint_angle=turned)
     bend = base_radius * crank_radius * namespace(turned).cos(turned)
     slope = (bend - arm.lever_arm * arm.lever_arm) / arm.length
-    return Linkage(arm.length, arm.lever_arm, slope)
+    return LinkageGeometry(arm.length, arm.lever_arm, slope)
 
 
 @geometry

@@ -149,14 +149,16 @@ def _load_pair(found: np.ndarray, near: np.ndarray) -> tuple[np.ndarray, np.ndar
 
 
 @dataclass(frozen=True, slots=True)
-class OpenLoop:
+class PositionOpenLoop:
     """Position over error at unit gain, L(s) = numerator/denominator [m/V]."""
 
     numerator: Polynomial
     denominator: Polynomial
 
 
-def open_loop(*, model: LinearActuator, natural_frequency: Array, damping_ratio: Array) -> OpenLoop:
+def open_loop(
+    *, model: LinearActuator, natural_frequency: Array, damping_ratio: Array
+) -> PositionOpenLoop:
     """Position loop without its gain: spool of second order before the actuator.
 
     L = omega_v^2/(s^2 + 2 zeta omega_v s + omega_v^2) T(s)/N(s).
@@ -189,7 +191,7 @@ def open_loop(*, model: LinearActuator, natural_frequency: Array, damping_ratio:
     """
     omega = 2 * pi * natural_frequency
     spool = (1.0, 2 * damping_ratio / omega, 1 / (omega * omega))
-    return OpenLoop(model.drive, multiply(model.characteristic, spool))
+    return PositionOpenLoop(model.drive, multiply(model.characteristic, spool))
 
 
 def _crossings(polynomial: Polynomial) -> np.ndarray:
@@ -231,7 +233,7 @@ class UltimateGain(NamedTuple):
     """[Hz]; NaN where there is none"""
 
 
-def ultimate_gain(*, loop: OpenLoop) -> UltimateGain:
+def ultimate_gain(*, loop: PositionOpenLoop) -> UltimateGain:
     """Smallest gain with a closed-loop pole on the imaginary axis.
 
     Im[N(i omega) conj D(i omega)] = 0 gives every crossing in w = omega^2; there
@@ -280,7 +282,7 @@ def ultimate_gain(*, loop: OpenLoop) -> UltimateGain:
     return UltimateGain(gain, where(swings, sqrt(square) / (2 * pi), math.nan))
 
 
-def _unknown(loop: OpenLoop) -> Array:
+def _unknown(loop: PositionOpenLoop) -> Array:
     """Whether a coefficient is not a number."""
     known: Array = np.True_
     for coefficient in (*loop.numerator, *loop.denominator):
@@ -288,7 +290,7 @@ def _unknown(loop: OpenLoop) -> Array:
     return ~known
 
 
-def _holds(loop: OpenLoop) -> Array:
+def _holds(loop: PositionOpenLoop) -> Array:
     """Whether a small gain holds: no pole of the actuator grows, and position follows the signal.
 
     Pressure that nothing lets out leaves a pole at zero, which does no harm.
@@ -308,7 +310,7 @@ def _holds(loop: OpenLoop) -> Array:
         return stable & ~(leads < -1e-9 * np.nan_to_num(np.abs(faster), posinf=0.0))
 
 
-class Margins(NamedTuple):
+class PositionLoopMargins(NamedTuple):
     """How far a closed loop is from swinging, and how fast it follows."""
 
     phase_margin: Array
@@ -319,7 +321,7 @@ class Margins(NamedTuple):
     """Where the closed loop falls to -3 dB [Hz]"""
 
 
-def margins(*, loop: OpenLoop, gain: Array) -> Margins:
+def margins(*, loop: PositionOpenLoop, gain: Array) -> PositionLoopMargins:
     """Phase margin, its crossover and the -3 dB bandwidth of the closed position loop.
 
     |K N|^2 = |D|^2 gives the crossovers, |D + K N|^2 = 2 |K N|^2 the bandwidth (its first root);
@@ -364,7 +366,7 @@ def margins(*, loop: OpenLoop, gain: Array) -> Margins:
         start, falls = _chosen(falling, np.where(np.isfinite(falling), falling, np.inf))
         width = where(falls, sqrt(positive_root(half, start)) / (2 * pi), 0.0)
     unknown = _unknown(loop) | np.isnan(real(gain))
-    return Margins(
+    return PositionLoopMargins(
         where(unknown, math.nan, phase),
         where(found, omega / (2 * pi), math.nan),
         where(unknown, math.nan, width),

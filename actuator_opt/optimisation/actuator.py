@@ -24,8 +24,8 @@ from ..evaluation.kernel import extreme, worst_of
 from ..evaluation.limits import UNLIMITED, LimitRow, MetricArrays, all_limits, margin, rows_of
 from ..evaluation.values import Values as Numbers
 from .evaluator import Evaluator, Point
-from .kkt import Kkt
-from .problem import BoxProblem, ParametricProblem, Values, Vector
+from .kkt import KktResidual
+from .problem import BoxProblem, ParametricProblem, PointValues, Vector
 
 Fault = Callable[[str, str, str], Diagnostic]
 """Builds the Diagnostic of a variable at its place in the file, from path, message and remedy."""
@@ -148,7 +148,7 @@ class ActuatorProblem:
     def parametric(self, parameters: tuple[str, ...]) -> ParametricProblem:
         """The same problem, with the numbers at `parameters` to be priced."""
 
-        def evaluate(points: Array, values: Array) -> Values:
+        def evaluate(points: Array, values: Array) -> PointValues:
             varied = dict(zip(parameters, values, strict=True))
             return self.evaluate(points, varied)
 
@@ -160,7 +160,7 @@ class ActuatorProblem:
         points: Array,
         parameters: Mapping[str, Array] | None = None,
         seen: list[MetricArrays] | None = None,
-    ) -> Values:
+    ) -> PointValues:
         """Objective and constraint margins of points (variables, designs).
 
         Adds the computed metrics to `seen`.
@@ -173,7 +173,7 @@ class ActuatorProblem:
             seen.append(done.computed)
         if self.refusals.names and not any(np.iscomplexobj(v) for v in varied.values()):
             self.refusals.add(done.computed, count)
-        return Values(
+        return PointValues(
             self.goal.value(done.computed, self.subject.cases),
             _margins(self.rows, done.computed, numbers, count, self.subject.reserves),
         )
@@ -651,7 +651,7 @@ class Solution:
     constraints: Vector
     equalities: Vector
     violation: float
-    kkt: Kkt | None
+    kkt: KktResidual | None
     evaluations: int
     gradients: int
     algorithm: str

@@ -21,7 +21,7 @@ import numpy as np
 
 from ..base.numeric import Array
 from .evaluator import Evaluator, Point
-from .problem import BoxProblem, ParametricProblem, Values, Vector
+from .problem import BoxProblem, ParametricProblem, PointValues, Vector
 from .resolve.boxes import EXACT, ROUGH, BoxTask, Criteria, Nearest, resolve_boxes
 from .resolve.changed import ChangedProblems, applicable
 from .resolve.parallel_descents import FEASIBLE
@@ -137,7 +137,7 @@ CLOSE = 1e-7
 
 
 @dataclass
-class Found:
+class SizeSearch:
     """The best point, every assignment tried with its objective, and the extent of the search.
 
     Parameters
@@ -172,7 +172,7 @@ def search(
     until: float | None = None,
     below: float = np.inf,
     memory: Memory | None = None,
-) -> Found:
+) -> SizeSearch:
     """The best point with every listed variable at one of its values.
 
     Parameters
@@ -350,7 +350,7 @@ class _Run:
         point, evaluator = self._near(here, here, self.x)
         names = [self.problem.names[i] for i in self.index]
 
-        def evaluate(points: Array, values: Array) -> Values:
+        def evaluate(points: Array, values: Array) -> PointValues:
             full = np.array(points)
             full[self.index] = values
             return self.problem.evaluate(full)
@@ -477,7 +477,7 @@ class _Run:
             box = with_rows(box, k, (row,))
         return left
 
-    def found(self, *, complete: bool) -> Found:
+    def found(self, *, complete: bool) -> SizeSearch:
         """The result of the search."""
         self.memory.visited = tuple(self.visited)
         best = self.confirmed()
@@ -489,7 +489,7 @@ class _Run:
         ends = tuple((evaluator, end) for evaluator, end in self.ends if end is not None)
         ends = ends if len(ends) == len(self.ends) else ()
         tried, solves = self.tried, self.solves
-        return Found(x, objective, best, tried, solves, complete, nearest, missed, ends)
+        return SizeSearch(x, objective, best, tried, solves, complete, nearest, missed, ends)
 
     def nearest(self) -> tuple[Assignment, Point] | tuple[None, None]:
         """The least infeasible of the first assignments, and its point."""

@@ -23,12 +23,12 @@ from ..evaluation import PreparedDesign, compute, prepare
 from ..evaluation.build import names_of_materials
 from ..evaluation.limits import LimitRow, all_limits, rows_of
 from .actuator import ActuatorProblem, Goal, build, goal_of
-from .branch_and_bound import Found, Memory, at, search
+from .branch_and_bound import Memory, SizeSearch, at, search
 from .identical_problems import Evidence
-from .quick_look import DOUBTFUL, Look, Start, hessian_of, look_quickly
+from .quick_look import DOUBTFUL, Look, LookStart, hessian_of, look_quickly
 from .resolve.parallel_descents import FEASIBLE
 from .result import Choices, Combination, How
-from .rounding import RUNNERS_UP, Sizes, Wanted, sizes_of
+from .rounding import RUNNERS_UP, ListedSizes, Wanted, sizes_of
 from .solver import solve
 
 NEAR = 0.05
@@ -51,7 +51,7 @@ EQUAL = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
-class Settings:
+class ChoiceSettings:
     """Settings for solving the best combinations; `until` is a time of `time.perf_counter`."""
 
     algorithm: str
@@ -156,7 +156,7 @@ def _require_one(looks: Sequence[Look]) -> None:
 
 @np.errstate(all="ignore")  # a design without finite values is never the best
 def search_choices(
-    subject: PreparedDesign, settings: Settings, most: int = MOST_SOLVED
+    subject: PreparedDesign, settings: ChoiceSettings, most: int = MOST_SOLVED
 ) -> ChoiceSearch:
     """Look at every combination of the choices, and solve the best ones from many starts.
 
@@ -228,7 +228,7 @@ def _evaluate(look: Look, goal: Goal) -> None:
         raise InputError(Diagnostic(message, path="objective"))
 
 
-def _look_at_all(found: ChoiceSearch, settings: Settings) -> None:
+def _look_at_all(found: ChoiceSearch, settings: ChoiceSettings) -> None:
     """Look quickly at every combination, in half of the available time."""
     began = time.perf_counter()
     for look in found.looks:
@@ -248,7 +248,7 @@ def _any(found: ChoiceSearch) -> bool:
     return any(look.x is not None for look in found.looks)
 
 
-def _starts(found: ChoiceSearch, look: Look) -> list[Start]:
+def _starts(found: ChoiceSearch, look: Look) -> list[LookStart]:
     """Starts from the combinations that differ in the fewest values.
 
     A feasible neighbour is a start for a descent. An infeasible one shows best how close this
@@ -266,21 +266,21 @@ def _starts(found: ChoiceSearch, look: Look) -> list[Start]:
     starts = []
     closer = bad is not None and (good is None or distance(bad)[0] <= distance(good)[0])
     if closer and bad is not None and bad.x is not None:
-        starts.append(Start(bad.x, descend=False))
+        starts.append(LookStart(bad.x, descend=False))
     if good is not None and good.x is not None:
-        starts.append(Start(good.x, descend=True))
+        starts.append(LookStart(good.x, descend=True))
     last = min(
         (other for other in known if other.hessian is not None),
         key=lambda other: (distance(other)[0], -other.order),
         default=None,
     )
     if last is not None and last.x is not None:
-        starts.append(Start(last.x, descend=True, hessian=last.hessian))
+        starts.append(LookStart(last.x, descend=True, hessian=last.hessian))
     own = None if look.actuator is None else look.actuator.problem.start
-    return starts or ([] if own is None else [Start(own, descend=True)])
+    return starts or ([] if own is None else [LookStart(own, descend=True)])
 
 
-def _solve_best(found: ChoiceSearch, settings: Settings, most: int) -> None:
+def _solve_best(found: ChoiceSearch, settings: ChoiceSettings, most: int) -> None:
     """Solve the winner and combinations close to it from many starts, best first."""
     second = True
     for _ in range(most):
@@ -296,7 +296,7 @@ def _solve_best(found: ChoiceSearch, settings: Settings, most: int) -> None:
             for other in found.looks:
                 near = other.violation <= DOUBTFUL
                 if other.solution is None and other.actuator is not None and near:
-                    start = Start(look.x, descend=True)
+                    start = LookStart(look.x, descend=True)
                     look_quickly(other, [start], settings.seed, settings.left())
     best = found.ranked()[0]
     if best.solution is None:
@@ -324,7 +324,7 @@ def _promising(found: ChoiceSearch) -> Look | None:
     return None
 
 
-def many_starts(look: Look, settings: Settings) -> None:
+def many_starts(look: Look, settings: ChoiceSettings) -> None:
     """Solve a combination from many starts, including its best known point."""
     assert look.actuator is not None
     left = settings.left()
@@ -444,7 +444,7 @@ def _counts(made: Choices) -> Iterator[str]:
             yield f"{count} {said}"
 
 
-_NOTHING_BETTER = Found(None, None, None, {}, 0, complete=True)
+_NOTHING_BETTER = SizeSearch(None, None, None, {}, 0, complete=True)
 """Same result as another combination."""
 
 
@@ -453,12 +453,12 @@ class Sized:
     """A combination with its sizes and their search result."""
 
     look: Look
-    sizes: Sizes
-    found: Found
+    sizes: ListedSizes
+    found: SizeSearch
     memory: Memory
 
 
-def best_of_sizes(choices: ChoiceSearch, wanted: Wanted, settings: Settings) -> Sized | None:
+def best_of_sizes(choices: ChoiceSearch, wanted: Wanted, settings: ChoiceSettings) -> Sized | None:
     """Find the combination with the best design of listed sizes, solved from many starts.
 
     If none fits, the combination with the best continuous optimum; None if no variable has sizes.
@@ -480,7 +480,7 @@ def best_of_sizes(choices: ChoiceSearch, wanted: Wanted, settings: Settings) -> 
     return winner
 
 
-def _searched(choices: ChoiceSearch, wanted: Wanted, settings: Settings) -> Iterator[Sized]:
+def _searched(choices: ChoiceSearch, wanted: Wanted, settings: ChoiceSettings) -> Iterator[Sized]:
     """Search each promising combination for a better design than those before."""
     error: InputError | None = None
     memories: dict[object, Memory] = {}

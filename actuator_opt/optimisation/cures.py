@@ -31,8 +31,8 @@ from ..joints.kinds import JOINTS
 from . import repairs
 from .actuator import ActuatorProblem, build
 from .evaluator import Evaluator
-from .infeasibility import Infeasibility
-from .problem import BoxProblem, Values, Vector
+from .infeasibility import Conflict
+from .problem import BoxProblem, PointValues, Vector
 
 DIMENSIONS = (
     "bore", "wall_thickness", "winding_angle", "rod_diameter", "rod_inner_diameter", "part_length",
@@ -98,7 +98,7 @@ class Cures:
     untried: tuple[str, ...] = ()
 
 
-def cures(actuator: ActuatorProblem, found: Infeasibility) -> Cures:
+def cures(actuator: ActuatorProblem, found: Conflict) -> Cures:
     """The fixed dimensions and choices that are enough alone.
 
     Parameters
@@ -115,7 +115,7 @@ def cures(actuator: ActuatorProblem, found: Infeasibility) -> Cures:
     return Cures(dimensions, together, choices, (*left, *others))
 
 
-def _gains(actuator: ActuatorProblem, found: Infeasibility) -> dict[str, float]:
+def _gains(actuator: ActuatorProblem, found: Conflict) -> dict[str, float]:
     """Fall of the missed margins per relative growth of every number, by PATH."""
     subject = actuator.subject
     values = subject.values(
@@ -207,9 +207,9 @@ def freed(
     lower[places], upper[places] = np.minimum(now, ends), np.maximum(now, ends)
     sign = np.sign(ends - now)[:, None]
 
-    def evaluate(points: Array) -> Values:
+    def evaluate(points: Array) -> PointValues:
         change = (sign * np.log(points[places] / now[:, None])).sum(axis=0)
-        return Values(change, problem.evaluate(points).constraints)
+        return PointValues(change, problem.evaluate(points).constraints)
 
     free = replace(problem, lower=lower, upper=upper, evaluate=evaluate)
     near = repairs.near(free, start)
@@ -262,9 +262,9 @@ def _kept(actuator: ActuatorProblem, lost: frozenset[str]) -> BoxProblem:
     """The problem without the rows of some checks."""
     rows = np.array([row.label not in lost for row in actuator.rows], dtype=bool)
 
-    def evaluate(points: Array) -> Values:
+    def evaluate(points: Array) -> PointValues:
         values = actuator.evaluate(points)
-        return Values(values.objective, values.constraints[rows])
+        return PointValues(values.objective, values.constraints[rows])
 
     names = tuple(np.array(actuator.problem.constraint_names, dtype=object)[rows].tolist())
     return replace(
@@ -298,7 +298,7 @@ def outward(value: float, digits: int, upwards: bool) -> float:
 
 
 def _choices(
-    actuator: ActuatorProblem, found: Infeasibility, gains: Mapping[str, float]
+    actuator: ActuatorProblem, found: Conflict, gains: Mapping[str, float]
 ) -> tuple[tuple[Cure, ...], list[str]]:
     """Choices enough alone, least infeasible first; and those not tried."""
     subject, library = actuator.subject, load_library()

@@ -18,7 +18,7 @@ from ..base.progress import tell
 from . import kkt, repairs
 from .evaluator import Evaluator, Point
 from .problem import BoxProblem, Vector
-from .repairs import NOTHING, Opening, Relaxation
+from .repairs import NOTHING, Opening, RelaxedConstraint
 
 STARTS = 2
 """Maximum points from which the joint relaxation is sought."""
@@ -28,7 +28,7 @@ ROOM = 1.001
 
 
 @dataclass(frozen=True, slots=True)
-class Infeasibility:
+class Conflict:
     """Which requirements conflict, and by how much.
 
     Parameters
@@ -43,8 +43,8 @@ class Infeasibility:
     multipliers : fall of the total per unit of margin granted to each constraint (m,)
     """
 
-    joint: tuple[Relaxation, ...]
-    sole: tuple[Relaxation, ...]
+    joint: tuple[RelaxedConstraint, ...]
+    sole: tuple[RelaxedConstraint, ...]
     bounds: tuple[Opening, ...]
     laws: tuple[str, ...]
     x: Vector
@@ -53,7 +53,7 @@ class Infeasibility:
     multipliers: Vector
 
 
-def explain(problem: BoxProblem, points: Sequence[Vector]) -> Infeasibility:
+def explain(problem: BoxProblem, points: Sequence[Vector]) -> Conflict:
     """Explain why a problem has no feasible point.
 
     Parameters
@@ -79,7 +79,7 @@ def explain(problem: BoxProblem, points: Sequence[Vector]) -> Infeasibility:
         )
     quality = kkt.check(evaluator, found, objective_scale=1.0)
     joint = _joint(problem, groups, mask, found)
-    sole: tuple[Relaxation, ...] = ()
+    sole: tuple[RelaxedConstraint, ...] = ()
     x = found.x[: len(problem.names)]
     if joint and not laws:
         part = _taking_part(evaluator, found, quality)
@@ -93,7 +93,7 @@ def explain(problem: BoxProblem, points: Sequence[Vector]) -> Infeasibility:
     openings = _binding_bounds(problem, evaluator, quality)
     if joint and not laws:
         openings = repairs.by_bounds(problem, openings, x)
-    return Infeasibility(
+    return Conflict(
         joint, sole, openings, laws, x, float(found.objective), quality.residual,
         quality.multipliers,
     )  # fmt: skip
@@ -104,11 +104,11 @@ def _joint(
     groups: list[repairs.Indices],
     mask: npt.NDArray[np.bool_],
     found: Point,
-) -> tuple[Relaxation, ...]:
+) -> tuple[RelaxedConstraint, ...]:
     """The relaxations at a point of the elastic problem, the largest first."""
     amounts = found.x[len(problem.names) :]
     joint = [
-        Relaxation(problem.constraint_names[group[0]], int(group[0]), float(amount))
+        RelaxedConstraint(problem.constraint_names[group[0]], int(group[0]), float(amount))
         for group, amount in zip(groups, amounts, strict=True)
         if amount > NOTHING and mask[group].all() and found.violation <= NOTHING
     ]
@@ -120,7 +120,7 @@ def _less(
     evaluator: Evaluator,
     groups: list[repairs.Indices],
     candidates: list[repairs.Indices],
-    sole: Sequence[Relaxation],
+    sole: Sequence[RelaxedConstraint],
     found: Point,
 ) -> Point | None:
     """A smaller joint relaxation, if one limit alone gives up less because the descent stalled."""
@@ -138,7 +138,9 @@ def _less(
     return end if better else None
 
 
-def _taking_part(evaluator: Evaluator, found: Point, quality: kkt.Kkt) -> npt.NDArray[np.bool_]:
+def _taking_part(
+    evaluator: Evaluator, found: Point, quality: kkt.KktResidual
+) -> npt.NDArray[np.bool_]:
     """Constraints that take part in the conflict; dropping the others does not resolve it.
 
     The multipliers of the relaxation prove this (for a convex problem, else locally). Without
@@ -177,7 +179,7 @@ def _smallest(
 
 
 def _binding_bounds(
-    problem: BoxProblem, evaluator: Evaluator, quality: kkt.Kkt
+    problem: BoxProblem, evaluator: Evaluator, quality: kkt.KktResidual
 ) -> tuple[Opening, ...]:
     """Bounds that limit the joint relaxation, the most helpful first."""
     found = []

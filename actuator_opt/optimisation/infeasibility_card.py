@@ -15,8 +15,8 @@ from ..evaluation.limits import LimitRow
 from ..metrics import METRICS
 from .actuator import ActuatorProblem, Outcome, Solution
 from .cures import DIGITS, Cure, Cures, cures, outward
-from .infeasibility import Infeasibility as Explanation, explain
-from .repairs import WIDEST, Opening, Relaxation
+from .infeasibility import Conflict as Explanation, explain
+from .repairs import WIDEST, Opening, RelaxedConstraint
 from .result import Infeasibility
 
 MORE_DIGITS = 6
@@ -128,7 +128,7 @@ def _cure(actuator: ActuatorProblem, kind: str, cure: Cure) -> dict[str, Any]:
     }
 
 
-def entry_of(actuator: ActuatorProblem, relaxed: Relaxation) -> dict[str, Any]:
+def entry_of(actuator: ActuatorProblem, relaxed: RelaxedConstraint) -> dict[str, Any]:
     """A requirement as an entry: its limit as stated, and the sufficient one."""
     row, amount = actuator.rows[relaxed.index], relaxed.amount
     limit = float(np.ravel(row.limit)[0])

@@ -62,7 +62,7 @@ class Active:
 
 
 @dataclass(frozen=True)
-class Kkt:
+class KktResidual:
     """Accuracy of the optimality conditions at a point.
 
     Parameters
@@ -248,7 +248,7 @@ def residual(evaluator: Evaluator, point: Point) -> float:
 
 def check(
     evaluator: Evaluator, point: Point, *, curvature: bool = False, objective_scale: float = 0.0
-) -> Kkt:
+) -> KktResidual:
     """Check the optimality conditions at a point."""
     problem, m = evaluator.problem, evaluator.constraint_count
     jacobian = evaluator.jacobian(point)
@@ -273,7 +273,7 @@ def check(
     if curvature:
         strong = active.gradients[inequality * np.sqrt((active.gradients**2).sum(axis=1)) > 0]
         found = _curvature(evaluator, point, held, free, np.concatenate([strong, equalities]))
-    return Kkt(left, tuple(labels), len(stacked), rank, held, free, low, high, found)
+    return KktResidual(left, tuple(labels), len(stacked), rank, held, free, low, high, found)
 
 
 def lagrangian_weights(constraints: Vector, equalities: Vector) -> Vector:

@@ -193,7 +193,7 @@ of the objective and violation; only its slow convergence is left."""
 
 
 @dataclass(frozen=True)
-class Run:
+class NloptRun:
     """Result of one NLopt call: the point to continue from, and NLopt's return code."""
 
     point: Point
@@ -331,7 +331,7 @@ def run(
     seed: int = 0,
     known: Sequence[Point] = (),
     rank: Callable[[Point], Any] | None = None,
-) -> Run:
+) -> NloptRun:
     """Run one algorithm from one point, at most `most` evaluations (default: its own).
 
     A run that reaches one of the `known` optima (see `ARRIVAL`) stops there. Returns the best by
@@ -340,7 +340,7 @@ def run(
     raised unchanged; reaching a limit ends the run quietly.
     """
     if evaluator.space.size == 0:
-        return Run(start, 1, algorithm)
+        return NloptRun(start, 1, algorithm)
     outer, inner = find(algorithm)
     size, most = evaluator.space.size, most or outer.most_evaluations
     evaluator.eager = (inner or outer).uses_gradients
@@ -371,7 +371,7 @@ def run(
     code = int(handle.last_optimize_result())
     if guard.error is not None and not isinstance(guard.error, (LimitReached, _Arrived)):
         raise guard.error
-    return Run(_pick(evaluator, guard, found, start), code, algorithm, guard.arrived)
+    return NloptRun(_pick(evaluator, guard, found, start), code, algorithm, guard.arrived)
 
 
 def _handle(algorithm: Algorithm, size: int, tolerance: float, most: int) -> Any:

@@ -22,11 +22,11 @@ from ..evaluation.build import spec_hash
 from ..evaluation.kernel import governing
 from ..evaluation.limits import MetricArrays
 from .actuator import ActuatorProblem, Fault, Goal, build, idle_metrics
-from .front.front import Front, NoEnd, Settings, front
+from .front.front import Front, FrontSettings, NoEnd, front
 from .front.objectives import Objectives
-from .front.plane import Gap
+from .front.plane import FrontGap
 from .infeasibility_card import explained
-from .problem import Values, Vector
+from .problem import PointValues, Vector
 from .resolve.parallel_descents import FEASIBLE
 from .result import Infeasibility
 from .rounding import design_at
@@ -96,7 +96,7 @@ class ParetoFront(Displayed):
     evaluation: Evaluation
     passed: tuple[tuple[float, ...], ...] = ()
     gaps: tuple[float, ...] = ()
-    wide: tuple[Gap, ...] = ()
+    wide: tuple[FrontGap, ...] = ()
     checked: int = 0
     improved: int = 0
     failed: int = 0
@@ -114,7 +114,7 @@ class ParetoFront(Displayed):
         return "unsolved" if self.unsolved else "infeasible"
 
     @property
-    def jumps(self) -> tuple[Gap, ...]:
+    def jumps(self) -> tuple[FrontGap, ...]:
         """Gaps at which the front is discontinuous, so that no design lies between."""
         return tuple(gap for gap in self.wide if gap.jump)
 
@@ -220,7 +220,7 @@ class _Many:
     subject: PreparedDesign
     """The problem with the design's own objective."""
 
-    def evaluate(self, points: Array) -> Values:
+    def evaluate(self, points: Array) -> PointValues:
         """Objectives, to be minimised, and margins."""
         cases = self.actuator.subject.cases
         done: list[MetricArrays] = []
@@ -257,7 +257,7 @@ def pareto(
     names = [one.metric for one in wished]
     found = front(
         Objectives(names, many.actuator.problem, many.evaluate),
-        Settings(count=count, seed=seed, checks=checks),
+        FrontSettings(count=count, seed=seed, checks=checks),
     )
     if isinstance(found, NoEnd):
         return _without(many, found, began)

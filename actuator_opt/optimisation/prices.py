@@ -74,7 +74,7 @@ class Optimum:
         return np.flatnonzero(size > 1e-10 * max(float(np.linalg.norm(self.slope)), 1e-300))
 
 
-def optimum(evaluator: Evaluator, point: Point, quality: kkt.Kkt) -> Optimum:
+def optimum(evaluator: Evaluator, point: Point, quality: kkt.KktResidual) -> Optimum:
     """Collect margins, gradients, multipliers and the Hessian at an optimum."""
     space, m = evaluator.space, evaluator.constraint_count
     jacobian, unit = evaluator.jacobian(point), np.eye(evaluator.space.size)
@@ -554,7 +554,7 @@ def _ends(
     """
     parametric, point = solved.parametric, solved.valleys[0].point
     objectives: dict[tuple[int, int], float | None] = {}
-    tasks: dict[tuple[int, int], ladder.Task] = {}
+    tasks: dict[tuple[int, int], ladder.ResolveTask] = {}
     for k, value in enumerate(given.values.tolist()):
         for sign in (1, -1):
             if value == 0 or not given.matters(k):
@@ -568,7 +568,7 @@ def _ends(
             if k < len(parametric.parameters):
                 parameters = parametric.parameters.copy()
                 parameters[k] += step
-            tasks[k, sign] = ladder.Task(problem, point.z + moves[:, k] * step, parameters)
+            tasks[k, sign] = ladder.ResolveTask(problem, point.z + moves[:, k] * step, parameters)
     for pair, optimum in zip(tasks, ladder.resolve(solved, list(tasks.values())), strict=True):
         objectives[pair] = None if optimum is None else optimum.objective
     here = point.objective

@@ -21,7 +21,7 @@ Vector: TypeAlias = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
-class Values:
+class PointValues:
     """Result of evaluating k points.
 
     Parameters
@@ -44,7 +44,7 @@ class BoxProblem:
     ----------
     names : label of each variable
     lower, upper : finite bounds (n,); equal bounds fix a variable
-    evaluate : maps points (n, k), real or complex, to `Values`
+    evaluate : maps points (n, k), real or complex, to `PointValues`
     constraint_names, equality_names : label of each row of the values
     start : a first guess inside the box, or None
     relaxable : for each constraint, whether it is a requirement (True) or a law such as geometry
@@ -58,7 +58,7 @@ class BoxProblem:
     names: Sequence[str]
     lower: Vector
     upper: Vector
-    evaluate: Callable[[Array], Values]
+    evaluate: Callable[[Array], PointValues]
     constraint_names: Sequence[str] = ()
     equality_names: Sequence[str] = ()
     start: Vector | None = None
@@ -140,13 +140,13 @@ class ParametricProblem:
     problem : the problem at the present parameter values (its own `evaluate` may be faster)
     parameter_names : label of each parameter (q,)
     parameters : present values (q,)
-    evaluate : maps points (n, k) and parameters (q, k) or (q, 1), real or complex, to `Values`
+    evaluate : maps points (n, k) and parameters (q, k) or (q, 1), real or complex, to `PointValues`
     """
 
     problem: BoxProblem
     parameter_names: Sequence[str]
     parameters: Vector
-    evaluate: Callable[[Array, Array], Values]
+    evaluate: Callable[[Array, Array], PointValues]
 
     def __post_init__(self) -> None:
         values = np.array(self.parameters, dtype=float)

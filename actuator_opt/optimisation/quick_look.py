@@ -77,7 +77,7 @@ class Look:
         return self.violation <= FEASIBLE
 
 
-class Start(NamedTuple):
+class LookStart(NamedTuple):
     """A starting point: `descend` directly, or first reduce the worst violation."""
 
     x: Vector
@@ -88,7 +88,7 @@ class Start(NamedTuple):
 
 def look_quickly(
     look: Look,
-    starts: Sequence[Start],
+    starts: Sequence[LookStart],
     seed: int,
     seconds: float | None,
 ) -> None:
@@ -128,7 +128,7 @@ def look_quickly(
         look.how = "not tried" if look.x is None else "quick"
 
 
-def _followed(look: Look, evaluator: Evaluator, starts: Sequence[Start]) -> bool:
+def _followed(look: Look, evaluator: Evaluator, starts: Sequence[LookStart]) -> bool:
     """Whether steps from a neighbour's optimum converge to the optimum of this combination."""
     near = next((start for start in starts if start.hessian is not None), None)
     if near is None or near.hessian is None or not evaluator.space.size:
@@ -176,7 +176,7 @@ def _settle_quickly(look: Look, evaluator: Evaluator, x: Vector, seed: int) -> N
 
 
 def _coordinates(
-    evaluator: Evaluator, starts: Sequence[Start], seed: int
+    evaluator: Evaluator, starts: Sequence[LookStart], seed: int
 ) -> Iterator[tuple[Vector, bool]]:
     """The starts given, then the best of a small sweep."""
     for x, descend, _ in starts:

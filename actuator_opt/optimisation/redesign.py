@@ -60,7 +60,7 @@ class Shift:
         }
 
 
-class Goal(NamedTuple):
+class ObjectiveChange(NamedTuple):
     """An objective metric at both optima [SI]; None without one."""
 
     metric: str
@@ -103,7 +103,7 @@ class Redesign:
         return tuple(found)
 
     @property
-    def goals(self) -> tuple[Goal, ...]:
+    def goals(self) -> tuple[ObjectiveChange, ...]:
         """The metrics of the objective at both optima, weighted terms separately.
 
         A weighted sum divides each term by its value in the file's design, which new values change.
@@ -113,7 +113,9 @@ class Redesign:
         if before is None or after is None:
             return ()
         return tuple(
-            Goal(name, after.evaluation.metrics[name].quantity, *_values(name, before, after))
+            ObjectiveChange(
+                name, after.evaluation.metrics[name].quantity, *_values(name, before, after)
+            )
             for name in after.design.objective.metrics
         )
 
@@ -241,7 +243,9 @@ def _bounds(
     }
 
 
-def _optimum_words(before: Optimisation, after: Optimisation, goals: Sequence[Goal]) -> list[str]:
+def _optimum_words(
+    before: Optimisation, after: Optimisation, goals: Sequence[ObjectiveChange]
+) -> list[str]:
     """Changes of the optimum and of its active limits."""
     if not (solved(before) and solved(after)):
         states = [
@@ -253,7 +257,7 @@ def _optimum_words(before: Optimisation, after: Optimisation, goals: Sequence[Go
     return [f"the best design: {', '.join(parts)}", *_active_words(active(before), active(after))]
 
 
-def _goal_words(one: Goal) -> str:
+def _goal_words(one: ObjectiveChange) -> str:
     """A metric of the objective before and after."""
     old, new = one.before, one.after
     if old is None or new is None:

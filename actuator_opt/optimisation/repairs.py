@@ -20,7 +20,7 @@ from . import kkt
 from .evaluator import Evaluator, Point
 from .kkt import polish
 from .nlopt_wrapper import run
-from .problem import BoxProblem, ParametricProblem, Values, Vector
+from .problem import BoxProblem, ParametricProblem, PointValues, Vector
 from .resolve.changed import ChangedProblems, applicable
 
 Indices: TypeAlias = npt.NDArray[np.intp]
@@ -51,13 +51,13 @@ def common(problem: BoxProblem, room: float) -> BoxProblem:
     m, e = len(problem.constraint_names), len(problem.equality_names)
     n = len(problem.names)
 
-    def evaluate(x: Array) -> Values:
+    def evaluate(x: Array) -> PointValues:
         rows = _rows_once(problem, x[:n])
         slack = x[n]
         margins = [rows[1 : 1 + m] + slack]
         if e:
             margins += [slack - rows[1 + m :], slack + rows[1 + m :]]
-        return Values(slack, np.concatenate(margins))
+        return PointValues(slack, np.concatenate(margins))
 
     names = tuple(str(i) for i in range(m + 2 * e))
     return _extended(problem, evaluate, ["slack"], room, names, ())
@@ -67,12 +67,12 @@ def separate(problem: BoxProblem, groups: Sequence[Indices], room: Sequence[floa
     """Minimise the sum of one slack per group of constraints; all others must be met."""
     n, m = len(problem.names), len(problem.constraint_names)
 
-    def evaluate(x: Array) -> Values:
+    def evaluate(x: Array) -> PointValues:
         rows = _rows_once(problem, x[:n])
         margins = np.array(rows[1 : 1 + m], dtype=np.result_type(rows, x))
         for slack, group in zip(x[n:], groups, strict=True):
             margins[group] = margins[group] + slack
-        return Values(x[n:].sum(axis=0), margins, rows[1 + m :])
+        return PointValues(x[n:].sum(axis=0), margins, rows[1 + m :])
 
     names = [f"relax {problem.constraint_names[group[0]]}" for group in groups]
     return _extended(
@@ -93,7 +93,7 @@ def _rows_once(problem: BoxProblem, points: Array) -> npt.NDArray[np.generic]:
 
 def _extended(
     problem: BoxProblem,
-    evaluate: Callable[[Array], Values],
+    evaluate: Callable[[Array], PointValues],
     names: Sequence[str],
     room: float | Sequence[float],
     constraint_names: Sequence[str],
@@ -193,7 +193,7 @@ _FREED = 1e9
 
 
 @dataclass(frozen=True, slots=True)
-class Relaxation:
+class RelaxedConstraint:
     """A constraint and the margin (fraction of its limit) to give up.
 
     `amount` is None if giving up this constraint entirely would not be enough.
@@ -235,7 +235,7 @@ def by_limits(
     groups: Sequence[Indices],
     named: set[int],
     points: Sequence[Vector],
-) -> tuple[Relaxation, ...]:
+) -> tuple[RelaxedConstraint, ...]:
     """The relaxation that each group of constraints needs alone.
 
     Parameters
@@ -254,7 +254,7 @@ def by_limits(
         amounts.append(None if x is None else _least_of_all(problem, group, x, points[1:]))
     amounts = _challenged(problem, groups, amounts, points)
     return tuple(
-        Relaxation(problem.constraint_names[int(group[0])], int(group[0]), amount)
+        RelaxedConstraint(problem.constraint_names[int(group[0])], int(group[0]), amount)
         for group, amount in zip(groups, amounts, strict=True)
     )
 
@@ -304,10 +304,10 @@ def without_each(
     for k, group in enumerate(groups):
         freed[group, k] = _FREED if granted is None else granted[k]
 
-    def evaluate(points: Array, margins: Array) -> Values:
+    def evaluate(points: Array, margins: Array) -> PointValues:
         rows = problem.rows(points)
         m = len(problem.constraint_names)
-        return Values(rows[0], rows[1 : 1 + m] + margins, rows[1 + m :])
+        return PointValues(rows[0], rows[1 : 1 + m] + margins, rows[1 + m :])
 
     labels = problem.constraint_names
     parametric = ParametricProblem(problem, labels, np.zeros(len(labels)), evaluate)
@@ -328,9 +328,9 @@ def _without(problem: BoxProblem, group: Indices, points: Sequence[Vector]) -> V
     m = len(problem.constraint_names)
     kept = np.setdiff1d(np.arange(m), group)
 
-    def evaluate(at: Array) -> Values:
+    def evaluate(at: Array) -> PointValues:
         rows = problem.rows(at)
-        return Values(rows[0], rows[1 : 1 + m][kept], rows[1 + m :])
+        return PointValues(rows[0], rows[1 : 1 + m][kept], rows[1 + m :])
 
     names = tuple(problem.constraint_names[i] for i in kept)
     slim = replace(problem, evaluate=evaluate, constraint_names=names, relaxable=None, groups=None)
@@ -393,10 +393,10 @@ def _opened(problem: BoxProblem, bound: Opening, x: Vector) -> float | None:
         (bound.value, bound.value * WIDEST) if upper else (bound.value / WIDEST, bound.value)
     )
 
-    def evaluate(points: Array) -> Values:
+    def evaluate(points: Array) -> PointValues:
         rows = problem.rows(points)
         m = len(problem.constraint_names)
-        return Values(points[j] if upper else -points[j], rows[1 : 1 + m], rows[1 + m :])
+        return PointValues(points[j] if upper else -points[j], rows[1 : 1 + m], rows[1 + m :])
 
     opened = replace(problem, lower=lower, upper=above, evaluate=evaluate, start=None)
     start = near(opened, x)

@@ -27,12 +27,12 @@ from ..design.standard_sizes import WHOLE, along
 from ..evaluation import Evaluation, evaluate, prepare
 from . import repairs
 from .actuator import ActuatorProblem, Fault, Solution
-from .branch_and_bound import SAME, Assignment, Found, Listed, search
+from .branch_and_bound import SAME, Assignment, Listed, SizeSearch, search
 from .cures import freed, opened
 from .evaluator import Evaluator
 from .infeasibility_card import change_text, entry_of
-from .problem import BoxProblem, Values, Vector
-from .repairs import Relaxation
+from .problem import BoxProblem, PointValues, Vector
+from .repairs import RelaxedConstraint
 from .result import Optimisation, RoundedVariable, Rounding, RunnerUp, SizeRemedy
 from .solver import solve
 
@@ -59,7 +59,7 @@ def size_remedies(
     actuator: ActuatorProblem,
     solution: Solution,
     listed: Sequence[Listed],
-    found: Found,
+    found: SizeSearch,
     until: float | None = None,
 ) -> tuple[tuple[SizeRemedy, ...], str]:
     """The changes of one number that allow better sizes, best design first; else a note.
@@ -86,7 +86,7 @@ def size_remedies(
     return tuple(sorted(remedies, key=lambda remedy: better * remedy.objective)), note
 
 
-def _smaller(listed: Sequence[Listed], x: Vector, found: Found) -> list[Assignment]:
+def _smaller(listed: Sequence[Listed], x: Vector, found: SizeSearch) -> list[Assignment]:
     """Combinations of sizes with the most rounded size at its other neighbour.
 
     The least infeasible sizes if no sized design is feasible.
@@ -104,7 +104,7 @@ def _smaller(listed: Sequence[Listed], x: Vector, found: Found) -> list[Assignme
     return [a for a in missed if a[k] in others][:MOST_SIZES]
 
 
-def _limits(actuator: ActuatorProblem, solution: Solution, found: Found) -> list[int]:
+def _limits(actuator: ActuatorProblem, solution: Solution, found: SizeSearch) -> list[int]:
     """Rows of the tightest requirements and loads, at the optimum or the sizes."""
     margins = solution.constraints
     if found.missed is not None:
@@ -155,15 +155,15 @@ class _Held:
             if start is None or amount is None or amount <= repairs.NOTHING:
                 continue
             name = problem.constraint_names[index]
-            entry = entry_of(self.actuator, Relaxation(name, index, amount))
+            entry = entry_of(self.actuator, RelaxedConstraint(name, index, amount))
             if entry["change"] is None or abs(entry["change"]) > SMALL:
                 continue
             granted = np.zeros((len(problem.constraint_names), 1))
             granted[group] = amount  # the printed value is rounded outwards: more, not less
 
-            def evaluate(points: Array, granted: Array = granted) -> Values:
+            def evaluate(points: Array, granted: Array = granted) -> PointValues:
                 values = problem.evaluate(points)
-                return Values(values.objective, values.constraints + granted)
+                return PointValues(values.objective, values.constraints + granted)
 
             yield from self.remedy(replace(problem, evaluate=evaluate), start, entry)
 
@@ -231,7 +231,7 @@ class Wanted:
 
 
 @dataclass(frozen=True)
-class Sizes:
+class ListedSizes:
     """The listed variables of a design: groups for the search, and the series of each."""
 
     listed: tuple[Listed, ...]
@@ -304,7 +304,7 @@ def sizes_of(
     wanted: Wanted,
     materials: Mapping[str, Material],
     fault: Fault | None = None,
-) -> Sizes | None:
+) -> ListedSizes | None:
     """The variables that only take listed values; None if there are none and none are requested.
 
     Parameters
@@ -342,7 +342,7 @@ def sizes_of(
         for group in found
         for path, label in zip(group.paths, group.labels, strict=True)
     }
-    return Sizes(listed, labels) if found else None
+    return ListedSizes(listed, labels) if found else None
 
 
 def _require_plies(design: Design, wanted: Wanted, materials: Mapping[str, Material]) -> None:
@@ -398,8 +398,8 @@ def design_at(actuator: ActuatorProblem, x: Vector) -> tuple[Design, Evaluation]
 def rounded(
     actuator: ActuatorProblem,
     solution: Solution,
-    sizes: Sizes,
-    found: Found | None = None,
+    sizes: ListedSizes,
+    found: SizeSearch | None = None,
     *,
     until: float | None = None,
     seed: int = 0,
@@ -443,7 +443,7 @@ def _percent(cost: float, solution: Solution) -> float | None:
 
 
 def _rounding(
-    actuator: ActuatorProblem, solution: Solution, sizes: Sizes, found: Found
+    actuator: ActuatorProblem, solution: Solution, sizes: ListedSizes, found: SizeSearch
 ) -> Rounding:
     shown = actuator.goal.shown
     feasible = sum(math.isfinite(objective) for objective in found.tried.values())
@@ -485,7 +485,7 @@ def _rounding(
     )
 
 
-def _nearest(actuator: ActuatorProblem, sizes: Sizes, found: Found) -> str:
+def _nearest(actuator: ActuatorProblem, sizes: ListedSizes, found: SizeSearch) -> str:
     """Describe the limits that the nearest sizes miss, if none is feasible."""
     if found.nearest is None or found.missed is None or found.missed.violation <= 0:
         return ""
@@ -561,7 +561,7 @@ def _unmade(actuator: ActuatorProblem, design: Design) -> tuple[tuple[str, ...],
 def _variables(
     actuator: ActuatorProblem,
     solution: Solution,
-    sizes: Sizes,
+    sizes: ListedSizes,
     x: Vector,
     design: Design,
 ) -> tuple[RoundedVariable, ...]:
@@ -584,7 +584,7 @@ def _variables(
 
 
 def _runners_up(
-    actuator: ActuatorProblem, solution: Solution, listed: Sequence[Listed], found: Found
+    actuator: ActuatorProblem, solution: Solution, listed: Sequence[Listed], found: SizeSearch
 ) -> tuple[RunnerUp, ...]:
     """The next best of the rounded designs."""
     others = sorted(

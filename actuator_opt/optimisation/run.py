@@ -22,7 +22,7 @@ from .actuator import (
 from .choices import (
     MOST_SOLVED,
     ChoiceSearch,
-    Settings,
+    ChoiceSettings,
     Sized,
     best_of_sizes,
     record,
@@ -179,7 +179,7 @@ def optimise(
     sized: Sized | None = None
     choices: Choices | None = None
     if subject.design.choices:
-        settings = Settings(algorithm, starts, SAMPLES, seed, until)
+        settings = ChoiceSettings(algorithm, starts, SAMPLES, seed, until)
         found = search_choices(subject, settings, MOST_SOLVED if sizes is None else 1)
         if sizes is not None:
             sized = best_of_sizes(found, wanted, settings)

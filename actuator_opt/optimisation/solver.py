@@ -377,7 +377,9 @@ def _settle(search: Descents, best: SearchResult) -> tuple[Point, tuple[str, ...
     return (moved if same else best.point), names
 
 
-def _outcome(search: Descents, swept: Sweep, point: Point, found: kkt.Kkt | None) -> Outcome:
+def _outcome(
+    search: Descents, swept: Sweep, point: Point, found: kkt.KktResidual | None
+) -> Outcome:
     evaluator = search.evaluator
     feasible = point.valid and point.violation <= FEASIBLE
     if search.interrupted:

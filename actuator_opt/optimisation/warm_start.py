@@ -37,7 +37,7 @@ AGREES = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
-class Effort:
+class SearchEffort:
     """The search that led to the optimum: its starts, points of the sweep, and seed."""
 
     starts: int
@@ -46,7 +46,7 @@ class Effort:
 
 
 @dataclass(frozen=True)
-class Line:
+class LinearPath:
     """The optimum as a straight line in one parameter (model units).
 
     Parameters
@@ -73,7 +73,7 @@ class WarmStart:
     effort : how it was searched for
     """
 
-    def __init__(self, actuator: ActuatorProblem, solution: Solution, effort: Effort) -> None:
+    def __init__(self, actuator: ActuatorProblem, solution: Solution, effort: SearchEffort) -> None:
         self.actuator, self.solution, self.effort = actuator, solution, effort
         self.evaluator = evaluator = Evaluator(actuator.problem)
         self.point = point = evaluator.point(evaluator.space.to_z(solution.x))
@@ -162,7 +162,7 @@ class WarmStart:
                 optima[k] = ladder.point_of(self.evaluator, found)
         return optima
 
-    def line(self, changes: Mapping[str, float], size: float = 1.0) -> Line:
+    def line(self, changes: Mapping[str, float], size: float = 1.0) -> LinearPath:
         """The optimum as a straight line along joint changes of numbers, per unit.
 
         Parameters
@@ -179,7 +179,7 @@ class WarmStart:
         slope = self.evaluator.space.slope(self.point.x[:, None])[:, 0]
         moved[self.evaluator.space.free] = slope * moves[:, 0]
         low, high = prices.ends(found, given, moves, shifts)[0]
-        return Line(
+        return LinearPath(
             float(below), float(above), moved,
             None if low is None else (float(low.distance), low.text),
             None if high is None else (float(high.distance), high.text),

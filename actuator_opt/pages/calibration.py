@@ -10,7 +10,7 @@ import numpy as np
 from ..base.quantities import INPUTS, Quantity
 from ..evaluation.result import count_words
 from ..identification.calibration import Calibration
-from ..identification.points import Point, by_pressure
+from ..identification.points import FrictionPoint, by_pressure
 from ..optimisation.redesign import Redesign, Shift, solved
 from ..rendering import text
 from ..rendering.blocks import (
@@ -267,7 +267,7 @@ def figure(calibration: Calibration, redesign: Redesign, bench: Bench) -> Ink:
     return drawn(Chart("Friction and margins", panels, height=64.0))
 
 
-def shown_levels(points: Sequence[Point]) -> list[list[Point]]:
+def shown_levels(points: Sequence[FrictionPoint]) -> list[list[FrictionPoint]]:
     """Points of like pressure, the lowest first; of many levels the ends and the middle."""
     groups = by_pressure(points)
     if len(groups) <= MOST_LEVELS:
@@ -275,7 +275,7 @@ def shown_levels(points: Sequence[Point]) -> list[list[Point]]:
     return [groups[0], groups[len(groups) // 2], groups[-1]]
 
 
-def _friction(points: Sequence[Point], stated: Bench, measured_: Bench) -> Panel:
+def _friction(points: Sequence[FrictionPoint], stated: Bench, measured_: Bench) -> Panel:
     """Points with their bars; curves of the design before and after at each pressure."""
     groups = shown_levels(points)
     curves = []
@@ -301,7 +301,7 @@ def _friction(points: Sequence[Point], stated: Bench, measured_: Bench) -> Panel
     )
 
 
-def _against(point: Point) -> tuple[float, float]:
+def _against(point: FrictionPoint) -> tuple[float, float]:
     """Friction against the motion with its standard error [N]."""
     return math.copysign(1.0, point.velocity) * point.friction, point.error
 

@@ -13,7 +13,7 @@ import numpy as np
 from ..base import quantities
 from ..base.fitting import Parameter
 from ..base.quantities import Quantity
-from ..design.material import Fit
+from ..design.material import LawFit
 from ..identification.column import Coefficient
 from ..identification.lugre import LuGreFit
 from ..identification.record import CHANNELS, Record
@@ -264,7 +264,7 @@ def _curve(identification: Identification) -> list[Block]:
 # ---- parameters ----
 
 
-class Shown(NamedTuple):
+class ParameterDisplay(NamedTuple):
     """Label, symbol and unit of a parameter; display value = SI value x scale."""
 
     label: str
@@ -273,21 +273,21 @@ class Shown(NamedTuple):
     scale: float
 
 
-def _by(quantity: Quantity, label: str, symbol: str) -> Shown:
-    return Shown(label, symbol, unit_text(quantity.unit), quantity.to_display(1.0))
+def _by(quantity: Quantity, label: str, symbol: str) -> ParameterDisplay:
+    return ParameterDisplay(label, symbol, unit_text(quantity.unit), quantity.to_display(1.0))
 
 
 PARAMETERS = {
     "coulomb": _by(FORCE, "Coulomb", "F_C"),
     "static": _by(FORCE, "static", "F_S"),
     "stribeck_speed": _by(SPEED, "Stribeck speed", "v_s"),
-    "exponent": Shown("exponent", "δ", "", 1.0),
+    "exponent": ParameterDisplay("exponent", "δ", "", 1.0),
     "viscous": _by(_VISCOUS, "viscous", "σ₂"),
-    "pressure_slope": Shown("with pressure", "dF_C/dp", "N/bar", 1e5),
+    "pressure_slope": ParameterDisplay("with pressure", "dF_C/dp", "N/bar", 1e5),
     "offset": _by(FORCE, "offset", "F_0"),
     "bristle_stiffness": _by(STIFFNESS, "bristle stiffness", "σ₀"),
     "bristle_damping": _by(_VISCOUS, "bristle damping", "σ₁"),
-    "lag": Shown("lag left", "τ", "ms", 1e3),
+    "lag": ParameterDisplay("lag left", "τ", "ms", 1e3),
 }
 """Parameters of the Stribeck curve and the LuGre model."""
 _NOTHING = {
@@ -297,11 +297,11 @@ _NOTHING = {
 }
 COEFFICIENTS = {
     ("power_law", "coefficient"): _by(DAMPING, "power law", "a"),
-    ("power_law", "exponent"): Shown("exponent", "b", "", 1.0),
+    ("power_law", "exponent"): ParameterDisplay("exponent", "b", "", 1.0),
     ("double_exponential", "coefficient_1"): _by(DAMPING, "1st exponential", "a₁"),
-    ("double_exponential", "rate_1"): Shown("its rate", "b₁", "s/m", 1.0),
+    ("double_exponential", "rate_1"): ParameterDisplay("its rate", "b₁", "s/m", 1.0),
     ("double_exponential", "coefficient_2"): _by(DAMPING, "2nd exponential", "a₂"),
-    ("double_exponential", "rate_2"): Shown("its rate", "b₂", "s/m", 1.0),
+    ("double_exponential", "rate_2"): ParameterDisplay("its rate", "b₂", "s/m", 1.0),
 }
 """Parameters of the fits of the secant damping."""
 NOTHING = 2e-3
@@ -319,7 +319,7 @@ class Estimate(NamedTuple):
     verdict: str
 
 
-def _row(shown: Shown, parameter: Parameter) -> Estimate:
+def _row(shown: ParameterDisplay, parameter: Parameter) -> Estimate:
     value, low, high = rounded(*(x * shown.scale for x in parameter[:3]))
     words = VERDICTS[parameter.verdict]
     return Estimate(shown.label, shown.symbol, with_unit(value, shown.unit), low, high, words)
@@ -351,14 +351,16 @@ def parameter_rows(parameters: Mapping[str, Parameter]) -> list[Estimate]:
     return [_row(PARAMETERS[name], parameters[name]) for name in known]
 
 
-def fit_rows(fits: Mapping[str, Fit | str]) -> list[Estimate]:
+def fit_rows(fits: Mapping[str, LawFit | str]) -> list[Estimate]:
     """Parameters of the damping's fits that have a value."""
     rows = []
     for name, fit in fits.items():
         if isinstance(fit, str):
             continue
         for key, parameter in fit.parameters.items():
-            shown = COEFFICIENTS.get((name, key)) or Shown(key.replace("_", " "), "", "", 1.0)
+            shown = COEFFICIENTS.get((name, key)) or ParameterDisplay(
+                key.replace("_", " "), "", "", 1.0
+            )
             rows.append(_row(shown, parameter))
     return rows
 
@@ -552,7 +554,7 @@ def _bounds_by(identification: Identification) -> str:
 
 def doubts(identification: Identification) -> list[str]:
     """Why something has no value, and doubts, in full sentences."""
-    models: dict[str, StribeckFit | LuGreFit | Fit | str] = {
+    models: dict[str, StribeckFit | LuGreFit | LawFit | str] = {
         "Stribeck curve": identification.stribeck,
         "LuGre model": identification.lugre,
     }
@@ -586,7 +588,7 @@ def _counted(identification: Identification) -> set[str]:
     return {note for name, channel in quality for note in channel.told(name, total)}
 
 
-def fit_note(fits: Mapping[str, Fit | str]) -> str:
+def fit_note(fits: Mapping[str, LawFit | str]) -> str:
     """Laws and R² of the fits."""
     parts = []
     for name, fit in fits.items():

@@ -13,16 +13,16 @@ from ..base import quantities
 from ..base.fitting import NORMAL
 from ..base.numeric import Array
 from ..base.quantities import Quantity
-from ..design.material import Fit
+from ..design.material import LawFit
 from ..identification.balance import Sliding
 from ..identification.lugre import LuGreFit
-from ..identification.points import Point, by_pressure
+from ..identification.points import FrictionPoint, by_pressure
 from ..identification.result import Identification
 from ..identification.stribeck_fit import StribeckFit
 from ..metrics import METRICS
 from ..rendering.axes import even_range, log_range
 from ..rendering.blocks import Chart
-from ..rendering.chart import Axis, Curve, Level, Panel, Points, Surface, Values
+from ..rendering.chart import Axis, Curve, Level, Panel, Points, ShadedMap, Values
 from ..rendering.chart_ink import drawn
 from ..rendering.ink import Ink
 from ..rendering.text import number, sentence, trimmed, unit_text
@@ -125,9 +125,9 @@ def _friction(identification: Identification) -> list[Panel]:
 
 
 def measured(
-    points: Sequence[Point],
-    across: Callable[[Point], float],
-    up: Callable[[Point], tuple[float, float]],
+    points: Sequence[FrictionPoint],
+    across: Callable[[FrictionPoint], float],
+    up: Callable[[FrictionPoint], tuple[float, float]],
 ) -> list[Points]:
     """Points of both ways with their 95 % bars; `up`: value and standard error."""
     groups = []
@@ -143,16 +143,16 @@ def measured(
     return groups
 
 
-def _velocity(point: Point) -> float:
+def _velocity(point: FrictionPoint) -> float:
     return SPEED.to_display(point.velocity)
 
 
-def speed(point: Point) -> float:
+def speed(point: FrictionPoint) -> float:
     """Speed in display units."""
     return SPEED.to_display(point.speed)
 
 
-def _signed_friction(point: Point) -> tuple[float, float]:
+def _signed_friction(point: FrictionPoint) -> tuple[float, float]:
     return point.friction, point.error
 
 
@@ -170,7 +170,7 @@ def _velocity_panel(identification: Identification, fit: StribeckFit) -> Panel:
     )
 
 
-def _stribeck_curves(points: Sequence[Point], fit: StribeckFit) -> list[Curve]:
+def _stribeck_curves(points: Sequence[FrictionPoint], fit: StribeckFit) -> list[Curve]:
     """Curves with their bounds: at the mean pressure, or at both ends where it matters."""
     levels = [(fit.reference_pressure, "Stribeck curve, 95 % band")]
     if "pressure_slope" in fit.parameters:
@@ -194,7 +194,7 @@ def _stribeck_curves(points: Sequence[Point], fit: StribeckFit) -> list[Curve]:
     return curves
 
 
-def _levels(lugre: LuGreFit | str, points: Sequence[Point]) -> list[Level]:
+def _levels(lugre: LuGreFit | str, points: Sequence[FrictionPoint]) -> list[Level]:
     """F_C and F_S of the LuGre model, short lines at rest."""
     if isinstance(lugre, str):
         return []
@@ -270,7 +270,7 @@ def _damping(identification: Identification) -> list[Panel]:
         return [Panel(DAMPING, note=why)]
     if pressure_levels(usable):
         return [_map(usable, identification.stribeck)]
-    fits = {name: fit for name, fit in identification.fits.items() if isinstance(fit, Fit)}
+    fits = {name: fit for name, fit in identification.fits.items() if isinstance(fit, LawFit)}
     why = ""
     if not fits:
         why = sentence(f"no fit: {next(iter(identification.fits.values()), 'none was tried')}")
@@ -291,7 +291,7 @@ def _damping(identification: Identification) -> list[Panel]:
     return [above, Panel("Residual, % of the fit", x, y, points=ratios, share=0.22)]
 
 
-def _fit_curve(name: str, fit: Fit, points: Sequence[Point]) -> Curve:
+def _fit_curve(name: str, fit: LawFit, points: Sequence[FrictionPoint]) -> Curve:
     low, high = (f(point.speed for point in points) for f in (min, max))
     speeds = np.geomspace(low, high, 90)
     damping = np.asarray(fit.predict(speeds)) / 1e3
@@ -299,7 +299,7 @@ def _fit_curve(name: str, fit: Fit, points: Sequence[Point]) -> Curve:
     return Curve(FITS.get(name, name), shown, damping, style=STYLES.get(name, _OTHER))
 
 
-def _ratios(name: str, fit: Fit, points: Sequence[Point]) -> Points:
+def _ratios(name: str, fit: LawFit, points: Sequence[FrictionPoint]) -> Points:
     """Measured over fitted damping less one, per cent."""
     predicted = np.asarray(fit.predict(np.array([point.speed for point in points])))
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -311,7 +311,7 @@ def _ratios(name: str, fit: Fit, points: Sequence[Point]) -> Points:
 # ---- map ----
 
 
-def pressure_levels(points: Sequence[Point]) -> list[list[Point]]:
+def pressure_levels(points: Sequence[FrictionPoint]) -> list[list[FrictionPoint]]:
     """Points one way by level of pressure, where two levels or more hold three speeds; else none.
 
     Both ways differ in pressure without a load already: that alone makes no map.
@@ -324,29 +324,29 @@ def pressure_levels(points: Sequence[Point]) -> list[list[Point]]:
     return []
 
 
-def _speeds(group: Sequence[Point]) -> int:
+def _speeds(group: Sequence[FrictionPoint]) -> int:
     return len({round(10 * math.log(point.speed)) for point in group})
 
 
-def _overlap(groups: Sequence[Sequence[Point]]) -> bool:
+def _overlap(groups: Sequence[Sequence[FrictionPoint]]) -> bool:
     """Whether all levels share a range of speeds: else speed alone makes the pressure."""
     low = max(min(point.speed for point in group) for group in groups)
     high = min(max(point.speed for point in group) for group in groups)
     return high > 1.5 * low
 
 
-def _map(points: Sequence[Point], fit: StribeckFit | str) -> Panel:
+def _map(points: Sequence[FrictionPoint], fit: StribeckFit | str) -> Panel:
     """Points over speed and pressure, shaded by their damping, on the Stribeck curve's surface."""
     speeds = [speed(point) for point in points]
     pressures = [PRESSURE.to_display(point.pressure) for point in points]
-    surface = Surface((), (), np.empty((0, 0)))
+    surface = ShadedMap((), (), np.empty((0, 0)))
     words = f"upwards: pressure, {unit_text(PRESSURE.unit)}; circles: measured"
     across, upwards = log_range(speeds), even_range(pressures)
     if isinstance(fit, StribeckFit):
         xs, ys = np.logspace(*across, 40), np.linspace(*upwards, 24)
         moving = xs / SPEED.to_display(1.0)
         table = fit.predict(moving[None, :], ys[:, None] / PRESSURE.to_display(1.0)) / moving
-        surface = Surface(xs, ys, np.broadcast_to(np.asarray(table) / 1e3, (24, 40)))
+        surface = ShadedMap(xs, ys, np.broadcast_to(np.asarray(table) / 1e3, (24, 40)))
         words += "; bands: Stribeck curve, outwards"
     low, high = (10.0**end for end in across)
     return Panel(

@@ -13,7 +13,7 @@ from ..base.quantities import Quantity
 from ..design.scenario.reader import gaps
 from ..rendering.blocks import Block, Column, Drawing, Notes, Table, short
 from ..rendering.ink import Ink
-from ..rendering.strips import LEVEL, MEASURED, STYLES, Curve, Level, Strip, stack
+from ..rendering.strips import LEVEL, MEASURED, STYLES, ConstantLevel, Strip, StripCurve, stack
 from ..rendering.text import (
     DASH,
     decimals,
@@ -195,13 +195,15 @@ def _strips(
     quantity, noise = overlay.simulation.told[name].quantity, overlay.residuals[name].noise
     time, signal = overlay.simulation.time, overlay.simulation.signals[name]
     recorded, values = channels[name]
-    over = Curve("simulated", time, scaled(quantity, signal), STYLES[0])
-    under = Curve("measured", recorded, scaled(quantity, values), MEASURED)
+    over = StripCurve("simulated", time, scaled(quantity, signal), STYLES[0])
+    under = StripCurve("measured", recorded, scaled(quantity, values), MEASURED)
     words = channel_words(name)
     title = titled(words[:1].upper() + words[1:], quantity)
-    residual = Curve("", *_residual(overlay, name, quantity), STYLES[0] | {"pen": 0.15})
+    residual = StripCurve("", *_residual(overlay, name, quantity), STYLES[0] | {"pen": 0.15})
     half = BAND * quantity.to_display(noise)
-    levels = tuple(Level(f"±{BAND:g}σ of noise", way * half, LEVEL) for way in (1, -1) if half)
+    levels = tuple(
+        ConstantLevel(f"±{BAND:g}σ of noise", way * half, LEVEL) for way in (1, -1) if half
+    )
     below = titled("Measured less simulated", quantity)
     return Strip(title, (under, over)), Strip(below, (residual,), levels, zero=True)
 

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from ..base.quantities import Quantity
 from ..design import quantity_of
 from ..evaluation.result import count_words
-from ..optimisation.front.plane import Gap
+from ..optimisation.front.plane import FrontGap
 from ..optimisation.pareto import ParetoFront, Wish
 from ..rendering import text
 from ..rendering.axes import Axes, even_ticks
@@ -228,7 +228,7 @@ def remarks(front: ParetoFront) -> list[str]:
 def _wide(front: ParetoFront) -> Iterator[str]:
     """Which gaps are wide, and why."""
 
-    def between(gaps: Sequence[Gap]) -> str:
+    def between(gaps: Sequence[FrontGap]) -> str:
         return ", ".join(f"{gap.after + 1} and {gap.after + 2}" for gap in gaps)
 
     if jumps := front.jumps:

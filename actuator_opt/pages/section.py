@@ -50,7 +50,7 @@ class Item:
 
 
 @dataclass(frozen=True, slots=True)
-class Section:
+class SectionDrawing:
     """The drawing, its scale in words, and its parts list."""
 
     ink: Ink
@@ -90,14 +90,16 @@ def choose_scale(length: float, height: float, room: float, room_high: float) ->
     return SCALES[-1]
 
 
-def section(evaluation: Evaluation, *, width: float = 180.0, height: float = 78.0) -> Section:
+def section(
+    evaluation: Evaluation, *, width: float = 180.0, height: float = 78.0
+) -> SectionDrawing:
     """The dimensioned section of an evaluation, `width` mm wide; parts at most `height` mm high."""
     outlines = [o for o in evaluation.outlines if o.polygons]
     points = [p for o in outlines for polygon in o.polygons for p in polygon]
     if not points:
         ink = Ink(width, 8.0)
         ink.text(width / 2, 4.0, "No outlines: the section is not drawn.", anchor="center")
-        return Section(ink, "", 0.0, ())
+        return SectionDrawing(ink, "", 0.0, ())
     first, last = min(x for x, _ in points), max(x for x, _ in points)
     radius = max(r for _, r in points)
     paper, real = choose_scale(last - first, 2 * radius, width - 14.0, height)
@@ -123,7 +125,7 @@ def section(evaluation: Evaluation, *, width: float = 180.0, height: float = 78.
     ink.text(width, ink.height - 2.4, words, size=6.5, anchor="right", color=GREY)
     left = width - text_width(words, 6.5) - 3.0
     ink.text(left, ink.height - 2.4, f"SCALE {scale}", size=7.5, anchor="right", bold=True)
-    return Section(ink, scale, factor, items)
+    return SectionDrawing(ink, scale, factor, items)
 
 
 def _mirrored(polygon: Polygon, frame: _Frame) -> list[list[Point]]:

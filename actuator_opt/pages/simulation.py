@@ -242,7 +242,7 @@ def _machine(simulation: Simulation) -> str:
 # ---- results ----
 
 
-class Shown(NamedTuple):
+class ShownResult(NamedTuple):
     """A result as printed, with the requirement that limits it."""
 
     name: str
@@ -295,7 +295,7 @@ def known(name: str, value: float | None) -> float | None:
     return 0.0 if small else value
 
 
-def results(simulation: Simulation) -> list[Shown]:
+def results(simulation: Simulation) -> list[ShownResult]:
     """Results that have a value or a limit; every limit has its own row."""
     shown = []
     for name in RESULTS:
@@ -304,7 +304,7 @@ def results(simulation: Simulation) -> list[Shown]:
             requirement for requirement in simulation.requirements if requirement.metric == name
         ]
         if value is not None or limits:
-            shown += [Shown(name, label(name), value, limit) for limit in limits or [None]]
+            shown += [ShownResult(name, label(name), value, limit) for limit in limits or [None]]
     return shown
 
 

@@ -41,7 +41,7 @@ from ..rendering.blocks import (
     tile,
 )
 from ..rendering.ink import GREY, Ink, text_width
-from ..rendering.strips import ASKED, MEASURED, Curve, Strip, stack
+from ..rendering.strips import ASKED, MEASURED, Strip, StripCurve, stack
 from ..rendering.text import DASH, number, pretty, sentence, unit_text, value_text, with_unit
 from ..simulation.components.circuit import LOOPS
 from ..simulation.linear import BAND, Tuned
@@ -393,7 +393,7 @@ def _signals(
         signal = first.told[name]
         curves = overlay(first, name, measured)
         curves += [
-            Curve("", run.time, scaled(signal.quantity, run.signals[name]), style)
+            StripCurve("", run.time, scaled(signal.quantity, run.signals[name]), style)
             for (_, run), style in zip(runs, styles, strict=True)
         ]
         title = titled(signal.label[:1].upper() + signal.label[1:], signal.quantity)
@@ -408,7 +408,7 @@ MOST_TILES = 5
 
 
 @dataclass(frozen=True, slots=True)
-class Comparison:
+class RunComparison:
     """Runs by their names, with the columns of their table."""
 
     runs: tuple[tuple[str, Simulation], ...]
@@ -422,7 +422,7 @@ def comparison(
     title: str,
     notes: Sequence[str] = (),
     columns: Sequence[str] = (),
-) -> Comparison:
+) -> RunComparison:
     """Runs to compare.
 
     Parameters
@@ -449,11 +449,11 @@ def comparison(
             message = f'no column "{name}"'
             raise InputError(Diagnostic(message, remedy(name, COLUMNS)))
     chosen = tuple(columns or _usual([simulation for _, simulation in runs]))
-    return Comparison(tuple(runs), title, tuple(notes), chosen[:MOST_COLUMNS])
+    return RunComparison(tuple(runs), title, tuple(notes), chosen[:MOST_COLUMNS])
 
 
 def page(
-    comparison: Comparison,
+    comparison: RunComparison,
     *,
     measured: Measured | None = None,
     static: Static | None = None,
@@ -567,7 +567,7 @@ def _usual(simulations: Sequence[Simulation]) -> list[str]:
     ]
 
 
-def _unit(comparison: Comparison, name: str) -> str:
+def _unit(comparison: RunComparison, name: str) -> str:
     """Unit of a column; of gains the common unit of all runs, if there is one."""
     if name not in ("gain", "ultimate_gain"):
         return COLUMNS[name].unit
@@ -575,7 +575,7 @@ def _unit(comparison: Comparison, name: str) -> str:
     return unit_text(units.pop()) if len(units) == 1 else ""
 
 
-def run_table(comparison: Comparison) -> Table:
+def run_table(comparison: RunComparison) -> Table:
     """A row for every run."""
     columns = [Column("run", width=1.0, breaks=14)]
     for k, key in enumerate(comparison.columns):
@@ -598,7 +598,7 @@ def run_table(comparison: Comparison) -> Table:
 # ---- words and key figures ----
 
 
-def _sentence(comparison: Comparison, designs: Sequence[str]) -> str:
+def _sentence(comparison: RunComparison, designs: Sequence[str]) -> str:
     """The number of runs and their designs; the scenario where all have the same."""
     named = " and ".join(designs) if len(designs) < 3 else f"{len(designs)} designs"
     count = "1 run" if len(comparison.runs) == 1 else f"{len(comparison.runs)} runs"
@@ -607,7 +607,7 @@ def _sentence(comparison: Comparison, designs: Sequence[str]) -> str:
     return f"{first} {sentence(scenarios.pop())}" if len(scenarios) == 1 else first
 
 
-def _verdict(comparison: Comparison) -> Verdict:
+def _verdict(comparison: RunComparison) -> Verdict:
     """Numbers of runs that meet their limits, and of runs in doubt."""
     simulations = [run for _, run in comparison.runs]
     limited = [run for run in simulations if run.requirements]
@@ -619,7 +619,7 @@ def _verdict(comparison: Comparison) -> Verdict:
     return Verdict(state, "COMPARED", lines)
 
 
-def tiles(comparison: Comparison) -> list[Tile]:
+def tiles(comparison: RunComparison) -> list[Tile]:
     """Least and greatest value of the first columns, results before gains."""
     order = sorted(comparison.columns, key=lambda name: name not in RESULTS)
     made: list[Tile] = []
@@ -636,7 +636,7 @@ def tiles(comparison: Comparison) -> list[Tile]:
     return made
 
 
-def _trust(comparison: Comparison) -> list[str]:
+def _trust(comparison: RunComparison) -> list[str]:
     """Balances and second integrators of all runs, then every note with its runs."""
     simulations = [run for _, run in comparison.runs]
     mass, energy = (

@@ -52,17 +52,17 @@ ROW, TOP = 3.7, 7.0
 GIVEN, TAKEN, KEPT = BLUE, OCHRE, "#7d868e"
 
 
-class Share(NamedTuple):
+class EnergyShare(NamedTuple):
     """A source (positive) or a sink (negative) of energy over the run [J]."""
 
     name: str
     energy: float
 
 
-def shares(simulation: Simulation) -> list[Share]:
+def shares(simulation: Simulation) -> list[EnergyShare]:
     """Sources of energy, the supply first, then sinks by size; small shares are summed."""
-    doors = [Share(flow.name, flow.energy) for flow in simulation.balance.flows]
-    doors.append(Share("store", -sum(store.energy for store in simulation.balance.stored)))
+    doors = [EnergyShare(flow.name, flow.energy) for flow in simulation.balance.flows]
+    doors.append(EnergyShare("store", -sum(store.energy for store in simulation.balance.stored)))
     total = sum(share.energy for share in doors if share.energy > 0)
     if total <= 0:
         return []
@@ -82,11 +82,11 @@ def shares(simulation: Simulation) -> list[Share]:
     moved = [share for share in small if share.energy]
     if moved:
         words = moved[0].name if len(moved) == 1 else f"{len(moved)} others"
-        large.append(Share(words, rest))
-    return [Share(_words(share), share.energy) for share in large]
+        large.append(EnergyShare(words, rest))
+    return [EnergyShare(_words(share), share.energy) for share in large]
 
 
-def _words(share: Share) -> str:
+def _words(share: EnergyShare) -> str:
     if share.name == "store":
         return "out of oil, walls, motion" if share.energy > 0 else "into oil, walls, motion"
     if share.energy > 0 and share.name in ("load", "joint", "machine outside", "held ports"):

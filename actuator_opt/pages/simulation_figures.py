@@ -30,7 +30,17 @@ from ..rendering.axes import (
     x_axis,
 )
 from ..rendering.ink import BLACK, BLUE, OCHRE, WHITE, Ink, text_width
-from ..rendering.strips import ASKED, LEVEL, LIMIT, MEASURED, STYLES, Curve, Level, Strip, stack
+from ..rendering.strips import (
+    ASKED,
+    LEVEL,
+    LIMIT,
+    MEASURED,
+    STYLES,
+    ConstantLevel,
+    Strip,
+    StripCurve,
+    stack,
+)
 from ..rendering.text import SENSES, number, trimmed, unit_text
 from ..simulation.components.circuit import LOOPS, Loop, loop_of
 from ..simulation.harmonic import harmonic_fit
@@ -107,7 +117,7 @@ Series = tuple[list[float], list[float], list[float], dict[str, Any]]
 
 
 @dataclass(frozen=True, slots=True)
-class Panel:
+class FigurePanel:
     """A figure that fills a box: a fixed height, or a weight in what is left [mm]."""
 
     name: str
@@ -117,18 +127,18 @@ class Panel:
     least: float = LEAST_PANEL
 
 
-def panels(simulation: Simulation, measured: Measured, static: Static | None) -> list[Panel]:
+def panels(simulation: Simulation, measured: Measured, static: Static | None) -> list[FigurePanel]:
     """The panels of this run beside its strips, the most important first."""
     made = []
     if simulation.servo is not None:
         made.append(
-            Panel(
+            FigurePanel(
                 "step", lambda ink, box: step_panel(ink, box, simulation, measured), 0.0, 1.5, 44.0
             )
         )
     if simulation.shaken is not None and simulation.shaken.windows:
         made.append(
-            Panel(
+            FigurePanel(
                 "stiffness",
                 lambda ink, box: _stiffness(ink, box, simulation, static),
                 0.0,
@@ -136,13 +146,15 @@ def panels(simulation: Simulation, measured: Measured, static: Static | None) ->
                 40.0,
             )
         )
-        made.append(Panel("cycles", lambda ink, box: loop_panel(ink, box, simulation)))
+        made.append(FigurePanel("cycles", lambda ink, box: loop_panel(ink, box, simulation)))
     if simulation.scenario.held_ports is not None and np.ptp(simulation.signals["signal"]) > 0:
-        made.append(Panel("flows", lambda ink, box: _flows(ink, box, simulation), 0.0, 1.4, 40.0))
+        made.append(
+            FigurePanel("flows", lambda ink, box: _flows(ink, box, simulation), 0.0, 1.4, 40.0)
+        )
     count = len(shares(simulation))
     if count:
         made.append(
-            Panel(
+            FigurePanel(
                 "energy",
                 lambda ink, box: share_panel(ink, box, simulation),
                 TOP + ROW * count + 1.0,
@@ -151,13 +163,15 @@ def panels(simulation: Simulation, measured: Measured, static: Static | None) ->
     curves = over_time(simulation)
     if len(curves) > 1:
         made.append(
-            Panel(
+            FigurePanel(
                 "energy_time", lambda ink, box: time_panel(ink, box, simulation, curves), weight=0.9
             )
         )
     if "friction" in simulation.signals and np.ptp(simulation.signals["speed"]) > 0:
         made.append(
-            Panel("friction", lambda ink, box: _friction(ink, box, simulation), 0.0, 0.9, 38.0)
+            FigurePanel(
+                "friction", lambda ink, box: _friction(ink, box, simulation), 0.0, 0.9, 38.0
+            )
         )
     return made
 
@@ -192,9 +206,9 @@ def simulation_figure(
     return ink
 
 
-def _chosen(made: list[Panel], height: float) -> list[Panel]:
+def _chosen(made: list[FigurePanel], height: float) -> list[FigurePanel]:
     """The first panels that have room; a later one may fill what a larger one leaves."""
-    chosen: list[Panel] = []
+    chosen: list[FigurePanel] = []
     used = 0.0
     for panel in made:
         need = panel.height or panel.least
@@ -298,9 +312,9 @@ def scaled(quantity: Quantity, values: Array) -> Array:
     return np.asarray(values, dtype=float) * quantity.to_display(1.0)
 
 
-def curve(simulation: Simulation, name: str, words: str, style: dict[str, Any]) -> Curve:
+def curve(simulation: Simulation, name: str, words: str, style: dict[str, Any]) -> StripCurve:
     """A signal as a curve."""
-    return Curve(
+    return StripCurve(
         words,
         simulation.time,
         scaled(simulation.told[name].quantity, simulation.signals[name]),
@@ -308,13 +322,13 @@ def curve(simulation: Simulation, name: str, words: str, style: dict[str, Any]) 
     )
 
 
-def overlay(simulation: Simulation, name: str, measured: Measured) -> list[Curve]:
+def overlay(simulation: Simulation, name: str, measured: Measured) -> list[StripCurve]:
     """The measured values of a signal, drawn under it."""
     if name not in measured or name not in simulation.told:
         return []
     time, values = measured[name]
     shown = scaled(simulation.told[name].quantity, values)
-    return [Curve("measured", np.asarray(time, dtype=float), shown, MEASURED)]
+    return [StripCurve("measured", np.asarray(time, dtype=float), shown, MEASURED)]
 
 
 def titled(words: str, quantity: Quantity) -> str:
@@ -407,22 +421,26 @@ def _moves(values: Array) -> bool:
     return float(np.ptp(values)) > 1e-9 * max(float(np.max(np.abs(values))), 1e-12)
 
 
-def _levels(simulation: Simulation, name: str, zero: bool) -> tuple[tuple[Level, ...], bool]:
+def _levels(
+    simulation: Simulation, name: str, zero: bool
+) -> tuple[tuple[ConstantLevel, ...], bool]:
     """Levels of a strip, and whether its axis includes them."""
     scale = PRESSURE.to_display(1.0)
     if name == "pressure_a":
         plant = simulation.plant
-        vapour = Level("vapour", scale * (plant.oil.vapour_pressure - ATMOSPHERIC_PRESSURE), LIMIT)
+        vapour = ConstantLevel(
+            "vapour", scale * (plant.oil.vapour_pressure - ATMOSPHERIC_PRESSURE), LIMIT
+        )
         supplied = simulation.signals.get("pressure_supply")
         if supplied is None:
             return (vapour,), False
         pressures = [plant.return_pressure] + ([] if _moves(supplied) else [plant.supply_pressure])
         words = "supply, return" if len(pressures) > 1 else "return"
-        return (*(Level(words, scale * p, LEVEL) for p in pressures), vapour), True
+        return (*(ConstantLevel(words, scale * p, LEVEL) for p in pressures), vapour), True
     if name == "signal" and simulation.plant.valve is not None:
         full = simulation.plant.valve.signal
         if float(np.max(np.abs(simulation.signals[name]))) > 0.5 * full:
-            return tuple(Level("limit", way * full, LEVEL) for way in (1, -1)), True
+            return tuple(ConstantLevel("limit", way * full, LEVEL) for way in (1, -1)), True
     return (), zero
 
 

@@ -17,10 +17,10 @@ from ..evaluation.result import NO_RESERVE
 from ..rendering import text
 from ..rendering.blocks import Block, Column, Notes, Page, Row, Table, Tile, Verdict, tile
 from ..rendering.ink import Ink
-from ..rendering.series import Coded, Field, Values, heading
+from ..rendering.series import Coded, FileColumn, Values, heading
 from ..sweeps import Swept
 from ..sweeps.chunk import Chunk, Study
-from ..sweeps.plan import Axis
+from ..sweeps.plan import SweepAxis
 from ..version import VERSION
 from .sweep_figures.parallel import parallel_figure
 from .sweep_figures.shared import SweepFigureData, chosen
@@ -200,12 +200,12 @@ class SweepColumns:
         ]
         self._quantities = [quantity for _, _, quantity in named]
         self.fields = [
-            Field("number", "whole", "number of the design in its plan"),
-            *(Field(axis.path, "text", axis.path, axis.path) for axis in study.plan.named),
+            FileColumn("number", "whole", "number of the design in its plan"),
+            *(FileColumn(axis.path, "text", axis.path, axis.path) for axis in study.plan.named),
             *(_number(name, label, quantity) for name, label, quantity in named),
-            Field("governing_limit", "text", "limit of the least margin"),
-            Field("feasible", "flag", "whether every limit is met"),
-            Field("failure", "text", "why there is no answer"),
+            FileColumn("governing_limit", "text", "limit of the least margin"),
+            FileColumn("feasible", "flag", "whether every limit is met"),
+            FileColumn("failure", "text", "why there is no answer"),
         ]
 
     def values(self, chunk: Chunk) -> list[Values]:
@@ -244,9 +244,9 @@ class SweepColumns:
             yield column if quantity is None else quantity.to_display(column)
 
 
-def _number(name: str, label: str, quantity: Quantity | None) -> Field:
+def _number(name: str, label: str, quantity: Quantity | None) -> FileColumn:
     unit = "" if quantity is None else quantity.unit
-    return Field(heading(name, unit), "number", label, name, unit)
+    return FileColumn(heading(name, unit), "number", label, name, unit)
 
 
 def about(study: Study) -> dict[str, str]:
@@ -269,7 +269,7 @@ def about(study: Study) -> dict[str, str]:
     return {f"actuator_opt.{key}": value for key, value in rest.items()}
 
 
-def _axis(axis: Axis) -> object:
+def _axis(axis: SweepAxis) -> object:
     """The values of an axis in SI: a list, or the ends and the steps of a range."""
     if axis.values is None:
         return list(axis.texts)

@@ -46,7 +46,7 @@ _HOLDS = {"met": "yes", "missed": "no", "not_checked": "not known"}
 # ---- requirements in time ----
 
 
-class Line(NamedTuple):
+class RequirementLine(NamedTuple):
     """A requirement as printed."""
 
     cells: tuple[str, ...]
@@ -122,7 +122,7 @@ def verdict(verification: Verification) -> str:
     return sentence(words + (f"; not known: {', '.join(unknown)}" if unknown else ""))
 
 
-def _line(row: VerifiedRequirement) -> Line:
+def _line(row: VerifiedRequirement) -> RequirementLine:
     quantity: Quantity = (RESULTS if row.origin == "scenario" else METRICS)[row.metric]
     state: State = "met" if row.met else "missed" if row.value is not None else "not_checked"
     cells = (
@@ -135,7 +135,7 @@ def _line(row: VerifiedRequirement) -> Line:
         "yes, beside" if row.met and _beside(row) else _HOLDS[state],
     )
     parts = [row.where, row.how, row.why] if row.origin == "design" else [row.why]
-    return Line(cells, state, pretty("; ".join(part for part in parts if part)))
+    return RequirementLine(cells, state, pretty("; ".join(part for part in parts if part)))
 
 
 def _name(row: VerifiedRequirement) -> str:

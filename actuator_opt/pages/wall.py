@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..evaluation.result import Evaluation
-from ..evaluation.wall_study import YIELD, Difference, Profile, Ratio, WallStudy
+from ..evaluation.wall_study import YIELD, Difference, Ratio, WallProfile, WallStudy
 from ..models.strength import CRITERIA
 from ..rendering import text
 from ..rendering.axes import Axes, fitted, legend
@@ -61,7 +61,7 @@ _NUMBERS, _SHARES = 4.2, 8.0
 
 
 @dataclass(frozen=True, slots=True)
-class Curve:
+class LayerCurve:
     """Values of every layer, (layers, points), with the ink they are drawn in."""
 
     values: Any
@@ -84,7 +84,7 @@ def _panel(
     box: tuple[float, float, float, float],
     title: str,
     study: WallStudy,
-    curves: Sequence[Curve],
+    curves: Sequence[LayerCurve],
     room: float,
     limits: Sequence[float] = (),
 ) -> Axes:
@@ -140,7 +140,9 @@ def stress_figure(study: WallStudy, *, width: float = 180.0, height: float = 52.
     """Hoop, axial and radial stress through the wall at supply pressure, for every load path."""
     ink = Ink(width, height)
     rest = max(study.rest, key=lambda one: abs(one.hoop).max(), default=None)
-    loads: list[tuple[Profile, dict[str, Any]]] = list(zip(study.profiles, _STYLES, strict=False))
+    loads: list[tuple[WallProfile, dict[str, Any]]] = list(
+        zip(study.profiles, _STYLES, strict=False)
+    )
     entries = [(profile.name, style) for profile, style in loads]
     if rest is not None:
         loads.append((rest, _REST))
@@ -149,7 +151,7 @@ def stress_figure(study: WallStudy, *, width: float = 180.0, height: float = 52.
     panel = (width - 3 * 12.5) / 3
     for k, part in enumerate(("hoop", "axial", "radial")):
         box = (11.0 + k * (panel + 12.0), 12.0, panel, height - 22.0)
-        curves = [Curve(getattr(profile, part) / 1e6, style) for profile, style in loads]
+        curves = [LayerCurve(getattr(profile, part) / 1e6, style) for profile, style in loads]
         _panel(ink, box, f"{part.capitalize()} stress, MPa", study, curves, _NUMBERS)
     return ink
 
@@ -160,7 +162,7 @@ def strength_figure(study: WallStudy, *, width: float = 180.0, height: float = 5
     panel = (width - 2 * 13.0) / 2
     box = (11.0, 12.0, panel, height - 22.0)
     paths = list(zip(study.profiles, _STYLES, strict=False))
-    curves = [Curve(one.used, style) for one, style in paths if one.used is not None]
+    curves = [LayerCurve(one.used, style) for one, style in paths if one.used is not None]
     axes = _panel(ink, box, "Strength used, 1/SR", study, curves, _SHARES, (1.0,))
     legend(ink, box[0] - 9.6, 1.8, [(one.name, style) for one, style in paths], ends=False)
     for index, row in enumerate(study.radius):
@@ -181,7 +183,7 @@ def strength_figure(study: WallStudy, *, width: float = 180.0, height: float = 5
         ("von Mises", shares.mises, _MISES),
     ]
     named = [one for one in named if any(math.isfinite(float(v)) for row in one[1] for v in row)]
-    curves = [Curve(values, style) for _, values, style in named]
+    curves = [LayerCurve(values, style) for _, values, style in named]
     _panel(ink, box, "Stress over strength", study, curves, _NUMBERS, (1.0, -1.0))
     legend(ink, width, 1.8, [(words, style) for words, _, style in named], ends=True)
     return ink

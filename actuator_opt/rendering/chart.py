@@ -118,7 +118,7 @@ class Level:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Surface:
+class ShadedMap:
     """A quantity above zero over x (columns) and y (rows), shaded between round levels."""
 
     xs: Values
@@ -145,7 +145,7 @@ class Panel:
     curves: Sequence[Curve] = ()
     points: Sequence[Points] = ()
     levels: Sequence[Level] = ()
-    surface: Surface | None = None
+    surface: ShadedMap | None = None
     note: str = ""
     share: float = 1.0
 

@@ -78,7 +78,7 @@ def _cell(value: Any, form: str) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Field:
+class FileColumn:
     """A column of a file that grows: its head, the kind of its cells, and what they mean.
 
     `name` is a path or a metric, `unit` that of a number.
@@ -105,7 +105,7 @@ Values: TypeAlias = Array | Coded
 class CsvFile(AbstractContextManager["CsvFile"]):
     """A CSV file that grows by rows: written aside, and in place once it is complete."""
 
-    def __init__(self, fields: Sequence[Field], path: Path) -> None:
+    def __init__(self, fields: Sequence[FileColumn], path: Path) -> None:
         self.fields, self.path = fields, path
 
     def __enter__(self) -> CsvFile:
@@ -130,7 +130,7 @@ class CsvFile(AbstractContextManager["CsvFile"]):
         self._aside.__exit__(kind, error, trace)
 
 
-def _cells(field: Field, values: Values) -> list[str]:
+def _cells(field: FileColumn, values: Values) -> list[str]:
     """Cells of a column as written to a CSV file."""
     if isinstance(values, Coded):
         words = [*map(_quoted, values.words), ""]
@@ -165,7 +165,7 @@ class ParquetFile(AbstractContextManager["ParquetFile"]):
         pyarrow is not installed
     """
 
-    def __init__(self, fields: Sequence[Field], about: Mapping[str, str], path: Path) -> None:
+    def __init__(self, fields: Sequence[FileColumn], about: Mapping[str, str], path: Path) -> None:
         self._arrow, self._parquet = library("pyarrow"), library("pyarrow.parquet")
         self.fields, self.path = fields, path
         self._schema = self._arrow.schema(list(map(self._field, fields)), metadata=about)
@@ -212,7 +212,7 @@ class ParquetFile(AbstractContextManager["ParquetFile"]):
         finally:
             self._writer.is_open = False  # else it ends the file again when it is forgotten
 
-    def _field(self, field: Field) -> Any:
+    def _field(self, field: FileColumn) -> Any:
         arrow = self._arrow
         kinds = {
             "whole": arrow.int64(),
@@ -225,7 +225,7 @@ class ParquetFile(AbstractContextManager["ParquetFile"]):
         about |= {"unit": field.unit or "1"} if field.kind == "number" else {}
         return arrow.field(field.head, kinds[field.kind], metadata=about)
 
-    def _cells(self, field: Field, values: Values) -> Any:
+    def _cells(self, field: FileColumn, values: Values) -> Any:
         arrow = self._arrow
         if isinstance(values, Coded):
             codes = arrow.array(values.codes.astype(np.int32), mask=values.codes < 0)

@@ -40,7 +40,7 @@ _LEAST = 10.0
 
 
 @dataclass(frozen=True, slots=True)
-class Curve:
+class StripCurve:
     """Values over time, in the unit shown; without words it is not named."""
 
     words: str
@@ -50,7 +50,7 @@ class Curve:
 
 
 @dataclass(frozen=True, slots=True)
-class Level:
+class ConstantLevel:
     """A value that holds all the time; without words it is not named."""
 
     words: str
@@ -63,8 +63,8 @@ class Strip:
     """A frame of curves over time; the strips of highest rank go where there is no room."""
 
     title: str
-    curves: tuple[Curve, ...]
-    levels: tuple[Level, ...] = ()
+    curves: tuple[StripCurve, ...]
+    levels: tuple[ConstantLevel, ...] = ()
     zero: bool = False
     """Whether zero belongs to the axis."""
     rank: int = 1
@@ -117,7 +117,7 @@ def _drawn(ink: Ink, box: Box, strip: Strip, across: tuple[float, float]) -> Axe
     for curve in strip.curves:
         ink.path(lines(axes, curve.time, curve.values), **curve.style)
     entries: dict[str, dict[str, Any]] = {}
-    named: list[Curve | Level] = [*strip.curves, *levels]
+    named: list[StripCurve | ConstantLevel] = [*strip.curves, *levels]
     for mark in named:
         if mark.words:
             entries.setdefault(mark.words, mark.style)

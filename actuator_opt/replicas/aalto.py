@@ -32,8 +32,8 @@ from .aalto_models import (
     Bypass,
     DynamicTest,
     Neighbour,
-    Response,
     StaticTest,
+    StiffnessResponse,
     Theory,
     air_behind,
     dynamic_test,
@@ -253,7 +253,7 @@ OPENINGS_SAY = 1.02
 """Ratio of two peaks that counts as none."""
 
 
-def shares(test: DynamicTest, responses: Sequence[Response]) -> Array:
+def shares(test: DynamicTest, responses: Sequence[StiffnessResponse]) -> Array:
     """Dynamic over static stiffness: (openings, tested frequencies)."""
     return np.array([np.abs(response.tested) / test.static for response in responses])
 

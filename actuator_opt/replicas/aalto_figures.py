@@ -18,7 +18,15 @@ from ..rendering import text
 from ..rendering.axes import Axes
 from ..rendering.ink import BLACK, BLUE, GREEN, GREY, OCHRE, PALE, Ink, Point, spread_within
 from ..rendering.text import DASH, trimmed
-from .aalto_models import FREQUENCIES, PAPER, DynamicTest, End, Response, StaticTest, Theory
+from .aalto_models import (
+    FREQUENCIES,
+    PAPER,
+    DynamicTest,
+    End,
+    StaticTest,
+    StiffnessResponse,
+    Theory,
+)
 
 Style: TypeAlias = dict[str, Any]
 
@@ -43,7 +51,7 @@ _LABEL = 3.2
 
 
 @dataclass(frozen=True, slots=True)
-class Curve:
+class LabelledCurve:
     """A curve with the lines of its label; NaN interrupts it."""
 
     xs: Sequence[float]
@@ -52,11 +60,11 @@ class Curve:
     label: tuple[str, ...]
 
 
-def _curve(xs: Array, ys: Array, style: Style, *label: str) -> Curve:
-    return Curve([float(x) for x in xs], [float(y) for y in ys], style, label)
+def _curve(xs: Array, ys: Array, style: Style, *label: str) -> LabelledCurve:
+    return LabelledCurve([float(x) for x in xs], [float(y) for y in ys], style, label)
 
 
-def _pieces(curve: Curve) -> Iterable[tuple[list[float], list[float]]]:
+def _pieces(curve: LabelledCurve) -> Iterable[tuple[list[float], list[float]]]:
     """Stretches of a curve without gaps."""
     xs: list[float] = []
     ys: list[float] = []
@@ -76,7 +84,7 @@ def _panel(
     place: tuple[int, int],
     title: str,
     x_label: str,
-    curves: Sequence[Curve],
+    curves: Sequence[LabelledCurve],
     *,
     span: tuple[float, float],
     top: float,
@@ -224,7 +232,7 @@ def dynamic_figure(test: DynamicTest, *, width: float = 180.0) -> Ink:
         ("constant_pressure", "constant line pressure"),
         ("reducing_valve", "reducing valve, ours"),
     )
-    needles: tuple[tuple[str, dict[End, tuple[Response, ...]]], ...] = (
+    needles: tuple[tuple[str, dict[End, tuple[StiffnessResponse, ...]]], ...] = (
         (area_text(test.area), test.stated),
         (area_text(test.needle.area), test.read_back),
     )

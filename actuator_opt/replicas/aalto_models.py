@@ -38,7 +38,7 @@ Topology = Literal["per_chamber", "aalto_as_published"]
 
 
 @dataclass(frozen=True, slots=True)
-class Paper:
+class AaltoThesis:
     """What the thesis prints, SI; ``notes/aalto.yaml`` has the places."""
 
     bore: float
@@ -70,7 +70,7 @@ class Paper:
     cracking_pressure: float
 
 
-PAPER = published_numbers(Paper, "aalto")
+PAPER = published_numbers(AaltoThesis, "aalto")
 
 MARGIN = 0.005
 """How near the ends of the stroke the thesis' test runs came (m)."""
@@ -469,7 +469,7 @@ class Needle:
 
 
 @dataclass(frozen=True, slots=True)
-class Response:
+class StiffnessResponse:
     """Dynamic stiffness at mid-stroke over `FREQUENCIES` and at `TESTED` [N/m], complex."""
 
     opening: float
@@ -507,15 +507,15 @@ class DynamicTest:
 
     static: float
     """Closed ports with hoses, mid-stroke [N/m]."""
-    closed: Response
+    closed: StiffnessResponse
     """Throttle 100 %: cylinder and pipes alone."""
     area: float
     """The needle as stated [m^2]."""
     needle: Needle
     valve: ReducingValve
-    stated: dict[End, tuple[Response, ...]]
+    stated: dict[End, tuple[StiffnessResponse, ...]]
     """By line end, for every opening, needle as the thesis states it."""
-    read_back: dict[End, tuple[Response, ...]]
+    read_back: dict[End, tuple[StiffnessResponse, ...]]
     """The same with the needle behind the measured pressure drop."""
     peak: Peak
     neighbours: tuple[Neighbour, ...]
@@ -527,7 +527,7 @@ class DynamicTest:
     """Length of a T-pipe that resonates at 20 Hz [m]."""
 
 
-class Bench:
+class HeldCylinder:
     """The cylinder between throttles and line ends, without friction."""
 
     def __init__(self, design: Design, valve: ReducingValve | None = None) -> None:
@@ -577,16 +577,16 @@ class Bench:
         value = np.asarray(response.real + 1j * response.imaginary)
         return value[:, 0, :]
 
-    def response(self, end: End, opening: float, area: float) -> Response:
+    def response(self, end: End, opening: float, area: float) -> StiffnessResponse:
         """A needle, opened to a share of its area, at mid-stroke."""
         middle = np.array([self.stroke / 2])
         over, tested = (
             self.stiffness(end, middle, frequency, area=opening * area)[:, 0]
             for frequency in (FREQUENCIES, TESTED)
         )
-        return Response(opening, over, tested)
+        return StiffnessResponse(opening, over, tested)
 
-    def responses(self, end: End, area: float) -> tuple[Response, ...]:
+    def responses(self, end: End, area: float) -> tuple[StiffnessResponse, ...]:
         """Every opening at mid-stroke."""
         return tuple(self.response(end, opening, area) for opening in OPENINGS)
 
@@ -663,7 +663,7 @@ class Bench:
         return float(max(fastest))
 
 
-def _neighbours(bench: Bench, areas: Sequence[float]) -> tuple[Neighbour, ...]:
+def _neighbours(bench: HeldCylinder, areas: Sequence[float]) -> tuple[Neighbour, ...]:
     """Valves a little slower, faster and more damped."""
     ours, neighbours = bench.valve, []
     slow = max(ours.natural_frequency - NEAR, ours.natural_frequency / 2)
@@ -675,7 +675,7 @@ def _neighbours(bench: Bench, areas: Sequence[float]) -> tuple[Neighbour, ...]:
                     "damping_ratio": damping * ours.damping_ratio,
                 }
             )
-            other = Bench(bench.design, valve)
+            other = HeldCylinder(bench.design, valve)
             shaken = other.response("reducing_valve", 1.0, bench.throttle.area).tested
             neighbours.append(
                 Neighbour(valve, np.abs(shaken) / bench.static, other.slowest_decay(areas))
@@ -685,13 +685,13 @@ def _neighbours(bench: Bench, areas: Sequence[float]) -> tuple[Neighbour, ...]:
 
 def dynamic_test(design: Design) -> DynamicTest:
     """The linear model's answer to the dynamic tests of the thesis."""
-    bench = Bench(design)
+    bench = HeldCylinder(design)
     slow = max((case.speed for case in design.load_cases), default=0.0) or PAPER.speed
     needle, stated = bench.needle(slow), bench.throttle.area
     ends: tuple[End, End] = ("constant_pressure", "reducing_valve")
     longest = max((line.length for line in design.lines), default=1.0)
     areas = stated, needle.area
-    without = Bench(design, bench.valve.model_copy(update={"passive_conductance": 0.0}))
+    without = HeldCylinder(design, bench.valve.model_copy(update={"passive_conductance": 0.0}))
     return DynamicTest(
         static=bench.static,
         closed=bench.response("constant_pressure", 0.0, stated),

@@ -44,7 +44,7 @@ def root(function: Callable[[float], float], low: float, high: float) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class Paper:
+class ElasswadPaper:
     """What the paper prints, SI; ``notes/elasswad.yaml`` has the places."""
 
     bore: float
@@ -144,7 +144,7 @@ class Paper:
         )
 
 
-PAPER = published_numbers(Paper, "elasswad")
+PAPER = published_numbers(ElasswadPaper, "elasswad")
 
 SPANS = (PAPER.stroke, PAPER.damping_stroke)
 
@@ -253,7 +253,7 @@ SPEED = 0.1
 
 
 @dataclass(frozen=True, slots=True)
-class Record:
+class CycleRecord:
     """Time [s], pressure difference [Pa] and place of the piston as a share of the stroke."""
 
     time: Array
@@ -278,7 +278,7 @@ class Along:
 
 def pressure_record(
     *, average: float, largest: float, stroke: float, speed: float, count: int = 241
-) -> Record:
+) -> CycleRecord:
     """One stroke out and back: a pulse of pressure each way, zero where the piston turns.
 
     x = s/2 (1 - cos(wt)), s w/2 the largest speed; p = p_max (a q + (1 - a) q^2), q = sin^2(wt),
@@ -298,14 +298,14 @@ def pressure_record(
     turn = np.linspace(0.0, 2 * pi, count)
     pulse = np.sin(turn) ** 2
     share = 8 * average / largest - 3
-    return Record(
+    return CycleRecord(
         time=turn * stroke / (2 * speed),
         pressure=largest * pulse * (share + (1 - share) * pulse),
         place=(1 - np.cos(turn)) / 2,
     )
 
 
-def own_record(evaluation: Evaluation) -> Record:
+def own_record(evaluation: Evaluation) -> CycleRecord:
     """The record whose pressures give the published friction, 166 N on average and 400 N at most.
 
     By eq. 15 to 20 with the published coefficient and the design's ring.
@@ -348,7 +348,7 @@ def chambers(place: Array, *, growth_per_pressure: float) -> Array:
     return stiffness.series(hydraulic, PAPER.rod_stiffness)
 
 
-def along(evaluation: Evaluation, record: Record) -> Along:
+def along(evaluation: Evaluation, record: CycleRecord) -> Along:
     """Published and derived values at every time of a record."""
     wall = PAPER.wall(wall_thickness(evaluation))
     printed, grown = published.equivalent_stiffness_as_published(

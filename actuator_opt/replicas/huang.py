@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ..base.numeric import Array
-from ..design.material import Fit
+from ..design.material import LawFit
 from ..design.model import Design
 from ..evaluation import Evaluation
 from ..models.friction import HUANG_TABLE_2
@@ -309,7 +309,7 @@ def plunger_table(design: Design, study: HuangStudy) -> list[Block]:
     return [text_table("Huang 2017: plunger, test B", names, rows, note), drawn]
 
 
-def _power(fit: Fit) -> str:
+def _power(fit: LawFit) -> str:
     a, b = fit.parameters["coefficient"], fit.parameters["exponent"]
     return (
         f"{text.number(a.value, 3)} v^{text.number(b.value, 4)} "
@@ -317,7 +317,7 @@ def _power(fit: Fit) -> str:
     )
 
 
-def _double(fit: Fit) -> str:
+def _double(fit: LawFit) -> str:
     parts = []
     for k in ("1", "2"):
         a, b = fit.parameters[f"coefficient_{k}"], fit.parameters[f"rate_{k}"]
@@ -326,7 +326,7 @@ def _double(fit: Fit) -> str:
     return "; ".join(parts)
 
 
-def _quality(fit: Fit) -> str:
+def _quality(fit: LawFit) -> str:
     square = text.DASH if fit.r_squared is None else f"{fit.r_squared:.4f}"
     return f"{square}, {percent(fit.largest_error)}"
 

@@ -20,7 +20,7 @@ from ..rendering.ink import BLACK, BLUE, GREEN, GREY, OCHRE, PALE, WHITE, Ink, P
 from ..rendering.text import trimmed
 from ..studies.film_walk import FilmMap
 from . import huang_published
-from .aalto_figures import CHAIN, DASHED, DOTTED, FULL, THIN, Curve, Style
+from .aalto_figures import CHAIN, DASHED, DOTTED, FULL, THIN, LabelledCurve, Style
 from .huang_models import TYPICAL, WIDTH, HuangStudy
 from .huang_published import PAPER, SPEEDS
 
@@ -51,9 +51,9 @@ def box(place: tuple[int, int]) -> tuple[float, float, float, float]:
     return COLUMNS[column], TOP + row * ROW, PANEL, HEIGHT
 
 
-def curve(xs: Array, ys: Array, style: Style, *label: str) -> Curve:
+def curve(xs: Array, ys: Array, style: Style, *label: str) -> LabelledCurve:
     """A curve over arrays."""
-    return Curve([float(x) for x in xs], [float(y) for y in ys], style, label)
+    return LabelledCurve([float(x) for x in xs], [float(y) for y in ys], style, label)
 
 
 def panel(
@@ -61,7 +61,7 @@ def panel(
     place: tuple[int, int],
     title: str,
     x_label: str,
-    curves: Sequence[Curve],
+    curves: Sequence[LabelledCurve],
     *,
     span: tuple[float, float],
     range_: tuple[float, float],
@@ -104,7 +104,7 @@ def _unbroken(xs: Sequence[float], ys: Sequence[float]) -> list[tuple[list[float
 
 
 @dataclass(frozen=True, slots=True)
-class Field:
+class DampingField:
     """Damping over speed [mm/s] and pressure [MPa], (p, v) [MN s/m]."""
 
     speeds: Array
@@ -113,7 +113,7 @@ class Field:
 
 
 def contours(
-    ink: Ink, place: tuple[int, int], title: str, field: Field, levels: Sequence[float]
+    ink: Ink, place: tuple[int, int], title: str, field: DampingField, levels: Sequence[float]
 ) -> None:
     """Lines of equal damping; the speed axis is logarithmic, where they lie evenly."""
     logs = np.log10(field.speeds)
@@ -167,7 +167,7 @@ def segments(xs: Array, ys: Array, values: Array, level: float) -> list[tuple[Po
     return pieces
 
 
-def surface(ink: Ink, place: tuple[int, int], title: str, field: Field) -> None:
+def surface(ink: Ink, place: tuple[int, int], title: str, field: DampingField) -> None:
     """The damping as a net in space: speed to the right, pressure to the back, values upwards."""
     left, top, width, height = box(place)
     deep, wide = _LIFT * height, _LIFT * width
@@ -234,11 +234,13 @@ SHOWN = (0.5e-3, 2.1e-3, 5e-3, 10e-3)
 """Speeds of the curves over pressure, figure 8."""
 
 
-def _field(speeds: Array, pressures: Array, damping: Array) -> Field:
-    return Field(1e3 * np.asarray(speeds), np.asarray(pressures) / 1e6, np.asarray(damping) / 1e6)
+def _field(speeds: Array, pressures: Array, damping: Array) -> DampingField:
+    return DampingField(
+        1e3 * np.asarray(speeds), np.asarray(pressures) / 1e6, np.asarray(damping) / 1e6
+    )
 
 
-def published_field() -> Field:
+def published_field() -> DampingField:
     """Table 2 over the tested speeds."""
     pressures = np.array([row.pressure for row in HUANG_TABLE_2])
     damping = np.array([huang_published.secant_of(row, SPEEDS) for row in HUANG_TABLE_2])
@@ -271,11 +273,11 @@ def _limits(values: Sequence[float]) -> tuple[float, float]:
     return (min(known), max(known)) if known else (0.0, 1.0)
 
 
-def _highest(curves: list[Curve]) -> float:
+def _highest(curves: list[LabelledCurve]) -> float:
     return 1.08 * _limits([y for drawn in curves for y in drawn.ys])[1]
 
 
-def _over_speed(speeds: Array, rows: list[tuple[float, Array]]) -> list[Curve]:
+def _over_speed(speeds: Array, rows: list[tuple[float, Array]]) -> list[LabelledCurve]:
     return [
         curve(1e3 * np.asarray(speeds), damping / 1e6, style, f"{trimmed(pressure / 1e6)} MPa")
         for (pressure, damping), style in zip(rows, STYLES, strict=False)

@@ -175,7 +175,7 @@ def balance(ring: Ring, pressure: float) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class Kind:
+class SealArrangement:
     """One seal, or several, between the two pressures at the typical speed.
 
     Parameters
@@ -206,14 +206,16 @@ def kind_name(ring: Ring) -> str:
     return _NAMES.get(ring.element.type, ring.element.seal_type.title)
 
 
-def single(name: str, sealing: Sealing) -> Kind:
+def single(name: str, sealing: Sealing) -> SealArrangement:
     """A seal alone, the whole pressure across it."""
     (ring,) = sealing.rings
     damping = film_map(sealing, ENDS, (TYPICAL,)).damping[:, 0]
-    return Kind(name, balance(ring, sum(ENDS) / 2), (float(damping[0]), float(damping[1])))
+    return SealArrangement(
+        name, balance(ring, sum(ENDS) / 2), (float(damping[0]), float(damping[1]))
+    )
 
 
-def kinds(seals: Sealings, mapped: FilmMap) -> tuple[Kind, ...]:
+def kinds(seals: Sealings, mapped: FilmMap) -> tuple[SealArrangement, ...]:
     """Every seal type of both cylinders, the tandem, and the tandem with its room drained."""
     plunger = seals.plunger
     every = [single(f"{kind_name(seals.piston.rings[0])}, piston", seals.piston.alone(0))]
@@ -224,11 +226,11 @@ def kinds(seals: Sealings, mapped: FilmMap) -> tuple[Kind, ...]:
     j = mapped.at(ENDS[0], TYPICAL)[1]
     ends = [float(mapped.damping[mapped.at(p, TYPICAL)[0], j]) for p in ENDS]
     if len(plunger.rings) == 2:
-        every.append(Kind(BOTH, nan, (ends[0], ends[1])))
+        every.append(SealArrangement(BOTH, nan, (ends[0], ends[1])))
         low, high = (drained(seals, p) for p in ENDS)
-        every.append(Kind(DRAINED, nan, (low, high)))
+        every.append(SealArrangement(DRAINED, nan, (low, high)))
     low, high = (float(secant_of(row, TYPICAL)) for row in (HUANG_TABLE_2[0], HUANG_TABLE_2[-1]))
-    every.append(Kind("plunger, measured (table 2)", nan, (low, high)))
+    every.append(SealArrangement("plunger, measured (table 2)", nan, (low, high)))
     return tuple(every)
 
 
@@ -240,7 +242,7 @@ def drained(seals: Sealings, pressure: float, speed: float = TYPICAL, **changes:
 
 
 @dataclass(frozen=True, slots=True)
-class Relief:
+class ReliefVariant:
     """A step ring with another relief.
 
     Parameters
@@ -268,12 +270,14 @@ def reshaped(ring: Ring, relief: float) -> dict[str, float]:
     return {"relief": relief, "land": min(ring["land"], ring["width"] - relief)}
 
 
-def with_relief(seals: Sealings, relief: float, pressures: Sequence[float] = PRESSURES) -> Relief:
+def with_relief(
+    seals: Sealings, relief: float, pressures: Sequence[float] = PRESSURES
+) -> ReliefVariant:
     """The plunger's step ring alone with a relief."""
     alone = seals.plunger.alone(0)
     ring = alone.rings[0]
     changes = reshaped(ring, relief)
-    return Relief(
+    return ReliefVariant(
         relief=relief,
         land=changes["land"],
         balance=balance(ring.at(**changes), sum(ENDS) / 2),
@@ -370,7 +374,7 @@ def stress(seals: Sealings) -> Stress:
 
 
 @dataclass(frozen=True, slots=True)
-class Profile:
+class StepRingFilm:
     """Film of the step ring at a pressure, in the tandem, outstroke.
 
     Parameters
@@ -386,14 +390,14 @@ class Profile:
     mean: float
 
 
-def profiles(seals: Sealings) -> tuple[Profile, ...]:
+def profiles(seals: Sealings) -> tuple[StepRingFilm, ...]:
     """Figure 18; without those that have no film."""
     every = []
     for pressure in FILM_PRESSURES:
         solved = solve(seals.plunger.row(pressure, FILM_SPEED))
         if not solved.why:
             film = solved.films[0]
-            every.append(Profile(pressure, film.x, film.film, film.mean_film))
+            every.append(StepRingFilm(pressure, film.x, film.film, film.mean_film))
     return tuple(every)
 
 
@@ -419,7 +423,7 @@ RING_SPEEDS = (0.5e-3, 0.7e-3, 1e-3, 1.5e-3, 2e-3, 3e-3)
 
 
 @dataclass(frozen=True, slots=True)
-class RingFilm:
+class BackupRingFilm:
     """The smooth film of the back-up ring at a speed.
 
     Parameters
@@ -444,7 +448,7 @@ def back_up_ring(
     elastic: Elastic,
     speed: float,
     contact_pressure: float = CONTACT_PRESSURE,
-) -> RingFilm:
+) -> BackupRingFilm:
     """Equations 19 to 22 with density and viscosity in their places.
 
     The pressure around the ring is the same on both sides and bends nothing, so it counts as that
@@ -463,7 +467,7 @@ def back_up_ring(
         elastic=elastic,
     )
     film = solve_gap(gap)
-    return RingFilm(speed, film, pi * PAPER.plunger * film.viscous_drag)
+    return BackupRingFilm(speed, film, pi * PAPER.plunger * film.viscous_drag)
 
 
 def ring_elastic(seals: Sealings) -> Elastic:
@@ -472,7 +476,7 @@ def ring_elastic(seals: Sealings) -> Elastic:
     return Elastic(first["face_modulus"], first["face_poissons_ratio"])
 
 
-def ring_films(seals: Sealings) -> tuple[RingFilm, ...]:
+def ring_films(seals: Sealings) -> tuple[BackupRingFilm, ...]:
     """Figures 19 and 20."""
     elastic = ring_elastic(seals)
     return tuple(back_up_ring(seals.lubricant, elastic, v) for v in RING_SPEEDS)
@@ -646,14 +650,14 @@ class HuangStudy:
     fast: FilmMap
     published: tuple[CurveFits, ...]
     films: tuple[tuple[float, CurveFits], ...]
-    rings: tuple[RingFilm, ...]
+    rings: tuple[BackupRingFilm, ...]
     totals: tuple[Total, ...]
-    kinds: tuple[Kind, ...]
+    kinds: tuple[SealArrangement, ...]
     stress: Stress
-    profiles: tuple[Profile, ...]
+    profiles: tuple[StepRingFilm, ...]
     readings: Readings
     turn: Turn | None
-    reliefs: tuple[Relief, ...]
+    reliefs: tuple[ReliefVariant, ...]
     whole: tuple[float, ...]
     drained: tuple[float, ...]
 
@@ -698,7 +702,7 @@ def _fitted(mapped: FilmMap) -> tuple[tuple[float, CurveFits], ...]:
 
 def _reliefs(
     seals: Sealings,
-) -> tuple[Turn | None, tuple[Relief, ...], tuple[float, ...], tuple[float, ...]]:
+) -> tuple[Turn | None, tuple[ReliefVariant, ...], tuple[float, ...], tuple[float, ...]]:
     """What other reliefs of the step ring do to the trend over pressure."""
     ring = seals.plunger.rings[0]
     if "relief" not in ring.numbers:

@@ -13,14 +13,14 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base.numeric import Array
-from ..design.material import Fit, fit_double_exponential, fit_power_law
+from ..design.material import LawFit, fit_double_exponential, fit_power_law
 from ..models import damping, forces, friction
 from ..models.friction import HUANG_TABLE_2, StribeckParameters
 from .papers import published_numbers
 
 
 @dataclass(frozen=True, slots=True)
-class Paper:
+class HuangPaper:
     """What the paper prints beside table 2, SI; ``notes/huang.yaml`` has the places."""
 
     bore: float
@@ -46,7 +46,7 @@ class Paper:
         return float(forces.piston_area(bore=self.plunger))
 
 
-PAPER = published_numbers(Paper, "huang")
+PAPER = published_numbers(HuangPaper, "huang")
 
 SPEEDS = np.linspace(*PAPER.speeds, 20)
 """Speeds the curves of figures 7 and 15 are drawn and fitted at: the printed range, our places."""
@@ -69,7 +69,7 @@ def secant_of(row: StribeckParameters, speed: Array) -> Array:
     return damping.secant(friction=friction_of(row, speed), speed=speed)
 
 
-class Claim(NamedTuple):
+class DampingClaim(NamedTuple):
     """The printed 0.65 to 0.2 MN s/m set against table 2 at one speed."""
 
     speed: float
@@ -83,13 +83,13 @@ class Claim(NamedTuple):
     """Largest distance of B at 2 and 4 MPa from the straight line, over its B."""
 
 
-def claim_at(speed: float) -> Claim:
+def claim_at(speed: float) -> DampingClaim:
     """What table 2 makes of the printed linear fall at a speed."""
     pressures = np.array([row.pressure for row in HUANG_TABLE_2])
     dampings = np.array([float(secant_of(row, speed)) for row in HUANG_TABLE_2])
     line = np.interp(pressures, pressures[[0, -1]], dampings[[0, -1]])
     errors = (dampings[0] / PAPER.claimed[0] - 1, dampings[-1] / PAPER.claimed[1] - 1)
-    return Claim(
+    return DampingClaim(
         speed=speed,
         low=float(dampings[0]),
         high=float(dampings[-1]),
@@ -139,8 +139,8 @@ class CurveFits(NamedTuple):
     """Both laws of the paper fitted to one pressure of table 2."""
 
     row: StribeckParameters
-    power: Fit
-    double: Fit
+    power: LawFit
+    double: LawFit
 
 
 def fitted(row: StribeckParameters, *, relative: bool = False) -> CurveFits:

@@ -103,7 +103,7 @@ Elasticities: TypeAlias = tuple[float, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Model:
+class FrictionTrend:
     """One friction model at the design's point.
 
     Parameters
@@ -138,8 +138,8 @@ class Trends:
     case: str
     replaced: tuple[Place, ...]
     rings: tuple[Ring, ...]
-    coefficient: Model
-    film: Model
+    coefficient: FrictionTrend
+    film: FrictionTrend
 
     @property
     def stribeck_ratio(self) -> float:
@@ -158,7 +158,7 @@ class Trends:
             float(ring["seal_roughness"] / ring["counterface_roughness"]) for ring in self.rings
         )
 
-    def order(self, model: Model) -> tuple[str, ...]:
+    def order(self, model: FrictionTrend) -> tuple[str, ...]:
         """The factors that act in a model, the strongest first."""
         sizes = {
             factor.name: abs(value)
@@ -238,23 +238,27 @@ def _fitted(design: Design, replaced: Sequence[Place], model: str) -> Design:
     )
 
 
-def _model(subject: PreparedDesign) -> Model:
+def _model(subject: PreparedDesign) -> FrictionTrend:
     """Friction of a design of one load case, and how every factor moves it."""
     nothing = (math.nan,) * len(FACTORS)
     try:
         metrics = compute(subject, subject.values(_moved(subject))).computed.metrics
     except (InputError, Unsolvable) as error:
-        return Model(math.nan, math.nan, nothing, error.diagnostics[0].message)
+        return FrictionTrend(math.nan, math.nan, nothing, error.diagnostics[0].message)
     columns = 2 * len(FACTORS) + 1
     (running,), (breakaway,) = (
         metrics[name].values() for name in ("friction_running", "friction_breakaway")
     )
     row = np.broadcast_to(np.asarray(running, dtype=float), (1, columns))[0]
     if not (row > 0).all():
-        return Model(math.nan, math.nan, nothing, "no friction: the rings have lost contact")
+        return FrictionTrend(
+            math.nan, math.nan, nothing, "no friction: the rings have lost contact"
+        )
     up, down = row[1::2], row[2::2]
     slopes = np.log(up / down) / math.log((1 + STEP) / (1 - STEP))
-    return Model(float(row[0]), of_case(breakaway, 0), tuple(float(slope) for slope in slopes))
+    return FrictionTrend(
+        float(row[0]), of_case(breakaway, 0), tuple(float(slope) for slope in slopes)
+    )
 
 
 def _moved(subject: PreparedDesign) -> dict[str, np.ndarray]:
@@ -331,7 +335,7 @@ def trends_table(evaluation: Evaluation) -> Table:
     return text_table(TITLE, COLUMNS, rows, _note(table_1))
 
 
-def _cell(model: Model, known: Reasons, index: int) -> str:
+def _cell(model: FrictionTrend, known: Reasons, index: int) -> str:
     """Elasticity, verdict and reason."""
     said = model.verdict(index)
     if said == "no answer":

@@ -9,9 +9,9 @@ from ..models import compact_seal, gland
 from .contact import LAND, WIDTH, SealContact, Shape, SizeField, box, landed
 from .seal_type import (
     AXIAL_PLAY,
-    Piece,
     Room,
     SealGroove,
+    SealPart,
     SealSizes,
     SealType,
     no_faults,
@@ -38,7 +38,7 @@ def groove(sizes: Mapping[str, Array]) -> SealGroove:
     """Groove for a block of the free section."""
     section, width = sizes["section"], sizes["width"]
     depth = gland.gland_depth(squeeze=sizes["squeeze"], section=section)
-    return SealGroove(depth, width, AXIAL_PLAY * width, (Piece(section * width, depth / 2),))
+    return SealGroove(depth, width, AXIAL_PLAY * width, (SealPart(section * width, depth / 2),))
 
 
 def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:

@@ -12,7 +12,7 @@ import numpy as np
 from ..base.numeric import Array, minimum, real, where
 from ..models import contact_profile, elastomer, gland, seals
 from .contact import SealContact, Shape, round_ring, shaped
-from .seal_type import Elements, Piece, Room, SealGroove, SealSizes, SealType, no_faults
+from .seal_type import Elements, Room, SealGroove, SealPart, SealSizes, SealType, no_faults
 
 if TYPE_CHECKING:
     from ..finite_elements.result import SealSolution
@@ -54,9 +54,9 @@ def contact(seal: SealSizes) -> SealContact:
     return replace(found, width=width)
 
 
-def round_piece(section: Array, depth: Array) -> Piece:
+def round_piece(section: Array, depth: Array) -> SealPart:
     """A round ring in a groove."""
-    return Piece((0.25 * math.pi) * section * section, depth / 2)
+    return SealPart((0.25 * math.pi) * section * section, depth / 2)
 
 
 def groove(sizes: Mapping[str, Array]) -> SealGroove:

@@ -50,7 +50,7 @@ class SizeFault(NamedTuple):
     remedy: str
 
 
-class Piece(NamedTuple):
+class SealPart(NamedTuple):
     """A part in a groove, of the seal compound: free section [m^2], depth of its centre [m]."""
 
     area: Array
@@ -71,7 +71,7 @@ class SealGroove(NamedTuple):
     depth: Array
     ring_width: Array
     width: Array
-    pieces: tuple[Piece, ...]
+    pieces: tuple[SealPart, ...]
 
 
 class Room(NamedTuple):

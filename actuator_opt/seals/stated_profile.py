@@ -12,7 +12,7 @@ from ..models import contact_profile
 from .contact import SealContact
 
 
-class Profile(Protocol):
+class PressureProfile(Protocol):
     """Contact pressures above the outer pressure [Pa] at positions [m], for one sealed pressure."""
 
     @property
@@ -28,7 +28,7 @@ class Profile(Protocol):
         """Contact pressures at the positions [Pa]."""
 
 
-def contact(tables: Sequence[Profile], pressure: Array) -> SealContact:
+def contact(tables: Sequence[PressureProfile], pressure: Array) -> SealContact:
     """Stated profiles, interpolated between neighbouring pressures at equal t.
 
     Parameters

@@ -22,7 +22,16 @@ from .contact import (
     round_ring,
 )
 from .o_ring import law_inputs, law_warnings, round_piece
-from .seal_type import AXIAL_PLAY, Elements, Piece, Room, SealGroove, SealSizes, SealType, SizeFault
+from .seal_type import (
+    AXIAL_PLAY,
+    Elements,
+    Room,
+    SealGroove,
+    SealPart,
+    SealSizes,
+    SealType,
+    SizeFault,
+)
 
 if TYPE_CHECKING:
     from ..finite_elements.result import SealSolution
@@ -80,7 +89,7 @@ def groove(sizes: Mapping[str, Array]) -> SealGroove:
     behind = gland.gland_depth(squeeze=sizes["squeeze"], section=section)
     ring = round_piece(section, behind)
     pieces = (
-        Piece(thickness * width, thickness / 2),
+        SealPart(thickness * width, thickness / 2),
         ring._replace(depth=thickness + ring.depth),
     )
     return SealGroove(behind + thickness, width, AXIAL_PLAY * width, pieces)

@@ -20,9 +20,9 @@ from .contact import (
 )
 from .seal_type import (
     AXIAL_PLAY,
-    Piece,
     Room,
     SealGroove,
+    SealPart,
     SealSizes,
     SealType,
     SizeFault,
@@ -70,7 +70,7 @@ def groove(sizes: Mapping[str, Array]) -> SealGroove:
     section, width = sizes["section"], sizes["width"]
     depth = gland.gland_depth(squeeze=sizes["squeeze"], section=section)
     lips = (2 * sizes["thickness"] - section) * width
-    piece = Piece(section * sizes["groove_width"] + lips, depth / 2)
+    piece = SealPart(section * sizes["groove_width"] + lips, depth / 2)
     return SealGroove(depth, width, AXIAL_PLAY * width, (piece,))
 
 

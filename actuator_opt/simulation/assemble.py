@@ -15,8 +15,8 @@ from ..models.loop import ControllerGains
 from ..models.stiffness import holding_pressures
 from ..studies.plant import Plant
 from .components import chambers, circuit, motion, valve
-from .components.circuit import LOOPS, Circuit, Start, loop_of
-from .components.supply import Source
+from .components.circuit import LOOPS, Circuit, InitialState, loop_of
+from .components.supply import SupplyBuilder
 from .components.valve import Feedback, command, inner
 from .system import System
 
@@ -30,7 +30,7 @@ def ends_of(scenario: Scenario, plant: Plant) -> str:
     return "valve" if plant.valve is not None else plant.design.ports.end
 
 
-def start_of(scenario: Scenario, plant: Plant, records: Records) -> Start:
+def start_of(scenario: Scenario, plant: Plant, records: Records) -> InitialState:
     """Position and pressures at the start: a load held by a closed valve."""
     stated, turned, load = scenario.initial, scenario.motor, scenario.load
     place = None if stated.position is None else position_at(stated.position, plant.stroke)
@@ -53,7 +53,7 @@ def start_of(scenario: Scenario, plant: Plant, records: Records) -> Start:
         area_a=areas[0],
         area_b=areas[1],
     )
-    return Start(
+    return InitialState(
         position,
         float(held[0]) if stated.pressure_a is None else stated.pressure_a,
         float(held[1]) if stated.pressure_b is None else stated.pressure_b,
@@ -118,7 +118,7 @@ def _driven(
     if data is None:
         message = "the design has no valve"
         raise InputError(Diagnostic(message, 'add a block "valve" to the design', path="valve"))
-    source = Source.of(circuit)
+    source = SupplyBuilder.of(circuit)
     circuit.centre = data.offset
     flows = valve.edges(
         circuit,
@@ -210,7 +210,7 @@ def _cylinder(circuit: Circuit) -> None:
 
 def _chambers(
     circuit: Circuit,
-    sides: tuple[chambers.Side, chambers.Side],
+    sides: tuple[chambers.ChamberPort, chambers.ChamberPort],
     inflow: tuple[Expression, Expression],
     position: Symbol,
     speed: Symbol,

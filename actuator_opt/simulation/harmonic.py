@@ -73,7 +73,7 @@ def harmonic_fit(*, time: Array, values: Array, frequency: float) -> HarmonicFit
     return _fitted(_design(t, frequency), x)
 
 
-class Stiffness(NamedTuple):
+class DynamicStiffness(NamedTuple):
     """Dynamic stiffness of a record."""
 
     stiffness: complex
@@ -84,7 +84,7 @@ class Stiffness(NamedTuple):
 
 def dynamic_stiffness_of_record(
     *, time: Array, position: Array, force: Array, frequency: float
-) -> Stiffness:
+) -> DynamicStiffness:
     """Dynamic stiffness k = F/x of force and position oscillations at one frequency.
 
     Both are fitted on the same [1, t, cos wt, sin wt]. The force is positive in the direction of
@@ -130,7 +130,7 @@ def dynamic_stiffness_of_record(
         raise InputError(Diagnostic(message, "give the frequency of the load"))
     stiffness = pushed.amplitude / moved.amplitude
     error = np.hypot(pushed.standard_error, abs(stiffness) * moved.standard_error) / size
-    return Stiffness(complex(stiffness), float(error))
+    return DynamicStiffness(complex(stiffness), float(error))
 
 
 def windows(*, time: Array, frequency: float, cycles: int) -> tuple[slice, ...]:

@@ -14,7 +14,7 @@ from ..base.numeric import Array
 from ..base.quantities import INPUTS
 from ..base.symbolic import function, jacobian
 from ..design.scenario.kinds import Records
-from ..design.scenario.model import Control, Scenario, SignalSegment
+from ..design.scenario.model import Controller, Scenario, SignalSegment
 from ..models.loop import ControllerGains, margin_rules, ziegler_nichols
 from ..studies.plant import Plant
 from .assemble import assemble
@@ -273,7 +273,7 @@ def _crossings(loop: OpenLoop, response: Callable[[Array], Array]) -> list[tuple
 
 
 @dataclass(frozen=True, slots=True)
-class Law:
+class ControllerLaw:
     """C(s) = K [1 + 1/(s T_i) + s T_d/(1 + s T_f)] of a controller."""
 
     gain: float
@@ -309,7 +309,7 @@ class Law:
 
 
 @dataclass(frozen=True, slots=True)
-class Margins:
+class LoopMargins:
     """Margins of a loop with its controller."""
 
     gain: float
@@ -328,7 +328,7 @@ def _grow(poles: Array) -> bool:
     return bool(np.any(poles.real > limit))
 
 
-def margins(loop: OpenLoop, law: Law) -> Margins:
+def margins(loop: OpenLoop, law: ControllerLaw) -> LoopMargins:
     """Gain and phase margin of L(i omega) C(i omega); closed-loop poles decide on stability."""
 
     def response(omega: Array) -> Array:
@@ -349,7 +349,7 @@ def margins(loop: OpenLoop, law: Law) -> Margins:
         here = response(omega[k : k + 1] * (omega[k + 1] / omega[k]) ** share)[0]
         own = float(np.angle(-here))
         phase = own if phase is None or abs(own) < abs(phase) else phase
-    return Margins(gain, phase, stable)
+    return LoopMargins(gain, phase, stable)
 
 
 def least(loops: Sequence[OpenLoop]) -> tuple[Ultimate, OpenLoop]:
@@ -378,7 +378,7 @@ class Tuned:
     gains: ControllerGains
     origin: str
     ultimate: Ultimate
-    margins: Margins
+    margins: LoopMargins
     """Gains in the linear loop, including the scenario's factors."""
     unit: str
     notes: tuple[str, ...] = ()
@@ -435,7 +435,7 @@ def tune(
     else:
         gains, origin, notes = _ruled(control, loop, limit, worst)
     factor, integral = control.gain_factor or NO_GAIN, control.integral_factor
-    shaped = Law(  # each factor scales its own part, as in `parts.control`
+    shaped = ControllerLaw(  # each factor scales its own part, as in `parts.control`
         factor * gains.proportional_gain,
         factor / integral * gains.integral_time if integral else inf,
         control.derivative_factor / factor * gains.derivative_time,
@@ -451,7 +451,7 @@ def _held(scenario: Scenario) -> Scenario:
 
 
 def _loops(
-    linear: Linear, scenario: Scenario, plant: Plant, control: Control, loop: Loop
+    linear: Linear, scenario: Scenario, plant: Plant, control: Controller, loop: Loop
 ) -> tuple[list[OpenLoop], str]:
     """Open loops at all relevant points; and where the valve cannot hold the load, in words."""
     if loop != "position":
@@ -486,7 +486,7 @@ def _running(linear: Linear, name: str, value: float) -> list[OpenLoop]:
 
 
 def _ruled(
-    control: Control, loop: Loop, limit: Ultimate, worst: OpenLoop
+    control: Controller, loop: Loop, limit: Ultimate, worst: OpenLoop
 ) -> tuple[ControllerGains, str, tuple[str, ...]]:
     """Gains from the ultimate point by a tuning rule."""
     if worst.swings:
@@ -525,11 +525,13 @@ def _ruled(
         gain, shortest = gains.proportional_gain, gains.integral_time
     else:
         gain, shortest = limit.gain / margin, 0.02 * limit.period
-    time = _integral_time(worst, Law(gain, inf, 0.0, control.filter_time), shortest, limit.period)
+    time = _integral_time(
+        worst, ControllerLaw(gain, inf, 0.0, control.filter_time), shortest, limit.period
+    )
     return ControllerGains(gain, time, 0.0), origin, ()
 
 
-def _integral_time(loop: OpenLoop, law: Law, shortest: float, period: float) -> float:
+def _integral_time(loop: OpenLoop, law: ControllerLaw, shortest: float, period: float) -> float:
     """Least integral time from the shortest on that keeps `KEPT` of the margins without it."""
     alone = margins(loop, law)
     phase = PHASE if alone.phase is None else min(KEPT * alone.phase, PHASE)

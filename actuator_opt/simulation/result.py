@@ -26,7 +26,7 @@ from .system import Compiled, System
 
 
 @dataclass(frozen=True, slots=True)
-class Flow:
+class EnergyFlow:
     """Energy flow across the boundary over the run [J]; inflow is positive."""
 
     name: str
@@ -41,8 +41,8 @@ class Balance:
     """Largest |content - inflow| of any volume, over its content."""
     energy: float
     """stored - net inflow|, relative to all energy across the boundary."""
-    flows: tuple[Flow, ...]
-    stored: tuple[Flow, ...]
+    flows: tuple[EnergyFlow, ...]
+    stored: tuple[EnergyFlow, ...]
     """Change of the stored energy."""
 
 
@@ -520,8 +520,8 @@ def balance(circuit: Circuit, run: Trajectory) -> Balance:
     return Balance(
         mass=mass,
         energy=float(np.max(np.abs(missing))) / through if through > 0 else 0.0,
-        flows=tuple(Flow(name, float(value[-1])) for name, value in doors.items()),
-        stored=tuple(Flow(name, float(value[-1])) for name, value in kept.items()),
+        flows=tuple(EnergyFlow(name, float(value[-1])) for name, value in doors.items()),
+        stored=tuple(EnergyFlow(name, float(value[-1])) for name, value in kept.items()),
     )
 
 

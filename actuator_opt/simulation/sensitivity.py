@@ -63,7 +63,7 @@ class Effect:
 
 
 @dataclass(frozen=True, slots=True)
-class Parameter:
+class ParameterEffects:
     """A parameter with its effects."""
 
     path: str
@@ -88,7 +88,7 @@ class Sensitivities(Displayed):
     name: str
     results: Mapping[str, float]
     """Results of the unchanged scenario."""
-    parameters: tuple[Parameter, ...]
+    parameters: tuple[ParameterEffects, ...]
     skipped: Mapping[str, str]
     """Parameters that failed, with the reason."""
     step: float
@@ -159,7 +159,7 @@ def sensitivities(
     bench = _Bench.of(scenario, subject, {} if records is None else records)
     base = bench.base()
     chosen = _results(base, results)
-    found: list[Parameter] = []
+    found: list[ParameterEffects] = []
     skipped: dict[str, str] = {}
     for one in steps("varying each parameter", [*bench.targets(names)]):
         if one.value == 0:
@@ -254,7 +254,7 @@ class _Bench:
         message = "no number is stated here"
         raise InputError(Diagnostic(message, "name a number that the file states", path=name))
 
-    def parameter(self, one: _Target, chosen: Mapping[str, float], step: float) -> Parameter:
+    def parameter(self, one: _Target, chosen: Mapping[str, float], step: float) -> ParameterEffects:
         """Effects of one parameter: two runs, and two more where something changes."""
         whole = self._slopes(one, chosen, step)
         moves = {name for name, slope in whole.items() if _moves(slope, _least(name, step))}
@@ -264,7 +264,7 @@ class _Bench:
             for name, slope in whole.items()
         }
         per: Literal["1 %", "1 K"] = "1 K" if _absolute(one.quantity) else "1 %"
-        return Parameter(one.path, one.origin, one.quantity, one.value, per, effects)
+        return ParameterEffects(one.path, one.origin, one.quantity, one.value, per, effects)
 
     def _slopes(self, one: _Target, chosen: Mapping[str, float], step: float) -> dict[str, _Slope]:
         """Change of the results per unit of a parameter, where both sides have them."""

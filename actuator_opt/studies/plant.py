@@ -156,7 +156,9 @@ class Plant:
     stop_stiffness: float
     closed_length: float
 
-    def joint(self, position: Array) -> tuple[linkage.Linkage, linkage.ReflectedInertia] | None:
+    def joint(
+        self, position: Array
+    ) -> tuple[linkage.LinkageGeometry, linkage.ReflectedInertia] | None:
         """Return the linkage at a position, with the joint's inertia reflected to the rod."""
         pivots = self.design.linkage
         if pivots is None:

@@ -28,7 +28,7 @@ from ..version import VERSION
 from .film_walk import FilmMap, Stroke, drives, dry_friction, film_map, sealing
 
 if TYPE_CHECKING:
-    from ..finite_elements.result import Contact
+    from ..finite_elements.result import MountedContact
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,7 +191,7 @@ class SealStudy(Displayed):
     squeezes: tuple[SqueezeRow, ...]
     curves: FilmMap | None
     map: FilmMap | None
-    elements: tuple[Contact, ...] = ()
+    elements: tuple[MountedContact, ...] = ()
 
     @property
     def drive(self) -> SealPoint:
@@ -292,7 +292,7 @@ def _contact_dict(point: RingPoint) -> dict[str, Any]:
     }
 
 
-def _element_dict(one: Contact) -> dict[str, float]:
+def _element_dict(one: MountedContact) -> dict[str, float]:
     names = ("pressure", "line_load", "width", "peak_pressure")
     return {name: float(getattr(one, name)) for name in names} | {
         "von_mises": float(np.max(one.field.von_mises))
@@ -361,7 +361,7 @@ def study(
     pressure: float | None = None,
     curves: bool = False,
     mapped: bool = False,
-    elements: tuple[Contact, ...] = (),
+    elements: tuple[MountedContact, ...] = (),
 ) -> SealStudy:
     """Study the seals of piston or rod at one point, and around it.
 
@@ -430,7 +430,7 @@ def study(
 
 def with_elements(
     subject: PreparedDesign, place: Place
-) -> tuple[PreparedDesign, tuple[Contact, ...]]:
+) -> tuple[PreparedDesign, tuple[MountedContact, ...]]:
     """Return the design with finite-element contact profiles for a seal, and these contacts.
 
     Of two rings only the first gets a profile; the second keeps its closed form.

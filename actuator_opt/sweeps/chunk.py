@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..base.database import Column, Rows
+from ..base.database import NumberColumn, StoredNumbers
 from ..base.errors import InputError
 from ..base.numeric import Array
 from ..base.quantities import Quantity
@@ -22,7 +22,7 @@ from ..evaluation.build import Many, evaluate_many, limits_of, spec_hash
 from ..evaluation.plugin import Plugin
 from ..optimisation.actuator import Goal, goal_of
 from .designs import KEPT, Designs, first_fault
-from .plan import Plan, Points
+from .plan import Plan, SweepPoints
 from .screen import Engine, Scores, roomy, screen
 
 LOOKED = 1024
@@ -45,7 +45,7 @@ class Chunk:
     """
 
     first: int
-    rows: Rows
+    rows: StoredNumbers
     computed: int
     objective: Array
     feasible: Array
@@ -98,11 +98,14 @@ class Study:
         self.order = sorted(range(len(paths)), key=paths.__getitem__)
         """Values of the plan's numeric axes by PATH, in any order."""
         self.columns = (
-            *(Column(paths[k], quantity_of(paths[k], self.design).si_unit) for k in self.order),
-            *(Column(name, subject.quantities[name].si_unit) for name in self.metrics),
-            Column(MARGIN, "1"),
-            Column(MISSED, "1"),
-            Column(FEASIBLE, "1"),
+            *(
+                NumberColumn(paths[k], quantity_of(paths[k], self.design).si_unit)
+                for k in self.order
+            ),
+            *(NumberColumn(name, subject.quantities[name].si_unit) for name in self.metrics),
+            NumberColumn(MARGIN, "1"),
+            NumberColumn(MISSED, "1"),
+            NumberColumn(FEASIBLE, "1"),
         )
 
     def __getstate__(self) -> dict[str, object]:
@@ -113,7 +116,7 @@ class Study:
         points = self.plan.points(first, count)
         return self.evaluated(first, points if some is None else points.some(some))
 
-    def evaluated(self, first: int, points: Points, keep: int | None = None) -> Chunk:
+    def evaluated(self, first: int, points: SweepPoints, keep: int | None = None) -> Chunk:
         """Return the rows of points; with `keep`, stop after that many valid best designs."""
         n = len(points.variant)
         rows = np.full((n, len(self.columns)), np.nan)
@@ -128,12 +131,12 @@ class Study:
             lost = places[np.isnan(found.metrics["mass"])]
             failures |= dict.fromkeys(map(int, lost), NO_ANSWER)
         rows[list(failures), len(points.numbers) :] = np.nan
-        chunk = self.judged(first, Rows(rows, failures), n)
+        chunk = self.judged(first, StoredNumbers(rows, failures), n)
         if not self.designs.contradicts:
             return chunk
         failures |= self._contradictions(chunk, points, keep)
         rows[list(failures), len(points.numbers) :] = np.nan
-        return self.judged(first, Rows(rows, failures), n)
+        return self.judged(first, StoredNumbers(rows, failures), n)
 
     def reduced(self, first: int, count: int, limit: float, keep: int) -> Chunk:
         """Return the rows that may be among the `keep` best, with an objective below `limit`.
@@ -155,7 +158,7 @@ class Study:
             best = sorted([*best, *part.objective[part.ranked].tolist()])[:keep]
         return self._joined(first, parts, len(scores), keep)
 
-    def _scores(self, points: Points, limit: float) -> Array:
+    def _scores(self, points: SweepPoints, limit: float) -> Array:
         """Return each point's estimated objective: infinite if ruled out, -inf if unknown."""
         found = np.full(len(points.variant), -np.inf)
         apart = self.designs.apart
@@ -179,7 +182,7 @@ class Study:
             for k in np.flatnonzero(np.isin(left, list(part.rows.failures))):
                 failures[done + int(k)] = part.rows.failures[int(left[k])]
             done += len(left)
-        joined = self.judged(first, Rows(np.concatenate(rows), failures), computed)
+        joined = self.judged(first, StoredNumbers(np.concatenate(rows), failures), computed)
         return replace(joined, places=np.concatenate(places))
 
     def _screen(self, variant: int, fixed: Mapping[str, float]) -> Scores | None:
@@ -204,7 +207,9 @@ class Study:
             self._screens[key] = found
         return self._screens[key]
 
-    def _contradictions(self, chunk: Chunk, points: Points, most: int | None) -> dict[int, str]:
+    def _contradictions(
+        self, chunk: Chunk, points: SweepPoints, most: int | None
+    ) -> dict[int, str]:
         """Return the faults of feasible rows that the design reader would reject.
 
         Rows are checked from the best on, until `most` are valid.
@@ -221,7 +226,7 @@ class Study:
                 found[k] = first_fault(error)
         return found
 
-    def judged(self, first: int, rows: Rows, computed: int) -> Chunk:
+    def judged(self, first: int, rows: StoredNumbers, computed: int) -> Chunk:
         """Return a chunk with the objective, to be minimised, and the feasibility of each row."""
         place = {column.name: k for k, column in enumerate(self.columns)}
         total = np.zeros(len(rows.numbers))
@@ -254,7 +259,7 @@ class Study:
         """Return the varied values of a point, by PATH (SI)."""
         return self._at(self.plan.points(number, 1), 0)
 
-    def _at(self, points: Points, k: int) -> dict[str, float | str]:
+    def _at(self, points: SweepPoints, k: int) -> dict[str, float | str]:
         paths = [axis.path for axis in self.plan.numeric]
         numbers = dict(zip(paths, map(float, points.numbers[:, k]), strict=True))
         found: dict[str, float | str] = {**numbers, **self.plan.texts(int(points.variant[k]))}

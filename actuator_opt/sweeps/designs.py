@@ -17,7 +17,7 @@ from ..evaluation import PreparedDesign, prepare
 from ..evaluation.build import Many, evaluate_many
 from ..evaluation.limits import extremes
 from ..evaluation.plugin import Plugin, with_own
-from .plan import Axis, Plan, Points
+from .plan import Plan, SweepAxis, SweepPoints
 
 KEPT = 64
 """Prepared designs that a process caches."""
@@ -85,7 +85,7 @@ class Designs:
         """Return the prepared design with other values."""
         return prepare(self.changed(values), plugins=self.plugins)
 
-    def _is_temperature(self, axis: Axis) -> bool:
+    def _is_temperature(self, axis: SweepAxis) -> bool:
         return quantity_of(axis.path, self.design).dimension == "temperature"
 
     def _same_extremes(self) -> bool:
@@ -114,7 +114,7 @@ class Designs:
                 found *= axis.size or math.inf
         return found
 
-    def _moves(self, axis: Axis) -> bool:
+    def _moves(self, axis: SweepAxis) -> bool:
         """Whether a number can vary as an array in some of the designs that texts make.
 
         Raises
@@ -133,7 +133,7 @@ class Designs:
             )
         return moves
 
-    def _moves_in(self, axis: Axis, texts: Mapping[str, str]) -> _Moved:
+    def _moves_in(self, axis: SweepAxis, texts: Mapping[str, str]) -> _Moved:
         """Whether an array of the `_telling` values gives the results of setting each value."""
         alone: dict[float, Many] = {}
         for value, needed in _telling(axis):
@@ -157,7 +157,7 @@ class Designs:
         )
         return _Moved(moves, axis.path in together.read)
 
-    def alike(self, points: Points) -> Iterator[tuple[Array, int, dict[str, float]]]:
+    def alike(self, points: SweepPoints) -> Iterator[tuple[Array, int, dict[str, float]]]:
         """Yield points by prepared design: places, combination of texts, values set apart."""
         paths = [axis.path for axis in self.plan.numeric]
         apart = [k for k, path in enumerate(paths) if path in self.apart]
@@ -174,7 +174,7 @@ class Designs:
             yield every, int(variant), fixed
 
     def groups(
-        self, points: Points
+        self, points: SweepPoints
     ) -> Iterator[tuple[Array, PreparedDesign | str, dict[str, Array]]]:
         """Yield points by prepared design, with the arrays that vary; a reason if it is invalid."""
         paths = [axis.path for axis in self.plan.numeric]
@@ -202,7 +202,7 @@ class Designs:
         return self._subjects[key]
 
 
-def _telling(axis: Axis) -> Iterator[tuple[float, bool]]:
+def _telling(axis: SweepAxis) -> Iterator[tuple[float, bool]]:
     """Yield values to check in a design, and whether each is mandatory or any two are enough.
 
     All values of a short list are mandatory, and so is zero: the design may change in kind there

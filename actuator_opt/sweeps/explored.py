@@ -10,19 +10,19 @@ from pathlib import Path
 
 import numpy as np
 
-from ..base.database import Reader, Rows, StoredRows, reading
+from ..base.database import Reader, StoredNumbers, StoredRows, reading
 from ..base.errors import Diagnostic, InputError
 from ..base.numeric import Array
 from ..design import Design, read_design
 from ..evaluation import PreparedDesign
 from ..evaluation.build import limits_of, margins_many
-from ..evaluation.limits import Limit
+from ..evaluation.limits import MetricLimit
 from ..evaluation.outline import Shapes, same_dimensions, shapes
 from ..evaluation.plugin import Plugin, with_own
 from ..metrics import METRICS
 from ..version import VERSION
 from .chunk import Study, key_head
-from .plan import Axis, Plan, Points
+from .plan import Plan, SweepAxis, SweepPoints
 
 BEST = 100
 """Number of best feasible designs that thinning always keeps."""
@@ -32,7 +32,7 @@ VARIANTS = 1_000_000
 
 
 @dataclass(frozen=True)
-class Group:
+class RowGroup:
     """Rows that share one prepared design, and their sections."""
 
     places: Array
@@ -51,9 +51,9 @@ class Explored:
     variants: tuple[dict[str, str], ...]
     variant: Array
     numbers: Array
-    limits: tuple[Limit, ...]
+    limits: tuple[MetricLimit, ...]
     margins: Array
-    groups: tuple[Group, ...]
+    groups: tuple[RowGroup, ...]
     best: Array
     """Objective, to be minimised."""
     most: int
@@ -126,7 +126,7 @@ def explored(
         limits,
         margins,
         groups,
-        bare.judged(0, Rows(numbers, {}), 0).objective,
+        bare.judged(0, StoredNumbers(numbers, {}), 0).objective,
         most,
         origin=f"Study {kept.number}",
         damaged=damaged,
@@ -162,12 +162,12 @@ def explored_designs(
     paths = sorted(points[0])
     values = np.array([[point[path] for point in points] for path in paths])
     axes = tuple(
-        Axis(path, np.array([row.min(), row.max()]), range=True, count=2)
+        SweepAxis(path, np.array([row.min(), row.max()]), range=True, count=2)
         for path, row in zip(paths, values, strict=True)
     )
     study = Study(design, Plan(axes, "grid", 0), plugins)
     variant = np.zeros(len(points), dtype=np.int64)
-    numbers = study.evaluated(0, Points(variant, values)).rows.numbers
+    numbers = study.evaluated(0, SweepPoints(variant, values)).rows.numbers
     limits, margins, groups = _evaluated(study, variant, numbers)
     return Explored(
         StoredRows(0, study.hash, design.name, study.text, study.columns, len(points), {}, {}),
@@ -178,7 +178,7 @@ def explored_designs(
         limits,
         margins,
         groups,
-        study.judged(0, Rows(numbers, {}), 0).objective,
+        study.judged(0, StoredNumbers(numbers, {}), 0).objective,
         len(points),
         origin,
         shown,
@@ -187,18 +187,18 @@ def explored_designs(
 
 def _evaluated(
     study: Study, variant: Array, numbers: Array
-) -> tuple[tuple[Limit, ...], Array, tuple[Group, ...]]:
+) -> tuple[tuple[MetricLimit, ...], Array, tuple[RowGroup, ...]]:
     """Return the limits, the margin of each in every row, and the sections.
 
     Rows that need separate prepared designs, for temperatures say, share the sections of one of
     them if it has their dimensions.
     """
     paths = [axis.path for axis in study.plan.numeric]
-    limits: dict[str, Limit] = {}
+    limits: dict[str, MetricLimit] = {}
     margins: dict[str, Array] = {}
     alone: list[tuple[Array, PreparedDesign]] = []
     shared: dict[int, tuple[list[Array], PreparedDesign]] = {}
-    points = Points(variant, numbers[:, : len(paths)].T)
+    points = SweepPoints(variant, numbers[:, : len(paths)].T)
     for places, subject, varied in study.designs.groups(points):
         if isinstance(subject, str):
             continue
@@ -216,7 +216,7 @@ def _evaluated(
     for places, subject in alone:
         every = {path: numbers[places, k] for k, path in enumerate(paths)}
         drawn = shapes(subject, every, len(places), _hidden(study))
-        groups.append(Group(places, drawn))
+        groups.append(RowGroup(places, drawn))
     return tuple(limits[name] for name in margins), np.stack(list(margins.values())), tuple(groups)
 
 
@@ -252,10 +252,10 @@ def _study(kept: StoredRows, plugins: tuple[Plugin, ...], path: Path, ends: Arra
         raise _another(path)
     first = names.index(next(iter(METRICS)))
     numeric = [
-        Axis(column.name, np.array([low, high]), range=True, count=2)
+        SweepAxis(column.name, np.array([low, high]), range=True, count=2)
         for column, (low, high) in zip(kept.columns[:first], ends, strict=False)
     ]
-    named = [Axis(name, None, texts) for name, texts in kept.texts.items()]
+    named = [SweepAxis(name, None, texts) for name, texts in kept.texts.items()]
     study = Study(design, Plan((*named, *numeric), "grid", 0), plugins)
     if study.hash != kept.hash or study.columns != kept.columns:
         raise _another(path)
@@ -282,7 +282,7 @@ def _thinned(
         keys += [some[k] for k in chosen]
         numbers.append(data[list(chosen)])
         if step > 1:
-            best = best.joined(some, study.judged(0, Rows(data, {}), 0).objective, data)
+            best = best.joined(some, study.judged(0, StoredNumbers(data, {}), 0).objective, data)
         start += len(some)
     known = set(keys)
     extra = [k for k, key in enumerate(best.keys) if key not in known]

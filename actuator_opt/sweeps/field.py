@@ -23,7 +23,7 @@ import numpy as np
 from ..base.numeric import Array
 from ..evaluation.build import TOLERANCE, margins_of
 from .chunk import Study
-from .plan import Plan, Points
+from .plan import Plan, SweepPoints
 
 FINEST = 161
 """Maximum number of nodes per axis (a choice: one per mm of paper); finer grids are thinned."""
@@ -172,7 +172,7 @@ def margins_at(study: Study, numbers: Array) -> Array:
     count = numbers.shape[1]
     found = np.full((len(study.binding), count), np.nan)
     for places, subject, varied in study.designs.groups(
-        Points(np.zeros(count, dtype=int), numbers)
+        SweepPoints(np.zeros(count, dtype=int), numbers)
     ):
         if not isinstance(subject, str):
             found[:, places] = margins_of(subject, varied, len(places))

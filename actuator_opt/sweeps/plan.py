@@ -34,7 +34,7 @@ SAID = frozenset({"name", "notes", "reproduces", "waivers", "objective"})
 
 
 @dataclass(frozen=True)
-class Axis:
+class SweepAxis:
     """One PATH with its values: numbers (SI), or texts, each of which makes another design.
 
     A range has two `values` and `count` steps; `count` is None where the method chooses the points.
@@ -83,7 +83,7 @@ class Axis:
         return float(self.values.min()), float(self.values.max())
 
 
-def read_axis(text: str, design: Design, metrics: Metrics = None) -> Axis:
+def read_axis(text: str, design: Design, metrics: Metrics = None) -> SweepAxis:
     """Return the axis for a user's text: ``PATH=A..B:N`` or ``PATH=a,b,c``.
 
     Numbers without a unit take the unit of the last number; without any unit they are SI. `metrics`
@@ -112,7 +112,7 @@ def read_axis(text: str, design: Design, metrics: Metrics = None) -> Axis:
     ends = [_number(path, end, design, metrics) for end in _with_unit([first, last])]
     if ends[0] == ends[1]:
         raise UsageError(Diagnostic(f"--vary {shown(text)}: both ends are equal", FORM))
-    return Axis(path, np.array(ends), range=True, count=steps)
+    return SweepAxis(path, np.array(ends), range=True, count=steps)
 
 
 def _steps(text: str, count: str | None) -> int | None:
@@ -179,7 +179,7 @@ def _bare(text: str) -> float | None:
     return None if unit else number
 
 
-def _listed(path: str, parts: list[str], design: Design, metrics: Metrics) -> Axis:
+def _listed(path: str, parts: list[str], design: Design, metrics: Metrics) -> SweepAxis:
     if not all(parts):
         raise UsageError(Diagnostic(f"--vary {path}: an empty value", FORM))
     if len(parts) > MOST_LISTED:
@@ -194,8 +194,10 @@ def _listed(path: str, parts: list[str], design: Design, metrics: Metrics) -> Ax
         and _plain(path, part, one, design, metrics)
         for one, part in zip(found, parts, strict=True)
     ):
-        return Axis(path, np.array([float(one) for one in found if one is not None]), tuple(parts))
-    return Axis(path, None, tuple(parts))
+        return SweepAxis(
+            path, np.array([float(one) for one in found if one is not None]), tuple(parts)
+        )
+    return SweepAxis(path, None, tuple(parts))
 
 
 Method = Literal["grid", "sobol", "lhs"]
@@ -217,15 +219,15 @@ ROUNDS = 6
 
 
 @dataclass(frozen=True)
-class Points:
+class SweepPoints:
     """Points of a sweep: number of the text combination of each, and numbers (axes, n)."""
 
     variant: Array
     numbers: Array
 
-    def some(self, places: Array) -> Points:
+    def some(self, places: Array) -> SweepPoints:
         """Return the points at some places."""
-        return Points(self.variant[places], self.numbers[:, places])
+        return SweepPoints(self.variant[places], self.numbers[:, places])
 
 
 @dataclass(frozen=True)
@@ -235,18 +237,18 @@ class Plan:
     Each text of a `named` axis makes another design; the other axes vary numbers.
     """
 
-    axes: tuple[Axis, ...]
+    axes: tuple[SweepAxis, ...]
     method: Method
     count: int
     seed: int = 0
 
     @property
-    def named(self) -> tuple[Axis, ...]:
+    def named(self) -> tuple[SweepAxis, ...]:
         """Return the axes of texts."""
         return tuple(axis for axis in self.axes if axis.values is None)
 
     @property
-    def numeric(self) -> tuple[Axis, ...]:
+    def numeric(self) -> tuple[SweepAxis, ...]:
         """Return the axes of numbers."""
         return tuple(axis for axis in self.axes if axis.values is not None)
 
@@ -263,7 +265,7 @@ class Plan:
             found[axis.path] = axis.texts[at]
         return dict(reversed(found.items()))
 
-    def points(self, first: int, count: int) -> Points:
+    def points(self, first: int, count: int) -> SweepPoints:
         """Return points `first` to `first + count`, up to the last point."""
         index = np.arange(first, min(first + count, self.count), dtype=np.int64)
         places = self._grid(index) if self.method == "grid" else self._sampled(index)
@@ -276,7 +278,7 @@ class Plan:
             else:
                 numbers[row] = axis.at(place.astype(np.int64)) if axis.listed else place
                 row += 1
-        return Points(variant, numbers)
+        return SweepPoints(variant, numbers)
 
     def _grid(self, index: Array) -> list[Array]:
         """Return the value or its number on every axis; the last axis runs fastest."""
@@ -301,7 +303,7 @@ class Plan:
         return found
 
 
-def plan(axes: Sequence[Axis], *, method: Method, count: int | None, seed: int = 0) -> Plan:
+def plan(axes: Sequence[SweepAxis], *, method: Method, count: int | None, seed: int = 0) -> Plan:
     """Return the points of a sweep.
 
     Parameters

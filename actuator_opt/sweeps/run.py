@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base import progress
-from ..base.database import Database, Rows, opened, reading, refused
+from ..base.database import Database, StoredNumbers, opened, reading, refused
 from ..base.numeric import Array
 from ..version import VERSION
 from .chunk import Chunk, Study
@@ -48,7 +48,7 @@ def lacking(base: Database, study: Study, first: int, count: int) -> Lacking:
     return Lacking(first, [keys[k] for k in missing], some, damaged)
 
 
-def kept(base: Database, study: Study, first: int, count: int) -> tuple[Rows, int]:
+def kept(base: Database, study: Study, first: int, count: int) -> tuple[StoredNumbers, int]:
     """Return the stored rows of a chunk, NaN where missing, and their number."""
     keys = study.keys(first, count)
     points = study.plan.points(first, count)
@@ -60,7 +60,7 @@ def kept(base: Database, study: Study, first: int, count: int) -> tuple[Rows, in
             failures[k] = failure
         else:
             numbers[k] = row
-    return Rows(numbers, failures), len(keys) - len(known)
+    return StoredNumbers(numbers, failures), len(keys) - len(known)
 
 
 CHUNK = 4096
@@ -81,7 +81,7 @@ MASKS = hasattr(signal, "pthread_sigmask")
 """Whether the system can delay a signal."""
 
 
-class Task(NamedTuple):
+class ChunkTask(NamedTuple):
     """Points to compute: a whole chunk, or some of it."""
 
     first: int
@@ -131,9 +131,9 @@ def sweep(
     starts = range(0, study.plan.count, size)
     computed = partial(_computed, study, len(starts), workers, scheduler)
     if not study.full:
-        chunks = computed(Task(first, size, None, found.limit(keep), keep) for first in starts)
+        chunks = computed(ChunkTask(first, size, None, found.limit(keep), keep) for first in starts)
     elif store is None:
-        chunks = computed(Task(first, size) for first in starts)
+        chunks = computed(ChunkTask(first, size) for first in starts)
     else:
         chunks = _stored(study, starts, computed, store)
     for number, chunk in enumerate(chunks):
@@ -203,7 +203,11 @@ def swept_again(
 
 
 def _computed(
-    study: Study, chunks: int, workers: int | None, scheduler: str | None, tasks: Iterable[Task]
+    study: Study,
+    chunks: int,
+    workers: int | None,
+    scheduler: str | None,
+    tasks: Iterable[ChunkTask],
 ) -> Iterator[Chunk]:
     """Yield the chunks of tasks, in order."""
     if scheduler is not None:
@@ -232,7 +236,9 @@ def _computed(
             raise
 
 
-def _here(study: Study, chunks: int, tasks: Iterator[Task], *, patient: bool) -> Iterator[Chunk]:
+def _here(
+    study: Study, chunks: int, tasks: Iterator[ChunkTask], *, patient: bool
+) -> Iterator[Chunk]:
     """Yield chunks of this process: all, or until other processes pay for the rest."""
     for done, task in enumerate(tasks, start=1):
         began = time.perf_counter()
@@ -281,11 +287,11 @@ def _without_interrupts() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _work(task: Task) -> Chunk:
+def _work(task: ChunkTask) -> Chunk:
     return _chunk(_STUDY[0], task)
 
 
-def _chunk(study: Study, task: Task) -> Chunk:
+def _chunk(study: Study, task: ChunkTask) -> Chunk:
     if task.limit is not None:
         return study.reduced(task.first, task.size, task.limit, task.keep)
     return study.chunk(task.first, task.size, task.some)
@@ -294,7 +300,7 @@ def _chunk(study: Study, task: Task) -> Chunk:
 def _stored(
     study: Study,
     starts: range,
-    computed: Callable[[Iterable[Task]], Iterator[Chunk]],
+    computed: Callable[[Iterable[ChunkTask]], Iterator[Chunk]],
     path: Path,
 ) -> Iterator[Chunk]:
     """Yield chunks from stored rows, and store the rows newly computed."""
@@ -309,12 +315,12 @@ def _stored(
     ) as base:
         asked: deque[Lacking] = deque()  # checks keys only; the rows are read later
 
-        def tasks() -> Iterator[Task]:
+        def tasks() -> Iterator[ChunkTask]:
             for first in starts:
                 one = lacking(base, study, first, starts.step)
                 asked.append(one)
                 if one.keys:
-                    yield Task(first, starts.step, one.some)
+                    yield ChunkTask(first, starts.step, one.some)
 
         def standing(one: Lacking) -> Chunk:
             rows, _ = kept(base, study, one.first, starts.step)

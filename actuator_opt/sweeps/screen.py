@@ -21,7 +21,7 @@ from ..design.model import Variable
 from ..evaluation import prepare
 from ..evaluation.build import TOLERANCE
 from ..optimisation.actuator import build
-from ..optimisation.certificate.certify import Claim, trace
+from ..optimisation.certificate.certify import TracedLimit, trace
 from ..optimisation.certificate.relaxation import Unknown
 
 Engine: TypeAlias = Literal["numpy", "jax"]
@@ -200,7 +200,7 @@ def screen(
     return found.scores if library is np else fused(found.scores_at_once)
 
 
-def _limits(claims: Sequence[Claim], own: Mapping[Symbol, str], library: Any = np) -> Limits:
+def _limits(claims: Sequence[TracedLimit], own: Mapping[Symbol, str], library: Any = np) -> Limits:
     values = [claim.value for claim in claims]
     return Limits(
         vectorised("limits", "v", {}, values, known=own, library=library),

@@ -24,7 +24,7 @@ from ..design.standard_sizes import citation, tables
 from ..design.uncertain import misfit, source
 from ..evaluation import PreparedDesign, compute
 from ..evaluation.kernel import governing
-from ..evaluation.limits import UNLIMITED, Limit, MetricArrays, all_limits, rows_of
+from ..evaluation.limits import UNLIMITED, MetricArrays, MetricLimit, all_limits, rows_of
 from ..evaluation.values import Values
 from ..models.elastomer import MODULUS_LAWS
 from ..optimisation.problem import Vector
@@ -251,7 +251,7 @@ TOLERANCE = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
-class Drawn:
+class DrawnInputs:
     """Input values (d, n), limit margins (m, n) and metrics (k, n) of a set of draws."""
 
     values: Vector
@@ -264,7 +264,7 @@ class Drawn:
         return np.asarray(self.margins >= -TOLERANCE)
 
 
-class Model:
+class UncertainModel:
     """A prepared design with uncertain inputs.
 
     Parameters
@@ -294,11 +294,11 @@ class Model:
         self._wanted = {limit.metric for limit in self.limits} | set(self.metrics)
 
     @property
-    def nominal(self) -> Drawn:
+    def nominal(self) -> DrawnInputs:
         """Return the nominal design."""
         return self.where(np.array([[one.value] for one in self.inputs]).reshape(-1, 1))
 
-    def at(self, shares: Vector) -> Drawn:
+    def at(self, shares: Vector) -> DrawnInputs:
         """Return the design at the given quantiles (d, n) of its inputs."""
         drawn = [one.distribution.at(row) for one, row in zip(self.inputs, shares, strict=True)]
         return self.where(np.array(drawn).reshape(len(self.inputs), shares.shape[1]))
@@ -311,7 +311,7 @@ class Model:
         ]
         return np.concatenate(parts, axis=1)
 
-    def flat(self, found: Drawn) -> Vector:
+    def flat(self, found: DrawnInputs) -> Vector:
         """Stack margins, their least and metrics; a margin without a value is infinite."""
         margins = np.where(np.abs(found.margins) < 1e9, found.margins, np.nan)
         with np.errstate(all="ignore"):
@@ -319,7 +319,7 @@ class Model:
         return np.concatenate([margins, least[None], found.metrics])
 
     @np.errstate(all="ignore")
-    def where(self, values: Vector) -> Drawn:
+    def where(self, values: Vector) -> DrawnInputs:
         """Return the design at the given input values (d, n), SI."""
         count = values.shape[1]
         varied = {one.path: row for one, row in zip(self.inputs, values, strict=True)}
@@ -328,7 +328,7 @@ class Model:
         computed = compute(self.subject, numbers, wanted).computed
         margins = [_margin(limit, computed, numbers, count) for limit in self.limits]
         metrics = [governing(name, computed, numbers, self.subject) for name in self.metrics]
-        return Drawn(values, _rows(margins, count), _rows(metrics, count))
+        return DrawnInputs(values, _rows(margins, count), _rows(metrics, count))
 
 
 def _rows(arrays: Sequence[Vector], count: int) -> Vector:
@@ -339,7 +339,7 @@ def _rows(arrays: Sequence[Vector], count: int) -> Vector:
     return found
 
 
-def _margin(limit: Limit, computed: MetricArrays, numbers: Values, count: int) -> Vector:
+def _margin(limit: MetricLimit, computed: MetricArrays, numbers: Values, count: int) -> Vector:
     """Return the least margin of a limit over cases and places (n,); NaN where one has no value."""
     least = np.full(count, np.inf)
     seen = False

@@ -23,7 +23,7 @@ from ..metrics import of_metric
 from ..optimisation.problem import Robust, Round
 from ..optimisation.result import Certificate, Optimisation
 from .estimate import Rate
-from .inputs import TOLERANCE, Model, inputs, read_by_models
+from .inputs import TOLERANCE, UncertainModel, inputs, read_by_models
 from .study import draw
 
 Held: TypeAlias = npt.NDArray[Any]
@@ -50,7 +50,7 @@ outside the bounds of the last sample."""
 class _Seen:
     """Draws at one design: how often all covered limits are met, and the reserves they imply."""
 
-    model: Model
+    model: UncertainModel
     covered: Held
     nominal: Held
     margins: Held
@@ -174,7 +174,7 @@ class _Way:
 
     def _see(self, design: Design, covered: Held | None) -> _Seen:
         subject = _prepared(design, self.subject)
-        model = Model(subject, inputs(subject))
+        model = UncertainModel(subject, inputs(subject))
         tally = draw(model, self.count, self.seed, keep=self.count)
         nominal = model.nominal.margins[:, 0]
         held = model.own if covered is None else covered
@@ -349,7 +349,7 @@ def _solved(found: Optimisation) -> bool:
     return not infeasible and usable and made and found.evaluation.met
 
 
-def _covered_rate(model: Model, covered: Held, count: int, seed: int) -> Rate:
+def _covered_rate(model: UncertainModel, covered: Held, count: int, seed: int) -> Rate:
     """Return how often all covered limits are met, in an independent sample."""
     model.own = covered
     return draw(model, count, seed, stream=1).rates()[-2]

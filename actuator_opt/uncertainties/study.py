@@ -17,7 +17,7 @@ from ..evaluation.result import YieldEstimate
 from ..optimisation.problem import Vector
 from ..version import VERSION
 from .estimate import Rate, exact, indices, quasi, replicated
-from .inputs import CHUNK, Input, Model, inputs
+from .inputs import CHUNK, Input, UncertainModel, inputs
 from .result import LEAST, Index, Kept, LimitYield, Swing, Uncertainty, number
 
 
@@ -104,7 +104,7 @@ def uncertainty(
     """
     began = time.perf_counter()
     found = inputs(subject)
-    model = Model(subject, found, metrics or subject.design.objective.metrics)
+    model = UncertainModel(subject, found, metrics or subject.design.objective.metrics)
     blocks = BLOCKS if quasi_random else 1
     tally = draw(model, count, seed, blocks)
     rates = tally.rates()
@@ -137,7 +137,7 @@ def uncertainty(
 
 
 @dataclass(frozen=True, slots=True)
-class Tally:
+class HitCounts:
     """Hits (m + 2, blocks) of every limit, of all requirements and of all limits; stored draws."""
 
     hits: Vector
@@ -152,13 +152,13 @@ class Tally:
 
 
 def draw(
-    model: Model,
+    model: UncertainModel,
     count: int,
     seed: int,
     blocks: int = 1,
     stream: int = 0,
     keep: int = MOST_KEPT,
-) -> Tally:
+) -> HitCounts:
     """Draw the inputs and count how often each limit is met.
 
     Parameters
@@ -187,7 +187,7 @@ def draw(
             done += points.shape[1]
             tell("draws", done / (each * blocks))
     values, margins = (np.concatenate(part, axis=1) for part in zip(*kept, strict=True))
-    return Tally(hits, each, Kept(values, margins))
+    return HitCounts(hits, each, Kept(values, margins))
 
 
 def _points(size: int, count: int, seed: tuple[int, ...], scrambled: bool) -> Iterator[Vector]:
@@ -206,7 +206,9 @@ def chunks(points: Vector) -> Iterator[Vector]:
         yield points[:, first : first + CHUNK]
 
 
-def _limits(model: Model, rates: list[Rate], kept: Kept, nominal: Vector) -> tuple[LimitYield, ...]:
+def _limits(
+    model: UncertainModel, rates: list[Rate], kept: Kept, nominal: Vector
+) -> tuple[LimitYield, ...]:
     found = []
     numbers = model.subject.values()
     for row, limit in enumerate(model.limits):
@@ -234,7 +236,7 @@ def quantiles(drawn: Vector) -> Vector:
 
 
 def _indices(
-    model: Model, outputs: Sequence[str], rows: int, seed: int
+    model: UncertainModel, outputs: Sequence[str], rows: int, seed: int
 ) -> tuple[tuple[Index, ...], float]:
     if rows == 0 or not model.inputs:
         return (), 0.0
@@ -248,7 +250,7 @@ def _indices(
     return named, found.dropped
 
 
-def _swings(model: Model, outputs: Sequence[str]) -> tuple[Swing, ...]:
+def _swings(model: UncertainModel, outputs: Sequence[str]) -> tuple[Swing, ...]:
     """Return every output at both ends of every input, all others nominal."""
     if not model.inputs:
         return ()
@@ -289,7 +291,7 @@ def quick_yield(subject: PreparedDesign, evaluation: Evaluation, *, seed: int = 
     if films_asked(subject.design):
         return YieldEstimate(why="solving the oil films of its seals takes too long")
     try:
-        model = Model(subject, inputs(subject))
+        model = UncertainModel(subject, inputs(subject))
         tally = draw(model, DRAWS, seed)
     except ActuatorError as error:
         return YieldEstimate(why=error.diagnostics[0].message)

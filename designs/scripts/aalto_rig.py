@@ -39,7 +39,7 @@ from actuator_opt.rendering.script_pages import (
     study_report,
 )
 from actuator_opt.rendering.text import NARROW, fixed, number
-from actuator_opt.replicas.aalto_models import Bench, End
+from actuator_opt.replicas.aalto_models import End, HeldCylinder
 from actuator_opt.simulation import Simulation
 from actuator_opt.simulation.harmonic import harmonic_fit
 from actuator_opt.simulation.result import HarmonicLoad
@@ -231,7 +231,7 @@ def closed_ports(places: Sequence[float]) -> Data:
             }
             found = simulate(SCENARIOS / "aalto_one_way_rig.yaml", set=own)
             source.append({"place": place} | measured(found, hz))
-    bench = Bench(ao.read(DESIGN).design)
+    bench = HeldCylinder(ao.read(DESIGN).design)
     linear = bench.stiffness("constant_pressure", np.array(places), [20.0], area=0.0)[0]
     return {
         "rows": rows,
@@ -270,7 +270,7 @@ def opposed() -> list[Data]:
 
 def linear_rows() -> list[Data]:
     """The linear model at mid-stroke: no friction, no check valves, tangent of the needle."""
-    bench = Bench(ao.read(DESIGN).design)
+    bench = HeldCylinder(ao.read(DESIGN).design)
     rows, tones = [], (10, 15, 20, 25, 30)
     for end in ENDS:
         for needle, area in NEEDLES.items():
@@ -314,7 +314,7 @@ def laid_over(quick: bool) -> Data:
         for way, words in (("out", "extending"), ("in", "retracting"))
     ]
     runs.append(("100 %, held", along([shaken("aalto_ratcheting", 20, p) for p in places])))
-    bench = Bench(ao.read(DESIGN).design)
+    bench = HeldCylinder(ao.read(DESIGN).design)
     strokes = np.linspace(ALONG[0], ALONG[-1], 40)
     static = np.ravel(bench.motion.springs.stiffness(strokes))[: strokes.size]
     return comparison_figure(runs, 58.0, static=(strokes, static)).data()

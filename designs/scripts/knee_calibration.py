@@ -50,7 +50,7 @@ COLUMNS = {"p1": ("p1 [bar]", 1e-5, 2), "p2": ("p2 [bar]", 1e-5, 2),
            "x": ("x [mm]", 1e3, 2), "F_L": ("F_L [N]", 1.0, 0)}  # fmt: skip
 
 
-def course() -> tuple[synthetic.Course, np.ndarray]:
+def course() -> tuple[synthetic.PrescribedMotion, np.ndarray]:
     """The motion of the bench, and the load along it [N]."""
     once = synthetic.plateaus(SPEEDS, travel=0.08, begin=0.015, longest=0.8)
     count, step = once.time.size, float(once.time[1])

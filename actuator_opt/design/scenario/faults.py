@@ -12,18 +12,18 @@ from ...base.errors import Fault
 from ..build import how_to_add
 from ..kinds import Section, position_at
 from ..model import Design
-from ..structure import Loc, View, child_at, entries, length_text, without_effect
+from ..structure import FileView, Loc, child_at, entries, length_text, without_effect
 from .kinds import FRICTIONS, LAWS, SHAPES, SUPPLIES, ControlLaw
 from .model import (
     FEWEST_SAMPLES,
     MOST_SAMPLES,
     SAMPLES,
-    Control,
-    Friction,
-    Load,
+    Controller,
     Scenario,
+    ScenarioFriction,
+    ScenarioLoad,
     SignalSegment,
-    Supply,
+    ValveSupply,
 )
 
 _SLACK = 1e-9
@@ -53,7 +53,7 @@ def part_lists(
     return found
 
 
-def _parts(view: View) -> Iterator[tuple[Loc, str, type[Section]]]:
+def _parts(view: FileView) -> Iterator[tuple[Loc, str, type[Section]]]:
     """Place, shape and section of every part with a known shape."""
     for where, section in part_lists().items():
         for index in range(len(view.items(*where))):
@@ -62,7 +62,7 @@ def _parts(view: View) -> Iterator[tuple[Loc, str, type[Section]]]:
                 yield (*where, index), shape, section
 
 
-def shapes(view: View) -> Iterator[Fault]:
+def shapes(view: FileView) -> Iterator[Fault]:
     """Each part has the keys that its shape needs, and no others."""
     for loc, shape, section in _parts(view):
         own, known = SHAPES[shape], entries(section)
@@ -78,7 +78,7 @@ def shapes(view: View) -> Iterator[Fault]:
             yield from without_effect(view, loc, [key], f"on a {shape}", remedy)
 
 
-def order(view: View) -> Iterator[Fault]:
+def order(view: FileView) -> Iterator[Fault]:
     """Each part ends after its start, and starts before the scenario ends."""
     duration = view.number("duration")
     for loc, shape, _ in _parts(view):
@@ -95,7 +95,7 @@ def order(view: View) -> Iterator[Fault]:
             yield Fault((*loc, "start"), message, remedy)
 
 
-def sampling(view: View) -> Iterator[Fault]:
+def sampling(view: FileView) -> Iterator[Fault]:
     """The number of samples is reasonable for the run and for each of its sines."""
     duration, stated = view.number("duration"), view.number("sample_time")
     if duration is None or (stated is None and view.has("sample_time")):
@@ -118,7 +118,7 @@ def sampling(view: View) -> Iterator[Fault]:
         yield from _sines(view, duration, sample, stated is not None)
 
 
-def _sines(view: View, duration: float, sample: float, stated: bool) -> Iterator[Fault]:
+def _sines(view: FileView, duration: float, sample: float, stated: bool) -> Iterator[Fault]:
     """Sines that the sample time cannot resolve; only the fastest of several."""
     waves: list[tuple[float, Loc]] = []
     for loc, shape, _ in _parts(view):
@@ -152,7 +152,7 @@ def _rounded(value: float, way: Callable[[float], int]) -> float:
     return way(value / step * (1 + (_SLACK if way is math.floor else -_SLACK))) * step
 
 
-SIGNAL_CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (shapes, order, sampling)
+SIGNAL_CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (shapes, order, sampling)
 REFERENCES: Mapping[str, str] = {
     "position": "position_gain",
     "speed": "speed_gain",
@@ -164,17 +164,17 @@ STEP_RESULTS = ("rise_time", "settling_time", "overshoot", "steady_state_ratio")
 """Results derived from the response to a single step."""
 
 
-def stated(view: View, *loc: str) -> bool:
+def stated(view: FileView, *loc: str) -> bool:
     """Whether the file states this value; empty lists do not count."""
     return child_at(view.tree, loc) not in (None, [], ())
 
 
-def given(view: View) -> list[str]:
+def given(view: FileView) -> list[str]:
     """References that the control states."""
     return [name for name in REFERENCES if stated(view, "control", name)]
 
 
-def drives(view: View) -> Iterator[Fault]:
+def drives(view: FileView) -> Iterator[Fault]:
     """Either signal or control drives the valve, which must end the lines."""
     driven = [name for name in ("signal", "control") if stated(view, name)]
     if len(driven) == 2:
@@ -192,7 +192,7 @@ def drives(view: View) -> Iterator[Fault]:
         yield Fault(("ends",), message, 'write "valve", or remove supply')
 
 
-def reference(view: View) -> Iterator[Fault]:
+def reference(view: FileView) -> Iterator[Fault]:
     """Exactly one reference, of an existing motion."""
     if not isinstance(child_at(view.tree, ("control",)), dict):
         return
@@ -213,12 +213,12 @@ def reference(view: View) -> Iterator[Fault]:
     yield Fault(("control", found[0]), message, remedy, at_key=True)
 
 
-def tuning(view: View) -> Iterator[Fault]:
+def tuning(view: FileView) -> Iterator[Fault]:
     """The gain and times that the tuning needs are stated, and no others."""
     found, law, way = given(view), view.text("control", "law"), view.text("control", "tuning")
     if not isinstance(child_at(view.tree, ("control",)), dict):
         return
-    known = entries(Control)
+    known = entries(Controller)
     own = LAWS.get(law or "")
     if own is None or way not in known["tuning"].choices:
         return
@@ -243,7 +243,7 @@ def tuning(view: View) -> Iterator[Fault]:
     yield from _unread(view, own, way)
 
 
-def _unread(view: View, law: ControlLaw, way: str) -> Iterator[Fault]:
+def _unread(view: FileView, law: ControlLaw, way: str) -> Iterator[Fault]:
     """Keys without effect under this control law and tuning."""
     for part in ("integral", "derivative"):
         if part not in law.parts:
@@ -258,7 +258,7 @@ def _unread(view: View, law: ControlLaw, way: str) -> Iterator[Fault]:
         yield from without_effect(view, ("control",), keys, "without pressure_feedback")
 
 
-def step_results(view: View) -> Iterator[Fault]:
+def step_results(view: FileView) -> Iterator[Fault]:
     """Results of a step response need a stepping reference."""
     asked = [name for name in STEP_RESULTS if view.has("requirements", name)]
     found = given(view)
@@ -280,7 +280,7 @@ def step_results(view: View) -> Iterator[Fault]:
         yield Fault(("requirements", name), message, remedy, at_key=True)
 
 
-CONTROL_CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
+CONTROL_CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
     drives,
     reference,
     tuning,
@@ -291,13 +291,13 @@ _flow = quantities.INPUTS["rated_flow"].text
 _area = quantities.INPUTS["orifice_area"].text
 
 
-def supply(view: View) -> Iterator[Fault]:
+def supply(view: FileView) -> Iterator[Fault]:
     """A supply has the keys that its type needs, and no others."""
     kind = view.text("supply", "type")
     own = SUPPLIES.get(kind or "")
     if own is None:  # a separate fault, reported at its place
         return
-    known = entries(Supply)
+    known = entries(ValveSupply)
     for key in own.needed:
         if not view.has("supply", key):
             message = f"missing: required by a {kind}"
@@ -318,7 +318,7 @@ def supply(view: View) -> Iterator[Fault]:
     yield from without_effect(view, ("supply",), own.unread, where, remedy)
 
 
-def cushion(view: View) -> Iterator[Fault]:
+def cushion(view: FileView) -> Iterator[Fault]:
     """A cushion reduces the flow area of the oil."""
     loc = ("stops", "cushion")
     opened, closed = view.number(*loc, "open_area"), view.number(*loc, "end_area")
@@ -330,7 +330,7 @@ def cushion(view: View) -> Iterator[Fault]:
         yield Fault((*loc, "end_area"), message, "write the area of the remaining gap")
 
 
-def load_cylinder(view: View) -> Iterator[Fault]:
+def load_cylinder(view: FileView) -> Iterator[Fault]:
     """A load cylinder has an area and a pressure difference."""
     loc = ("load", "cylinder")
     bore, rod = view.number(*loc, "bore"), view.number(*loc, "rod_diameter")
@@ -344,7 +344,7 @@ def load_cylinder(view: View) -> Iterator[Fault]:
         yield Fault((*loc, "return_pressure"), message, f"write less than {text(high)}")
 
 
-def friction(view: View) -> Iterator[Fault]:
+def friction(view: FileView) -> Iterator[Fault]:
     """A friction curve starts with Coulomb friction; breakaway is not below it."""
     model = view.text("friction", "model")
     own = FRICTIONS.get(model or "")
@@ -352,7 +352,7 @@ def friction(view: View) -> Iterator[Fault]:
         yield from without_effect(view, ("friction",), own.unread, f"where model is {model}")
     if model == "none":
         return
-    known = entries(Friction)
+    known = entries(ScenarioFriction)
     if not view.has("friction", "coulomb"):
         for key in ("static", "stribeck_speed", "viscous"):
             if view.has("friction", key):
@@ -369,7 +369,7 @@ def friction(view: View) -> Iterator[Fault]:
         yield Fault(("friction", "static"), message, f"write {_force(low)} or more")
 
 
-def motor(view: View) -> Iterator[Fault]:
+def motor(view: FileView) -> Iterator[Fault]:
     """With a motor in place of the cylinder, no cylinder data are stated."""
     if not view.has("motor"):
         return
@@ -380,25 +380,25 @@ def motor(view: View) -> Iterator[Fault]:
     yield from without_effect(view, (), ("stops", "friction"), where)
     yield from without_effect(view, ("initial",), ("position", "speed"), where)
     yield from without_effect(
-        view, ("load",), entries(Load), where, "the load of the motor is under motor"
+        view, ("load",), entries(ScenarioLoad), where, "the load of the motor is under motor"
     )
     yield from without_effect(view, ("control",), ["speed_feedback"], where)
 
 
-def held_ports(view: View) -> Iterator[Fault]:
+def held_ports(view: FileView) -> Iterator[Fault]:
     """With held ports the valve moves no load."""
     if not view.has("held_ports") or view.has("motor"):  # stating both is a separate fault
         return
     where, idle = "with held ports", ("control", "stops", "friction", "initial")
     yield from without_effect(view, (), idle, where, "remove it, or remove held_ports")
-    yield from without_effect(view, ("load",), entries(Load), where)
+    yield from without_effect(view, ("load",), entries(ScenarioLoad), where)
     ends = view.text("ends")
     if ends != "valve" and ends in entries(Scenario)["ends"].choices:
         remedy = 'write "valve", or remove held_ports'
         yield Fault(("ends",), f"{ends}: held_ports apply to the valve", remedy)
 
 
-CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
+CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
     *SIGNAL_CHECKS,
     *CONTROL_CHECKS,
     supply,
@@ -412,7 +412,7 @@ CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
 
 def cross_field(tree: Any) -> Iterator[Fault]:
     """All contradictions between values of a scenario's tree in SI."""
-    view = View(tree, Scenario)
+    view = FileView(tree, Scenario)
     for check in CHECKS:
         yield from check(view)
 

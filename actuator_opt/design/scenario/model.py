@@ -106,7 +106,7 @@ class PumpMachine(Machine):
     shaft_speed: Annotated[float, Of("drive_speed", "speed of the shaft")]
 
 
-class Relief(Section):
+class ReliefValve(Section):
     """A relief valve."""
 
     pressure: Annotated[float, Of("pressure_drop", "cracking pressure above tank")]
@@ -130,7 +130,7 @@ class SupplyLine(Section):
     inner_diameter: Annotated[float, Of("diameter", "inner diameter")]
 
 
-class Supply(Section):
+class ValveSupply(Section):
     """The supply of the valve; its set pressure is the supply pressure of the design."""
 
     type: kinds.Supply = "constant"
@@ -140,7 +140,7 @@ class Supply(Section):
     ] = None
     pump: PumpMachine | None = None
     """Wilson pump, in place of `flow`."""
-    relief: Relief | None = None
+    relief: ReliefValve | None = None
     gain: Annotated[float | None, Of("pump_gain", "controller gain of a controlled pump")] = None
     time_constant: Annotated[float | None, Of("time_constant", "lag of a controlled pump")] = None
     accumulator: SupplyAccumulator | None = None
@@ -166,7 +166,7 @@ class Stops(Section):
     cushion: Cushion | None = None
 
 
-class Friction(Section):
+class ScenarioFriction(Section):
     """Friction of the seals, from the design or stated here."""
 
     model: kinds.Friction = "lugre"
@@ -231,7 +231,7 @@ class LoadCylinder(Section):
     ] = 0.0
 
 
-class Load(Section):
+class ScenarioLoad(Section):
     """The load of the rod; its mass is load.mass of the design."""
 
     force: Annotated[tuple[ForceSignal, ...], Field(max_length=100)] = ()
@@ -243,7 +243,7 @@ class Load(Section):
     cylinder: LoadCylinder | None = None
 
 
-class Control(Section):
+class Controller(Section):
     """A continuous controller of the valve signal; one of four references closes the loop."""
 
     position: Annotated[tuple[PositionSignal, ...], Field(max_length=100)] = ()
@@ -303,14 +303,14 @@ class Scenario(Section):
         float | None, Of("sample_time", "sample time of the signals; default: 2000 samples")
     ] = None
     initial: Initial = Initial()
-    supply: Supply = Supply()
+    supply: ValveSupply = ValveSupply()
     ends: kinds.Ends = None
-    friction: Friction = Friction()
+    friction: ScenarioFriction = ScenarioFriction()
     stops: Stops = Stops()
     motor: Motor | None = None
     held_ports: HeldPorts | None = None
-    load: Load = Load()
+    load: ScenarioLoad = ScenarioLoad()
     signal: Parts = ()
-    control: Control | None = None
+    control: Controller | None = None
     analysis: Analysis = Analysis()
     requirements: dict[str, Limit] = {}  # noqa: RUF012 (pydantic copies it)

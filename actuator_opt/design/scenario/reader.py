@@ -18,8 +18,8 @@ from ..build import check
 from ..kinds import Of, Section, Text, ValueFault
 from ..model import Design
 from ..paths import resolve
-from ..reader import STDIN, TEXT, LoadedDesign, Override, Source, load, opened, read_design
-from ..structure import Materials, child_at, entries
+from ..reader import STDIN, TEXT, FileSource, LoadedDesign, Override, load, opened, read_design
+from ..structure import MaterialLookup, child_at, entries
 from ..writer import scalar
 from ..yaml_source import parse
 from .faults import cross_field, design_faults, part_lists
@@ -32,7 +32,7 @@ class LoadedScenario:
     """A scenario, its source, and its changes to the design."""
 
     scenario: Scenario
-    source: Source
+    source: FileSource
     folder: Path
     """Folder of the named files: that of the scenario file."""
     changes: tuple[Override, ...] = ()
@@ -105,7 +105,7 @@ def _names(path: str, tree: Any, metrics: Mapping[str, Quantity], root: type[Sec
 def read_design_of(
     loaded: LoadedScenario,
     *,
-    materials: Materials | None = None,
+    materials: MaterialLookup | None = None,
     metrics: Mapping[str, Quantity] | None = None,
 ) -> LoadedDesign:
     """Read the design that a scenario names, with the scenario's changes.
@@ -149,7 +149,7 @@ ROUNDED: Final = 1e-9
 """Relative tolerance of times."""
 
 
-class Gap(NamedTuple):
+class SampleGap(NamedTuple):
     """An interval without samples."""
 
     first: float
@@ -195,12 +195,12 @@ def recorded_notes(scenario: Scenario, records: Records) -> Iterator[str]:
             yield f"{name}: {gap_words(absent)}, interpolated linearly"
 
 
-def gaps(time: Array, values: Array) -> list[Gap]:
+def gaps(time: Array, values: Array) -> list[SampleGap]:
     """Intervals of a channel without samples: NaN, and missing steps of an even time base."""
     absent = np.concatenate(([False], ~np.isfinite(values), [False])).astype(np.int8)
     turns = np.flatnonzero(np.diff(absent))
     found = [
-        Gap(float(time[a]), float(time[b - 1]), int(b - a))
+        SampleGap(float(time[a]), float(time[b - 1]), int(b - a))
         for a, b in zip(turns[::2], turns[1::2], strict=True)
     ]
     steps = np.diff(time)
@@ -208,13 +208,15 @@ def gaps(time: Array, values: Array) -> list[Gap]:
         usual = float(np.median(steps))
         if float(np.mean(np.abs(steps - usual) < 0.5 * usual)) >= REGULAR:
             found += [
-                Gap(float(time[k]) + usual, float(time[k + 1]) - usual, round(steps[k] / usual) - 1)
+                SampleGap(
+                    float(time[k]) + usual, float(time[k + 1]) - usual, round(steps[k] / usual) - 1
+                )
                 for k in np.flatnonzero(steps > WIDE * usual)
             ]
     return sorted(found)
 
 
-def gap_words(found: list[Gap]) -> str:
+def gap_words(found: list[SampleGap]) -> str:
     """Number of missing samples and where: the only gap, or the first and the last.
 
     >>> gap_words([Gap(0.2, 0.2, 1)])

@@ -25,7 +25,17 @@ import scipy.sparse as sp
 from ...base.symbolic import Symbol, vectorised
 from ..problem import Vector
 from .intervals import ROOM, Box, Layout
-from .relaxation import FAR, ConstraintRow, Curve, Form, Link, Powers, Product, Relaxation, Table
+from .relaxation import (
+    FAR,
+    AtomFunction,
+    ConstraintRow,
+    Form,
+    Link,
+    Powers,
+    Product,
+    Relaxation,
+    SampledFunction,
+)
 
 
 class Products:
@@ -543,7 +553,9 @@ class _Plain:
         self.known: dict[Powers, int] = {}
         self.tops: dict[int, float] = {}
         self.tables = {
-            curve.out.powers[0][0]: curve for curve in found.curves if isinstance(curve.kind, Table)
+            curve.out.powers[0][0]: curve
+            for curve in found.curves
+            if isinstance(curve.kind, SampledFunction)
         }
 
     def width(self, form: Form) -> float:
@@ -562,7 +574,7 @@ class _Plain:
             found.makers.append(lambda y: math.exp(argument.at(y)))
             self.known[powers] = number = len(found.lower) - 1
             self.tops[number] = high
-            found.curves.append(Curve("exp", argument, Form(0.0, ((number, 1.0),))))
+            found.curves.append(AtomFunction("exp", argument, Form(0.0, ((number, 1.0),))))
             self._tie(form, number)
         return self.known[powers]
 

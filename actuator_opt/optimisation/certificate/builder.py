@@ -20,7 +20,7 @@ from ...evaluation.barrel.wall import LoadPath
 from ...evaluation.geometry import Geometry, clamped
 from ...evaluation.kernel import Implicit, ModelRun, Statics
 from ...evaluation.limits import MaterialValues, MetricArrays
-from ...evaluation.rods import Rod
+from ...evaluation.rods import RodSection
 from ...evaluation.springs import Springs
 from ...evaluation.state import LoadState
 from ...evaluation.values import Values
@@ -40,14 +40,14 @@ from .bounding import CAUTION, SAMPLES, Leads, function
 from .intervals import branch, extreme
 from .relaxation import (
     FAR,
+    AtomFunction,
     ConstraintRow,
-    Curve,
     Form,
     Kind,
     Mixed,
     Relaxation,
+    SampledFunction,
     Signomial,
-    Table,
     Unknown,
 )
 
@@ -154,7 +154,7 @@ class Builder:
             logs = np.log(np.abs(values))
         if not np.isfinite(logs).all():
             raise Unknown("it is not defined everywhere")
-        table = Table.of(t, logs, CAUTION)
+        table = SampledFunction.of(t, logs, CAUTION)
         if (values[0] > 0) != (values[-1] > 0) or values.min() * values.max() <= 0:
             raise Unknown("its sign is not known")
         least, most = float(logs.min()) - table.room, float(logs.max()) + table.room
@@ -356,7 +356,7 @@ class Builder:
         if sign > 0:
             return self._curve("exp", form, math.log(low) if low > 0 else -FAR, math.log(high))
         out = self.found.atom(low, high, lambda y: -math.exp(form.at(y)))
-        self.found.curves.append(Curve("exp", form, Form(0.0) - out))
+        self.found.curves.append(AtomFunction("exp", form, Form(0.0) - out))
         return out
 
     def _curve(self, kind: Kind, argument: Form, low: float, high: float) -> Form:
@@ -367,7 +367,7 @@ class Builder:
             math.exp(high),
             lambda y: float(one.value(np.array([argument.at(y)]))[0]),
         )
-        self.found.curves.append(Curve(kind, argument, out))
+        self.found.curves.append(AtomFunction(kind, argument, out))
         return out
 
 
@@ -454,7 +454,9 @@ class Envelopes:
     def column(self, mode: TrialMode | None) -> Callable[..., Array]:
         """Critical load: an unknown, at most that of one shape with the stiffer segment's shear."""
 
-        def critical(design: Design, wall: Wall, rod: Rod, lengths: tuple[Array, Array]) -> Array:
+        def critical(
+            design: Design, wall: Wall, rod: RodSection, lengths: tuple[Array, Array]
+        ) -> Array:
             if mode is None:
                 return rod_strength.critical_load(design, wall, rod, lengths)
             load = trial_mode_load(

@@ -23,7 +23,7 @@ import numpy as np
 from ...base.symbolic import Graph, Symbol
 from ...base.symbolic.expression import bounds_of, needed
 from ...evaluation.kernel import ModelRun, Statics, compute, statics
-from ...evaluation.limits import Limit, MetricArrays
+from ...evaluation.limits import MetricArrays, MetricLimit
 from ...evaluation.values import Values
 from ..actuator import MET, ActuatorProblem
 from ..problem import Vector
@@ -37,10 +37,10 @@ SOFTER = 1e-5
 
 
 @dataclass(frozen=True, slots=True)
-class Claim:
+class TracedLimit:
     """A limit on a traced value: value >= limit or value <= limit."""
 
-    limit: Limit
+    limit: MetricLimit
     label: str
     value: Symbol
     bound: float
@@ -60,7 +60,7 @@ class Traced:
     """Further unknowns of envelopes by name, with their values in an evaluated design."""
     objectives: list[Any] = field(default_factory=list)
     """The objective is at least each of these values."""
-    claims: list[Claim] = field(default_factory=list)
+    claims: list[TracedLimit] = field(default_factory=list)
     facts: list[tuple[Any, Any]] = field(default_factory=list)
     """Pairs of values: the first is always at least the second."""
     dropped: dict[str, str] = field(default_factory=dict)
@@ -167,7 +167,7 @@ def _along_the_stroke(
 def _collect(
     actuator: ActuatorProblem,
     found: Traced,
-    limits: list[Limit],
+    limits: list[MetricLimit],
     out: MetricArrays,
     values: Values,
     *,
@@ -195,7 +195,7 @@ def _collect(
             if isinstance(value, Symbol) or varies:
                 where = ", ".join(x for x in (case, place) if x)
                 claimed = value / limited if varies else value
-                found.claims.append(Claim(limit, f"{limit.name} ({where})", claimed, bound))
+                found.claims.append(TracedLimit(limit, f"{limit.name} ({where})", claimed, bound))
             else:
                 found.dropped.setdefault(limit.name, "no variable affects its traced value")
         if not rows and (first or limit.case is not None):
@@ -237,7 +237,7 @@ GAIN = 0.1
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class ProvenBound:
     """Lower bound on the objective's logarithm, boxes solved, and whether the gap is closed."""
 
     bound: float
@@ -277,7 +277,7 @@ class BoxSearch:
         self._order = itertools.count()
         self._open: list[tuple[float, int, Box, Bound]] = []
 
-    def run(self, report: Callable[[float], None] | None = None) -> Found:
+    def run(self, report: Callable[[float], None] | None = None) -> ProvenBound:
         """Search until time or boxes run out or the gap closes; returns the bound.
 
         Parameters
@@ -301,7 +301,7 @@ class BoxSearch:
                 with suppress(Gone):
                     self._add(part.tightened(self.layout), value)
         bottom = min(self.least, self._open[0][0] if self._open else math.inf, self.goal)
-        return Found(bottom + math.log1p(-GUARD), self.boxes, bottom >= self.goal)
+        return ProvenBound(bottom + math.log1p(-GUARD), self.boxes, bottom >= self.goal)
 
     def first(self) -> float:
         """The bound of the first box; infinite if it is empty."""
@@ -402,7 +402,7 @@ class Relaxed:
     relaxation: Relaxation
     objective: Form
     variables: dict[str, Form]
-    covered: tuple[Claim, ...]
+    covered: tuple[TracedLimit, ...]
     dropped: dict[str, str]
     unknowns: dict[str, Callable[[ModelRun], float]]
     """Values of the further unknowns in an evaluated design, by name."""
@@ -474,7 +474,7 @@ def _largest(builder: Builder, values: Sequence[Any]) -> Form:
     return found
 
 
-def _ends(claim: Claim) -> tuple[float, float]:
+def _ends(claim: TracedLimit) -> tuple[float, float]:
     room = MET * abs(claim.bound)
     if claim.limit.sense == "min":
         return claim.bound - room, math.inf
@@ -489,7 +489,7 @@ def certify(
     seconds: float = SECONDS,
     most: float = BOXES,
     report: Report = None,
-) -> tuple[Relaxed, Found]:
+) -> tuple[Relaxed, ProvenBound]:
     """Lower bound on the objective of every design that meets the limits.
 
     Parameters
@@ -520,12 +520,12 @@ def certify(
 
 def _coarse(
     actuator: ActuatorProblem, x: Vector, aim: float, until: float, most: float, report: Report
-) -> tuple[Relaxed | None, Found]:
+) -> tuple[Relaxed | None, ProvenBound]:
     """Search for designs no heavier than an aim; no relaxation if that is ruled out at once."""
     try:
         relaxed, search = _search(trace(actuator, x), aim, until, most)
     except (Empty, Gone):
-        return None, Found(math.log(aim) + math.log1p(-GUARD), 0, True)
+        return None, ProvenBound(math.log(aim) + math.log1p(-GUARD), 0, True)
     return relaxed, search.run(report)
 
 

@@ -18,7 +18,17 @@ import numpy as np
 from ...base.symbolic import Symbol
 from ...base.symbolic.expression import Bounds, at_end, bounds, bounds_of
 from ..problem import Vector
-from .relaxation import FAR, ROUNDING, Form, Mixed, Powers, Relaxation, Signomial, Table, Tables
+from .relaxation import (
+    FAR,
+    ROUNDING,
+    Form,
+    Mixed,
+    Powers,
+    Relaxation,
+    SampledFunction,
+    Signomial,
+    Tables,
+)
 
 ROUNDS = 30
 """Maximum passes over all values."""
@@ -441,7 +451,7 @@ class Layout:
         """Tables of the links, the numbers of their curves, and the levels of the ratios."""
         number = np.array([self._of_curve[id(link.curve)] for link in self.links])
         kinds = [link.curve.kind for link in self.links]
-        tables = Tables([kind for kind in kinds if isinstance(kind, Table)])
+        tables = Tables([kind for kind in kinds if isinstance(kind, SampledFunction)])
         return tables, number, np.array([link.level for link in self.links])
 
     def ratios(self, box: Box) -> tuple[Vector, Vector]:

@@ -30,7 +30,7 @@ FAR = 200.0
 """Largest logarithm of an atom or a ratio; e^200 is beyond any quantity."""
 
 
-class Shape(NamedTuple):
+class MonotoneFunction(NamedTuple):
     """An increasing function with its slope and its inverse; convex (1) or concave (-1)."""
 
     value: Function
@@ -53,16 +53,16 @@ def _log(x: Vector) -> Vector:
     return np.log(np.maximum(x, LEAST))
 
 
-SHAPES: dict[Name, Shape] = {
-    "softplus": Shape(
+SHAPES: dict[Name, MonotoneFunction] = {
+    "softplus": MonotoneFunction(
         lambda x: np.logaddexp(0.0, x),
         lambda x: 1 / (1 + np.exp(-np.maximum(x, -700.0))),
         _softplus_inverse,
         1,
     ),
-    "exp": Shape(_exp, _exp, _log, 1),
-    "log": Shape(_log, lambda x: 1 / np.maximum(x, LEAST), _exp, -1),
-    "tanh": Shape(
+    "exp": MonotoneFunction(_exp, _exp, _log, 1),
+    "log": MonotoneFunction(_log, lambda x: 1 / np.maximum(x, LEAST), _exp, -1),
+    "tanh": MonotoneFunction(
         lambda x: _log(np.tanh(_exp(x))),
         lambda x: 2 * _exp(x) / np.sinh(np.minimum(2 * _exp(x), 700.0)),
         lambda y: _log(np.arctanh(np.minimum(_exp(y), 1 - 1e-16))),
@@ -73,7 +73,7 @@ SHAPES: dict[Name, Shape] = {
 
 
 @dataclass(frozen=True, eq=False)
-class Table:
+class SampledFunction:
     """A smooth function as equally spaced samples; `room` bounds the error between samples.
 
     `convex` is 1, -1 or 0 for neither.
@@ -88,7 +88,7 @@ class Table:
     """1, -1 or 0 for neither."""
 
     @classmethod
-    def of(cls, t: Vector, values: Vector, caution: float) -> Table:
+    def of(cls, t: Vector, values: Vector, caution: float) -> SampledFunction:
         """The table of samples at t; `caution` scales their second derivative."""
         step = float(t[1] - t[0])
         second = np.diff(values, 2)
@@ -103,7 +103,7 @@ class Table:
 class Tables:
     """Several tables with equally many samples, one argument each."""
 
-    def __init__(self, tables: Sequence[Table]) -> None:
+    def __init__(self, tables: Sequence[SampledFunction]) -> None:
         self.low = np.array([one.low for one in tables])
         self.step = np.array([one.step for one in tables])
         self.values = np.stack([one.values for one in tables])
@@ -190,16 +190,16 @@ class Tables:
         return found
 
 
-Kind: TypeAlias = Name | Table
+Kind: TypeAlias = Name | SampledFunction
 
 
 class Mixed:
     """Many curves of several kinds, one argument each."""
 
     def __init__(self, kinds: Sequence[Kind]) -> None:
-        tables = [kind for kind in kinds if isinstance(kind, Table)]
+        tables = [kind for kind in kinds if isinstance(kind, SampledFunction)]
         self.tabled = np.array(
-            [k for k, kind in enumerate(kinds) if isinstance(kind, Table)], dtype=np.intp
+            [k for k, kind in enumerate(kinds) if isinstance(kind, SampledFunction)], dtype=np.intp
         )
         self.tables = Tables(tables) if tables else None
         names = np.array([kind if isinstance(kind, str) else "" for kind in kinds], dtype=object)
@@ -361,7 +361,7 @@ class Unknown(Exception):
     """A value of unknown sign, or without a relaxation of its model; carries the reason."""
 
 
-class Curve(NamedTuple):
+class AtomFunction(NamedTuple):
     """out = function(argument), both affine in the atoms' logarithms."""
 
     kind: Kind
@@ -378,7 +378,7 @@ class Link(NamedTuple):
     out: int
     base: int
     level: float
-    curve: Curve
+    curve: AtomFunction
 
 
 class Product(NamedTuple):
@@ -412,7 +412,7 @@ class Relaxation:
     lower: list[float] = field(default_factory=list)
     upper: list[float] = field(default_factory=list)
     rows: list[ConstraintRow] = field(default_factory=list)
-    curves: list[Curve] = field(default_factory=list)
+    curves: list[AtomFunction] = field(default_factory=list)
     splits: list[tuple[Form, Form, Form]] = field(default_factory=list)
     """Every sum: the whole, and its two parts."""
     links: list[Link] = field(default_factory=list)
@@ -457,7 +457,7 @@ class Relaxation:
 
     def split(self, whole: Form, part: Form, rest: Form) -> None:
         """Add the constraint whole = part + rest."""
-        self.curves.append(Curve("softplus", part - rest, whole - rest))
+        self.curves.append(AtomFunction("softplus", part - rest, whole - rest))
         self.splits.append((whole, part, rest))
 
 

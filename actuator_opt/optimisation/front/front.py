@@ -28,7 +28,7 @@ from ...base.numeric import Array
 from ...base.progress import tell
 from ..actuator import Solution
 from ..evaluator import Evaluator, Point
-from ..problem import Values, Vector
+from ..problem import PointValues, Vector
 from ..resolve.parallel_descents import (
     FEASIBLE,
     RESIDUAL,
@@ -39,8 +39,8 @@ from ..resolve.parallel_descents import (
 from ..solver import KEEP, Halton, Sweep, distinct, solve, sweep
 from . import tracer
 from .objectives import Conditions, Objectives
-from .plane import Gap, chosen, close, fill_line, fill_plane, lost, middles, wide
-from .tracer import Design, FrontSearch, Start, Tracer, knee, nondominated
+from .plane import FrontGap, chosen, close, fill_line, fill_plane, lost, middles, wide
+from .tracer import FrontDesign, FrontSearch, FrontStart, Tracer, knee, nondominated
 
 HOLD = 1e-10
 """Share of its range by which an anchor's objective may worsen while the others improve."""
@@ -53,7 +53,7 @@ ROUGH = 16
 
 
 @dataclass(frozen=True)
-class Effort:
+class FrontEffort:
     """Search effort: starts and sweep samples per objective, and the seed."""
 
     starts: int
@@ -76,7 +76,7 @@ class NoEnd(NamedTuple):
     solution: Solution
 
 
-def ends(objectives: Objectives, checked: Evaluator, effort: Effort) -> Ends | NoEnd:
+def ends(objectives: Objectives, checked: Evaluator, effort: FrontEffort) -> Ends | NoEnd:
     """The best design of each objective; the failed search if there is none."""
     optima = [[] for _ in range(objectives.count)] if not checked.exact else _together(
         objectives, checked, effort
@@ -101,7 +101,9 @@ def ends(objectives: Objectives, checked: Evaluator, effort: Effort) -> Ends | N
     return Ends(np.stack(best, axis=1), np.stack(known, axis=1))
 
 
-def _together(objectives: Objectives, checked: Evaluator, effort: Effort) -> list[list[Vector]]:
+def _together(
+    objectives: Objectives, checked: Evaluator, effort: FrontEffort
+) -> list[list[Vector]]:
     """Local optima of each objective, best first, from simultaneous runs."""
     objectives = replace(objectives, evaluate=_remembering(objectives.evaluate))
     evaluators = [objectives.like(checked, k) for k in range(objectives.count)]
@@ -115,11 +117,11 @@ def _together(objectives: Objectives, checked: Evaluator, effort: Effort) -> lis
     return [_optima(*pair) for pair in zip(ended, settled, strict=True)]
 
 
-def _remembering(evaluate: Callable[[Array], Values]) -> Callable[[Array], Values]:
+def _remembering(evaluate: Callable[[Array], PointValues]) -> Callable[[Array], PointValues]:
     """The same function with the last real points cached, as all objectives sweep the same ones."""
-    last: dict[bytes, Values] = {}
+    last: dict[bytes, PointValues] = {}
 
-    def remembered(points: Array) -> Values:
+    def remembered(points: Array) -> PointValues:
         if np.iscomplexobj(points):
             return evaluate(points)
         key = np.asarray(points).tobytes()
@@ -184,7 +186,7 @@ def _sharpened(tracer: Tracer, x: Vector, units: Vector) -> Vector:
         level, way = np.zeros(count), np.ones(count)
         level[k], way[k] = units[k, k] + HOLD, 0.0
         z = tracer.from_x(x[:, k], float(np.delete(units[:, k], k).max()))
-        starts.append(Start(level, way, z, np.eye(len(z))))
+        starts.append(FrontStart(level, way, z, np.eye(len(z))))
     moved = x.copy()
     for k, (one, start) in enumerate(zip(tracer.solve(starts), starts, strict=True)):
         before = start.z[-1] * tracer.scale
@@ -201,7 +203,7 @@ ROUNDS = 24
 """Maximum points of a run; if no design is feasible by then, other steps take over."""
 
 
-def better(tracer: Tracer, designs: Sequence[Design], effort: Effort) -> list[Vector]:
+def better(tracer: Tracer, designs: Sequence[FrontDesign], effort: FrontEffort) -> list[Vector]:
     """Variables (n,) of better designs at the levels of some designs on the front."""
     reached: list[list[Point]] = [[] for _ in designs]
     if tracer.exact and designs:
@@ -221,7 +223,9 @@ def better(tracer: Tracer, designs: Sequence[Design], effort: Effort) -> list[Ve
     return found
 
 
-def _reached(tracer: Tracer, designs: Sequence[Design], effort: Effort) -> list[list[Point]]:
+def _reached(
+    tracer: Tracer, designs: Sequence[FrontDesign], effort: FrontEffort
+) -> list[list[Point]]:
     """Feasible points reached by runs, separately for each level."""
     evaluators = [tracer.like(tracer.at(one.level, one.way)) for one in designs]
     parameters = np.stack([np.concatenate([one.level, one.way]) for one in designs], axis=1)
@@ -238,7 +242,7 @@ def _reached(tracer: Tracer, designs: Sequence[Design], effort: Effort) -> list[
 
 
 def _overlooked_starts(
-    tracer: Tracer, designs: Sequence[Design], effort: Effort
+    tracer: Tracer, designs: Sequence[FrontDesign], effort: FrontEffort
 ) -> list[list[Vector]]:
     """Coordinates for each level: the problem's own start, and the best of one shared sweep."""
     inner = Evaluator(tracer.objectives.alone(0))
@@ -267,7 +271,7 @@ def _overlooked_starts(
 
 
 @dataclass(frozen=True)
-class Settings:
+class FrontSettings:
     """Search effort for a front.
 
     Parameters
@@ -311,7 +315,7 @@ class Front:
     checked: int = 0
     improved: int = 0
     failed: int = 0
-    wide: tuple[Gap, ...] = ()
+    wide: tuple[FrontGap, ...] = ()
     warnings: tuple[str, ...] = ()
 
     @property
@@ -324,9 +328,9 @@ class Front:
         return np.asarray(np.sqrt((np.diff(self.units, axis=1) ** 2).sum(axis=0)))
 
 
-def front(objectives: Objectives, settings: Settings) -> Front | NoEnd:
+def front(objectives: Objectives, settings: FrontSettings) -> Front | NoEnd:
     """Trace the front of some objectives; returns the failed search if an anchor has no optimum."""
-    effort = Effort(settings.starts, settings.samples, settings.seed)
+    effort = FrontEffort(settings.starts, settings.samples, settings.seed)
     tell("searching for the ends of the front")
     checked, warnings = objectives.checked()
     found = ends(objectives, checked, effort)
@@ -367,7 +371,7 @@ def _fill(search: FrontSearch, count: int) -> None:
         fill_plane(search, count)
 
 
-def _places(search: FrontSearch, settings: Settings) -> list[int]:
+def _places(search: FrontSearch, settings: FrontSettings) -> list[int]:
     """Indices of designs for independent searches: evenly spaced, and one in each wide gap."""
     inner = [k for k in search.chosen() if search.designs[k].held][1:-1]
     picked = np.linspace(0, len(inner) - 1, settings.checks + 2)[1:-1].round().astype(int)

@@ -17,7 +17,7 @@ import numpy as np
 from ...base.numeric import Array
 from ..evaluator import Evaluator, Point
 from ..kkt import residual
-from ..problem import BoxProblem, ParametricProblem, Values, Vector
+from ..problem import BoxProblem, ParametricProblem, PointValues, Vector
 from ..resolve.parallel_descents import RESIDUAL
 
 LEVEL = "level of the objectives"
@@ -35,12 +35,12 @@ class Objectives:
     ----------
     names : of the objectives
     problem : variables and constraints; its own objective is ignored
-    evaluate : maps points (n, k) to `Values` with objectives (objectives, k), to be minimised
+    evaluate : maps points (n, k) to `PointValues` with objectives (objectives, k), to be minimised
     """
 
     names: Sequence[str]
     problem: BoxProblem
-    evaluate: Callable[[Array], Values]
+    evaluate: Callable[[Array], PointValues]
 
     @property
     def count(self) -> int:
@@ -50,7 +50,7 @@ class Objectives:
     def picked(self) -> ParametricProblem:
         """The problem of a single objective; the parameter is its index."""
 
-        def evaluate(points: Array, parameters: Array) -> Values:
+        def evaluate(points: Array, parameters: Array) -> PointValues:
             found = self.evaluate(points)
             which = np.broadcast_to(np.asarray(parameters[0], dtype=np.intp), points.shape[1:])
             stacked = self._stacked(found, points)
@@ -89,7 +89,7 @@ class Objectives:
         with np.errstate(all="ignore"):
             return np.asarray(self._stacked(self.evaluate(x), x), dtype=float)
 
-    def _stacked(self, found: Values, points: Array) -> Array:
+    def _stacked(self, found: PointValues, points: Array) -> Array:
         parts = found.objective
         return np.stack([np.broadcast_to(np.asarray(f), points.shape[1:]) for f in parts])
 
@@ -100,13 +100,13 @@ class Objectives:
         """
         problem, count = self.problem, self.count
 
-        def evaluate(points: Array, parameters: Array) -> Values:
+        def evaluate(points: Array, parameters: Array) -> PointValues:
             x, level = points[:-1], points[-1]
             found = self.evaluate(x)
             unit = (self._stacked(found, x) - ideal[:, None]) / width[:, None]
             front = parameters[:count] + parameters[count:] * level - unit
             margins = front if found.constraints is None else _joined(found.constraints, front)
-            return Values(level, margins, found.equalities)
+            return PointValues(level, margins, found.equalities)
 
         neutral = np.concatenate([np.zeros(count), np.ones(count)])
         start = problem.start

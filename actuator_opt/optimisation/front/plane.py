@@ -24,7 +24,7 @@ from ...base.progress import tell
 from ..problem import Vector
 from ..resolve.parallel_descents import RESIDUAL
 from . import plane, tracer
-from .tracer import BETTER, HELD, JUMP, Design, FrontSearch, Indices, Start, distances
+from .tracer import BETTER, HELD, JUMP, FrontDesign, FrontSearch, FrontStart, Indices, distances
 
 STEEPEST = 2.0
 """Maximum length of a two-objective front per unit of u."""
@@ -188,7 +188,7 @@ def _flooded(search: FrontSearch, begun: Iterable[Place], steps: int, most: int)
     return held
 
 
-def _beside(search: FrontSearch, level: Vector) -> Start:
+def _beside(search: FrontSearch, level: Vector) -> FrontStart:
     """A start from the designs next to a level, weighted by proximity."""
     away = distances(search.plane, level - level.mean())
     near = np.argsort(away, kind="stable")[: len(level)]
@@ -196,16 +196,16 @@ def _beside(search: FrontSearch, level: Vector) -> Start:
     some = [search.designs[k] for k in near]
     z = np.stack([one.point.z for one in some], axis=1) @ (shares / shares.sum())
     t = max(float((one.unit - level).max()) for one in some)
-    return Start(level, np.ones(len(level)), search.tracer.to_t(z, t), some[0].hessian)
+    return FrontStart(level, np.ones(len(level)), search.tracer.to_t(z, t), some[0].hessian)
 
 
-def _all_bettered(search: FrontSearch, found: Sequence[Design | None]) -> list[Design]:
+def _all_bettered(search: FrontSearch, found: Sequence[FrontDesign | None]) -> list[FrontDesign]:
     """Improve the objectives of each design that cost the others nothing, at its own level.
 
     An objective whose level is not active has no price. With the others bounded at their values it
     is improved, until every objective has a price [Marler2004].
     """
-    done: list[Design] = []
+    done: list[FrontDesign] = []
     left = [(one, search.tracer.prices(one) > PRICED) for one in found if one is not None]
     for again in range(search.tracer.objectives.count):
         done += [one for one, firm in left if firm.all()]
@@ -225,11 +225,11 @@ def _all_bettered(search: FrontSearch, found: Sequence[Design | None]) -> list[D
     return search.tracer.placed(done)
 
 
-def _freed(search: FrontSearch, one: Design, firm: npt.NDArray[np.bool_]) -> Start:
+def _freed(search: FrontSearch, one: FrontDesign, firm: npt.NDArray[np.bool_]) -> FrontStart:
     """A start that improves the other objectives, with the firm ones bounded."""
     level, way = np.where(firm, one.unit + HOLD, one.level), (~firm).astype(float)
     t = float((one.unit - one.level)[~firm].max())
-    return Start(level, way, search.tracer.to_t(one.point.z, t), one.hessian)
+    return FrontStart(level, way, search.tracer.to_t(one.point.z, t), one.hessian)
 
 
 def _renormalised(search: FrontSearch) -> bool:
@@ -245,7 +245,7 @@ def _renormalised(search: FrontSearch) -> bool:
 def _fill_holes(search: FrontSearch, count: int) -> None:
     """Add levels between the neighbours farthest apart, until there are enough designs."""
     tried: set[tuple[int, int]] = set()
-    seen: list[Design] = []  # kept alive, as an id may be reused
+    seen: list[FrontDesign] = []  # kept alive, as an id may be reused
     for number in range(ROUNDS):
         chosen = search.chosen()
         missing = int(np.ceil(SURPLUS * count)) - len(chosen)
@@ -263,7 +263,7 @@ def _fill_holes(search: FrontSearch, count: int) -> None:
         search.take(_all_bettered(search, search.compared(starts)))
 
 
-def _key(designs: Sequence[Design], pair: tuple[int, int]) -> tuple[int, int]:
+def _key(designs: Sequence[FrontDesign], pair: tuple[int, int]) -> tuple[int, int]:
     return id(designs[pair[0]]), id(designs[pair[1]])
 
 
@@ -282,13 +282,13 @@ def _apart(search: FrontSearch, chosen: Indices) -> list[tuple[int, int]]:
     return sorted(found, key=lambda pair: -found[pair])
 
 
-def _middle(search: FrontSearch, one: Design, other: Design) -> Start:
+def _middle(search: FrontSearch, one: FrontDesign, other: FrontDesign) -> FrontStart:
     """A start at the level midway between two designs."""
     level = (one.unit + other.unit) / 2
     level = level - level.mean() + 1 / len(level)
     z = (one.point.z + other.point.z) / 2
     t = float((one.unit + other.unit).mean() / 2 - 1 / len(level))
-    return Start(level, np.ones(len(level)), search.tracer.to_t(z, t), one.hessian)
+    return FrontStart(level, np.ones(len(level)), search.tracer.to_t(z, t), one.hessian)
 
 
 def _crossed(search: FrontSearch) -> bool:
@@ -303,7 +303,7 @@ def _crossed(search: FrontSearch) -> bool:
         one, other = search.designs[to], search.designs[way]
         t = float((other.unit - one.unit).max())
         at = search.tracer.to_t(other.point.z, t)
-        starts.append(Start(one.level, one.way, at, other.hessian))
+        starts.append(FrontStart(one.level, one.way, at, other.hessian))
     others = [
         new
         for (to, _), new in zip(both, search.tracer.solve(starts), strict=True)
@@ -314,7 +314,7 @@ def _crossed(search: FrontSearch) -> bool:
     return bool(others) and not before <= {id(search.designs[k]) for k in search.chosen()}
 
 
-def _elsewhere(one: Design, new: Design) -> bool:
+def _elsewhere(one: FrontDesign, new: FrontDesign) -> bool:
     """Whether an equally good design at the same level differs."""
     far = np.abs(new.point.z[:-1] - one.point.z[:-1]).max() > ELSEWHERE
     return bool(far and new.point.objective < one.point.objective + BETTER)
@@ -360,7 +360,7 @@ def fill_line(search: FrontSearch, count: int) -> None:
     search.cross()
 
 
-def between_on_line(search: FrontSearch, places: Sequence[float] | Vector) -> list[Start]:
+def between_on_line(search: FrontSearch, places: Sequence[float] | Vector) -> list[FrontStart]:
     """Starts at places u between the known designs, from their neighbours."""
     search.sort()
     known = [one.level[0] for one in search.designs]
@@ -370,7 +370,7 @@ def between_on_line(search: FrontSearch, places: Sequence[float] | Vector) -> li
     ]
 
 
-def _between(designs: Sequence[Design], k: int, u: float, way: Vector) -> Start:
+def _between(designs: Sequence[FrontDesign], k: int, u: float, way: Vector) -> FrontStart:
     """A start before design k by interpolation; from the nearer neighbour if the front jumps."""
     left, right = designs[k - 1], designs[k]
     low, high = left.level[0], right.level[0]
@@ -384,10 +384,10 @@ def _between(designs: Sequence[Design], k: int, u: float, way: Vector) -> Start:
             some.append(designs[k + 1])
         places = np.array([one.level[0] for one in some])
         z = np.stack([one.point.z for one in some], axis=1) @ _weights(places, u)
-    return Start(plane.on_line(np.array([u]))[:, 0], way, z, near.hessian)
+    return FrontStart(plane.on_line(np.array([u]))[:, 0], way, z, near.hessian)
 
 
-def _jumps(left: Design, right: Design) -> bool:
+def _jumps(left: FrontDesign, right: FrontDesign) -> bool:
     """Whether two designs are farther apart than on a continuous front."""
     wide = right.level[0] - left.level[0]
     return bool(np.linalg.norm(right.unit - left.unit) >= plane.STEEPEST * wide)
@@ -414,7 +414,7 @@ PIECES = 8
 
 
 @dataclass(frozen=True)
-class Gap:
+class FrontGap:
     """A wide gap between neighbours of a front, in normalised objectives.
 
     Parameters
@@ -447,14 +447,14 @@ def chosen(search: FrontSearch, count: int) -> tracer.Indices:
     return kept[tracer.thinned(units, first, count)]
 
 
-def wide(search: FrontSearch, kept: tracer.Indices) -> list[Gap]:
+def wide(search: FrontSearch, kept: tracer.Indices) -> list[FrontGap]:
     """The wide gaps between designs of two objectives, in order."""
     units = search.units[:, kept]
     sizes = np.sqrt((np.diff(units, axis=1) ** 2).sum(axis=0))
     reaches = np.array([float(_pieces(search, *two).sum()) for two in _pairs(kept)])
     middle = float(np.median(np.minimum(sizes, reaches))) if len(sizes) else 0.0
     return [
-        Gap(k, float(sizes[k]), float(reaches[k]), bool(reaches[k] <= middle))
+        FrontGap(k, float(sizes[k]), float(reaches[k]), bool(reaches[k] <= middle))
         for k in np.flatnonzero(sizes > WIDEST * middle).tolist()
     ]
 

@@ -127,7 +127,7 @@ CURVED = 2
 
 
 @dataclass(frozen=True)
-class Design:
+class FrontDesign:
     """The best known design at its levels.
 
     Parameters
@@ -152,7 +152,7 @@ class Design:
 
 
 @dataclass(frozen=True)
-class Start:
+class FrontStart:
     """Start for the design at some levels: coordinates with t, and a Hessian."""
 
     level: Vector
@@ -211,30 +211,30 @@ class Tracer:
         """The problem at some levels."""
         return self.parametric.at(np.concatenate([level, way]))
 
-    def begun(self, x: Vector) -> list[Design]:
+    def begun(self, x: Vector) -> list[FrontDesign]:
         """Designs from variables (n, k) at their own levels, without curvature."""
         units = self.unit(x)
         size = self.evaluator.space.size
         return self._at_own(
             [
-                Start(unit, np.ones(len(unit)), self.from_x(one, 0.0), np.eye(size))
+                FrontStart(unit, np.ones(len(unit)), self.from_x(one, 0.0), np.eye(size))
                 for one, unit in zip(x.T, units.T, strict=True)
             ]
         )
 
-    def placed(self, designs: Sequence[Design]) -> list[Design]:
+    def placed(self, designs: Sequence[FrontDesign]) -> list[FrontDesign]:
         """The designs at their own levels, for which every design of a front is the best."""
         if not designs:
             return []
         units = self.unit(np.stack([one.point.x[:-1] for one in designs], axis=1))
         way = np.ones(len(units))
         starts = [
-            Start(unit, way, self.to_t(one.point.z, 0.0), one.hessian)
+            FrontStart(unit, way, self.to_t(one.point.z, 0.0), one.hessian)
             for one, unit in zip(designs, units.T, strict=True)
         ]
         return self._at_own(starts)
 
-    def _at_own(self, starts: Sequence[Start]) -> list[Design]:
+    def _at_own(self, starts: Sequence[FrontStart]) -> list[FrontDesign]:
         """The designs at the starts, with their gradients."""
         z = np.stack([start.z for start in starts], axis=1)
         if not self.exact:
@@ -243,7 +243,7 @@ class Tracer:
         points = self._changed(starts).points(z)
         return [self._design(s, p, s.hessian) for s, p in zip(starts, points, strict=True)]
 
-    def prices(self, one: Design) -> Vector:
+    def prices(self, one: FrontDesign) -> Vector:
         """Price of each objective's level at a design (objectives,)."""
         m, count = len(self.objectives.problem.constraint_names), self.objectives.count
         jacobian = self.evaluator.jacobian(one.point)
@@ -254,14 +254,16 @@ class Tracer:
         every[active.constraint] = held[: len(active.constraint)]
         return every[m : m + count]
 
-    def solve(self, starts: Sequence[Start], known: Sequence[Design] = ()) -> list[Design | None]:
+    def solve(
+        self, starts: Sequence[FrontStart], known: Sequence[FrontDesign] = ()
+    ) -> list[FrontDesign | None]:
         """The design at the levels of each start, or None.
 
         Where the starts fail, descents start from the `known` designs.
         """
         if not starts:
             return []
-        found: list[Design | None] = [None] * len(starts)
+        found: list[FrontDesign | None] = [None] * len(starts)
         if self.exact:
             found = self._follow(starts)
             left = [k for k, one in enumerate(found) if one is None]
@@ -270,7 +272,9 @@ class Tracer:
             return found
         return [self._alone(start) for start in starts]
 
-    def exchange(self, designs: list[Design], others: Vector, rest: Vector) -> list[Design]:
+    def exchange(
+        self, designs: list[FrontDesign], others: Vector, rest: Vector
+    ) -> list[FrontDesign]:
         """The designs, each replaced where another design's variables are better.
 
         Parameters
@@ -296,7 +300,7 @@ class Tracer:
             if not better:
                 break
             starts = [
-                Start(designs[k].level, designs[k].way, self.from_x(z, t), designs[k].hessian)
+                FrontStart(designs[k].level, designs[k].way, self.from_x(z, t), designs[k].hessian)
                 for k, z, t in better
             ]
             for (k, _, t), new in zip(better, self._descended(starts), strict=True):
@@ -306,7 +310,7 @@ class Tracer:
                     lost.add(k)
         return designs
 
-    def spread(self, designs: list[Design], begun: Sequence[Design]) -> list[Design]:
+    def spread(self, designs: list[FrontDesign], begun: Sequence[FrontDesign]) -> list[FrontDesign]:
         """The designs, each replaced where a descent from another start is better."""
         news = list(begun)
         while news:
@@ -315,7 +319,9 @@ class Tracer:
             for one in designs:
                 near = news[int(np.argmin(distances(levels, one.level)))]
                 t = float(((near.unit - one.level) / one.way).max())
-                starts.append(Start(one.level, one.way, self.to_t(near.point.z, t), near.hessian))
+                starts.append(
+                    FrontStart(one.level, one.way, self.to_t(near.point.z, t), near.hessian)
+                )
             news = []
             for k, new in enumerate(self._descended(starts)):
                 if new is not None and new.point.objective < designs[k].point.objective - BETTER:
@@ -323,13 +329,13 @@ class Tracer:
                     news.append(new)
         return designs
 
-    def _descended(self, starts: Sequence[Start]) -> list[Design | None]:
+    def _descended(self, starts: Sequence[FrontStart]) -> list[FrontDesign | None]:
         """The designs reached by descents from feasible starts."""
         if not self.exact:
             return [self._alone(start) for start in starts]
         return self._follow(starts)
 
-    def _changed(self, starts: Sequence[Start]) -> ChangedProblems:
+    def _changed(self, starts: Sequence[FrontStart]) -> ChangedProblems:
         """The problems at the levels of some starts."""
         levels = np.stack([np.concatenate([one.level, one.way]) for one in starts], axis=1)
         return ChangedProblems(self.parametric, self.evaluator, levels)
@@ -339,9 +345,9 @@ class Tracer:
         rows = self.evaluator.constraint_count
         return Descent(hessian, self.scale, rows, 1.0, radius=radius)
 
-    def _follow(self, starts: Sequence[Start]) -> list[Design | None]:
+    def _follow(self, starts: Sequence[FrontStart]) -> list[FrontDesign | None]:
         """Full steps; where they do not converge, again with the curvature of the last point."""
-        designs: list[Design | None] = [None] * len(starts)
+        designs: list[FrontDesign | None] = [None] * len(starts)
         left, begun = list(range(len(starts))), list(starts)
         for again in range(1 + CURVED):
             z = np.stack([one.z for one in begun], axis=1)
@@ -366,10 +372,10 @@ class Tracer:
 
     def _descend(
         self,
-        starts: Sequence[Start],
-        found: list[Design | None],
+        starts: Sequence[FrontStart],
+        found: list[FrontDesign | None],
         left: list[int],
-        known: Sequence[Design],
+        known: Sequence[FrontDesign],
     ) -> None:
         """Descend from the best known design at each level, within trust regions."""
         units = np.stack([one.unit for one in known], axis=1)
@@ -387,7 +393,7 @@ class Tracer:
             if point is not None:
                 found[k] = self._design(starts[k], point, way.hessian)
 
-    def _alone(self, start: Start) -> Design | None:
+    def _alone(self, start: FrontStart) -> FrontDesign | None:
         """One design alone, by the most robust methods."""
         problem = replace(self.at(start.level, start.way), start=None)
         x = self.evaluator.space.to_x(start.z[:, None])[:, 0]
@@ -396,25 +402,27 @@ class Tracer:
             return None
         return self.located(start, best.x)
 
-    def polished(self, one: Design) -> Design:
+    def polished(self, one: FrontDesign) -> FrontDesign:
         """The design after exact Newton steps."""
         own = self.like(self.at(one.level, one.way))
         point = kkt.polish(own, own.point(one.point.z))
         own.jacobian(point)
-        return self._design(Start(one.level, one.way, point.z, one.hessian), point, one.hessian)
+        return self._design(
+            FrontStart(one.level, one.way, point.z, one.hessian), point, one.hessian
+        )
 
-    def located(self, start: Start, x: Vector) -> Design:
+    def located(self, start: FrontStart, x: Vector) -> FrontDesign:
         """The design at variables with t (n + 1,), with its gradients."""
         own = self.like(self.at(start.level, start.way))
         point = own.point(own.space.to_z(x))
         own.jacobian(point)
         return self._design(start, point, start.hessian)
 
-    def _design(self, start: Start, point: Point, hessian: Vector) -> Design:
+    def _design(self, start: FrontStart, point: Point, hessian: Vector) -> FrontDesign:
         m = len(self.objectives.problem.constraint_names)
         rows = point.rows[1 + m : 1 + m + self.objectives.count]
         unit = start.level + start.way * point.objective - rows
-        return Design(start.level, start.way, point, unit, hessian)
+        return FrontDesign(start.level, start.way, point, unit, hessian)
 
     def like(self, problem: BoxProblem) -> Evaluator:
         """An evaluator of a problem, reusing the gradient check."""
@@ -435,7 +443,7 @@ class FrontSearch:
     """The designs so far, with other known feasible points."""
 
     tracer: Tracer
-    designs: list[Design]
+    designs: list[FrontDesign]
     others: Vector
     """Variables (n, k) of further feasible designs."""
     passed: list[Vector] = field(default_factory=list)
@@ -443,9 +451,9 @@ class FrontSearch:
     lost: list[Vector] = field(default_factory=list)
     """Levels without a design."""
     _rest: tuple[Vector, Vector] | None = None
-    _residuals: dict[int, tuple[Design, float]] = field(default_factory=dict)
+    _residuals: dict[int, tuple[FrontDesign, float]] = field(default_factory=dict)
 
-    def solve(self, starts: Sequence[Start], *, firmly: bool = True) -> int:
+    def solve(self, starts: Sequence[FrontStart], *, firmly: bool = True) -> int:
         """Add the designs at the levels of some starts; returns their number.
 
         `firmly` : retry those that shared steps lose within trust regions
@@ -454,13 +462,15 @@ class FrontSearch:
         self.take(good)
         return len(good)
 
-    def found(self, starts: Sequence[Start], *, firmly: bool = True) -> list[Design | None]:
+    def found(
+        self, starts: Sequence[FrontStart], *, firmly: bool = True
+    ) -> list[FrontDesign | None]:
         """The designs at the levels of some starts, not added yet; see `solve`."""
         found = self.tracer.solve(starts, self.designs if firmly else ())
         self.lost += [s.level for s, one in zip(starts, found, strict=True) if one is None]
         return found
 
-    def compared(self, starts: Sequence[Start]) -> list[Design | None]:
+    def compared(self, starts: Sequence[FrontStart]) -> list[FrontDesign | None]:
         """As `found`, but continue from a known design where it is better at the level."""
         found = self.found(starts)
         good = [k for k, one in enumerate(found) if one is not None]
@@ -472,7 +482,7 @@ class FrontSearch:
             found[k] = one
         return found
 
-    def take(self, good: Sequence[Design]) -> None:
+    def take(self, good: Sequence[FrontDesign]) -> None:
         """Add designs, and exchange results between them."""
         before = [*self.designs, *good]
         self.designs = self.tracer.exchange(list(before), self.others, self.rest)
@@ -480,7 +490,7 @@ class FrontSearch:
         self.designs = self.tracer.spread(self.designs, news)
         self._pass([o for o, new in zip(before, self.designs, strict=True) if o is not new])
 
-    def _pass(self, designs: Sequence[Design]) -> None:
+    def _pass(self, designs: Sequence[FrontDesign]) -> None:
         """Record the objectives of designs that are replaced."""
         self.passed += [self.tracer.values(one.unit[:, None])[:, 0] for one in designs]
 
@@ -533,7 +543,7 @@ class FrontSearch:
             for to, way in ((k, k + 1), (k + 1, k)):
                 one, other = self.designs[to], self.designs[way]
                 at = self.tracer.to_t(other.point.z, float((other.unit - one.level).max()))
-                starts.append(Start(one.level, one.way, at, other.hessian))
+                starts.append(FrontStart(one.level, one.way, at, other.hessian))
                 chosen.append(to)
         for to, new in zip(chosen, self.tracer.solve(starts), strict=True):
             if new is not None and new.point.objective < self.designs[to].point.objective - BETTER:

@@ -62,7 +62,7 @@ class SolvedProblem:
 
 
 @dataclass(frozen=True)
-class Task:
+class ResolveTask:
     """A problem to solve near a solved one.
 
     Parameters
@@ -77,7 +77,7 @@ class Task:
     parameters: Vector | None = None
 
 
-def resolve(solved: SolvedProblem, tasks: Sequence[Task]) -> list[Point | None]:
+def resolve(solved: SolvedProblem, tasks: Sequence[ResolveTask]) -> list[Point | None]:
     """The optimum of every task; None without a feasible point.
 
     If no optimum is reached, the best feasible point.

@@ -197,7 +197,7 @@ FIRST = 14
 
 
 @dataclass(frozen=True)
-class Task:
+class DescentTask:
     """Runs of one problem: its evaluator, and their starting points with gradients."""
 
     evaluator: Evaluator
@@ -223,12 +223,12 @@ def precompute(evaluator: Evaluator, starts: Sequence[Point], *, seed: int, most
     if len(starts) < 2 or not evaluator.exact or evaluator.max_evaluations is not None:
         return
     evaluator.take_slopes(starts)
-    task = Task(evaluator, list(starts))
+    task = DescentTask(evaluator, list(starts))
     run_together([task], lambda batch, _: evaluator.problem.rows(batch), seed=seed, most=most)
 
 
 def run_together(
-    tasks: Sequence[Task],
+    tasks: Sequence[DescentTask],
     rows: Rows,
     *,
     seed: int,
@@ -414,7 +414,7 @@ def descents_from(
     parts = [evaluators[k].columns(z[:, None]) for k, z in places]
     owners = np.repeat([k for k, _ in places], parts[0].shape[1]).astype(np.intp)
     values = np.split(rows(np.concatenate(parts, axis=1), owners), len(parts), axis=1)
-    tasks = [Task(one, []) for one in evaluators]
+    tasks = [DescentTask(one, []) for one in evaluators]
     for (k, z), part in zip(places, values, strict=True):
         point = evaluators[k].entered(z, part)
         if point.valid:

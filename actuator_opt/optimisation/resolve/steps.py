@@ -328,7 +328,7 @@ def trusted_steps(
     return None
 
 
-class Restored(NamedTuple):
+class RestorationResult(NamedTuple):
     """A feasible point, or None and the least infeasible one met."""
 
     feasible: Point | None
@@ -337,7 +337,7 @@ class Restored(NamedTuple):
 
 def restoring_steps(
     evaluator: Evaluator, start: Vector | Point, patience: int = PATIENCE
-) -> Steps[Restored]:
+) -> Steps[RestorationResult]:
     """A feasible point near a start.
 
     Every step is the shortest one that satisfies the linearised rows, or violates them least. The
@@ -355,7 +355,7 @@ def restoring_steps(
         if not trial.valid:
             break
         if trial.violation <= MET:
-            return Restored(trial, trial)
+            return RestorationResult(trial, trial)
         if best is None or trial.violation < best.violation:
             best = trial
         if iteration > patience and trial.violation > 0.98 * least:
@@ -368,7 +368,7 @@ def restoring_steps(
         )
         share = min(1.0, kkt.RADIUS / max(float(np.abs(step).max(initial=0.0)), 1e-300))
         trial = yield np.clip(trial.z + share * step, space.lower, space.upper)
-    return Restored(None, best)
+    return RestorationResult(None, best)
 
 
 FIRM = 1e-6

@@ -14,7 +14,7 @@ from ...rendering.text import SENSES, trimmed
 from .shared import (
     BETTER,
     INFEASIBLE,
-    Rows,
+    DrawnRows,
     SweepFigure,
     SweepFigureData,
     Track,
@@ -45,7 +45,7 @@ def parallel_figure(drawn: SweepFigureData, metrics: Sequence[str]) -> Ink:
         drawn.require(name, feasible, others)
     tracks = [*map(drawn.axis, names), drawn.goal, *map(drawn.metric, shown)]
 
-    def table(rows: Rows) -> Array:
+    def table(rows: DrawnRows) -> Array:
         if not len(rows.rows):
             return np.empty((len(tracks), 0))
         return np.array(

@@ -17,7 +17,7 @@ from ...base.numeric import Array
 from ...base.quantities import Quantity
 from ...design.paths import quantity_of
 from ...evaluation import prepare
-from ...evaluation.limits import Limit
+from ...evaluation.limits import MetricLimit
 from ...rendering.axes import fitted
 from ...rendering.heights import wrap
 from ...rendering.ink import GREY, PALE, Ink
@@ -34,7 +34,7 @@ ORIGINS = ("requirement", "case")
 
 
 @dataclass(frozen=True)
-class Rows:
+class DrawnRows:
     """Designs to draw: the combination of names each has, its row, and every which it is."""
 
     variants: Array
@@ -75,7 +75,7 @@ class SweepFigureData:
         self.swept, self.study = swept, swept.study
 
     @cached_property
-    def limits(self) -> list[tuple[Limit, float]]:
+    def limits(self) -> list[tuple[MetricLimit, float]]:
         """Binding limits with their value (SI); not those that vary."""
         study = self.study
         v = prepare(study.design, plugins=study.plugins).values({})
@@ -95,7 +95,7 @@ class SweepFigureData:
                 strictest[limit.sense] = pick(value, strictest.get(limit.sense, value))
         return list(strictest.items())
 
-    def limit_words(self, limit: Limit) -> str:
+    def limit_words(self, limit: MetricLimit) -> str:
         """A limit in words: ``"stiffness_min ≥ 10 kN/mm"``."""
         known = next((value for other, value in self.limits if other is limit), None)
         head = limit.name if limit.origin == "case" else limit.metric
@@ -114,7 +114,7 @@ class SweepFigureData:
         """A metric."""
         return Track(name, self.study.quantity(name))
 
-    def values(self, name: str, drawn: Rows) -> Array:
+    def values(self, name: str, drawn: DrawnRows) -> Array:
         """What designs have of something that varies or of a metric, as `Track` shows it."""
         for axis in self.study.plan.named:
             if axis.path == name:
@@ -124,7 +124,7 @@ class SweepFigureData:
         track = self.axis(name) if of_axis else self.metric(name)
         return track.shown(drawn.rows[:, self.study.place(name)])
 
-    def objective(self, drawn: Rows) -> Array:
+    def objective(self, drawn: DrawnRows) -> Array:
         """The objective of designs, to be minimised."""
         total = np.zeros(len(drawn.rows))
         for name, weight in self.study.goal.weights.items():
@@ -137,14 +137,14 @@ class SweepFigureData:
         single = self.study.goal.single
         return Track("objective") if single is None else self.metric(single)
 
-    def goals(self, drawn: Rows) -> Array:
+    def goals(self, drawn: DrawnRows) -> Array:
         """The objective of designs as `goal` shows it."""
         single = self.study.goal.single
         if single is not None:
             return self.values(single, drawn)
         return self.study.goal.sign * self.objective(drawn)
 
-    def best(self, place: int = 0) -> Rows:
+    def best(self, place: int = 0) -> DrawnRows:
         """One of the best designs.
 
         Raises
@@ -154,7 +154,7 @@ class SweepFigureData:
         """
         best = self.bests()[place]
         variant = self.study.plan.points(best.number, 1).variant
-        return Rows(variant, np.array([best.row]))
+        return DrawnRows(variant, np.array([best.row]))
 
     def bests(self) -> list[Best]:
         """The best designs; raises `InputError` where none is feasible."""
@@ -163,18 +163,18 @@ class SweepFigureData:
             raise InputError(Diagnostic(message, "widen what varies, or draw a contour of a grid"))
         return self.swept.best
 
-    def feasible(self, most: int) -> tuple[Rows, list[str]]:
+    def feasible(self, most: int) -> tuple[DrawnRows, list[str]]:
         """At most so many feasible designs, the best last, each with its fill."""
-        kept = Rows(*self.swept.sample.feasible.thinned(most))
+        kept = DrawnRows(*self.swept.sample.feasible.thinned(most))
         order = np.argsort(-self.objective(kept), kind="stable")
         fills = [BETTER[3 * k // max(len(order), 1)] for k in range(len(order))]
-        return Rows(kept.variants[order], kept.rows[order], kept.every), fills
+        return DrawnRows(kept.variants[order], kept.rows[order], kept.every), fills
 
-    def others(self, most: int) -> Rows:
+    def others(self, most: int) -> DrawnRows:
         """At most so many designs that miss something."""
-        return Rows(*self.swept.sample.others.thinned(most))
+        return DrawnRows(*self.swept.sample.others.thinned(most))
 
-    def require(self, metric: str, *drawn: Rows) -> None:
+    def require(self, metric: str, *drawn: DrawnRows) -> None:
         """Refuse a metric that no design has a value of; raises `InputError`."""
         if not any(np.isfinite(self.values(metric, x)).any() for x in drawn if len(x.rows)):
             message = f"--show {metric}: no design of this sweep has a value of it"

@@ -355,7 +355,7 @@ REDUCING_FLOW = 20 / 60000
 """Largest flow of the reducing valve [m^3/s] (a choice: a pilot-operated valve of size 6)."""
 
 
-class Side(NamedTuple):
+class ChamberPort(NamedTuple):
     """A chamber with its port."""
 
     name: Chamber
@@ -371,7 +371,7 @@ class Side(NamedTuple):
     """Pressure behind the throttle."""
 
 
-def side(circuit: Circuit, name: Chamber, ends: str, start: float) -> Side:
+def side(circuit: Circuit, name: Chamber, ends: str, start: float) -> ChamberPort:
     """States of a chamber and of its line.
 
     A line has inertia if flow passes through it; behind closed ends it is only volume.
@@ -384,11 +384,11 @@ def side(circuit: Circuit, name: Chamber, ends: str, start: float) -> Side:
         if not throttled:
             near, wall = near + data.far_volume, wall + data.far_wall
         pressure = start if kind.holds else system.pressure(f"pressure {name}", start)
-        return Side(name, pressure, pressure, near, wall, None, None)
+        return ChamberPort(name, pressure, pressure, near, wall, None, None)
     pressure = system.pressure(f"pressure {name}", start)
     lined = data.inertance > 0 and not kind.shut
     if throttled and kind.holds and not lined:
-        return Side(name, pressure, start, near, wall, None, start)
+        return ChamberPort(name, pressure, start, near, wall, None, start)
     outer = system.pressure(f"behind throttle {name}", start) if throttled else None
     line = None
     end: Expression = outer if outer is not None else pressure
@@ -397,10 +397,12 @@ def side(circuit: Circuit, name: Chamber, ends: str, start: float) -> Side:
         end = start
         if not kind.holds:
             end = system.pressure(f"far end {name}", start)
-    return Side(name, pressure, end, near, wall, line, outer)
+    return ChamberPort(name, pressure, end, near, wall, line, outer)
 
 
-def connect(circuit: Circuit, one: Side, ends: str, feed: Expression, *, held: float) -> Expression:
+def connect(
+    circuit: Circuit, one: ChamberPort, ends: str, feed: Expression, *, held: float
+) -> Expression:
     """Flow into the chamber; `feed` is the flow at the end, `held` a pressure held there."""
     feed = FEEDS[ends](circuit, one, feed, held)
     if one.line is not None:
@@ -410,7 +412,7 @@ def connect(circuit: Circuit, one: Side, ends: str, feed: Expression, *, held: f
     return feed
 
 
-def _through_line(circuit: Circuit, one: Side, flow: Symbol, feed: Expression) -> Expression:
+def _through_line(circuit: Circuit, one: ChamberPort, flow: Symbol, feed: Expression) -> Expression:
     """Flow of the line towards the chamber."""
     data, word = circuit.plant.lines[one.name], one.name.upper()
     inner = one.pressure if one.outer is None else one.outer
@@ -427,7 +429,7 @@ def _through_line(circuit: Circuit, one: Side, flow: Symbol, feed: Expression) -
 
 
 def _through_throttle(
-    circuit: Circuit, one: Side, outer: Expression, feed: Expression
+    circuit: Circuit, one: ChamberPort, outer: Expression, feed: Expression
 ) -> Expression:
     """Flow of the one-way valve out of the chamber."""
     word = one.name.upper()
@@ -445,7 +447,9 @@ def _through_throttle(
     return flow
 
 
-def _far(circuit: Circuit, one: Side, name: str, pressure: Symbol, inflow: Expression) -> None:
+def _far(
+    circuit: Circuit, one: ChamberPort, name: str, pressure: Symbol, inflow: Expression
+) -> None:
     """Volume at the far end: half of the line behind a throttle."""
     data = circuit.plant.lines[one.name]
     share = 0.5 if one.outer is not None and one.line is not None else 1.0
@@ -461,7 +465,7 @@ def _far(circuit: Circuit, one: Side, name: str, pressure: Symbol, inflow: Expre
     )
 
 
-def _reducing(circuit: Circuit, one: Side, held: float) -> Expression:
+def _reducing(circuit: Circuit, one: ChamberPort, held: float) -> Expression:
     """Flow of the reducing valve into the line."""
     system, data = circuit.system, circuit.plant.reducing_valve
     assert data is not None
@@ -491,16 +495,16 @@ def _reducing(circuit: Circuit, one: Side, held: float) -> Expression:
     return flow
 
 
-def _given(circuit: Circuit, one: Side, feed: Expression, held: float) -> Expression:
+def _given(circuit: Circuit, one: ChamberPort, feed: Expression, held: float) -> Expression:
     """Flow from the valve, or zero."""
     return feed
 
 
-def _nothing(circuit: Circuit, one: Side, feed: Expression, held: float) -> Expression:
+def _nothing(circuit: Circuit, one: ChamberPort, feed: Expression, held: float) -> Expression:
     return 0.0
 
 
-def _regulated(circuit: Circuit, one: Side, feed: Expression, held: float) -> Expression:
+def _regulated(circuit: Circuit, one: ChamberPort, feed: Expression, held: float) -> Expression:
     return _reducing(circuit, one, held)
 
 

@@ -12,7 +12,7 @@ from ...base.numeric import Array
 from ...base.quantities import INPUTS, SCENARIOS, Quantity
 from ...base.symbolic import Expression, Namespace, Symbol, jacobian
 from ...design.scenario.kinds import SHAPES, Records, height
-from ...design.scenario.model import Control, Scenario, SignalSegment
+from ...design.scenario.model import Controller, Scenario, SignalSegment
 from ...models.loop import ControllerGains
 from ...studies.plant import Plant
 from ..system import System
@@ -140,7 +140,7 @@ LOOPS: dict[Loop, Followed] = {
 """Every loop, by the name of its reference and its signal."""
 
 
-def loop_of(control: Control | None) -> Loop | None:
+def loop_of(control: Controller | None) -> Loop | None:
     """The loop that a reference closes, or None."""
     if control is None:
         return None
@@ -152,7 +152,7 @@ FLOW = 1e-4
 
 
 @dataclass(frozen=True, slots=True)
-class Start:
+class InitialState:
     """Initial state of a run."""
 
     position: float
@@ -179,7 +179,7 @@ class Circuit:
     scenario: Scenario
     plant: Plant
     records: Records
-    start: Start
+    start: InitialState
     gains: ControllerGains | None = None
     loop: Loop | None = None
     linear: bool = False

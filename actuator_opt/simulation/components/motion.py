@@ -9,10 +9,10 @@ from ...base.numeric import maximum, where
 from ...base.quantities import INPUTS, SCENARIOS
 from ...base.symbolic import Expression, Symbol
 from ...design.scenario.kinds import FRICTIONS
-from ...design.scenario.model import Friction as Stated
+from ...design.scenario.model import ScenarioFriction as Stated
 from ...models import end_stop, friction, linkage, lugre
 from ...studies.plant import Plane, Plant
-from .circuit import Circuit, Start, rate
+from .circuit import Circuit, InitialState, rate
 
 POSITION = 1e-10
 SPEED = 1e-9
@@ -153,7 +153,7 @@ LONE_SPEED = 1e-3
 
 
 @dataclass(frozen=True, slots=True)
-class Law:
+class FrictionCurve:
     """Friction over speed and chamber pressures."""
 
     coulomb: Plane
@@ -166,7 +166,7 @@ class Law:
     taper_speed: float
 
 
-def law(plant: Plant, stated: Stated, start: Start) -> Law:
+def law(plant: Plant, stated: Stated, start: InitialState) -> FrictionCurve:
     """The design's friction, or the stated one; bristle stiffness at the initial pressures."""
     seals, pressures = plant.seals, (start.pressure_a, start.pressure_b)
     coulomb, static = seals.coulomb, seals.static
@@ -195,14 +195,14 @@ def law(plant: Plant, stated: Stated, start: Start) -> Law:
     passive = lugre.lugre_passive_speed(
         level=level, bristle_damping=max(damping, 1e-9), viscous=viscous
     )
-    return Law(
+    return FrictionCurve(
         coulomb, static, speed, stated.exponent, viscous, stiffness, damping, 0.5 * float(passive)
     )
 
 
 def resist(
     circuit: Circuit,
-    own: Law,
+    own: FrictionCurve,
     *,
     speed: Expression,
     pressure_a: Expression,
@@ -215,7 +215,7 @@ def resist(
 
 
 def _levels(
-    own: Law, pressure_a: Expression, pressure_b: Expression
+    own: FrictionCurve, pressure_a: Expression, pressure_b: Expression
 ) -> tuple[Expression, Expression]:
     """Coulomb and static friction at the chamber pressures."""
     coulomb = maximum(own.coulomb.at(pressure_a, pressure_b), LEAST)
@@ -225,13 +225,21 @@ def _levels(
 
 
 def _viscous(
-    circuit: Circuit, own: Law, speed: Expression, pressure_a: Expression, pressure_b: Expression
+    circuit: Circuit,
+    own: FrictionCurve,
+    speed: Expression,
+    pressure_a: Expression,
+    pressure_b: Expression,
 ) -> Expression:
     return own.viscous * speed
 
 
 def _stribeck(
-    circuit: Circuit, own: Law, speed: Expression, pressure_a: Expression, pressure_b: Expression
+    circuit: Circuit,
+    own: FrictionCurve,
+    speed: Expression,
+    pressure_a: Expression,
+    pressure_b: Expression,
 ) -> Expression:
     coulomb, static = _levels(own, pressure_a, pressure_b)
     return friction.stribeck(
@@ -246,7 +254,11 @@ def _stribeck(
 
 
 def _lugre(
-    circuit: Circuit, own: Law, speed: Expression, pressure_a: Expression, pressure_b: Expression
+    circuit: Circuit,
+    own: FrictionCurve,
+    speed: Expression,
+    pressure_a: Expression,
+    pressure_b: Expression,
 ) -> Expression:
     system = circuit.system
     coulomb, static = _levels(own, pressure_a, pressure_b)

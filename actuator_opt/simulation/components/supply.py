@@ -20,7 +20,7 @@ AWAKE = 0.1
 
 
 @dataclass(slots=True)
-class Source:
+class SupplyBuilder:
     """The supply under construction: first its pressures, later the demand."""
 
     circuit: Circuit
@@ -30,7 +30,7 @@ class Source:
     """Pressure at the pump or accumulator."""
 
     @classmethod
-    def of(cls, circuit: Circuit) -> Source:
+    def of(cls, circuit: Circuit) -> SupplyBuilder:
         """Create the pressures; a pipe separates those of pump and valve."""
         stated, system = circuit.scenario.supply, circuit.system
         unit: Expression = circuit.plant.supply_pressure
@@ -131,7 +131,7 @@ class Source:
         return flow
 
 
-def _fixed_pump(source: Source) -> Expression:
+def _fixed_pump(source: SupplyBuilder) -> Expression:
     """Flow of a pump of constant speed into the line."""
     circuit = source.circuit
     unit, system, plant = circuit.scenario.supply, circuit.system, circuit.plant
@@ -157,7 +157,7 @@ def _fixed_pump(source: Source) -> Expression:
     return wilson.pump_flow(**common, slip_coefficient=machine.slip)
 
 
-def _controlled_pump(source: Source) -> Expression:
+def _controlled_pump(source: SupplyBuilder) -> Expression:
     """Flow of a pressure-controlled pump into the line."""
     circuit = source.circuit
     unit, system, plant = circuit.scenario.supply, circuit.system, circuit.plant

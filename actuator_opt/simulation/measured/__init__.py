@@ -2,6 +2,6 @@
 
 from .fit import Fit, fit
 from .parameters import PARAMETERS
-from .record import Measured, Overlay, overlay, parse_measured
+from .record import AlignedRecord, Overlay, overlay, parse_measured
 
-__all__ = ["PARAMETERS", "Fit", "Measured", "Overlay", "fit", "overlay", "parse_measured"]
+__all__ = ["PARAMETERS", "AlignedRecord", "Fit", "Overlay", "fit", "overlay", "parse_measured"]

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...base import fitting as least_squares
 from ...base.errors import Unsolvable, shown
-from ...base.fitting import WEAK, Known, Parameter, known, rated
+from ...base.fitting import WEAK, FittedParameters, Parameter, known, rated
 from ...base.numeric import Array
 from ...base.progress import whole
 from ...design.scenario.kinds import Records
@@ -23,8 +23,18 @@ from ..assemble import assemble
 from ..integrate import Method, integrate
 from ..linear import Tuned, tune
 from ..run import run
-from .parameters import PARAMETERS, Case, Entry, entries
-from .record import FEWEST, Course, Measured, Overlay, beside, inside, named, noise, overlay
+from .parameters import PARAMETERS, Case, FitParameter, entries
+from .record import (
+    FEWEST,
+    AlignedRecord,
+    Overlay,
+    SimulatedSignal,
+    beside,
+    inside,
+    named,
+    noise,
+    overlay,
+)
 
 MOST: Final = 4000
 """Maximum samples of a channel in a fit (a choice: denser records are thinned evenly)."""
@@ -100,8 +110,8 @@ class RecordFitProblem:
         plant: Plant,
         records: Records,
         tuned: Tuned | None,
-        measured: Measured,
-        own: Sequence[Entry],
+        measured: AlignedRecord,
+        own: Sequence[FitParameter],
     ) -> None:
         self.scenario, self.plant, self.records, self.tuned = scenario, plant, records, tuned
         self.own, self.names = tuple(own), tuple(one.name for one in own)
@@ -256,7 +266,7 @@ class RecordFitProblem:
         return float(sum(self.used[name][0].size * np.log(one) for name, one in left.items()))
 
     def _overlapping(
-        self, measured: Measured, signals: Mapping[str, Array]
+        self, measured: AlignedRecord, signals: Mapping[str, Array]
     ) -> dict[str, tuple[Array, Array]]:
         """The part of a record that overlaps the run at every searched lag."""
         duration = self.scenario.duration
@@ -278,7 +288,7 @@ class RecordFitProblem:
             raise measured.fault(message, "measure longer, or state the lag")
         return found
 
-    def _aligned(self, measured: Measured, signals: Mapping[str, Array]) -> float:
+    def _aligned(self, measured: AlignedRecord, signals: Mapping[str, Array]) -> float:
         """The most likely lag of the first run, from the overlap."""
         assert self.late is not None
         time, _ = self._simulated(self.start)
@@ -288,7 +298,7 @@ class RecordFitProblem:
             if name not in signals:
                 continue
             t, y = _thinned(*channel)
-            course = Course(time, signals[name])
+            course = SimulatedSignal(time, signals[name])
             for k, lag in enumerate(lags):
                 within = (t >= lag) & (t <= lag + time[-1])
                 off = course(t[within] - lag) - y[within]
@@ -324,7 +334,7 @@ class RecordFitProblem:
         ).x
 
 
-def _scaled(entry: Entry, value: float) -> float:
+def _scaled(entry: FitParameter, value: float) -> float:
     return float(np.log(value)) if entry.positive else float(value)
 
 
@@ -368,7 +378,7 @@ ORDERS: Final = 10
 """Highest order of an autoregression of residuals (a choice)."""
 
 
-def bounds(problem: RecordFitProblem, x: Array) -> Known:
+def bounds(problem: RecordFitProblem, x: Array) -> FittedParameters:
     """Covariance of the fitted values from the residuals.
 
     cov = H^-1 S H^-1, H = J^T J, S the covariance of J^T r. S is the largest of three estimates:
@@ -489,7 +499,7 @@ EDGE: Final = 0.01
 class Fitted:
     """A fitted parameter, SI."""
 
-    entry: Entry
+    entry: FitParameter
     parameter: Parameter
     at_bound: Literal["lower", "upper"] | None
     """The end of its range, if it is there."""
@@ -563,7 +573,7 @@ def fit(
     scenario: Scenario,
     plant: Plant,
     records: Records,
-    measured: Measured,
+    measured: AlignedRecord,
     names: Sequence[str],
     *,
     tuned: Tuned | None = None,
@@ -630,7 +640,7 @@ def fit(
     )  # fmt: skip
 
 
-def _natural(one: Entry, told: Known, problem: RecordFitProblem) -> Parameter:
+def _natural(one: FitParameter, told: FittedParameters, problem: RecordFitProblem) -> Parameter:
     """A parameter in its own unit from the searched value.
 
     Bounds apply to the parameter itself, not to its logarithm, as the effect of an air content or a
@@ -657,7 +667,7 @@ def _edge(problem: RecordFitProblem, x: Array, k: int) -> Literal["lower", "uppe
     return "upper" if problem.high[k] - x[k] < room else None
 
 
-def _correlations(told: Known) -> dict[tuple[str, str], float]:
+def _correlations(told: FittedParameters) -> dict[tuple[str, str], float]:
     """Correlations between the errors of bounded parameters."""
     found = {}
     for (i, one), (k, other) in combinations(enumerate(told.parameters), 2):

@@ -28,7 +28,7 @@ LATEST = 0.2
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class FitParameter:
     """A parameter: definition, start and range of the search, and how it is applied, SI."""
 
     name: str
@@ -43,7 +43,7 @@ class Entry:
     put: Put
 
 
-def entries(names: Sequence[str], scenario: Scenario, plant: Plant) -> tuple[Entry, ...]:
+def entries(names: Sequence[str], scenario: Scenario, plant: Plant) -> tuple[FitParameter, ...]:
     """Parameters by their names, in the given order.
 
     Raises
@@ -104,12 +104,12 @@ def _even(scenario: Scenario, plant: Plant) -> bool:
     return plant.seals.static == plant.seals.coulomb
 
 
-def _entry(name: str, scenario: Scenario, plant: Plant) -> Entry:
+def _entry(name: str, scenario: Scenario, plant: Plant) -> FitParameter:
     if name == "lag":
         most = LATEST * scenario.duration
         quantity = RECORDS["pressure_lag"]
         late = replace(quantity, name="lag", label="time lag of the record")
-        return Entry(name, late, 0.0, -most, most, False, 0.0, lambda s, p, _: (s, p))
+        return FitParameter(name, late, 0.0, -most, most, False, 0.0, lambda s, p, _: (s, p))
     return PARAMETERS[name](scenario, plant)
 
 
@@ -120,12 +120,12 @@ def _force(plant: Plant) -> float:
 
 def _positive(
     name: str, quantity: Quantity, start: float, least: float, most: float, put: Put
-) -> Entry:
+) -> FitParameter:
     begin = min(max(start, 1.001 * least), 0.999 * most)
-    return Entry(name, quantity, begin, least, most, True, 0.0, put)
+    return FitParameter(name, quantity, begin, least, most, True, 0.0, put)
 
 
-def _air(scenario: Scenario, plant: Plant) -> Entry:
+def _air(scenario: Scenario, plant: Plant) -> FitParameter:
     quantity = INPUTS["air_content"]
 
     def put(s: Scenario, p: Plant, value: float) -> Case:
@@ -135,7 +135,7 @@ def _air(scenario: Scenario, plant: Plant) -> Entry:
     return _positive("air_content", quantity, start, LEAST_AIR, quantity.upper, put)
 
 
-def _bulk(scenario: Scenario, plant: Plant) -> Entry:
+def _bulk(scenario: Scenario, plant: Plant) -> FitParameter:
     quantity = MATERIAL_PROPERTIES["bulk_modulus"]
     quantity = replace(quantity, label="bulk modulus of the oil without air, at zero pressure")
 
@@ -146,7 +146,7 @@ def _bulk(scenario: Scenario, plant: Plant) -> Entry:
     return _positive("bulk_modulus", quantity, start, quantity.lower, quantity.upper, put)
 
 
-def _capacity(scenario: Scenario, plant: Plant) -> Entry:
+def _capacity(scenario: Scenario, plant: Plant) -> FitParameter:
     def put(s: Scenario, p: Plant, value: float) -> Case:
         assert p.valve is not None
         return s, replace(p, valve=replace(p.valve, rated=value * p.valve.rated))
@@ -155,7 +155,7 @@ def _capacity(scenario: Scenario, plant: Plant) -> Entry:
     return _positive("valve_capacity", quantity, 1.0, 0.05, 20.0, put)
 
 
-def _valve_leakage(scenario: Scenario, plant: Plant) -> Entry:
+def _valve_leakage(scenario: Scenario, plant: Plant) -> FitParameter:
     def put(s: Scenario, p: Plant, value: float) -> Case:
         assert p.valve is not None
         leaks = {name: value * getattr(p.valve, name) for name in _LEAKS}
@@ -165,7 +165,7 @@ def _valve_leakage(scenario: Scenario, plant: Plant) -> Entry:
     return _positive("valve_leakage", quantity, 1.0, 1e-3, 100.0, put)
 
 
-def _valve_offset(scenario: Scenario, plant: Plant) -> Entry:
+def _valve_offset(scenario: Scenario, plant: Plant) -> FitParameter:
     assert plant.valve is not None
     full, start = plant.valve.signal, plant.valve.offset
 
@@ -174,10 +174,10 @@ def _valve_offset(scenario: Scenario, plant: Plant) -> Entry:
         return s, replace(p, valve=replace(p.valve, offset=value))
 
     quantity = replace(SCENARIOS["signal_value"], label="signal that centres the spool")
-    return Entry("valve_offset", quantity, start, -full, full, False, SMALL * full, put)
+    return FitParameter("valve_offset", quantity, start, -full, full, False, SMALL * full, put)
 
 
-def _leakage(scenario: Scenario, plant: Plant) -> Entry:
+def _leakage(scenario: Scenario, plant: Plant) -> FitParameter:
     def put(s: Scenario, p: Plant, value: float) -> Case:
         return s, replace(p, leakage=value)
 
@@ -209,7 +209,7 @@ def _stated(scenario: Scenario, **values: float) -> Scenario:
     return scenario.model_copy(update={"friction": scenario.friction.model_copy(update=values)})
 
 
-def _coulomb(scenario: Scenario, plant: Plant) -> Entry:
+def _coulomb(scenario: Scenario, plant: Plant) -> FitParameter:
     def put(s: Scenario, p: Plant, value: float) -> Case:
         if s.friction.coulomb is not None:
             return _stated(s, coulomb=value), p
@@ -229,7 +229,7 @@ def _coulomb(scenario: Scenario, plant: Plant) -> Entry:
     )
 
 
-def _static(scenario: Scenario, plant: Plant) -> Entry:
+def _static(scenario: Scenario, plant: Plant) -> FitParameter:
     def put(s: Scenario, p: Plant, value: float) -> Case:
         if s.friction.coulomb is not None:
             return _stated(s, static=value), p
@@ -246,7 +246,7 @@ def _static(scenario: Scenario, plant: Plant) -> Entry:
     return _positive("static", SCENARIOS["static_force"], begin, 1e-5 * most, most, put)
 
 
-def _stribeck_speed(scenario: Scenario, plant: Plant) -> Entry:
+def _stribeck_speed(scenario: Scenario, plant: Plant) -> FitParameter:
     quantity = INPUTS["stribeck_speed"]
 
     def put(s: Scenario, p: Plant, value: float) -> Case:
@@ -259,7 +259,7 @@ def _stribeck_speed(scenario: Scenario, plant: Plant) -> Entry:
     return _positive("stribeck_speed", quantity, start, quantity.lower, quantity.upper, put)
 
 
-def _viscous(scenario: Scenario, plant: Plant) -> Entry:
+def _viscous(scenario: Scenario, plant: Plant) -> FitParameter:
     def put(s: Scenario, p: Plant, value: float) -> Case:
         return _stated(s, viscous=value), p
 
@@ -272,7 +272,7 @@ def _viscous(scenario: Scenario, plant: Plant) -> Entry:
     return _positive("viscous", quantity, start or SMALL * size, 1e-6 * size, 10 * size, put)
 
 
-def _travel(scenario: Scenario, plant: Plant) -> Entry:
+def _travel(scenario: Scenario, plant: Plant) -> FitParameter:
     quantity = INPUTS["breakaway_travel"]
 
     def put(s: Scenario, p: Plant, value: float) -> Case:
@@ -282,7 +282,7 @@ def _travel(scenario: Scenario, plant: Plant) -> Entry:
     return _positive("bristle_travel", quantity, start, quantity.lower, quantity.upper, put)
 
 
-def _mass(scenario: Scenario, plant: Plant) -> Entry:
+def _mass(scenario: Scenario, plant: Plant) -> FitParameter:
     def put(s: Scenario, p: Plant, value: float) -> Case:
         return s, replace(p, mass=value)
 
@@ -290,10 +290,10 @@ def _mass(scenario: Scenario, plant: Plant) -> Entry:
     return _positive("mass", quantity, plant.mass, 0.01 * plant.mass, 100 * plant.mass, put)
 
 
-def _dead(chamber: str) -> Callable[[Scenario, Plant], Entry]:
+def _dead(chamber: str) -> Callable[[Scenario, Plant], FitParameter]:
     field, area = f"dead_{chamber}", f"area_{chamber}"
 
-    def entry(scenario: Scenario, plant: Plant) -> Entry:
+    def entry(scenario: Scenario, plant: Plant) -> FitParameter:
         def put(s: Scenario, p: Plant, value: float) -> Case:
             return s, replace(p, **{field: value})  # type: ignore[arg-type]
 
@@ -306,21 +306,21 @@ def _dead(chamber: str) -> Callable[[Scenario, Plant], Entry]:
     return entry
 
 
-def _offset(scenario: Scenario, plant: Plant) -> Entry:
+def _offset(scenario: Scenario, plant: Plant) -> FitParameter:
     def put(s: Scenario, p: Plant, value: float) -> Case:
         force = (*s.load.force, ForceSignal(shape="constant", value=value))
         return s.model_copy(update={"load": s.load.model_copy(update={"force": force})}), p
 
     most = _force(plant)
     quantity = replace(SCENARIOS["force_value"], label="load force in addition to the stated one")
-    return Entry("load_offset", quantity, 0.0, -most, most, False, SMALL * most, put)
+    return FitParameter("load_offset", quantity, 0.0, -most, most, False, SMALL * most, put)
 
 
 _LEAKS = ("leakage_supply", "leakage_tank")
 VALVE = ("valve_capacity", "valve_leakage", "valve_offset")
 OIL = ("air_content", "bulk_modulus")
 FRICTION = ("coulomb", "static", "stribeck_speed", "viscous", "bristle_travel")
-PARAMETERS: dict[str, Callable[[Scenario, Plant], Entry]] = {
+PARAMETERS: dict[str, Callable[[Scenario, Plant], FitParameter]] = {
     "air_content": _air,
     "bulk_modulus": _bulk,
     "valve_capacity": _capacity,

@@ -38,7 +38,7 @@ FEWEST = 10
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Measured:
+class AlignedRecord:
     """A measured record on the scenario's time: signals by name, each (time [s], values [SI]).
 
     Channels may have different sample rates, late starts and gaps; times increase.
@@ -49,7 +49,7 @@ class Measured:
     notes: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, record: Record) -> Measured:
+    def of(cls, record: Record) -> AlignedRecord:
         """The channels of a record; missing samples are left out.
 
         Raises
@@ -98,7 +98,7 @@ def parse_measured(
     name: str = "record",
     columns: Mapping[str, str] | None = None,
     units: ColumnUnits = NONE,
-) -> Measured:
+) -> AlignedRecord:
     """A measured record from the text of a CSV file, columns as in `COLUMNS`.
 
     Parameters
@@ -120,7 +120,7 @@ def parse_measured(
         f"{one}; channels are {', '.join(SIGNALS)}" if one.startswith("columns that") else one
         for one in record.notes
     ]
-    return Measured.of(replace(record, notes=tuple(notes)))
+    return AlignedRecord.of(replace(record, notes=tuple(notes)))
 
 
 def named(names: Collection[str], every: Collection[str]) -> str:
@@ -160,7 +160,7 @@ STARTS = ("position", "pressure_a", "pressure_b")
 
 
 @dataclass(frozen=True, slots=True)
-class Residual:
+class ChannelResidual:
     """Difference between measured and simulated values of a channel, SI."""
 
     count: int
@@ -201,11 +201,11 @@ class Residual:
 class Overlay:
     """A measured record overlaid on a simulation."""
 
-    measured: Measured
+    measured: AlignedRecord
     simulation: Simulation
     lag: float
     """Time lag of the record [s]."""
-    residuals: Mapping[str, Residual]
+    residuals: Mapping[str, ChannelResidual]
     notes: tuple[str, ...]
 
     def to_dict(self) -> dict[str, Any]:
@@ -219,7 +219,7 @@ class Overlay:
         }
 
 
-def overlay(simulation: Simulation, measured: Measured, *, lag: float = 0.0) -> Overlay:
+def overlay(simulation: Simulation, measured: AlignedRecord, *, lag: float = 0.0) -> Overlay:
     """Overlay a record on a simulation, with the residuals of every channel.
 
     Parameters
@@ -254,7 +254,7 @@ def overlay(simulation: Simulation, measured: Measured, *, lag: float = 0.0) -> 
 
 
 def inside(
-    measured: Measured, signals: Mapping[str, Any], duration: float, lag: float
+    measured: AlignedRecord, signals: Mapping[str, Any], duration: float, lag: float
 ) -> dict[str, tuple[Array, Array]]:
     """The samples of a record within a run, for simulated signals.
 
@@ -286,7 +286,7 @@ def inside(
     return found
 
 
-class Course:
+class SimulatedSignal:
     """A simulated signal at any time: cubic, split at jumps, constant beyond its ends.
 
     Slopes come from the parabola through a sample and its neighbours on the same side of a jump.
@@ -324,7 +324,7 @@ def beside(moment: Array, measured: Array, time: Array, values: Array) -> Array:
 
     Close to a jump the simulated value may be that of either side, or any value between.
     """
-    found = Course(time, values)(moment)
+    found = SimulatedSignal(time, values)(moment)
     half = 0.5 * float(np.median(np.diff(moment)))
     for k in np.flatnonzero((np.diff(time) == 0) & (np.diff(values) != 0)):
         near = np.abs(moment - time[k]) <= 1.001 * half
@@ -332,11 +332,11 @@ def beside(moment: Array, measured: Array, time: Array, values: Array) -> Array:
     return found
 
 
-def residual(time: Array, measured: Array, simulated: Array) -> Residual:
+def residual(time: Array, measured: Array, simulated: Array) -> ChannelResidual:
     """The residual of one channel."""
     rest = measured - simulated
     worst = int(np.argmax(np.abs(rest)))
-    return Residual(
+    return ChannelResidual(
         count=rest.size,
         rms=float(np.sqrt(np.mean(rest**2))),
         largest=float(np.abs(rest[worst])),
@@ -373,7 +373,7 @@ def noise(values: Array) -> float:
 
 
 def _reach(
-    used: Mapping[str, tuple[Array, Array]], measured: Measured, duration: float, lag: float
+    used: Mapping[str, tuple[Array, Array]], measured: AlignedRecord, duration: float, lag: float
 ) -> Iterator[str]:
     """Channels that cover less or more time than the run."""
     spans: dict[tuple[str, str], list[str]] = {}
@@ -405,7 +405,7 @@ def _sampling(simulation: Simulation, used: Mapping[str, tuple[Array, Array]]) -
 def _starts(
     simulation: Simulation,
     used: Mapping[str, tuple[Array, Array]],
-    found: Mapping[str, Residual],
+    found: Mapping[str, ChannelResidual],
     lag: float,
 ) -> Iterator[str]:
     """Channels whose initial value differs from the scenario's."""

@@ -21,12 +21,12 @@ import numpy as np
 from ...base.numeric import Array
 from ...base.polynomial import at_frequency
 from ...design.scenario.model import (
-    Control,
+    Controller,
     ForceSignal,
     Initial,
-    Load,
     PositionSignal,
     Scenario,
+    ScenarioLoad,
     ValveSignal,
 )
 from ...evaluation.kernel import ModelRun, PreparedDesign, compute
@@ -48,26 +48,26 @@ SETTLED = 3.0
 
 
 @dataclass(slots=True)
-class Tally:
+class RunCounter:
     """Counts the runs."""
 
     runs: int = 0
 
 
 @dataclass(frozen=True, slots=True)
-class Record:
+class RunRecord:
     """Signals of a run, and its final states by name."""
 
     time: Array
     signals: Mapping[str, Array]
     last: Mapping[str, float]
 
-    def within(self, begin: float, end: float = inf) -> Record:
+    def within(self, begin: float, end: float = inf) -> RunRecord:
         """The samples between two times; of a doubled instant the later one."""
         later = np.append(np.diff(self.time) > 0, True)
         kept = (self.time >= begin) & (self.time <= end) & later
         signals = {name: values[kept] for name, values in self.signals.items()}
-        return Record(self.time[kept], signals, self.last)
+        return RunRecord(self.time[kept], signals, self.last)
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +93,7 @@ class Facts:
 
 
 @dataclass(frozen=True, slots=True)
-class Measured:
+class ExperimentResult:
     """Results of an experiment, None with a reason if it gives none."""
 
     values: Mapping[str, float | None]
@@ -119,7 +119,7 @@ class Stand:
     """Expected bandwidth of the loop, which sets its time to rest [Hz]."""
     scale: float = 1.0
     """Factor on all amplitudes."""
-    tally: Tally = field(default_factory=Tally)
+    tally: RunCounter = field(default_factory=RunCounter)
     rested: dict[str, float] = field(default_factory=dict)
     """Equilibrium states of the loop, once computed."""
 
@@ -153,7 +153,7 @@ class Stand:
         reference: Sequence[PositionSignal] = (),
         force: Sequence[ForceSignal] = (),
         start: Mapping[str, float] | None = None,
-    ) -> Record:
+    ) -> RunRecord:
         """One run: closed with a gain, or open with the ports terminated.
 
         Parameters
@@ -177,7 +177,9 @@ class Stand:
                 "ends": ends,
                 "motor": None,
                 "held_ports": None,
-                "load": Load(force=(ForceSignal(shape="constant", value=self.force), *force)),
+                "load": ScenarioLoad(
+                    force=(ForceSignal(shape="constant", value=self.force), *force)
+                ),
                 "signal": (ValveSignal(shape="constant", value=signal),) if signal else (),
                 "control": None if gain is None else self._control(gain, reference),
                 "requirements": {},
@@ -197,12 +199,12 @@ class Stand:
         found = integrate(compiled, duration=duration, sample_time=sample_time, relative=relative)
         signals = compiled.signals(found.time, found.states, found.flags)
         last = dict(zip(names, found.states[:, -1].tolist(), strict=True))
-        return Record(found.time, signals, last)
+        return RunRecord(found.time, signals, last)
 
-    def _control(self, gain: float, reference: Sequence[PositionSignal]) -> Control:
+    def _control(self, gain: float, reference: Sequence[PositionSignal]) -> Controller:
         """A proportional position loop, with the rate limit of the scenario."""
         stated = self.scenario.control
-        return Control(
+        return Controller(
             position=(*reference, PositionSignal(shape="constant", value=0.0)),
             tuning="stated",
             position_gain=gain,
@@ -239,7 +241,7 @@ class Stand:
 
     def held(
         self, *, ends: str, duration: float, sample_time: float, force: Sequence[ForceSignal] = ()
-    ) -> Record:
+    ) -> RunRecord:
         """A run with terminated ports; a valve stays where it held the force."""
         if ends != "valve" or not self.steady_gain:
             return self.run(duration=duration, sample_time=sample_time, ends=ends, force=force)
@@ -260,7 +262,7 @@ class Stand:
         sample_time: float,
         reference: Sequence[PositionSignal] = (),
         force: Sequence[ForceSignal] = (),
-    ) -> Record:
+    ) -> RunRecord:
         """A closed-loop run from rest; a new gain is inserted without a jump of the signal."""
         state = self.rest()
         shift = state["position"] + state["spool"] / gain - self.position
@@ -274,7 +276,7 @@ class Stand:
             start=state,
         )
 
-    def facts(self, record: Record) -> Facts:
+    def facts(self, record: RunRecord) -> Facts:
         """Further facts about a record."""
         t, signals = record.time, record.signals
         position = signals["position"]
@@ -356,7 +358,7 @@ class Sine(NamedTuple):
     """Position over error: the describing function of the open loop."""
     distortion: float
     """Residual of the position relative to the amplitude of its fundamental."""
-    record: Record
+    record: RunRecord
 
 
 def _inset(stand: Stand, room: float) -> Stand:
@@ -411,7 +413,7 @@ def sine(stand: Stand, frequency: float, size: float, cycles: float) -> Sine:
         cycles *= 2
 
 
-def _fitted(record: Record, frequency: float) -> Sine:
+def _fitted(record: RunRecord, frequency: float) -> Sine:
     """Ratios of a record of whole cycles."""
     asked, found, error = (
         harmonic_fit(time=record.time, values=record.signals[name], frequency=frequency)
@@ -426,7 +428,7 @@ def _fitted(record: Record, frequency: float) -> Sine:
     )
 
 
-def bandwidth(stand: Stand, expected: float, loop: Loop) -> Measured:
+def bandwidth(stand: Stand, expected: float, loop: Loop) -> ExperimentResult:
     """Frequency at which the closed loop's fundamental falls to -3 dB, by secants."""
     size = amplitude(stand, expected, loop(expected))
     how = f"sine of {1e3 * size:.3g} mm"
@@ -441,8 +443,8 @@ def bandwidth(stand: Stand, expected: float, loop: Loop) -> Measured:
     why = _no_sine(seen[-1])
     if share is None or why:
         why = why or f"no -3 dB point within a factor of {MOST:g} of the linear one"
-        return Measured({"bandwidth": None}, how, facts, why)
-    return Measured({"bandwidth": expected * exp(share)}, how, facts)
+        return ExperimentResult({"bandwidth": None}, how, facts, why)
+    return ExperimentResult({"bandwidth": expected * exp(share)}, how, facts)
 
 
 def _no_sine(one: Sine) -> str:
@@ -472,7 +474,7 @@ def _root(function: Callable[[float], float], slope: float) -> float | None:
 
 def phase_margin(
     stand: Stand, crossovers: Sequence[float], resonances: Sequence[float], loop: Loop
-) -> Measured:
+) -> ExperimentResult:
     """Least phase margin over the crossovers, from error and position of the closed loop.
 
     L = position/error of the fundamentals; where |L| is one, the margin is |pi + arg L|. The loop
@@ -507,21 +509,21 @@ def phase_margin(
     why = _no_sine(one)
     if why or not found:
         value = None if why else inf
-        return Measured({"phase_margin": value}, HOW_PHASE, stand.facts(one.record), why)
+        return ExperimentResult({"phase_margin": value}, HOW_PHASE, stand.facts(one.record), why)
     at = min(found, key=lambda share: abs(np.angle(-seen[share].opened)))
     margin = abs(float(np.angle(-seen[at].opened)))
     size = 0.5 * np.ptp(seen[at].record.signals["reference"])
     how = f"{HOW_PHASE}: {exp(at):.3g} Hz, sine of {1e3 * size:.3g} mm"
-    return Measured({"phase_margin": margin}, how, stand.facts(seen[at].record))
+    return ExperimentResult({"phase_margin": margin}, how, stand.facts(seen[at].record))
 
 
-def ultimate_gain(stand: Stand, expected: float, frequency: float) -> Measured:
+def ultimate_gain(stand: Stand, expected: float, frequency: float) -> ExperimentResult:
     """Gain above which oscillations after a push persist, searched from the linear one."""
     from scipy.optimize import brentq
 
     push = FORCE_SHARE * stand.full_force * stand.scale
     how = f"push of {push:.3g} N for {500 / frequency:.3g} ms"
-    seen: dict[float, Record] = {}
+    seen: dict[float, RunRecord] = {}
 
     def growth(share: float) -> float:
         rate, seen[share] = _growth(stand, expected * exp(share), frequency, push)
@@ -537,15 +539,15 @@ def ultimate_gain(stand: Stand, expected: float, frequency: float) -> Measured:
     if (value < 0) == (way > 0):
         found = {"ultimate_gain": inf if way > 0 else 0.0}
         words = "no oscillation up to" if way > 0 else "it oscillates down to 1 over"
-        return Measured(found, how, facts, f"{words} {MOST:g} times the linear one")
+        return ExperimentResult(found, how, facts, f"{words} {MOST:g} times the linear one")
     share = float(brentq(growth, low, high, xtol=2 * EXACT))
     near = min(seen, key=lambda one: abs(one - share))
     facts = stand.facts(seen[near])
     how += f", amplitude {1000.0 * facts.swing:.2g} mm"
-    return Measured({"ultimate_gain": expected * exp(share)}, how, facts)
+    return ExperimentResult({"ultimate_gain": expected * exp(share)}, how, facts)
 
 
-def _growth(stand: Stand, gain: float, frequency: float, push: float) -> tuple[float, Record]:
+def _growth(stand: Stand, gain: float, frequency: float, push: float) -> tuple[float, RunRecord]:
     """Growth of the speed oscillation per period, and the record of its early window.
 
     An oscillation larger at the end than just after the push is sustained, however irregular.
@@ -565,7 +567,9 @@ def _growth(stand: Stand, gain: float, frequency: float, push: float) -> tuple[f
     return max(rate, LASTING) if after >= pushed else rate, early
 
 
-def dynamic_stiffness(stand: Stand, ends: str, frequency: float, resonance: float) -> Measured:
+def dynamic_stiffness(
+    stand: Stand, ends: str, frequency: float, resonance: float
+) -> ExperimentResult:
     """Stiffness under a sinusoidal force at the rod, with terminated ports.
 
     Below the resonance the force starts in three parts of 1, 2, 1 quarters, half a resonance period
@@ -590,17 +594,19 @@ def dynamic_stiffness(stand: Stand, ends: str, frequency: float, resonance: floa
     how = f"force of {swing:.3g} N at {frequency:.3g} Hz, amplitude {1000.0 * facts.swing:.2g} mm"
     names = ("dynamic_stiffness", "dynamic_phase")
     if facts.stopped:
-        return Measured(dict.fromkeys(names), how, facts, "the piston creeps onto its stop")
+        return ExperimentResult(dict.fromkeys(names), how, facts, "the piston creeps onto its stop")
     one = dynamic_stiffness_of_record(
         time=record.time,
         position=record.signals["position"],
         force=-record.signals["load_force"],
         frequency=frequency,
     ).stiffness
-    return Measured(dict(zip(names, (abs(one), float(np.angle(one))), strict=True)), how, facts)
+    return ExperimentResult(
+        dict(zip(names, (abs(one), float(np.angle(one))), strict=True)), how, facts
+    )
 
 
-def decay(stand: Stand, ends: str, resonance: float) -> Measured:
+def decay(stand: Stand, ends: str, resonance: float) -> ExperimentResult:
     """Natural frequency and damping ratio after a step of force, with terminated ports.
 
     From successive extremes of the speed with spans D_i: zeta from the logarithmic decrement
@@ -617,24 +623,24 @@ def decay(stand: Stand, ends: str, resonance: float) -> Measured:
     how = f"step of {push:.3g} N, amplitude {1000.0 * facts.swing:.2g} mm"
     names = ("natural_frequency", "damping_ratio")
     if facts.stopped:
-        return Measured(dict.fromkeys(names), how, facts, "the piston creeps onto its stop")
+        return ExperimentResult(dict.fromkeys(names), how, facts, "the piston creeps onto its stop")
     times, values = _extremes(record.time, record.signals["speed"])
     spans = np.abs(np.diff(values))
     faded = np.flatnonzero(spans < FADED * spans[:1])
     kept = int(faded[0]) if faded.size else len(spans)
     if kept < 2:
         why = f"overdamped or stuck: it comes to rest after {len(spans)} half periods"
-        return Measured(dict.fromkeys(names), how, facts, why)
+        return ExperimentResult(dict.fromkeys(names), how, facts, why)
     halves = np.diff(times[: kept + 1])
     if np.max(halves) > UNEVEN * np.min(halves):
         why = "stick-slip: half periods of uneven length, no decay"
-        return Measured(dict.fromkeys(names), how, facts, why)
+        return ExperimentResult(dict.fromkeys(names), how, facts, why)
     decrement = log(spans[0] / spans[kept - 1]) / (kept - 1)
     ratio = decrement / sqrt(pi * pi + decrement * decrement)
     damped = (kept - 1) / (2 * float(times[kept - 1] - times[0]))
     found = damped / sqrt(1 - ratio * ratio), ratio
     how += f", evaluated over {kept} half periods"
-    return Measured(dict(zip(names, found, strict=True)), how, facts)
+    return ExperimentResult(dict(zip(names, found, strict=True)), how, facts)
 
 
 def _extremes(time: Array, values: Array) -> tuple[Array, Array]:
@@ -711,7 +717,7 @@ class LinearTier:
         design = subject.design.model_copy(update={"load_cases": cases})
         return plant(replace(subject, design=design, films=films))
 
-    def stand(self, scenario: Scenario, spot: Spot, tally: Tally, scale: float) -> Stand:
+    def stand(self, scenario: Scenario, spot: Spot, tally: RunCounter, scale: float) -> Stand:
         """The design held at a spot, with the pressures of the load case."""
         own = self.plant(spot.case)
         state = self.done.state
@@ -733,7 +739,7 @@ class LinearTier:
         slow = min(known, default=SLOW * self.resonance(spot.case, spot.position))
         return stand.but(gain=gain, steady_gain=min(gain, STEADY_STEP * least), bandwidth=slow)
 
-    def _open_loop(self, position: float, extending: bool) -> loop.OpenLoop:
+    def _open_loop(self, position: float, extending: bool) -> loop.PositionOpenLoop:
         place = np.array([[position]])
         return self.done.motion.position_loop(place, extending=np.array(extending))
 

@@ -18,7 +18,7 @@ from ...base.errors import InputError, Unsolvable
 from ...base.progress import steps
 from ...base.tables import Displayed
 from ...design.scenario.kinds import Records
-from ...design.scenario.model import Load, Scenario
+from ...design.scenario.model import Scenario, ScenarioLoad
 from ...evaluation.build import evaluate
 from ...evaluation.kernel import PreparedDesign
 from ...evaluation.result import Requirement
@@ -27,7 +27,17 @@ from ..components.circuit import loop_of
 from ..result import Simulation
 from ..run import simulate
 from . import experiments
-from .experiments import LinearTier, Measured, Spot, Stand, Tally, apart, percent, point, seen
+from .experiments import (
+    ExperimentResult,
+    LinearTier,
+    RunCounter,
+    Spot,
+    Stand,
+    apart,
+    percent,
+    point,
+    seen,
+)
 
 LOOPS = ("ultimate_gain", "gain_margin", "phase_margin", "bandwidth")
 HELD = ("dynamic_stiffness", "dynamic_phase", "damping_ratio", "natural_frequency")
@@ -134,7 +144,7 @@ def verify(
         an integration fails
     """
     begin = perf_counter()
-    tally = Tally()
+    tally = RunCounter()
     if result is None:
         tally.runs += 1
         result = simulate(scenario, subject, records=records)
@@ -178,7 +188,7 @@ def _notes(scenario: Scenario, asked: bool) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _left_out(load: Load) -> str:
+def _left_out(load: ScenarioLoad) -> str:
     """Parts of the scenario's load that the experiments omit."""
     stated = {
         "force of the load": any(one.shape == "record" or one.value for one in load.force),
@@ -197,16 +207,16 @@ class _Bench:
 
     scenario: Scenario
     tier: LinearTier
-    tally: Tally
+    tally: RunCounter
     scale: float
     stands: dict[Spot, Stand] = field(default_factory=dict)
-    made: dict[tuple[str, Spot, bool, bool], Measured] = field(default_factory=dict)
+    made: dict[tuple[str, Spot, bool, bool], ExperimentResult] = field(default_factory=dict)
 
     def row(self, asked: Requirement) -> VerifiedRequirement:
         """One requirement of the design in both tiers."""
         spot = self.tier.spot(asked)
         why = self._impossible(asked.metric, spot)
-        full = Measured({}, "", why=why) if why else self.measured(asked.metric, spot)
+        full = ExperimentResult({}, "", why=why) if why else self.measured(asked.metric, spot)
         value = full.values.get(asked.metric)
         linear = None if why else self.linear(asked.metric, spot)
         difference = apart(value, linear)
@@ -274,7 +284,7 @@ class _Bench:
 
     def measured(
         self, metric: str, spot: Spot, *, bare: bool = False, small: bool = False
-    ) -> Measured:
+    ) -> ExperimentResult:
         """The experiment that measures a metric."""
         name = _EXPERIMENTS[metric]
         key = name, spot, bare, small
@@ -285,10 +295,10 @@ class _Bench:
             try:
                 self.made[key] = self._made(name, spot, stand)
             except (InputError, Unsolvable) as error:
-                self.made[key] = Measured({}, "", why=f"the experiment failed: {error}")
+                self.made[key] = ExperimentResult({}, "", why=f"the experiment failed: {error}")
         return self.made[key]
 
-    def _made(self, name: str, spot: Spot, stand: Stand) -> Measured:
+    def _made(self, name: str, spot: Spot, stand: Stand) -> ExperimentResult:
         tier, at = self.tier, stand.position
         resonance = tier.resonance(spot.case, at)
         design = tier.subject.design
@@ -316,7 +326,7 @@ class _Bench:
         gain = found.values["ultimate_gain"]
         margin = None if gain is None else gain / stand.gain
         values = {"ultimate_gain": gain, "gain_margin": margin}
-        return Measured(values, found.how, found.facts, found.why)
+        return ExperimentResult(values, found.how, found.facts, found.why)
 
     def _way(self, spot: Spot, stand: Stand) -> bool:
         """Whether the spool rests on the extending side; if centred, as in the linear tier."""
@@ -334,7 +344,7 @@ class _Bench:
         return self.tier.closed(metric, spot.case, stand.position, way)
 
     def _reasons(
-        self, metric: str, spot: Spot, full: Measured
+        self, metric: str, spot: Spot, full: ExperimentResult
     ) -> tuple[dict[str, float], list[str]]:
         """Shares of friction, amplitude and operating point in a difference, with the evidence."""
         steps = [("size of the swing", self.measured(metric, spot, bare=True, small=True))]
