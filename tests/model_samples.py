@@ -132,10 +132,10 @@ SAMPLES = {
         "speed": 0.01, "coefficient_1": 2e5, "rate_1": -400.0, "coefficient_2": 5e4,
         "rate_2": -20.0,
     },
-    "density.density_thermal": {
+    "oil_laws.density_thermal": {
         "reference_density": 870.0, "volume_expansion": 7e-4, "temperature": 320.0,
     },
-    "density.thermal_pressure_slope": {
+    "oil_laws.thermal_pressure_slope": {
         "volume_expansion": 7e-4, "wall_expansion_axial": 1e-5, "wall_expansion_hoop": 2e-5,
         "bulk_modulus": 1.4e9, "wall_compliance_per_volume": 1.3e-10,
     },
@@ -259,8 +259,8 @@ SAMPLES = {
     "stiffness_published.cylinder_expansion_as_published": {
         "pressure": 1e6, "area": 4.9e-4, "stroke": 0.11,
     },
-    "tait.density_tait": TAIT,
-    "tait.bulk_modulus_tait": TAIT,
+    "oil_laws.density_tait": TAIT,
+    "oil_laws.bulk_modulus_tait": TAIT,
     "barrel.bore_growth": {"pressure": 28e6, "axial_force": 9e3, **TUBE, **METAL},
     "barrel.bore_growth_as_published": {"pressure": 28e6, **TUBE, **METAL},
     "barrel.bore_stresses": {"pressure": 28e6, "axial_force": 9e3, **TUBE},
@@ -312,7 +312,7 @@ SAMPLES = {
     },
     "laminate.effective_moduli": {**SHEET, "thickness": 2e-3},
     "laminate.bending_stiffness": {"plies": [(1e11,), (2e10,)], "thicknesses": [1e-3, 2e-3]},
-    "ply_discount.burst_by_ply_discount": [
+    "burst_ladder.burst_by_ply_discount": [
         {"layers": [HOOP, HELICAL], "radius": 17e-3, "axial_force_per_pressure": 9e-4},
         {"layers": [LINER, HOOP, HELICAL], "radius": 17e-3, "axial_force_per_pressure": 9e-4},
     ],

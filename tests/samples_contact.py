@@ -73,8 +73,8 @@ SAMPLES: dict = {
     "contact_profile.lip_excess": [CARRIED, {**CARRIED, "line_load": 9.1e3}],
     "contact_profile.table_profile": {"position": 0.35, **TABLE},
     "contact_profile.table_mean": TABLE,
-    "contact_land.land_profile": {"position": 0.3, "excess": 2e6, **ENDS},
-    "contact_land.land_excess": CARRIED,
+    "contact_profile.land_profile": {"position": 0.3, "excess": 2e6, **ENDS},
+    "contact_profile.land_excess": CARRIED,
     # a peak inside; one at the sealed end
-    "contact_land.land_peak": [CARRIED, {**CARRIED, "line_load": 7e3}],
+    "contact_profile.land_peak": [CARRIED, {**CARRIED, "line_load": 7e3}],
 }  # fmt: skip

@@ -37,8 +37,8 @@ SAMPLES: dict = {
     "strength_modes.max_stress_modes": LOADS,
     "strength_modes.max_strain_modes": [{**load, "elastic": RATIOS} for load in LOADS],
     "strength.tsai_wu_modes": [*LOADS, {**PULLED, "interaction": -0.3}],
-    "strength_interfibre.hashin_modes": [*LOADS, {**PULLED, "fibre_shear": 0.4}],
-    "strength_interfibre.puck_modes": [
+    "strength_modes.hashin_modes": [*LOADS, {**PULLED, "fibre_shear": 0.4}],
+    "strength_modes.puck_modes": [
         *LOADS,
         {**SHEARED, "inclination_tension": 0.30, "inclination_compression": 0.25},
     ],

@@ -19,13 +19,13 @@ SAMPLES = {
         {"contact_pressure": 7.5e6, "stiffness": 5.1e6},
     ],
     "rough_surface.mean_gap_ratio": [{"film_ratio": h} for h in (-2.0, 0.7, 2.5, 12.0, -12.0)],
-    "flow_factors.pressure_flow_factor": {"film_ratio": 2.5},
-    "flow_factors.shear_flow_factor": [
+    "rough_surface.pressure_flow_factor": {"film_ratio": 2.5},
+    "rough_surface.shear_flow_factor": [
         {"film_ratio": h, "rod_share": 0.3} for h in (2.5, 8.0, -1.0)
     ],
-    "flow_factors.shear_stress_factor": [{"film_ratio": h} for h in (1.5, 8.0, 40.0, -1.0)],
-    "flow_factors.shear_stress_correction": [
+    "rough_surface.shear_stress_factor": [{"film_ratio": h} for h in (1.5, 8.0, 40.0, -1.0)],
+    "rough_surface.shear_stress_correction": [
         {"film_ratio": h, "rod_share": 0.3} for h in (2.5, 8.0, -1.0)
     ],
-    "flow_factors.pressure_stress_factor": [{"film_ratio": 2.5}, {"film_ratio": 0.3}],
+    "rough_surface.pressure_stress_factor": [{"film_ratio": 2.5}, {"film_ratio": 0.3}],
 }  # fmt: skip

@@ -58,13 +58,13 @@ SAMPLES: dict = {
         {**GAS, "low_pressure": low, "high_pressure": 1.4e7, "filling_index": 1.1}
         for low in (7e6, 4e6)
     ],
-    "water_hammer.wave_speed": {
+    "transmission_line.wave_speed": {
         "bulk_modulus": 1.4e9, "density": 865.0, "volume": 4e-5, "wall_compliance": 2e-14,
     },
-    "water_hammer.joukowsky_pressure": {
+    "transmission_line.joukowsky_pressure": {
         "density": 865.0, "sound_speed": 1250.0, "velocity_change": 3.0,
     },
-    "resonators.quarter_wave_length": {
+    "transmission_line.quarter_wave_length": {
         "frequency": 20.0, "sound_speed": 1300.0, "quarter_waves": 3.0,
     },
     "line_ends.antiresonance_frequency": {
@@ -92,7 +92,7 @@ def _end(numerator, damping, inertia, frequency):
 
 
 FREQUENCY_RESPONSES: dict = {
-    "line_friction.series_impedance": [
+    "lines.series_impedance": [
         SECTION, {**SECTION, "frequency": 4e4}, {**SECTION, "friction": "steady"},
         {**SECTION, "friction": "lossless"},
     ],
@@ -103,7 +103,7 @@ FREQUENCY_RESPONSES: dict = {
     "transmission_line.input_admittance": [
         (_admittance, {**MATRIX, "end_admittance": y}) for y in (0.0, 3e-10 - 1e-10j, inf)
     ],
-    "resonators.plugged_branch_impedance": [PIPE],
+    "transmission_line.plugged_branch_impedance": [PIPE],
     "line_ends.end_admittance": [
         (_end, {"numerator": 2e-10, "damping": 0.016, "inertia": 2.5e-4, "frequency": 12.0}),
     ],

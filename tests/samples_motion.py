@@ -12,7 +12,7 @@ SAMPLES = {
         {"pressure": 2e7, **OIL}, {"pressure": 2e5, **AIRY}, {"pressure": -5e4, **AIRY},
         {"pressure": 2e7, "bulk_modulus": 1.4e9, "slope": 0.0},
     ],
-    "cavity.cavity": [{"pressure": p, "content": 1e-6} for p in (-5e4, 2e5)],
+    "chamber.cavity": [{"pressure": p, "content": 1e-6} for p in (-5e4, 2e5)],
     "chamber.mixture_bulk_modulus": [
         {"pressure": 2e7, **OIL}, {"pressure": 2e5, **AIRY}, {"pressure": -5e4, **AIRY},
     ],

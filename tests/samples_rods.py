@@ -28,8 +28,8 @@ CHAMBERS = {
 
 SAMPLES: dict = {
     "rod.free_modulus": {"wall": PLY},
-    "trial_mode.buckled_mode": {"critical_load": 1.3e5, **BENT},
-    "trial_mode.trial_mode_load": {"mode": TrialMode(0.5, 0.6, 1.2, 1.1), **BENT},
+    "trial_motion.buckled_mode": {"critical_load": 1.3e5, **BENT},
+    "trial_motion.trial_mode_load": {"mode": TrialMode(0.5, 0.6, 1.2, 1.1), **BENT},
     "tube_bounds.least_growth": {
         "hoop": [9e10, 2e11], "cross": [4e10, 5e9], "radial": [9e10, 1.2e10],
         "decays": [[0.4], [0.9, -0.7]], "thicknesses": [1e-3, 2e-3], "inner_radius": 16e-3,
@@ -68,13 +68,13 @@ SAMPLES: dict = {
     "rod.layered_section": {
         "walls": [PLY, (2e10, *PLY[1:])], "thicknesses": [1.5e-3, 0.5e-3], "inner_diameter": 12e-3,
     },
-    "beam_column.self_weight_moments": [
+    "column.self_weight_moments": [
         WEIGHTS, {**WEIGHTS, "length_2": 0.9, "weight_2": 60.0}, {**WEIGHTS, "weight_2": 0.0},
     ],
-    "beam_column.amplified_moment": {
+    "column.amplified_moment": {
         "bending_moment": 10.0, "axial_force": 9e3, "critical_load": 3e4, "shape": 0.27,
     },
-    "beam_column.bending_axial_force": {
+    "column.bending_axial_force": {
         "bending_moment": 20.0, "radius": 8e-3, "axial_stiffness": 9.3e6,
         "bending_stiffness": 215.0,
     },

@@ -33,23 +33,23 @@ SAMPLES = {
     "valve.viscosity_corrected": {
         "coefficient": 3.5e-7, "rated_viscosity": 32e-6, "viscosity": 46e-6,
     },
-    "spool.spool_acceleration": {
+    "valve.spool_acceleration": {
         "command": 3.0, "opening": 2.0, "rate": 900.0, "natural_frequency": 250.0,
         "damping_ratio": 0.7,
     },
-    "spool.spool_edge_coefficient": [
+    "valve.spool_edge_coefficient": [
         {**SPOOL, "spool_position": position} for position in (-2e-4, 6e-4)
     ],
-    "reducing_valve.reducing_valve_acceleration": {
+    "supply.reducing_valve_acceleration": {
         **LINE, "flow": 1e-5, "rate": 3e-4, "conductance": 1e-10, "natural_frequency": 20.0,
         "damping_ratio": 0.4,
     },
-    "reducing_valve.reducing_valve_flow": [
+    "supply.reducing_valve_flow": [
         {**LINE, "flow": flow, "largest_flow": 1e-3, "passive_conductance": 2e-12}
         for flow in (-2e-3, 3e-4, 2e-3)
     ],
-    "tuning.ziegler_nichols": [{**ULTIMATE, "law": law} for law in ("p", "pi", "pid")],
-    "tuning.margin_rules": [
+    "loop.ziegler_nichols": [{**ULTIMATE, "law": law} for law in ("p", "pi", "pid")],
+    "loop.margin_rules": [
         {"law": law, "ultimate_gain": 400.0, "velocity_gain": 0.13, "gain_margin": 2.5}
         for law in ("p", "pi")
     ],

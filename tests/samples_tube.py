@@ -80,10 +80,10 @@ SAMPLES: dict = {
     "layered_tube.tube_state": (state_of, LOADED),
     "layered_tube.tube_stresses": (stresses_of, LOADED),
     "layered_tube.ply_stresses_at_faces": (ply_stresses_of, LOADED),
-    "yielding.mises_product": {
+    "strength.mises_product": {
         "first": (3e8, 1e8, -5e7, 4e7), "second": (2e8, -1e8, 2e7, 3e7),
     },
-    "yielding.yield_utilisation": [
+    "strength.yield_utilisation": [
         {"stress": (3e8, 1e8, -5e7, 4e7), "yield_strength": 4e8, "residual": residual}
         for residual in (None, (-5e7, 8e7, 1e7, 2e7))
     ],

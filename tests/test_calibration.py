@@ -36,8 +36,8 @@ def rubbed(values, *, pressures=PRESSURES, speeds=SPEEDS, offset=0.0):
             level, viscous = own.sliding(np.array(speeds), np.full(len(speeds), first),
                                          np.full(len(speeds), second))  # fmt: skip
             points += [
-                FrictionPoint(way * v, max(first, second), first, second, way * float(f) + offset, 0.2, 1.0,
-                      "plateau")
+                FrictionPoint(way * v, max(first, second), first, second,
+                              way * float(f) + offset, 0.2, 1.0, "plateau")
                 for v, f in zip(speeds, level + viscous, strict=True)
             ]  # fmt: skip
     whole = identified("plateaus")

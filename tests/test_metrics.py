@@ -113,8 +113,8 @@ def test_models_by_wall_place_and_criterion():
 
     assert name("burst_factor") == "barrel.burst_pressure_thick"
     assert name("burst_factor", wall="layered") == "tube_burst.burst_of_tube"
-    assert name("yield_factor", wall="layered", place="rod") == "beam_column.amplified_moment"
+    assert name("yield_factor", wall="layered", place="rod") == "column.amplified_moment"
     assert name("rod_factor", criterion="max_stress") == "strength_modes.max_stress_modes"
-    assert name("rod_factor", place="rod, yield, layer 1") == "yielding.yield_utilisation"
+    assert name("rod_factor", place="rod, yield, layer 1") == "strength.yield_utilisation"
     assert model_of("closed_length", wall="layered") is None
     assert model_of("a user's own", wall="layered") is None

@@ -276,7 +276,7 @@ def test_the_laws_of_the_oil_stand_among_the_models():
     assert "AaltoThesis" in names["fluid.effective_bulk_modulus"].reference
     tait = {"fluid.bulk_modulus_law": "tait", "fluid.viscosity_pressure": "none"}
     names = {use.name: use for use in ao.evaluate(ao.read(KNEE, set=tait)).models}
-    assert "tait.bulk_modulus_tait" in names
+    assert "oil_laws.bulk_modulus_tait" in names
     assert "fluid.roelands" not in names
 
 

@@ -30,7 +30,7 @@ NOT_TRACED = {
     "loop.margins": "eigenvalues",
     "loop.ultimate_gain": "eigenvalues",
     "one_way_valve.one_way_pressure_drop": "iterates",
-    "ply_discount.burst_by_ply_discount": "a matrix of layers",
+    "burst_ladder.burst_by_ply_discount": "a matrix of layers",
     "rough_surface.asperity_integral": "a table",
     "rough_surface.asperity_pressure": "a table",
     "rough_surface.film_ratio_under_contact": "a table",
@@ -47,9 +47,9 @@ CASES = [
 STEEP = {
     "orifice.orifice_conductance-2": "closed",
     "strength.tsai_wu_modes-8": "no stress",
-    "strength_interfibre.hashin_modes-8": "no stress",
-    "strength_interfibre.puck_modes-7": "no stress",
-    "strength_interfibre.puck_modes-8": "no stress",
+    "strength_modes.hashin_modes-8": "no stress",
+    "strength_modes.puck_modes-7": "no stress",
+    "strength_modes.puck_modes-8": "no stress",
     "supply.relief_flow-0": "no pressure difference",
 }
 """Samples on a root of zero, whose slope has no end."""
@@ -145,7 +145,7 @@ def test_jacobian_of_a_model_is_its_complex_step(model, sample, request):
     exact = np.array(exact).reshape(len(outputs), size) / numeric.STEP
     effect = np.abs(exact * numbers)
     apart = np.abs((found.reshape(exact.shape) - exact) * numbers)
-    limit = 1e-10 if request.node.callspec.id == "flow_factors.shear_stress_factor-1" else 1e-12
+    limit = 1e-10 if request.node.callspec.id == "rough_surface.shear_stress_factor-1" else 1e-12
     assert np.all((apart <= limit * effect.max(axis=1, keepdims=True)) | np.isnan(exact))
 
 

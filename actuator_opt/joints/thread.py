@@ -19,6 +19,7 @@ from ..base.numeric import Array, minimum, real, where
 from ..base.quantities import INPUTS, Quantity
 from ..models import barrel, mass, thread
 from ..models.rod import section_area
+from ..models.strength import yield_utilisation
 from . import overlap
 from .joint import (
     LEAST_METAL,
@@ -411,7 +412,7 @@ def _wall(loaded: Loaded) -> WallPressures:
         hoop, radial, along = barrel.bore_stresses(pressure=inside, axial_force=axial, **size)
         stress = (hoop, radial, along, 0.0 * hoop)
         place = f"barrel under the thread, {path}"
-        yields[place] = 1 / strength.yield_utilisation(stress=stress, yield_strength=strength)
+        yields[place] = 1 / yield_utilisation(stress=stress, yield_strength=strength)
         ratio = axial / (inside * pi * cut.layer_radius * cut.layer_radius)
         alone = barrel.burst_pressure_thick(
             **size, yield_strength=strength, ultimate_strength=ultimate, axial_force_ratio=ratio

@@ -15,9 +15,9 @@ Some functions are for scripts alone; no part of the program calls them:
 
 - `end_stop.cushion_mean_pressure`, `end_stop.cushion_open_area`: pressure and flow area of a
   cushion that brakes evenly, to state as `stops.cushion` of a scenario
-- `spool.spool_edge_coefficient`: flow of a valve's edge from the geometry of its spool, with lap
+- `valve.spool_edge_coefficient`: flow of a valve's edge from the geometry of its spool, with lap
 - `elements.capacitance`, `elements.resonance_frequency`, `elements.sound_speed`,
-  `lugre.lugre_steady_deflection`, `resonators.plugged_branch_impedance`,
+  `lugre.lugre_steady_deflection`, `transmission_line.plugged_branch_impedance`,
   `stiffness_published.barrel_stiffness_as_published`,
   `stiffness_published.line_stiffness_as_published`: equations of [AaltoThesis], named in the report
   of its test cylinder

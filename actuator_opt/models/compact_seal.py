@@ -4,7 +4,7 @@ The block of free radial height h and face width w is squeezed by C between groo
 sliding surface, in plane strain along the circumference. Either side's pressure energises it: one
 face, either direction. Per length of circumference; pressure is the difference, >= 0. Without
 squeeze (C <= 0) there is no contact. The peak pressure is that of the face's profile,
-`contact_land.land_peak`.
+`contact_profile.land_peak`.
 """
 
 from __future__ import annotations

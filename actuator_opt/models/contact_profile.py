@@ -6,7 +6,7 @@ absolute). Each shape has one free pressure, its excess; `*_mean` is the integra
 `*_excess` the excess with which the contact of width b carries a line load over the outer
 pressure, f = b (mean - p_a). A negative excess says that the load is too small for this width:
 the sealed pressure would open the contact, and the profile must not be used; without width it is
-NaN. Worn-in lands (step ring, compact seal) have theirs in `contact_land`.
+NaN. Worn-in lands (step ring, compact seal) have theirs in `contact_profile`.
 """
 
 from __future__ import annotations

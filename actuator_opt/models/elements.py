@@ -1,6 +1,6 @@
 """Lumped hydraulic elements of a line: resistance, inertance, capacitance and resonances.
 
-Lines as functions of frequency live in `transmission_line`, side branches in `resonators`.
+Lines as functions of frequency live in `transmission_line`, side branches in `transmission_line`.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Hydraulic fluid: viscosity, bulk modulus, entrained and trapped air, vapour pressure.
 
-Density lives in `density`, the Tait equation in `tait`. Pressures are gauge unless a name says
+Density lives in `oil_laws`, the Tait equation in `oil_laws`. Pressures are gauge unless a name says
 ``absolute``; temperatures are in kelvin. A bulk modulus without a qualifier is the isothermal
 *tangent* value K = -V dp/dV; secant values say so.
 """
@@ -269,7 +269,7 @@ def bulk_modulus_warm(
 
     References
     ----------
-    [derived] the exponential factor of K0 in `tait.bulk_modulus_tait`
+    [derived] the exponential factor of K0 in `oil_laws.bulk_modulus_tait`
 
     Examples
     --------

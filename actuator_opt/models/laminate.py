@@ -3,7 +3,7 @@
 Classical lamination theory of an axisymmetric tube without twist: every entry is an isotropic
 layer or a balanced +-angle pair. It is the fast stand-in for the exact layered tube; its error
 grows with t/r_i (warn above `THIN_WALL_LIMIT`), on the unsafe side at the bore.
-Plies live in `ply`, the burst in `ply_discount`.
+Plies live in `ply`, the burst in `burst_ladder`.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Two rough surfaces pressed together: asperity contact and the mean gap between them.
 
 The film ratio is H = h/sigma: the distance of the mean planes over the composite roughness of a
-Gaussian surface. `flow_factors` gives the effect of the same roughness on a flow.
+Gaussian surface. `rough_surface` gives the effect of the same roughness on a flow.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ the pressure on the back beside the energiser's foot, on the pressure side. In f
 on the relief of the running face, on the pressure side of the land. What is left rests on the
 land. Per length of circumference; pressure is the one-sided difference, >= 0. An energiser
 without squeeze has lost contact: zero load and width. The peak pressure is that of the worn-in
-land, `contact_land.land_peak`.
+land, `contact_profile.land_peak`.
 """
 
 from __future__ import annotations

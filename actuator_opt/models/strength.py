@@ -2,7 +2,7 @@
 
 F_12* = F_12/sqrt(F_11 F_22) is the only constant of Tsai-Wu that no uniaxial test gives. It is
 -0.5 here unless another value is passed, which makes the form that of von Mises for equal
-strengths. What all criteria share is in `criteria`.
+strengths. What all criteria share is in `strength`.
 """
 
 from __future__ import annotations

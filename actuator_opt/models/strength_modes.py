@@ -1,7 +1,7 @@
 """Ply strengths, strength ratios, and the criteria without interaction: max stress, max strain.
 
 Stresses are in material axes (1 fibre, 2 transverse in the wall, 3 radial), tension positive.
-A criterion gives the utilisation 1/SR of each of its modes; see `criteria` for what all share.
+A criterion gives the utilisation 1/SR of each of its modes; see `strength` for what all share.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 Results are complex; arguments are real and the convention is e^(+i omega t), so that a result at
 -f is the conjugate of that at f. Pressure and flow at the near end follow from those at the far
 end by a matrix, p1 = A p2 + B q2, q1 = C p2 + D q2, flow positive from near to far [Merritt1967].
-Friction by name as in `line_friction`.
+Friction by name as in `lines`.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def line_matrix(
 
     Notes
     -----
-    Valid: as `line_friction.series_impedance`; real part of Gamma below 700.
+    Valid: as `lines.series_impedance`; real part of Gamma below 700.
 
     References
     ----------
@@ -298,7 +298,7 @@ def plugged_branch_impedance(
 
     Notes
     -----
-    Valid: as `line_friction.series_impedance`.
+    Valid: as `lines.series_impedance`.
 
     References
     ----------

@@ -290,8 +290,8 @@ def _metal(
     The pulse goes from the residual stress to the stress at supply pressure. Its mean is the larger
     equivalent stress at its ends minus half the range, and not below zero (no credit).
     """
-    strength = _by_climate(layer.yields)
-    used = strength.yield_utilisation(stress=load, yield_strength=strength, residual=residual)
+    limit = _by_climate(layer.yields)
+    used = strength.yield_utilisation(stress=load, yield_strength=limit, residual=residual)
     for place, pressure in _rows(states, paths, 1 / plies.worst(used, (0, 1))):
         wall.yield_pressure[f"{layer.label}, {place}"] = pressure
     pulse = liner.liner_cycle(

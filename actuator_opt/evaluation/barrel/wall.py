@@ -19,6 +19,7 @@ from ...joints.joint import Clamp
 from ...models import barrel, barrel_ends, column, laminate, ply, rod
 from ...models.autofrettage import Autofrettage
 from ...models.layered_tube import layered_tube, ply_stresses_at_faces, tube_state
+from ...models.strength import yield_utilisation
 from ...models.strength_modes import Stress
 from ..geometry import Geometry, Numbers, clamped, end_at, joint_of
 from ..limits import MaterialValues
@@ -293,7 +294,7 @@ def _used(
         _, _, clamp = barrel.bore_stresses(pressure=0.0, axial_force=path.held, **size)
         residual = (none, none, clamp, none)
     stress = (hoop, radial, along, none)
-    return strength.yield_utilisation(stress=stress, yield_strength=strength, residual=residual)
+    return yield_utilisation(stress=stress, yield_strength=strength, residual=residual)
 
 
 PRESSURE, FORCE, WARMTH = range(3)
