@@ -1,4 +1,7 @@
-"""Plain text tables: columns padded to their widest cell."""
+"""Plain text tables with columns padded to their widest cell; results shown in a notebook.
+
+In a notebook a result is shown as its page.
+"""
 
 from __future__ import annotations
 

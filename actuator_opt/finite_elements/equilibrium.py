@@ -1,13 +1,15 @@
-"""Newton's method with walls as bounds of the displacements: contact without a penalty.
+"""Equilibrium of bodies in contact with walls, with each other and with a fluid: Newton's method.
 
-A wall parallel to an axis bounds one displacement component of every boundary node. A node at its
-bound stays there as long as the wall pushes it; the force is the reaction of the wall. The fluid
-reaches all boundary nodes from the sealed side up to the first node whose contact pressure exceeds
-the fluid pressure.
+Walls bound displacements, so contact needs no penalty. A wall parallel to an axis bounds one
+component of every boundary node. A node at its bound stays there as long as the wall pushes it; the
+force is the reaction of the wall.
 
-Frictionless contact of two bodies: nodes of the upper body on the surface of the lower body.
+The fluid reaches all boundary nodes from the sealed side up to the first node whose contact
+pressure exceeds the fluid pressure. It is a follower load. Simpson's rule on every three-node edge
+is exact for a uniform pressure: the resultant on an arc is pressure times the distance of its ends.
 
-The gap is measured along direction 2, g = y_node - y_surface(x_node). The force is normal to the
+Contact of two bodies has no friction: nodes of the upper body rest on the surface of the lower one.
+The gap is measured along direction 2, g = y_node - y_surface(x_node); the force is normal to the
 surface. Its slope is made continuous from edge to edge, since a node that slides over the corner
 between two edges would otherwise oscillate.
 """

@@ -1,7 +1,8 @@
 """Mooney-Rivlin rubber and plastics, with five components of the deformation gradient.
 
 The order of components is 11, 12, 21, 22, 33: component 33 is one in plane strain, the hoop
-stretch in axisymmetry. Direction 1 is axial, 2 radial.
+stretch in axisymmetry. Direction 1 is axial, 2 radial. The finite-element library is imported on
+first use, so the program works without it.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
-"""Bonded overlaps: caps on the barrel, metal fittings in a laminated rod.
+"""Bonded overlaps: caps on the barrel, metal fittings in a laminated rod; skirts of the caps.
 
 Shear at both edges of the overlap under force, and without force at the coldest and the hottest.
 They are not added: their elastic sum is too high for an adhesive that yields before it breaks.
+Bond and thread share the skirts.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
-"""The lubricated film under a seal: solution at a speed, with drag, flow and profiles.
+"""The lubricated film under a seal: solution at a speed, with drag, flow, profiles and slopes.
 
 The static contact pressure of the seal is an input. At speed 0 the film is the limit of a leaking
-seal at rest: no flow by motion, and all friction is at the asperities.
+seal at rest: no flow by motion, and all friction is at the asperities. `sensitivities` gives exact
+derivatives by the inputs, from the implicit-function theorem.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ failure softens every ply of that material and |angle|, a fibre failure ends the
 the largest load on it. An isotropic liner yields (von Mises) and then keeps the stress it has
 reached while the rest of the load goes to the fibres: yielding is no failure. All designs of an
 array climb the same fixed number of steps under masks, and a complex step follows each design's
-own branch. How stresses follow from the load is the mechanics': thin laminate in `burst_ladder`,
+own branch. Stresses follow from the load by the wall's mechanics: the thin laminate is here, the
 exact tube in `tube_burst`.
 """
 

@@ -1,8 +1,9 @@
-"""Mass balance of a chamber: oil with entrained air over pressure.
+"""Mass balance of a chamber: oil with entrained air over pressure; cavitation.
 
 The state is the reference volume, the volume the content takes at zero gauge pressure; it grows
 by the net inflow times `density_ratio` at the pressure the flow comes from. Pressures are gauge.
-The air stays undissolved and of constant mass. A chamber with air cannot pass -p_a.
+The air stays undissolved and of constant mass. A chamber with air cannot pass -p_a; in oil without
+air a cavity opens below atmospheric pressure and closes above.
 """
 
 from __future__ import annotations

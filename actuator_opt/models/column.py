@@ -1,6 +1,9 @@
-"""Buckling of uniform columns: Euler, shear correction, local shell.
+"""Buckling of uniform columns (Euler, shear, local shell), and cylinder and rod as a bent beam.
 
 The stepped column lives in `stepped`; forces and moments of a laminated wall in `shell_buckling`.
+The beam carries its own weight, a side load and an off-centre push. The push amplifies the moment
+by a factor that is exact only for a load with the shape of the buckling mode. A side force at the
+rod's eye, carried by the guides, is the moment F times overhang at the head.
 """
 
 from __future__ import annotations

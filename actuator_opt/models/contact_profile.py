@@ -6,7 +6,11 @@ absolute). Each shape has one free pressure, its excess; `*_mean` is the integra
 `*_excess` the excess with which the contact of width b carries a line load over the outer
 pressure, f = b (mean - p_a). A negative excess says that the load is too small for this width:
 the sealed pressure would open the contact, and the profile must not be used; without width it is
-NaN. Worn-in lands (step ring, compact seal) have theirs in `contact_profile`.
+NaN.
+
+`land_*` is the worn-in face of a step ring or a compact seal. PTFE and elastomer faces wear and
+creep until their pressure is even, so the land carries the falling oil pressure plus a flat excess;
+new sharp edges carry more for their first metres.
 """
 
 from __future__ import annotations

@@ -1,6 +1,8 @@
-"""Gland geometry of an O-ring: squeeze, stretch, fill and the gap behind it.
+"""Gland of an O-ring: squeeze, stretch, fill, their range in use, and the extrusion gap.
 
-C is the squeeze over the free section W.
+C is the squeeze over the free section W. The range covers hot and cold, and the tolerances of ring
+and groove. Largest extrusion gaps over pressure and hardness come from a table, passed as an
+argument: rows of a hardness with points of pressure and gap, from the maker of the seal.
 """
 
 from __future__ import annotations

@@ -1,7 +1,11 @@
-"""Pipes, hoses and ports: compliance, volume, flow and pressure drop.
+"""Pipes, hoses and ports: compliance, volume, flow, pressure drop, friction of oscillating flow.
 
 Lines are round and full; a positive flow gives a positive pressure drop. Their lumped elements
-live in `elements`.
+live in `elements`. Series impedance by name of the friction:
+
+`lossless`     none
+`steady`       the laminar resistance of steady flow, at every frequency
+`distributed`  laminar flow whose profile follows the frequency [DSouza1964]
 """
 
 from __future__ import annotations

@@ -1,7 +1,9 @@
-"""Modes of the held actuator, and its position loop: margins and bandwidth.
+"""Modes of the held actuator, its position loop, and controller tuning.
 
 Roots are found on real parts; the imaginary step of the coefficients is carried to each result by
-the implicit-function theorem, so every figure here has its exact derivative.
+the implicit-function theorem, so every figure here has its exact derivative. Tuning rules start
+from the ultimate point, where the loop is at its limit of stability; the controller is
+u = K (e + (1/T_i) integral of e + T_d de/dt).
 """
 
 from __future__ import annotations

@@ -1,6 +1,8 @@
-"""Pressure dependence of an oil: laws of bulk modulus and viscosity that a design may name.
+"""Oil over pressure and temperature: laws of bulk modulus, viscosity and density by name.
 
-A new law is an entry here: its name, the properties it needs, its formula, its range.
+A design may name a law. A new law is an entry here: its name, the properties it needs, its formula,
+its range. Pressures are gauge, temperatures in kelvin. In the Tait equation K0 = zero_modulus
+exp(-c T) is the isothermal modulus at zero pressure, and B = 1 + K0'.
 """
 
 from __future__ import annotations

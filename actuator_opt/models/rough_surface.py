@@ -1,7 +1,11 @@
-"""Two rough surfaces pressed together: asperity contact and the mean gap between them.
+"""Rough surfaces: asperity contact, mean gap, and the effect of roughness on a flow.
 
 The film ratio is H = h/sigma: the distance of the mean planes over the composite roughness of a
-Gaussian surface. `rough_surface` gives the effect of the same roughness on a flow.
+Gaussian surface. Flow and shear factors are those of isotropic surfaces (Patir and Cheng);
+`rod_share` is V = (sigma_rod/sigma)^2, the part of the composite roughness on the moving rod: 0 for
+a smooth rod under a rough seal, 1 for a rough rod under a smooth seal. It sets the sign of the two
+factors of relative motion: with a smooth rod the flow is less than that of a smooth gap and the
+shear of the rod more.
 """
 
 from __future__ import annotations

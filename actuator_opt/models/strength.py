@@ -1,8 +1,26 @@
-"""Failure criteria with all stresses in one quadratic form: Tsai-Wu, in 3-D.
+"""Failure criteria by name with a common interface; Tsai-Wu in 3-D; yield of pre-stressed metal.
 
-F_12* = F_12/sqrt(F_11 F_22) is the only constant of Tsai-Wu that no uniaxial test gives. It is
--0.5 here unless another value is passed, which makes the form that of von Mises for equal
-strengths. What all criteria share is in `strength`.
+A criterion takes the stress of the load in material axes, and the residual stress that does not
+grow with the load (cure, cool-down, frozen by yielding). It gives the utilisation 1/SR of every
+mode by name. The strength ratio SR is the factor of the load at which residual + SR stress first
+meets the surface of that mode: exact, in closed form. A utilisation is
+
+- never negative, at most 1 where the ply carries the present load, 0 where the mode never fails it;
+- proportional to the load without residual stress, and finite at zero stress;
+- infinite (SR = 0) where the residual stress alone fails the ply.
+
+The largest utilisation of the modes is the ply's; `load_multiplier` gives SR. Branches go by real
+parts, so a complex step follows the branch of its point.
+
+The criteria use the same few strengths and differ by 20-25 % on one tube: a first-ply pressure
+means little without the name of its criterion. F_12* = F_12/sqrt(F_11 F_22) of Tsai-Wu comes from
+no uniaxial test; its default of -0.5 makes the form that of von Mises for equal strengths. Hashin
+and Puck are in plane stress and ignore sigma_3. Maximum strain includes sigma_3 through Poisson's
+ratios and does not test the radial strain; only maximum stress and Tsai-Wu limit it. A constant of
+one criterion (F_12*, Hashin's shear share, Puck's inclinations) is a keyword of its function: bind
+it with `functools.partial` for another value.
+
+Metal yields by von Mises, exact along the load path.
 """
 
 from __future__ import annotations

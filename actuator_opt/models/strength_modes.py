@@ -1,7 +1,15 @@
-"""Ply strengths, strength ratios, and the criteria without interaction: max stress, max strain.
+"""Ply strengths, strength ratios, and criteria by mode: max stress, max strain, Hashin, Puck.
 
 Stresses are in material axes (1 fibre, 2 transverse in the wall, 3 radial), tension positive.
-A criterion gives the utilisation 1/SR of each of its modes; see `strength` for what all share.
+A criterion gives the utilisation 1/SR of each of its modes; `strength` states what all share.
+
+Hashin and Puck separate fibre failure from inter-fibre failure, in plane stress. The sign of
+sigma_2 at failure decides which surface applies. Without residual stress that is the sign of the
+load's sigma_2. With it, the load leads from the residual stress across sigma_2 = 0 at some shear:
+below S the ply survives there and fails on the far side, else it has failed before. Both criteria
+meet |tau| = S at sigma_2 = 0 from either side, so the utilisation of the ply is continuous there.
+Of the modes between the fibres only the mode that fails is loaded, the others are 0. Every surface
+is a conic in (sigma_2, tau), so along the load a quadratic in SR.
 """
 
 from __future__ import annotations

@@ -1,7 +1,9 @@
-"""Pressure supply: relief valve and pressure-controlled pump.
+"""Pressure supply: relief valve, pressure-controlled pump, pressure reducing valve.
 
 Pressures are gauge, or relative to the tank. A supply line of volume V_S and bulk modulus K closes
-the loop: (V_S/K) dp_S/dt = delivery - relief flow - demand. Accumulators are in `accumulator`.
+the loop: (V_S/K) dp_S/dt = delivery - relief flow - demand. Accumulators are in `accumulator`. The
+reducing valve relieves when its line exceeds the set pressure; its small signals are those of
+`line_ends.reducing_valve_end`.
 """
 
 from __future__ import annotations

@@ -1,9 +1,12 @@
-"""Round lines as functions of frequency: distributed model, and impedance at one end.
+"""Round lines as functions of frequency, plugged side branches, and waves after a sudden stop.
 
-Results are complex; arguments are real and the convention is e^(+i omega t), so that a result at
--f is the conjugate of that at f. Pressure and flow at the near end follow from those at the far
-end by a matrix, p1 = A p2 + B q2, q1 = C p2 + D q2, flow positive from near to far [Merritt1967].
-Friction by name as in `lines`.
+The distributed model gives the impedance at one end. Results are complex; arguments are real and
+the convention is e^(+i omega t), so that a result at -f is the conjugate of that at f. Pressure and
+flow at the near end follow from those at the far end by a matrix, p1 = A p2 + B q2,
+q1 = C p2 + D q2, flow positive from near to far [Merritt1967]. Friction by name as in `lines`.
+
+A plugged side branch (T-pipe) takes flow without pressure at odd quarter waves: the junction stays
+at rest and only the plugged end swings. At even ones it takes no flow.
 """
 
 from __future__ import annotations

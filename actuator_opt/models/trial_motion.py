@@ -1,7 +1,8 @@
-"""Upper bound on the stiffness of two closed chambers in one wall, from a trial motion.
+"""Bounds from trial shapes: stiffness of two chambers in one wall, critical load of a column.
 
-The piston moves by 1; the wall of one chamber grows by the volume by which the other's shrinks; the
-end loaded by a chamber's pressure moves along. Energy is that of oil and wall [Gurtin1972].
+Stiffness: the piston moves by 1; the wall of one chamber grows by the volume by which the other
+shrinks; the end loaded by a chamber's pressure moves along. Energy is that of oil and wall
+[Gurtin1972]. Critical load: any trial shape of a stepped column gives an upper bound.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Proportional valve of four edges: flow of an edge and of the whole valve; see `valve`.
+"""Proportional valve of four edges: flow of an edge and of the valve, motion of its spool.
 
 A signal U > 0 opens P to A and B to T, U < 0 opens A to T and P to B.
 """

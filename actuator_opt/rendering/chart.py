@@ -1,6 +1,7 @@
-"""A chart as data: panels with axes, curves, points, limits and shaded maps.
+"""A chart as data: panels with axes and their scales, curves, points, limits and shaded maps.
 
-A chart names values and words. `chart_ink` gives them their place on paper by rule.
+Scales are straight, logarithmic, logarithmic in both directions, or rows by name. A chart names
+values and words; `chart_ink` places them on paper by rule.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A page on paper: PDF and PNG by Typst, whole or not at all.
+"""A page on paper: PDF and PNG by Typst, complete or not written at all; drawings as PNG and SVG.
 
 Everything is made in memory, written beside its place, then renamed. The PDF carries the input
 file and the command inside itself (PDF/A-3), so that a report can be run again.

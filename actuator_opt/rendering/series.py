@@ -1,4 +1,9 @@
-"""Columns as CSV files: whole ones, and files that grow by rows."""
+"""Columns of data as files: CSV whole or growing by rows, and Apache Parquet.
+
+Parquet stores numbers in double precision (null where there is none), texts by dictionaries and
+flags as booleans. Every field carries its name, label and unit. A file gets its final name only
+when it is complete.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
 """A page on the terminal: verdict, sentence, and its blocks one below the other.
 
-Pure functions: they return text and print nothing. Without Unicode the text is plain ASCII.
+Curves are drawn in a few lines of braille dots. All functions return text and print nothing.
+Without Unicode the text is plain ASCII.
 """
 
 from __future__ import annotations

@@ -1,4 +1,9 @@
-"""Sizes of seal types besides section and squeeze, as keys of a design file."""
+"""A mounted seal: its sizes by key of the design file, its contact, and its outline.
+
+The contact is line load, width, peak pressure and profile. Outlines are polygons without pressure,
+in m: x runs from the sealed side of the groove, r from the counterface into the groove. A round
+ring keeps its section area: squeezed, it is a rectangle between two half circles.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
-"""Estimates with confidence bounds: probabilities and variance-based sensitivity indices.
+"""Distributions of inputs, and estimates with confidence bounds.
 
-All functions work on points of the unit cube; the caller gives them meaning.
+Distributions are quantile functions, from cumulative probability to value. Estimates are
+probabilities and variance-based sensitivity indices, from points of the unit cube.
 """
 
 from __future__ import annotations
