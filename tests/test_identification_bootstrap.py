@@ -13,6 +13,7 @@ from scipy.optimize import least_squares
 
 import actuator_opt as ao
 from actuator_opt.base.errors import InputError
+from actuator_opt.base.fitting import FitSearch, relaxed
 from actuator_opt.identification import synthetic
 from actuator_opt.identification.bootstrap import (
     LuGreResiduals,
@@ -20,7 +21,6 @@ from actuator_opt.identification.bootstrap import (
     resampled_stribeck,
     searched,
 )
-from actuator_opt.identification.calibration import FitSearch, relaxed
 from actuator_opt.identification.identify import identify
 from actuator_opt.identification.lugre import windows
 from actuator_opt.identification.points import FrictionPoint

@@ -1,4 +1,4 @@
-"""Evaluate, optimise and price a design."""
+"""Evaluate, optimise and price a design; search a Pareto front."""
 
 from __future__ import annotations
 

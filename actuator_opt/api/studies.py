@@ -1,4 +1,4 @@
-"""Run uncertainty studies and write their reports."""
+"""Run uncertainty studies and detailed studies of a seal, and write their reports."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sweep a design: evaluate many variants."""
+"""Sweep a design: evaluate many variants; draw or list a recorded sweep again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Recorded runs: the commands of `runs`, and `rerun` of a report."""
+"""Recorded runs: the commands of `runs`, and `rerun` of a report; `doctor` of the installation."""
 
 from __future__ import annotations
 

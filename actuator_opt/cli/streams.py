@@ -1,7 +1,7 @@
 """Standard streams: width, colour, progress, and faults as lines or JSON.
 
 A closed pipe ends the output but not the command, which keeps its exit status. Data is written in
-one piece: Ctrl-C waits until then.
+one piece: Ctrl-C waits until then. An unexpected exception becomes a line and an exit code.
 """
 
 from __future__ import annotations

@@ -1,9 +1,8 @@
 """Contradictions between values of a design, each reported at one of the values.
 
 Every check is a small function of a `FileView`. It yields nothing if a required value is missing or
-already faulty, so the checks also run on a file with other faults. More checks are in
-`wall_faults` (barrel and rod), `retention_faults` (joints of caps and head), `seal_faults` and
-`linkage_faults` (robot joints).
+already faulty, so the checks also run on a file with other faults. Barrel and rod have theirs in
+`wall_faults`, seals in `seal_faults`; each joint of caps and head has its own.
 """
 
 from __future__ import annotations

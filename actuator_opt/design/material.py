@@ -1,7 +1,13 @@
-"""Material data: properties with source, scatter, confidence and basis.
+"""Material data: properties with source, scatter, confidence and basis; fits of secant damping.
 
 All values are SI. A property may be a table over temperature or pressure; its `value` is then
 the value at the reference point, and scaling it scales the table.
+
+Fits over speed minimise sum w (B - B_fit)^2 over the measured points; equal weights unless weights
+are given (1/B^2 fits relative errors). Linear parameters are eliminated, so only exponents are
+searched [GolubPereyra1973], from every start of a grid. Bounds are those of the linearised model
+with Student's t [SeberWild1989]. They assume independent points: for points of a smooth curve they
+show the misfit of the law, not scatter.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """The Design: contents of a design file in SI, as typed sections.
 
 Every number names its quantity (`Of`): parsing, range checks, the JSON Schema and reports read one
-declaration (`quantities.INPUTS`). Sections contain no physics.
+declaration (`quantities.INPUTS`). A value may have bounds of a variable, bounds of a test, or
+scatter. Sections contain no physics.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
-"""Structure of the model: keys of each section and the kind of each value.
+"""Structure of the model, and a file's tree by that structure: values by place, faults at places.
 
-The reader, PATHs, writer and JSON Schema traverse this structure, so none of them names a field.
+Reader, PATHs, writer and JSON Schema traverse the keys of each section and the kind of each value,
+so none of them names a field.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """Write a design to YAML exactly: reading the text again gives the same numbers, bit for bit.
 
 If the design was read from a text, only changed values are replaced, so comments, units and layout
-are kept. A text that cannot be edited in this way is rewritten.
+are kept. A text that cannot be edited in this way is rewritten. The start file of `init` is a
+complete, commented design, every value with its unit.
 """
 
 from __future__ import annotations

@@ -1,4 +1,8 @@
-"""Build an Evaluation from a model run: rows, checks, warnings, provenance."""
+"""Results of a model run: an Evaluation with rows, checks, warnings and provenance; many designs.
+
+Standard sizes of bore, rod, glands and housings are a remark, not a limit. Many designs at once get
+one governing value for each metric and limit.
+"""
 
 from __future__ import annotations
 

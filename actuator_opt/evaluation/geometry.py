@@ -1,8 +1,9 @@
-"""Derived dimensions of the actuator, shared by physics, mass and drawing.
+"""Derived dimensions of the actuator and its grooves, shared by physics, mass and drawing.
 
 Axial layout, from the outer face of the cap plate: plate, barrel (piston retracted against the
-plate, stroke, head plug), head plate, exposed rod, eye. A joint of `joints` holds
-both plates.
+plate, stroke, head plug), head plate, exposed rod, eye. Every seal element, wiper and guide has its
+groove in piston or head. A joint of `joints` holds both plates; both ends have the same joint, so a
+single `End` represents both.
 """
 
 from __future__ import annotations

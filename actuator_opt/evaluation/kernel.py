@@ -1,4 +1,9 @@
-"""The kernel: all metrics of one or many designs, from one pass over the models."""
+"""All metrics of one or many designs from one pass over the models, and their governing values.
+
+The governing value of a metric, over load cases and places, is defined here only: tables, JSON,
+sweeps, fronts, the optimiser and reports show this value. Oil damping, leakage, flow and line
+losses are computed here.
+"""
 
 from __future__ import annotations
 

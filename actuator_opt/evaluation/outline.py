@@ -1,4 +1,10 @@
-"""Half-sections of all parts, retracted, for the drawing; volumes equal those of the mass model."""
+"""Half-sections of all parts, retracted, for the drawing; volumes equal those of the mass model.
+
+Many designs are drawn from a few templates. Every point of `outlines` is a sum of dimensions, as
+long as no part appears, vanishes or changes its form. A template contains these sums, determined by
+varying each dimension. Each design is drawn from a template that reproduces its outlines, or is not
+drawn.
+"""
 
 from __future__ import annotations
 

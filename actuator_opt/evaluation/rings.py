@@ -1,4 +1,8 @@
-"""Sealing rings of an evaluation: their numbers, with pressure and bore growth."""
+"""Sealing rings of an evaluation: numbers with pressure and bore growth, contact, gland checks.
+
+The contact is that of the seal type, or as stated in the design. Gland checks are squeeze, fill and
+extrusion gap with tolerances, growth and temperature.
+"""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
-"""Strength of the rod in an evaluation: yield, plies and metal layers, local buckling.
+"""Strength of the rod in an evaluation: yield, plies and metal layers, buckling, bending.
 
-Push and pull are the largest forces of the supply. Bending by side load and own weight is added,
-amplified by the push; the rod inside chamber B is under its pressure while pulling.
+Push and pull are the largest forces of the supply. The actuator is a slender beam: the push
+amplifies the moment of side load and own weight towards the critical load (`Beam.under`). The rod
+inside chamber B is under its pressure while pulling.
 """
 
 from __future__ import annotations

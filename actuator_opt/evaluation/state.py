@@ -1,4 +1,9 @@
-"""State of all load cases: pressures, force, speed, temperature and oil properties."""
+"""State of all load cases: pressures, force, speed, temperature, and the oil at each.
+
+Oil properties are bulk modulus, viscosity, density and vapour pressure, with their range: boiling,
+laws over pressure, temperatures. Pressures are gauge. Without a stated law the library entry
+decides. All are properties of the pure liquid, except `bulk_modulus`, which includes entrained air.
+"""
 
 from __future__ import annotations
 

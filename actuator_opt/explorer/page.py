@@ -1,7 +1,7 @@
 """The page of an explored sweep: markup, style, script and data in a single, self-contained file.
 
-Data are in a JSON block that no text can close; the script inserts texts as text nodes, and the
-security policy of the page allows no other script.
+Data (columns, limits, sections, texts) are in a JSON block that no text can close. The script
+inserts texts as text nodes, and the security policy of the page allows no other script.
 """
 
 from __future__ import annotations

@@ -27,10 +27,9 @@ from dataclasses import replace
 import numpy as np
 
 from ..base.errors import Diagnostic, InputError
-from ..base.fitting import CONFIDENCE, WEAK, Parameter, quantile
+from ..base.fitting import CONFIDENCE, WEAK, FitSearch, Parameter, quantile, relaxed
 from ..base.numeric import STEP as COMPLEX_STEP, Array
 from .balance import Sliding
-from .calibration import FitSearch, relaxed
 from .conditioning import ConditionedRecord
 from .lugre import (
     BENDS,

@@ -1,4 +1,7 @@
-"""Identification of friction, damping and models from a test record, with bounds."""
+"""Identification of friction, damping and models from a test record, with bounds.
+
+A lag between the pressures is reported where the record shows it and can be corrected.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,7 @@ from ..design.material import LawFit, fit_double_exponential, fit_power_law
 from ..studies.bench import Bench
 from .balance import Sliding, check_signs, slide, velocity_noise
 from .bootstrap import resampled
-from .column import coefficient
+from .coefficient import coefficient
 from .conditioning import ConditionedRecord, condition
 from .doubtful import opened
 from .lugre import BENDS, LAG, LuGreFit, fit_lugre, settling_distance

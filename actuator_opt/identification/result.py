@@ -15,7 +15,7 @@ from ..design.material import LawFit
 from ..studies.bench import Bench
 from ..version import VERSION
 from .balance import Sliding
-from .column import Coefficient
+from .coefficient import Coefficient
 from .conditioning import CUTOFF, ORDER, ConditionedRecord
 from .lugre import LuGreFit
 from .points import FrictionPoint

@@ -1,10 +1,10 @@
-"""The best point of a problem with variables that only take listed values.
+"""The best point of a problem with variables that only take listed values, singly or in groups.
 
 Branch and bound from the continuous optimum. The most promising box comes first; among nearly equal
 boxes the newest, which is the deepest. The bound of a box is its continuous optimum, re-optimised
-from that of the enclosing box. As this optimum is local, the result is the best found, without
-proof. All roundings up and down are tried first, together. A small box with no other free variables
-is evaluated whole, in one model call.
+from that of the enclosing box. As this optimum is local, the result is the best point reached,
+without proof. All roundings up and down are tried first, together. A small box with no other free
+variables is evaluated whole, in one model call.
 """
 
 from __future__ import annotations

@@ -1,8 +1,12 @@
 """The best combination of the design's choices: quick look at each, full solution of the best.
 
 A quick look descends from the nearest known design. It usually finds the optimum of a combination
-but proves nothing. Combinations close to the best one are then solved from many starts, the winner
+but proves nothing. Combinations close to the best are then solved from many starts, the winner
 always. The record of each combination shows how it was searched.
+
+When variables take listed sizes, combinations are searched best first, each from its continuous
+optimum, which bounds its result with sizes. Those whose bound does not beat the best sized design
+are skipped. The bounds are local optima, mostly of a quick look, so nothing is proved.
 """
 
 from __future__ import annotations

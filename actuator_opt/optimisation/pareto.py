@@ -1,4 +1,4 @@
-"""The Pareto front of an actuator, for objectives named by metric."""
+"""The Pareto front of an actuator for objectives by metric: designs, knee, spacing, checks."""
 
 from __future__ import annotations
 

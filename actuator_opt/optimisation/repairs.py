@@ -2,7 +2,8 @@
 
 First, shortest steps to the linearised rows look for a point that meets everything but this
 requirement (or lies beyond this bound), for all candidates at once. If they fail, the worst
-violation is minimised from several points. From there the least sufficient change follows.
+violation is minimised from several points, in an elastic problem: its constraints may be violated
+at a price. From there the least sufficient change follows.
 """
 
 from __future__ import annotations

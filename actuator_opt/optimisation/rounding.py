@@ -1,8 +1,14 @@
-"""Rounding of the continuous optimum to manufacturable sizes, and its cost.
+"""Rounding of the continuous optimum to manufacturable sizes, its cost, and remedies.
 
 Variables take the sizes stated in their file (a list, a step, a standard series), whole plies and
 allowed angles, or all standard sizes, as requested: `design.sizes` lists them. All other variables
 stay continuous and are optimised again. The search proves nothing: see `branch_and_bound`.
+
+Remedies are small changes of a limit, a load or the supply pressure that allow better sizes. If
+rounding costs much, the size that moved most is fixed at its other neighbour, which some limit
+forbids. If no sized design is feasible, the least infeasible sizes are fixed. With all sizes fixed,
+the least relaxation of each limit is computed, and the best design with it. Each remedy was
+confirmed by a design of these sizes.
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""Recorded runs: the list of runs, and one run with its request, result and search."""
+"""Recorded runs: the list, and one run with its request, result and search; results of `doctor`.
+
+The table of `doctor` is never cut, so that paths can be copied.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""The barrel's wall on paper: layers, stresses, criteria, the way to burst, alternatives."""
+"""The barrel's wall on paper: layers, stresses, criteria, the way to burst, alternatives.
+
+Layers are bands with their number, the bore at the left. Curves differ in dash as well as in colour
+and are named in the legend above the frames, so no text crosses a curve.
+"""
 
 from __future__ import annotations
 

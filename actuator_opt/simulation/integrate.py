@@ -1,4 +1,13 @@
-"""Integration in time, restarted where an input jumps or a switch changes state."""
+"""Integration in time, restarted where an input jumps or a switch changes state.
+
+Integrators of a smooth section return states at its samples, or how far they got. LSODA switches
+between stiff and non-stiff steps and uses the exact Jacobian. Radau gives the second opinion.
+
+CVODES of SUNDIALS through CasADi (extra `fast`) runs without Python code. The graph of a system
+becomes symbols of CasADi, each operation once; CasADi derives the exact Jacobian. No compiler is
+needed. If CVODES fails, another integrator takes over that section or reports why it cannot. A
+servo takes about half of LSODA's time, at the same error.
+"""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 """Screen of a sweep: rules out most designs early, by closed expressions.
 
 The models run once with symbols. Objective and limits that become closed expressions of the varied
-numbers are compiled. Designs that pass are evaluated in full, so a screen never changes the result.
+numbers are compiled for NumPy, or JAX where installed. Designs that pass are evaluated in full, so
+a screen never changes the result.
 """
 
 from __future__ import annotations

@@ -1,4 +1,9 @@
-"""Values that only a scenario has: names of files and columns, initial position."""
+"""Kinds of a scenario: shapes of signals, components around the design, and its own values.
+
+A shape is an entry of `SHAPES`: name, keys, course over time, report text. A component (supply,
+seal friction, port end, control law) declares its name and keys here and its equations in
+`simulation.components`; without equations it fails at import (`kinds.per_kind`).
+"""
 
 from __future__ import annotations
 

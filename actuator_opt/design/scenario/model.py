@@ -1,4 +1,7 @@
-"""The Scenario: events on a design over time, in SI, as typed sections."""
+"""The Scenario: signals and events on a design over time, in SI, as typed sections.
+
+A signal is a list of parts that are added.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Scenario files: read like designs, and together with the design they name."""
+"""Scenario files: read like designs, together with the design they name; and their start file.
+
+The start file of `init --scenario` is a commented step under load for a design.
+"""
 
 from __future__ import annotations
 

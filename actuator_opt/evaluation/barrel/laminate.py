@@ -2,6 +2,9 @@
 
 Stresses of unit pressure, unit axial force and unit temperature change are superposed for every
 load path; cure stresses and tie-rod preload are residual stresses, independent of the load.
+
+A gradient needs a copy of the design for every variable, but most variables do not affect the wall:
+for it, their copies are equal. So the wall is evaluated for the distinct designs of a batch only.
 """
 
 from __future__ import annotations

@@ -1,8 +1,11 @@
-"""Results of a barrel wall, for every wall model.
+"""Barrel wall of any model: results, response to unit loads, and the axial force in it.
 
-Response of a laminated wall to unit pressure, unit axial force and unit temperature change.
+A laminated wall responds to unit pressure, unit axial force and unit temperature change, as the
+exact layered tube or the fast thin laminate; both give stresses at the layer faces.
 
-From the exact layered tube, or the fast thin laminate; both give stresses at the layer faces.
+The axial force follows from mount, load direction, stop and tie rods; the ends are never assumed
+open or closed. Tie rods clamp the barrel with their preload and carry their share of the separating
+force. The default preload keeps the joint closed at proof pressure.
 """
 
 from __future__ import annotations

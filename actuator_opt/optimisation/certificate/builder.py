@@ -1,4 +1,7 @@
-"""Traced values as monomials of atoms, with curves that relate the atoms."""
+"""Traced values as monomials of atoms, with curves that relate the atoms.
+
+A model without a closed expression becomes an unknown within envelopes that contain its values.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
-"""Bounds of every traced value that hold for all designs that meet the limits.
+"""Bounds of every traced value that hold for all designs of a box that meet the limits.
 
-Interval constraint propagation, forwards from operands to results and backwards from limits to
+A box is a part of the design space: ranges of atoms and of log ratios, and their implications.
+Interval constraint propagation goes forwards from operands to results and backwards from limits to
 variables [Benhamou1999]. A choice between a value and no value (NaN) takes the value, because a
 design without a value meets no requirement.
 """

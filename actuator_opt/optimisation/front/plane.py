@@ -1,14 +1,13 @@
-"""Designs of three or more objectives: a lattice over the front, then its holes.
+"""Designs of three or more objectives over the front, and an even spread of the final designs.
 
 The front may bulge beyond its anchors. So the neighbours of every level with a design are tried,
 until the front ends. There the level leads to its edge: the objectives that can still improve are
-improved. Finally, wide holes where the front is steep are filled.
+improved. Wide holes where the front is steep are filled; gaps that remain are explained.
 
-Levels of the objectives at which designs are wanted, on the plane of the anchors.
-
-Two objectives use the line u -> (u, 1 - u). Along it a front is never steeper than 45 degrees, so
-its length between two places is at most twice their difference in u. More objectives use a lattice
-of the plane sum = 1, where its lines meet the box of ideal and nadir.
+Levels lie on the plane of the anchors. Two objectives use the line u -> (u, 1 - u). Along it a
+front is never steeper than 45 degrees, so its length between two places is at most twice their
+difference in u. More objectives use a lattice of the plane sum = 1, where its lines meet the box of
+ideal and nadir.
 """
 
 from __future__ import annotations

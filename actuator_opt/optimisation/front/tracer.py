@@ -1,4 +1,7 @@
-"""Designs of a front at given levels: many at once, from neighbouring designs."""
+"""Designs of a front at given levels, many at once, from neighbouring designs.
+
+Also: which designs are on the front, how evenly they lie, and where the front bends most.
+"""
 
 from __future__ import annotations
 

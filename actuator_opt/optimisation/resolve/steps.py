@@ -1,14 +1,17 @@
-"""Steps towards an optimum near a solved one, for `batch.run_batch`.
+"""Steps towards an optimum near a solved one, for many problems side by side.
+
+A solver is a generator: it yields the coordinates of the point it needs, receives that point with
+its gradients, and returns its result. One model call evaluates a step of every solver. Each sees
+only its own points, so its result is the same alone or beside others.
 
 Full quadratic steps reach most optima. They use the Hessian of the unchanged optimum and update it.
 A descent within a trust region, from a feasible point, reaches the others. A restoration finds such
 a point.
 
-Initial Hessians: from another problem's optimum, or along the free directions.
-
-Most designs of a front have nearly as many active limits as variables. Along the few free
-directions, a gradient on each side gives the curvature. Elsewhere the Hessian only has to be
-convex, as the rows determine the step [NocedalWright2006] section 16.2.
+Hessians start from another problem's optimum, or along the free directions. Most designs of a front
+have nearly as many active limits as variables. Along the few free directions, a gradient on each
+side gives the curvature. Elsewhere the Hessian only has to be convex, as the rows determine the
+step [NocedalWright2006] section 16.2.
 """
 
 from __future__ import annotations

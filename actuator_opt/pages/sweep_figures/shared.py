@@ -1,4 +1,4 @@
-"""What the figures of a sweep share: columns with their units, limits in words, the heading."""
+"""Common parts of the figures of a sweep: columns with units, limits in words, headings, files."""
 
 from __future__ import annotations
 

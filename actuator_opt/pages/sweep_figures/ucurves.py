@@ -1,4 +1,4 @@
-"""Stiffness over the stroke of the best designs of a sweep."""
+"""Stiffness over the stroke of the best designs of a sweep, and their differences."""
 
 from __future__ import annotations
 

@@ -1,4 +1,9 @@
-"""Volumes of oil at one pressure: rate, mass and elastic energy."""
+"""Volumes of oil at one pressure, and the components at their ports.
+
+A volume has its rate, mass and elastic energy. Components: the line of a chamber (one-way valve,
+line, far end), a hydraulic motor between two pipes by the Wilson model, and a load cylinder with
+its own valve, which loads the rod on a test bench.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""A circuit under construction: data shared by its parts."""
+"""A circuit under construction: data shared by its parts, its signals, its reference quantities.
+
+A signal over time is the sum of its parts, split where they jump. A controller refers to position
+or speed, of the piston or of a motor shaft.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Motion of the rod: mass, end stops, cushions, load, joint, external machine."""
+"""Motion of the rod: mass, end stops, cushions, load, joint, external machine, seal friction.
+
+Seal friction in time follows bristles, a smooth Stribeck curve, or is zero.
+"""
 
 from __future__ import annotations
 

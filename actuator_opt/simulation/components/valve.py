@@ -1,4 +1,7 @@
-"""The proportional valve: spool and four edges."""
+"""The proportional valve (spool and four edges) and its controller.
+
+The controller is P, PI or PID on the error, with inner loops and limits of value and rate.
+"""
 
 from __future__ import annotations
 

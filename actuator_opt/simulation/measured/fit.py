@@ -1,4 +1,7 @@
-"""Fit parameters of a design to a measured record: least squares over whole simulations."""
+"""Fit parameters of a design to a measured record: least squares over whole simulations.
+
+Residuals and slopes come from the simulation; the bounds of the parameters follow from them.
+"""
 
 from __future__ import annotations
 
