@@ -44,19 +44,19 @@ class Actuator:
 
 def plugins_of(given: Plugins) -> tuple[Plugin, ...]:
     """Plugins from functions and Python files."""
-    found: list[Plugin] = []
+    plugins: list[Plugin] = []
     for item in given:
         if isinstance(item, Plugin):
-            found.append(item)
+            plugins.append(item)
         elif isinstance(item, (str, Path)):
-            found += load(item)
+            plugins += load(item)
         else:
-            found += collect(item)
-    names = [plugin.name for plugin in found]
+            plugins += collect(item)
+    names = [plugin.name for plugin in plugins]
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
         raise InputError(Diagnostic(f"the metric {twice} is declared twice", "rename one of them"))
-    return tuple(found)
+    return tuple(plugins)
 
 
 def read(

@@ -45,9 +45,11 @@ def examine(
     """All faults as `check`, and a warning for every implausible value."""
     if source == "-":  # read once, whatever kind it is
         text, name = opened(source)
-        found = examine(f"{text}\n", set=set, plugins=plugins)
-        faults = [replace(one, file=name) if one.file == TEXT else one for one in found.faults]
-        return Examined(faults, found.warnings)
+        examined = examine(f"{text}\n", set=set, plugins=plugins)
+        faults = [
+            replace(fault, file=name) if fault.file == TEXT else fault for fault in examined.faults
+        ]
+        return Examined(faults, examined.warnings)
     try:
         if isinstance(source, Actuator | Design):
             actuator = as_actuator(source, plugins).changed(dict(set))

@@ -53,13 +53,13 @@ def compare(
         raise UsageError(Diagnostic(message, "name two or more"))
     if len(designs) > MOST:
         raise UsageError(Diagnostic(f"{len(designs)} designs are too many", f"name up to {MOST}"))
-    if sum(one == "-" for one in designs if isinstance(one, str)) > 1:
+    if sum(design == "-" for design in designs if isinstance(design, str)) > 1:
         raise UsageError(Diagnostic("standard input can only give one design", "name - once"))
     found: list[tuple[Evaluation, str, DesignState]] = []
     faults: list[Diagnostic] = []
-    for one in designs:
+    for design in designs:
         try:
-            found.append(_found(one, set, plugins, optimise, seed))
+            found.append(_found(design, set, plugins, optimise, seed))
         except InputError as error:
             faults += error.diagnostics
     if faults:
@@ -75,8 +75,8 @@ def compare(
 def _numbered(origins: Sequence[str]) -> list[str]:
     """Origins, numbered where one stands twice."""
     return [
-        f"{one} ({origins[: k + 1].count(one)})" if origins.count(one) > 1 else one
-        for k, one in enumerate(origins)
+        f"{origin} ({origins[: k + 1].count(origin)})" if origins.count(origin) > 1 else origin
+        for k, origin in enumerate(origins)
     ]
 
 

@@ -174,5 +174,5 @@ def _front(run: Run, plugins: Plugins) -> Explored:
         [point.variables for point in front.points],
         plugins=back.actuator.plugins,
         origin="Pareto front",
-        shown=tuple(one.metric for one in front.objectives),
+        shown=tuple(objective.metric for objective in front.objectives),
     )

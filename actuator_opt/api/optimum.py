@@ -114,9 +114,9 @@ def optimise(
         return estimated(robust(subject, yield_target, search, seed=seed), actuator.plugins)
 
 
-def estimated(found: Optimisation, plugins: tuple[Plugin, ...]) -> Optimisation:
+def estimated(optimisation: Optimisation, plugins: tuple[Plugin, ...]) -> Optimisation:
     """An optimum with its yield: from its own sample, else a quick estimate."""
-    best, sample = found.best_evaluation, found.robust
+    best, sample = optimisation.best_evaluation, optimisation.robust
     if sample is not None:
         known = YieldEstimate(
             value=sample.rate,
@@ -126,13 +126,13 @@ def estimated(found: Optimisation, plugins: tuple[Plugin, ...]) -> Optimisation:
             with_checks=None if sample.left_out else sample.rate,
         )
         best = replace(best, yield_estimate=known)
-    elif found.status.startswith("interrupted"):
+    elif optimisation.status.startswith("interrupted"):
         best = replace(best, yield_estimate=YieldEstimate(why="the search was interrupted"))
     else:
-        best = with_yield(best, plugins=plugins, seed=found.seed)
-    if found.made is None:
-        return replace(found, evaluation=best)
-    return replace(found, rounding=replace(found.made, evaluation=best))
+        best = with_yield(best, plugins=plugins, seed=optimisation.seed)
+    if optimisation.made is None:
+        return replace(optimisation, evaluation=best)
+    return replace(optimisation, rounding=replace(optimisation.made, evaluation=best))
 
 
 def sensitivity(

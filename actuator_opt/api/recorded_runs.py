@@ -528,11 +528,16 @@ def record_front(
         "status": found.status,
         "outcome": found.sentence,
         "met": bool(found.points),
-        "objectives": [{"metric": one.metric, "sense": one.sense} for one in found.objectives],
+        "objectives": [
+            {"metric": objective.metric, "sense": objective.sense} for objective in found.objectives
+        ],
         "points": len(found.points),
         "knee": None
         if knee is None
-        else {one.metric: found.points[knee].metrics[one.metric] for one in found.objectives},
+        else {
+            objective.metric: found.points[knee].metrics[objective.metric]
+            for objective in found.objectives
+        },
         "seconds": found.seconds,
     }
     more = {"result": found.to_dict(), "state": to_plain(found)}
@@ -606,11 +611,11 @@ def record_sweep(
     )  # fmt: skip
 
 
-def _plan(found: Swept) -> dict[str, Any]:
+def _plan(swept: Swept) -> dict[str, Any]:
     """The points of a sweep as plain data, values in SI; `quantity` is null for texts."""
     from ..design import quantity_of
 
-    plan, design = found.study.plan, found.study.design
+    plan, design = swept.study.plan, swept.study.design
     return {
         "method": plan.method,
         "count": plan.count,

@@ -276,15 +276,15 @@ def calibrate(
     return Calibrated(after, found, changes)
 
 
-def _with_values(before: Actuator, found: Calibration) -> tuple[Actuator, list[str]]:
+def _with_values(before: Actuator, calibration: Calibration) -> tuple[Actuator, list[str]]:
     """The actuator with measured values, fixed if they were free; and caveats."""
-    design, new = before.design, found.values()
+    design, new = before.design, calibration.values()
     held = [path for path in new if path in design.variables or path in design.choices]
     free = {path: one for path, one in design.variables.items() if path not in held}
     choices = {path: one for path, one in design.choices.items() if path not in held}
     update = {"variables": free, "choices": choices, "measured": {}}
     base = Actuator(design.model_copy(update=update), before.source, before.plugins)
-    known = {**design.measured, **found.measured()}
+    known = {**design.measured, **calibration.measured()}
     after = base.changed(new).design.model_copy(update={"measured": known})
     doubts = []
     if held:

@@ -82,20 +82,20 @@ def restore(of: Run | str | Path, *, plugins: Plugins = ()) -> Restored:
         raise InputError(faults) from None
 
 
-def _solved(found: Run, own: tuple[Plugin, ...]) -> tuple[Optimisation | ParetoFront, Evaluation]:
+def _solved(run: Run, own: tuple[Plugin, ...]) -> tuple[Optimisation | ParetoFront, Evaluation]:
     """An optimisation or a front, and its recorded evaluation."""
     from ..optimisation.pareto import ParetoFront
     from ..optimisation.recorded import from_plain
     from ..optimisation.result import Optimisation
 
-    if found.head["kind"] == "pareto":
-        front = from_plain(ParetoFront, found.body["state"], own)
+    if run.head["kind"] == "pareto":
+        front = from_plain(ParetoFront, run.body["state"], own)
         return front, front.evaluation
-    best = from_plain(Optimisation, found.body["state"], own)
+    best = from_plain(Optimisation, run.body["state"], own)
     return best, best.best_evaluation
 
 
-def named_plugins(found: Run, plugins: Plugins) -> tuple[Plugin, ...]:
+def named_plugins(run: Run, plugins: Plugins) -> tuple[Plugin, ...]:
     """The plugins that this call names for a run; a record alone never runs a program.
 
     Raises
@@ -103,35 +103,35 @@ def named_plugins(found: Run, plugins: Plugins) -> tuple[Plugin, ...]:
     InputError : the run had custom metrics, and none is named
     """
     own = plugins_of(plugins)
-    files = [one["file"] or "a function of a script" for one in found.body["input"]["plugins"]]
+    files = [one["file"] or "a function of a script" for one in run.body["input"]["plugins"]]
     if files and not own:
         message = f"its custom metrics came from {', '.join(files)}, which is a program"
-        raise InputError(Diagnostic(message, "name it with --plugin to run it", str(found.path)))
+        raise InputError(Diagnostic(message, "name it with --plugin to run it", str(run.path)))
     return own
 
 
-def changed_plugins(found: Run, own: Sequence[Plugin]) -> list[str]:
+def changed_plugins(run: Run, own: Sequence[Plugin]) -> list[str]:
     """List files of custom metrics that differ from those recorded."""
     now = {sha256(file) for file in {plugin.file for plugin in own} if file}
     return [
-        f"run {found.id} was made with another version of {one['file']} (its SHA-256 differs)"
-        for one in found.body["input"]["plugins"]
+        f"run {run.id} was made with another version of {one['file']} (its SHA-256 differs)"
+        for one in run.body["input"]["plugins"]
         if one["file"] and one["sha256"] not in now
     ]
 
 
-def _doubts(found: Run, now: Evaluation) -> list[str]:
+def _doubts(run: Run, now: Evaluation) -> list[str]:
     """Notes where the present models do not reproduce the record."""
-    then = found.body["result"]["metrics"]
+    then = run.body["result"]["metrics"]
     before = {name: row["value"] for name, row in then.items()}
     changed = differing(before, {name: row.value for name, row in now.metrics.items()})
-    version = str(found.head.get("version", ""))
+    version = str(run.head.get("version", ""))
     if not changed:
         return []
     names = ", ".join(changed[:3]) + (f" and {len(changed) - 3} more" if len(changed) > 3 else "")
     made = f"actuator-opt {version}" if version != VERSION else "other material data or plugins"
     return [
-        f"run {found.id} was made by {made}; the present models (actuator-opt {VERSION}) give "
+        f"run {run.id} was made by {made}; the present models (actuator-opt {VERSION}) give "
         f"other values of {names}, which the report shows"
     ]
 
@@ -157,11 +157,11 @@ def report_run(
         return _reported(found, paper)
 
 
-def _reported(found: Restored, paper: ReportArguments) -> list[ReportFile]:
+def _reported(restored: Restored, paper: ReportArguments) -> list[ReportFile]:
     from ..optimisation.result import Optimisation
     from ..rendering.blocks import text_table
 
-    result = found.result
+    result = restored.result
     if isinstance(result, KeptSweep):
         return report_sweep(result, **paper)
     if isinstance(result, Optimisation):
@@ -173,7 +173,7 @@ def _reported(found: Restored, paper: ReportArguments) -> list[ReportFile]:
                 table["note"],
                 table["widths"],
             )
-            for table in found.run.body["tables"]
+            for table in restored.run.body["tables"]
         ]
         return report_design(result, extra_tables=tables, **paper)
     files = write_front(result, **paper)

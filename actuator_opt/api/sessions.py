@@ -114,14 +114,16 @@ class OptimumCurve:
     @property
     def found(self) -> tuple[bool, ...]:
         """Whether there is a design at each value."""
-        return tuple(one is not None for one in self.objectives)
+        return tuple(objective is not None for objective in self.objectives)
 
     def columns(self) -> dict[str, list[float]]:
         """Value, objective and free dimensions as columns of SI; NaN without a design."""
         names = dict.fromkeys(name for row in self.variables for name in row)
         result = {
             self.path: list(self.values),
-            "objective": [math.nan if one is None else one for one in self.objectives],
+            "objective": [
+                math.nan if objective is None else objective for objective in self.objectives
+            ],
         }
         return result | {
             name: [row.get(name, math.nan) for row in self.variables] for name in names
@@ -190,15 +192,15 @@ class Session:
                 )
             )
         self._actuator, self._seed = actuator, seed
-        found = result_of(subject, problem, solution, prices=False, seed=seed, began=began)
-        self.optimum: Optimisation = estimated(found, actuator.plugins)
+        optimisation = result_of(subject, problem, solution, prices=False, seed=seed, began=began)
+        self.optimum: Optimisation = estimated(optimisation, actuator.plugins)
         self._differentiable: dict[str, bool] = {}
         self._warm = WarmStart(problem, solution, SearchEffort(STARTS, SAMPLES, seed))
 
     def __repr__(self) -> str:
         """Name and objective of the design."""
-        found = self.optimum
-        return f"<Session {found.design.name!r}: {found.objective_metric} {self._objective_text()}>"
+        optimum = self.optimum
+        return f"<Session {optimum.design.name!r}: {optimum.objective_metric} {self._objective_text()}>"
 
     def solve(
         self, changes: Changes, *, prices: bool = False, stop: Callable[[], bool] | None = None
@@ -230,7 +232,7 @@ class Session:
         actuator, _ = self._changed(changes)
         subject, problem = self._built(actuator)
         solution = self._warm.solve(problem.problem, stop)
-        found = result_of(
+        optimisation = result_of(
             subject,
             problem,
             solution,
@@ -241,9 +243,10 @@ class Session:
         )
         starts = self._warm.point.x.tolist()
         return replace(
-            found,
+            optimisation,
             variables=tuple(
-                replace(one, start=x) for one, x in zip(found.variables, starts, strict=True)
+                replace(variable, start=x)
+                for variable, x in zip(optimisation.variables, starts, strict=True)
             ),
         )
 
@@ -337,7 +340,7 @@ class Session:
             raise UsageError(Diagnostic("a curve needs a list of values", 'e.g. [0.1, "112 mm"]'))
         numbers = [self._changed({path: value})[1] for value in values]
         path = next(iter(numbers[0]))
-        wanted = [one[path] for one in numbers]
+        wanted = [number[path] for number in numbers]
         optima = self._warm.solve_together(
             path, wanted, lambda value: self._built(self._changed({path: value})[0])[1], stop
         )

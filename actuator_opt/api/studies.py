@@ -150,8 +150,8 @@ def seal(
 def with_contact(actuator: Actuator, study: SealStudy) -> Actuator:
     """The actuator as read, with the contact profiles of its seal study."""
     seals = actuator.design.seals
-    found = getattr(study.design.seals, study.place).contact
-    seal = getattr(seals, study.place).model_copy(update={"contact": found})
+    contact = getattr(study.design.seals, study.place).contact
+    seal = getattr(seals, study.place).model_copy(update={"contact": contact})
     own = seals.model_copy(update={study.place: seal})
     design = actuator.design.model_copy(update={"seals": own})
     return Actuator(design, actuator.source, actuator.plugins)

@@ -352,9 +352,9 @@ def report_sweep(kept: KeptSweep, **paper: Unpack[ReportArguments]) -> list[Repo
         parquet = target / f"{stem}-sweep.parquet"
     target.mkdir(parents=True, exist_ok=True)
     with writing(study, csv, parquet) as each:
-        found = swept_again(study, path, each=each, **how)
+        swept = swept_again(study, path, each=each, **how)
     files = [file for file in (csv, parquet) if file is not None]
-    kinds = figures or (["parallel"] if found.feasible else [])
+    kinds = figures or (["parallel"] if swept.feasible else [])
     if kinds:
-        files += draw_sweep(found, kinds, show=show, out=target, stem=stem)
+        files += draw_sweep(swept, kinds, show=show, out=target, stem=stem)
     return report_files(files)

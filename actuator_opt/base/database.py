@@ -87,10 +87,10 @@ class Checksums:
 
     def of(self, key: bytes, numbers: bytes | None, failure: str | None) -> bytes:
         """Checksum of a row."""
-        found = self._head.copy()
-        found.update(key)
-        found.update(b"failed " + (failure or "").encode() if numbers is None else numbers)
-        return found.digest()
+        element_state = self._head.copy()
+        element_state.update(key)
+        element_state.update(b"failed " + (failure or "").encode() if numbers is None else numbers)
+        return element_state.digest()
 
     def fits(self, key: Any, numbers: Any, failure: Any, checksum: Any) -> bool:
         """Whether a stored row is intact: numbers, or the reason for a failed design."""
@@ -197,7 +197,7 @@ def opened(
             number = _begun(connection, path, (study, name, design, told))
             with connection:
                 put = "INSERT OR IGNORE INTO texts VALUES (?, ?, ?)"
-                connection.executemany(put, [(number, *one) for one in texts])
+                connection.executemany(put, [(number, *text) for text in texts])
             yield Database(connection, number, study, len(columns), path)
         finally:
             connection.close()

@@ -253,7 +253,7 @@ def _spoiled(result: Any, wrong: Any) -> Any:
     if isinstance(result, dict):
         return {name: _spoiled(part, wrong) for name, part in result.items()}
     if is_dataclass(result) and not isinstance(result, type):
-        known = [one.name for one in fields(result) if one.init]
+        known = [field.name for field in fields(result) if field.init]
         return replace(result, **{name: _spoiled(getattr(result, name), wrong) for name in known})
     if isinstance(result, float | complex | np.floating | np.complexfloating):
         return where(wrong, np.nan, result)

@@ -128,11 +128,11 @@ def check(
     pairs, faults, said = job.set, list[Diagnostic](), list[str]()
     warnings: list[dict[str, str]] = []
     for design in designs:
-        found = verbs.examine(design, set=pairs, plugins=plugin or [])
-        faults += found.faults
-        warnings += [{"file": design, "message": text} for text in found.warnings]
-        said += [f"{design}: warning: {text}" for text in found.warnings]
-        said += [] if found.faults else [f"{design}: no faults"]
+        examined = verbs.examine(design, set=pairs, plugins=plugin or [])
+        faults += examined.faults
+        warnings += [{"file": design, "message": text} for text in examined.warnings]
+        said += [f"{design}: warning: {text}" for text in examined.warnings]
+        said += [] if examined.faults else [f"{design}: no faults"]
     errors = {"errors": [fault.to_dict() for fault in faults]}
     data = errors | ({"warnings": warnings} if warnings else {})
     job.answer(lambda: data, remarks=said, faults=faults)

@@ -85,9 +85,9 @@ def show_run(
 
     if out is not None:
         store.require_folder(out)
-    found = verbs.read_run(name)
-    paths = [] if out is None else verbs.draw_run(found, out)
-    Job(as_json=as_json, quiet=quiet).deliver(found, files=[{"path": str(x)} for x in paths])
+    run = verbs.read_run(name)
+    paths = [] if out is None else verbs.draw_run(run, out)
+    Job(as_json=as_json, quiet=quiet).deliver(run, files=[{"path": str(x)} for x in paths])
 
 
 @runs.command("delete")

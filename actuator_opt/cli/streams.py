@@ -198,12 +198,12 @@ def as_json() -> bool:
     return "--json" in sys.argv[1:]
 
 
-def faults(found: Iterable[Diagnostic], code: ExitCode) -> ExitCode:
+def faults(diagnostics: Iterable[Diagnostic], code: ExitCode) -> ExitCode:
     """Print faults as lines, or as a JSON object with ``--json``; returns `code`.
 
     If standard output already has data, or fails, they are lines on standard error.
     """
-    lines = list(found)
+    lines = list(diagnostics)
     if as_json() and not _now.printed:
         try:
             out_json({"errors": [fault.to_dict() for fault in lines]})

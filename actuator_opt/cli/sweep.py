@@ -145,7 +145,7 @@ def _kept_rows(store: Path | None, quiet: bool) -> Iterator[None]:
 
 
 def _drawn(
-    found: Swept, figures: list[str], show: list[str], out: Path
+    swept: Swept, figures: list[str], show: list[str], out: Path
 ) -> tuple[list[dict[str, str]], list[Diagnostic]]:
     """Files of the figures, and faults of failed figures, reported after the results."""
     from .. import api as verbs
@@ -154,7 +154,7 @@ def _drawn(
     faults: dict[str, Diagnostic] = {}
     for figure in dict.fromkeys(figures):
         try:
-            paths = verbs.draw_sweep(found, [figure], show=show, out=out)
+            paths = verbs.draw_sweep(swept, [figure], show=show, out=out)
         except ActuatorError as error:
             faults |= {str(fault): fault for fault in error.diagnostics}
         else:

@@ -129,15 +129,15 @@ def _read(raw: Any, entry: KeyEntry) -> Value:
     return value
 
 
-def same(one: Value, other: Value) -> bool:
+def same(value: Value, other: Value) -> bool:
     """Whether two allowed values are equal; numbers up to rounding, as units differ.
 
     >>> same(2.62e-3, 0.262 * 0.01), same("nbr_70", "nbr_90")
     (True, False)
     """
-    first, second = number_of(one), number_of(other)
-    if first is None or second is None or type(one) is not type(other):
-        return one == other
+    first, second = number_of(value), number_of(other)
+    if first is None or second is None or type(value) is not type(other):
+        return value == other
     return math.isclose(first, second, rel_tol=1e-9, abs_tol=1e-15)
 
 

@@ -507,7 +507,7 @@ def fit_double_exponential(speed: Array, damping: Array, weights: Array | None =
         "coefficient_2": float(found[1][0]),
         "rate_2": float(found[1][1]),
     }
-    at_limit = [one for one in rates if abs(one) > 0.999 * steepest]
+    at_limit = [rate for rate in rates if abs(rate) > 0.999 * steepest]
     doubts = ("an exponential so steep that only one point affects it",) if at_limit else ()
     least = dict.fromkeys(("rate_1", "rate_2"), 1 / float(v[-1]))
     law = laws.double_exponential
@@ -622,14 +622,14 @@ def _projected(
     target = root * damping / scale
 
     def linear(rates: Array) -> tuple[Array, Array]:
-        columns = np.stack([root * basis(float(one)) for one in rates], axis=-1)
+        columns = np.stack([root * basis(float(rate)) for rate in rates], axis=-1)
         amplitudes = np.linalg.lstsq(columns, target, rcond=None)[0]
         return amplitudes, columns @ amplitudes - target
 
     def misfit(rates: Array) -> Array:
         return linear(rates)[1]
 
-    costs = [float(np.sum(misfit(np.array(one)) ** 2)) for one in starts]
+    costs = [float(np.sum(misfit(np.array(start)) ** 2)) for start in starts]
     best, least = np.array(starts[int(np.argmin(costs))]), np.inf
     for start in _apart(starts, costs):
         limit = np.full(start.shape, steepest)

@@ -100,27 +100,29 @@ def read_file(path: Path) -> MaterialFile:
 def _read_file(path: str, changed: int, size: int) -> MaterialFile:
     text = yaml_source.decode(Path(path).read_bytes(), path)
     text = text.replace("\r\n", "\n").replace("\r", "\n")
-    found = MaterialFile(path, text)
+    material_file = MaterialFile(path, text)
     heads = list(_TOP.finditer(text))
     ends = [head.start() for head in heads[1:]] + [len(text)]
     line, at = 1, 0
     for head, end in zip(heads, ends, strict=True):
         line, at = line + text.count("\n", at, head.start()), head.start()
         name = head["name"]
-        if name in found.places:
-            message = f'duplicate material "{name}", first at line {found.places[name][2]}'
-            found.faults.append(
+        if name in material_file.places:
+            message = f'duplicate material "{name}", first at line {material_file.places[name][2]}'
+            material_file.faults.append(
                 Diagnostic(message, "keep one of them", path, line, 1, name, f"{name}:")
             )
             continue
-        found.places[name] = (head.start(), end, line)
+        material_file.places[name] = (head.start(), end, line)
     for stray in _STRAY.finditer(text):
         line = text.count("\n", 0, stray.start()) + 1
         message = f'"{shown(stray[0], 30)}" belongs to no material'
         advice = "write NAME: and indent what belongs to it"
-        found.faults.append(Diagnostic(message, advice, path, line, 1, None, shown(stray[0], 120)))
-    found.text = _STRAY.sub(lambda stray: " " * len(stray[0]), text)
-    return found
+        material_file.faults.append(
+            Diagnostic(message, advice, path, line, 1, None, shown(stray[0], 120))
+        )
+    material_file.text = _STRAY.sub(lambda stray: " " * len(stray[0]), text)
+    return material_file
 
 
 def read_entry(file: MaterialFile, name: str, parent: Parent) -> Material:

@@ -251,16 +251,16 @@ def _once(faults: Sequence[Fault], document: Document) -> list[Fault]:
 
 
 def _in_order(
-    source: FileSource, said: Sequence[Diagnostic], found: Sequence[Fault]
+    source: FileSource, said: Sequence[Diagnostic], faults: Sequence[Fault]
 ) -> list[Diagnostic]:
     """Faults by line and column, at most `MOST_FAULTS`, with the number of omitted faults.
 
     Faults of other files and of the command line come first.
     """
-    first = sorted(found, key=source.place)[:MOST_FAULTS]
+    first = sorted(faults, key=source.place)[:MOST_FAULTS]
     everything = [*said, *(source.at(fault) for fault in first)]
     everything.sort(key=lambda f: (f.file == source.file, f.line or 0, f.column or 0))
-    left = len(said) + len(found) - MOST_FAULTS
+    left = len(said) + len(faults) - MOST_FAULTS
     if left > 0:
         more = Diagnostic(f"and {left} more faults", "correct these first", source.file)
         everything = [*everything[:MOST_FAULTS], more]

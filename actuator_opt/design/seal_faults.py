@@ -244,10 +244,10 @@ def shapes(view: FileView) -> Iterator[Fault]:
             )
 
 
-def _said(loc: Loc, found: Iterable[SizeFault]) -> Iterator[Fault]:
+def _said(loc: Loc, size_faults: Iterable[SizeFault]) -> Iterator[Fault]:
     """Faults of sizes at their place."""
-    for one in found:
-        yield Fault((*loc, one.key), one.message, one.remedy)
+    for size_fault in size_faults:
+        yield Fault((*loc, size_fault.key), size_fault.message, size_fault.remedy)
 
 
 def films(view: FileView) -> Iterator[Fault]:

@@ -119,13 +119,13 @@ def lists_of(wanted: type[Section], section: type[Section] = Design) -> tuple[Lo
     >>> lists_of(Ply)
     (('barrel', 'layup'), ('rod', 'layup'))
     """
-    found: list[Loc] = []
+    locs: list[Loc] = []
     for name, entry in entries(section).items():
         if entry.shape == "list" and entry.section is wanted:
-            found.append((name,))
+            locs.append((name,))
         elif entry.shape == "section" and entry.section is not None:
-            found += [(name, *loc) for loc in lists_of(wanted, entry.section)]
-    return tuple(found)
+            locs += [(name, *loc) for loc in lists_of(wanted, entry.section)]
+    return tuple(locs)
 
 
 def leaves(

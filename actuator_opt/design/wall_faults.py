@@ -339,8 +339,8 @@ def _unused(view: FileView, joint: Joint) -> Iterator[Fault]:
         users = [one for one in JOINTS.values() if name in _keys([one])]
         message, remedy = joint.without.get(name) or (
             f"{joint.noun} {_have([joint])} no {name}, "
-            f"only {' and '.join(one.noun for one in users)} {_have(users)}",
-            f"remove the line, or write type: {' or '.join(one.name for one in users)}",
+            f"only {' and '.join(user.noun for user in users)} {_have(users)}",
+            f"remove the line, or write type: {' or '.join(user.name for user in users)}",
         )
         yield Fault(("retention", name), message, remedy, at_key=True)
 

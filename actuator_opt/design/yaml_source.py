@@ -81,12 +81,12 @@ class Document:
 
     def shorthand(self, loc: Loc) -> Shorthand | None:
         """The compact entry that contains a place."""
-        for found in self.shorthands:
-            depth = len(found.wall)
-            if len(loc) > depth and loc[:depth] == found.wall:
+        for shorthand in self.shorthands:
+            depth = len(shorthand.wall)
+            if len(loc) > depth and loc[:depth] == shorthand.wall:
                 index = loc[depth]
-                if isinstance(index, int) and 0 <= index - found.first < found.layers:
-                    return found
+                if isinstance(index, int) and 0 <= index - shorthand.first < shorthand.layers:
+                    return shorthand
         return None
 
     def diagnostic(

@@ -98,7 +98,7 @@ def _o_ring(ring: Ring) -> Iterator[str]:
     loosest, tightest = squeezes(ring.at(stretch=0.0), growth=0.0, aside=0.0, ratio=1.0)
     area = float(np.squeeze(ring.groove.pieces[0].area))
     try:
-        found = gland_deviations(
+        deviations = gland_deviations(
             standards.gland(ring["section"]),
             squeeze_min=float(loosest),
             squeeze_max=float(tightest),
@@ -110,11 +110,11 @@ def _o_ring(ring: Ring) -> Iterator[str]:
     except InputError as error:
         yield f"{ring.label}: {error.diagnostics[0].message}"
         return
-    for one in found:
-        scale, unit = (1e3, "mm") if one.what == "groove width" else (100, "%")
+    for deviation in deviations:
+        scale, unit = (1e3, "mm") if deviation.what == "groove width" else (100, "%")
         yield (
-            f"{ring.label}: {one.what} {scale * one.value:.3g} {unit}, "
-            f"{scale * one.lower:.3g} to {scale * one.upper:.3g} {unit}"
+            f"{ring.label}: {deviation.what} {scale * deviation.value:.3g} {unit}, "
+            f"{scale * deviation.lower:.3g} to {scale * deviation.upper:.3g} {unit}"
         )
 
 

@@ -166,7 +166,7 @@ def linear_valve(v: Values, design: Design, state: LoadState, leakage: Array) ->
         "a": Ways(out.conductance_a, back.conductance_a),
         "b": Ways(out.conductance_b, back.conductance_b),
     }
-    tight = not any(np.any(np.real(one) > 0) for ways in conductances.values() for one in ways)
+    tight = not any(np.any(np.real(way) > 0) for ways in conductances.values() for way in ways)
     return LinearValve(
         {"a": Ways(out.gain_a, back.gain_a), "b": Ways(-out.gain_b, -back.gain_b)},
         {} if tight else conductances,

@@ -112,7 +112,7 @@ class Comparison(Displayed):
     @property
     def not_optimised(self) -> tuple[int, ...]:
         """Indices of the designs that are not known to be optima."""
-        return tuple(k for k, one in enumerate(self.states) if not one.optimum)
+        return tuple(k for k, state in enumerate(self.states) if not state.optimum)
 
     @property
     def unlike(self) -> Mapping[str, tuple[Sense | None, ...]]:
@@ -248,8 +248,8 @@ def weakest(evaluation: Evaluation) -> dict[str, float]:
 
 
 def _union(parts: Sequence[Mapping[str, float]]) -> dict[str, tuple[float, ...]]:
-    names = dict.fromkeys(name for one in parts for name in one)
-    return {name: tuple(one.get(name, 0.0) for one in parts) for name in names}
+    names = dict.fromkeys(name for part in parts for name in part)
+    return {name: tuple(part.get(name, 0.0) for part in parts) for name in names}
 
 
 def _senses(metric: str, evaluations: Sequence[Evaluation]) -> tuple[Sense | None, ...]:

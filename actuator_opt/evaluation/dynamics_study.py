@@ -434,17 +434,19 @@ class _Loop:
         """The loop of the place in the metrics' rows."""
         direction, _, where = place.partition(", ")
         position = np.asarray(done.places[where])
-        one = done.motion.position_loop(position, extending=np.array(direction == "extending"))
+        position_open_loop = done.motion.position_loop(
+            position, extending=np.array(direction == "extending")
+        )
         gain = of_case(done.computed.metrics["position_gain"][""], index)
-        return cls(index, place, gain, one, governs)
+        return cls(index, place, gain, position_open_loop, governs)
 
     def polynomials(self) -> list[Polynomial]:
         """Numerator, denominator, and the denominator of the closed loop."""
-        one = self.open_loop
+        open_loop = self.open_loop
         return [
-            one.numerator,
-            one.denominator,
-            add(one.denominator, scale(one.numerator, self.gain)),
+            open_loop.numerator,
+            open_loop.denominator,
+            add(open_loop.denominator, scale(open_loop.numerator, self.gain)),
         ]
 
 

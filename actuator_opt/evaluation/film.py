@@ -608,10 +608,10 @@ def _rows(design: Design, rings: tuple[Ring, ...]) -> Iterator[tuple[Key, FilmRo
     places: tuple[Place, ...] = ("piston", "rod")
     for place in places:
         own = of_place(rings, place)
-        for case, one in enumerate(design.load_cases):
+        for case, load_case in enumerate(design.load_cases):
             if not own or of_case(own[0]["speed"], case) == 0:
                 continue
-            for stroke, outward in _outward(place, one.direction == "push").items():
+            for stroke, outward in _outward(place, load_case.direction == "push").items():
                 row = FilmRow(on_stroke([floats(r, case) for r in own], stroke), outward)
                 yield (place, case, stroke), row
 

@@ -224,8 +224,8 @@ def _position_loop(
 ) -> None:
     """Margins and bandwidth at every place, in both spool directions."""
     directions = np.array([True, False]).reshape(-1, 1, 1, 1)
-    one = motion.position_loop(positions, extending=directions)
-    limit = loop.ultimate_gain(loop=one)
+    position_open_loop = motion.position_loop(positions, extending=directions)
+    limit = loop.ultimate_gain(loop=position_open_loop)
     out.why["ultimate_gain"] = out.why["gain_margin"] = "the loop is stable at any gain"
     out.why["phase_margin"] = "no crossover: the open-loop gain stays below one"
     stated = design.control is not None and design.control.gain is not None
@@ -245,7 +245,7 @@ def _position_loop(
     put("gain_margin", margin)
     out.put("position_gain", gain)
     if wanted is None or "phase_margin" in wanted or "bandwidth" in wanted:
-        found = loop.margins(loop=one, gain=gain)
+        found = loop.margins(loop=position_open_loop, gain=gain)
         put("phase_margin", where(real(margin) > 1, found.phase_margin, -found.phase_margin))
         # an unstable loop has no bandwidth
         put("bandwidth", where(real(margin) > 1, found.bandwidth, 0.0))
@@ -363,8 +363,8 @@ def _ports(
             "dynamic_stiffness",
             "a throttle in a case with excitation but no speed: taken at creeping flow",
         )
-    for i, one in enumerate(design.ports.accumulators):
-        held = state.holding_a if one.chamber == "a" else state.holding_b
+    for i, accumulator in enumerate(design.ports.accumulators):
+        held = state.holding_a if accumulator.chamber == "a" else state.holding_b
         precharge = float(np.max(np.real(v[f"ports.accumulators[{i}].precharge"])))
         if float(np.min(np.real(held))) <= precharge:
             yield (

@@ -350,7 +350,7 @@ def shapes(
     hidden : omitted parts
     """
     geometry = geometry_module.derive(subject.values(varied), subject.design)
-    dimensions = np.stack([np.broadcast_to(one, (count,)) for one in _leaves(geometry)])
+    dimensions = np.stack([np.broadcast_to(leaf, (count,)) for leaf in _leaves(geometry)])
     parts = [_Parts(subject, geometry, dimensions[:, k], hidden) for k in range(count)]
     actual = [part.drawn() for part in parts]
     templates: list[Template] = []

@@ -247,7 +247,7 @@ def utilisations(
         shape = (len(plies), 1, *(1,) * (extra - 1), -1)
         return np.stack(np.broadcast_arrays(*own)).reshape(shape)
 
-    across = all(one.shear_23 is not None for layer in plies for one in layer.strengths)
+    across = all(strength.shear_23 is not None for layer in plies for strength in layer.strengths)
     strength = PlyStrength(
         tension_1=_strengths(plies, "tension_1", extra),
         compression_1=_strengths(plies, "compression_1", extra),
@@ -271,7 +271,11 @@ def utilisations(
 def _strengths(plies: Sequence[Layer], name: str, extra: int) -> Array:
     """A strength of every ply and climate, (plies, climates, ...)."""
     rows = [
-        np.stack(np.broadcast_arrays(*[np.asarray(getattr(one, name)) for one in layer.strengths]))
+        np.stack(
+            np.broadcast_arrays(
+                *[np.asarray(getattr(strength, name)) for strength in layer.strengths]
+            )
+        )
         for layer in plies
     ]
     stacked = np.stack(np.broadcast_arrays(*rows))

@@ -274,8 +274,8 @@ def constraint(
 
     def mark(function: Callable[[View], Array]) -> Callable[[View], Array]:
         metric(name, label=label)(function)
-        found: Plugin = getattr(function, _MARK)
-        quantity = replace(found.quantity, worst="min")
+        plugin: Plugin = getattr(function, _MARK)
+        quantity = replace(plugin.quantity, worst="min")
         setattr(function, _MARK, Plugin(name, quantity, function, "min"))
         return function
 

@@ -99,7 +99,7 @@ def _gland(place: str) -> Ratio:
     def ratio(v: Values, design: Design, g: Geometry) -> Array | None:
         grooves = g.piston_grooves if place == "piston" else g.rod_grooves
         size = g.bore if place == "piston" else g.rod_diameter
-        depths = [one.gland_depth / size for one in grooves if one.role == "element"]
+        depths = [groove.gland_depth / size for groove in grooves if groove.role == "element"]
         return np.array(depths, dtype=float) if depths else None
 
     return ratio

@@ -154,7 +154,7 @@ def _share(ring: Ring, films: Films) -> Ring:
 
 def _beside(v: Values, design: Design, geometry: Geometry, state: LoadState) -> Friction:
     """Coulomb friction of wipers, and of guide rings under the side load."""
-    total: Array = sum((one.friction for one in wipers(v, design, geometry, state)), 0.0)
+    total: Array = sum((wiper.friction for wiper in wipers(v, design, geometry, state)), 0.0)
     carried = side_reactions(geometry, state)
     for name, grooves, _ in places(geometry):
         for groove in grooves:
@@ -266,9 +266,14 @@ def contacts(ring: Ring, supply: float) -> tuple[MountedContact, ...]:
     return found.contacts
 
 
-def profiles(found: Iterable[MountedContact]) -> tuple[ContactProfile, ...]:
+def profiles(mounted_contacts: Iterable[MountedContact]) -> tuple[ContactProfile, ...]:
     """The contacts in the form of a design file."""
-    return tuple(_profile(one.pressure, one.positions, one.contact_pressure) for one in found)
+    return tuple(
+        _profile(
+            mounted_contact.pressure, mounted_contact.positions, mounted_contact.contact_pressure
+        )
+        for mounted_contact in mounted_contacts
+    )
 
 
 def _profile(pressure: float, positions: np.ndarray, stresses: np.ndarray) -> ContactProfile:

@@ -172,7 +172,9 @@ def thicknesses(
                 largest_thickness=LARGEST * inner,
             )
         except ValueError:  # some growth is out of reach: find which
-            return [x for one in factors for x in solved([one])] if len(factors) > 1 else [None]
+            return (
+                [x for factor in factors for x in solved([factor])] if len(factors) > 1 else [None]
+            )
         return [float(value) for value in found]
 
     rows = []
@@ -640,7 +642,7 @@ def _look(
         tube=tube,
         inner_pressure=np.array([pressure] * len(pulls) + [0.0] * len(states)),
         axial_force=np.array(pulls + [clamp] * len(states)),
-        temperature_change=np.array([0.0] * len(pulls) + [float(one.change) for one in states]),
+        temperature_change=np.array([0.0] * len(pulls) + [float(state.change) for state in states]),
     )
     radius = _points(state.radius.reshape(2, -1))
     around = [_points(part) for part in tube_stresses(tube=tube, state=state)[:3]]
@@ -815,7 +817,7 @@ def _ladder(
                 axial_force_per_pressure=load,
             )
         )
-        steps = tuple(Step(one.layer, one.mode, one.pressure) for one in ladder.steps())
+        steps = tuple(Step(step.layer, step.mode, step.pressure) for step in ladder.steps())
     supply = float(v["supply.pressure"])
     return Ladder(
         working=supply,

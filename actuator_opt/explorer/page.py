@@ -116,7 +116,7 @@ def _columns(explored: Explored) -> list[dict[str, Any]]:
 def _texts(explored: Explored, path: str) -> dict[str, Any]:
     """A column of texts, as the index of each row's text."""
     texts = explored.kept.texts[path]
-    number = [texts.index(one[path]) for one in explored.variants]
+    number = [texts.index(variant[path]) for variant in explored.variants]
     codes = _base64(np.array(number)[explored.variant], "<u2")
     return {"name": path, "label": path, "unit": "", "texts": texts, "codes": codes}
 
@@ -232,7 +232,9 @@ def _shapes(explored: Explored) -> dict[str, Any]:
     for group in explored.groups:
         shapes = group.shapes
         moving = [k for k, row in enumerate(shapes.dimensions) if np.ptp(row) > 0]
-        used = [k for k in moving if any(one.slopes[:, k].any() for one in shapes.templates)]
+        used = [
+            k for k in moving if any(template.slopes[:, k].any() for template in shapes.templates)
+        ]
         while len(slots) < len(used):
             slots.append(np.zeros(count))
         for slot, k in enumerate(used):
@@ -256,7 +258,7 @@ def _template(template: Template, used: list[int]) -> dict[str, Any]:
     zero = template.numbers - template.slopes[:, used] @ template.origin[used]
     rows, places = np.nonzero(template.slopes[:, used])
     return {
-        "parts": [_part(one) for one in template.outlines],
+        "parts": [_part(outline) for outline in template.outlines],
         "numbers": [round(MM * float(value), 5) + 0.0 for value in zero],
         "slopes": [
             [int(row), int(k), round(float(template.slopes[row, used[k]]), 7)]

@@ -391,7 +391,7 @@ def _cut(evaluation: Evaluation, outline: Outline) -> list[list[_Corner]]:
 def _hatches(outlines: Sequence[Outline]) -> dict[tuple[str, str], tuple[float, float]]:
     found: dict[tuple[str, str], tuple[float, float]] = {}
     for kind, table in (("metal", _METAL), ("composite", _COMPOSITE), ("polymer", _POLYMER)):
-        names = dict.fromkeys(one.material for one in outlines if one.kind == kind)
+        names = dict.fromkeys(outline.material for outline in outlines if outline.kind == kind)
         for index, name in enumerate(names):
             found[kind, name] = table[index % len(table)]
     return found
@@ -464,7 +464,7 @@ def _words(
         f"Section, retracted. Lengths in mm, drawn 1:1; text height for print at {size}.",
         made,
         "",
-        *(f"{title(one.part)}: {one.material}" for one in outlines),
+        *(f"{title(outline.part)}: {outline.material}" for outline in outlines),
         "",
         "Not drawn, as the models have no geometry for them: threads, ports, fillets, chamfers.",
         "Rings are drawn as rectangles in their grooves, without their true sections.",
@@ -501,7 +501,9 @@ def _ordered_classes(document: Any) -> None:
 
 def _skirts(outlines: Sequence[Outline], start: float) -> list[tuple[float, float]]:
     """The skirt of the cap end, if any."""
-    caps = [profile for one in outlines if one.part == "caps" for profile in _profiles(one)]
+    caps = [
+        profile for outline in outlines if outline.part == "caps" for profile in _profiles(outline)
+    ]
     ends = [max(x for x, _ in profile) for profile in caps[:1]]
     return [(start, end) for end in ends if end > start]
 
@@ -520,8 +522,10 @@ def dxf(evaluation: Evaluation, *, program: str, date: str | None = None) -> byt
     ActuatorError : ezdxf (extra ``cad``) is not installed
     """
     ezdxf = library("ezdxf")
-    outlines = [one for one in evaluation.outlines if one.polygons and one.kind != "oil"]
-    profiles = [millimetres(polygon) for one in outlines for polygon in one.polygons]
+    outlines = [
+        outline for outline in evaluation.outlines if outline.polygons and outline.kind != "oil"
+    ]
+    profiles = [millimetres(polygon) for outline in outlines for polygon in outline.polygons]
     first = min(x for profile in profiles for x, _ in profile)
     last = max(x for profile in profiles for x, _ in profile)
     paper = paper_for(last - first)

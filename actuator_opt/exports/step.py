@@ -111,10 +111,12 @@ def _pieces(edge: _Edge, corners: Iterable[Point]) -> Iterator[_Edge]:
     yield from pairwise((edge[0], *on, edge[1]))
 
 
-def _joined(one: Profile, other: Profile) -> Profile | None:
+def _joined(profile: Profile, other: Profile) -> Profile | None:
     """Two polygons with a common run of edges, merged; None if they share no run or several."""
-    corners = (*one, *other)
-    pieces = [piece for edge in (*edges(one), *edges(other)) for piece in _pieces(edge, corners)]
+    corners = (*profile, *other)
+    pieces = [
+        piece for edge in (*edges(profile), *edges(other)) for piece in _pieces(edge, corners)
+    ]
     left = [(a, b) for a, b in pieces if (b, a) not in pieces]
     after = dict(left)
     if len(left) == len(pieces) or len(after) != len(left):
@@ -214,13 +216,13 @@ def bodies(evaluation: Evaluation) -> list[SolidBody]:
     ------
     InputError : a part's section crosses itself
     """
-    found: list[SolidBody] = []
+    solid_bodies: list[SolidBody] = []
     for outline in evaluation.outlines:
         if outline.bars:
-            found.append(_bars(outline))
+            solid_bodies.append(_bars(outline))
         elif outline.part not in NOT_TURNED:
-            found += _bodies(outline)
-    return found
+            solid_bodies += _bodies(outline)
+    return solid_bodies
 
 
 SCHEMA = "AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }"
@@ -469,7 +471,7 @@ def step(bodies: Sequence[SolidBody], *, name: str, program: str, date: str | No
     for body, part in zip(bodies, parts, strict=True):
         part.shaped("ADVANCED_BREP_SHAPE_REPRESENTATION", (home, solid(r, body.name, body.profile)))
     places = [[r.place(place) for place in body.places] for body in bodies]
-    frames = dict.fromkeys([home, *(one for frames in places for one in frames)])
+    frames = dict.fromkeys([home, *(frame for frames in places for frame in frames)])
     whole.shaped("SHAPE_REPRESENTATION", frames)
     for body, part, frames_of in zip(bodies, parts, places, strict=True):
         for index, place in enumerate(frames_of):

@@ -115,21 +115,21 @@ def opposed(slidings: Sequence[Sliding]) -> float:
     If the record hardly slides, the share of its changes that oppose motion, dF dx, as friction
     then acts as a spring.
     """
-    work = np.concatenate([_work(one) for one in slidings])
+    work = np.concatenate([_work(sliding) for sliding in slidings])
     whole = float(np.sum(np.abs(work)))
     return float(np.sum(work)) / whole if whole else 0.0
 
 
-def _work(one: Sliding) -> Array:
+def _work(sliding: Sliding) -> Array:
     """F v of the samples after sliding, else dF v."""
-    velocity = one.piece.velocity
-    if _slides(one):
-        return (one.friction * velocity)[one.moving]
-    return (np.gradient(one.friction) * velocity)[one.moving]
+    velocity = sliding.piece.velocity
+    if _slides(sliding):
+        return (sliding.friction * velocity)[sliding.moving]
+    return (np.gradient(sliding.friction) * velocity)[sliding.moving]
 
 
-def _slides(one: Sliding) -> bool:
-    return float(np.ptp(one.piece["x"])) > SLIDES
+def _slides(sliding: Sliding) -> bool:
+    return float(np.ptp(sliding.piece["x"])) > SLIDES
 
 
 def check_signs(slidings: Sequence[Sliding], bench: Bench, *, mass: float, name: str) -> None:
@@ -142,7 +142,7 @@ def check_signs(slidings: Sequence[Sliding], bench: Bench, *, mass: float, name:
         sign does not change the size of the friction
     """
     share = opposed(slidings)
-    slid = any(_slides(one) for one in slidings)
+    slid = any(_slides(sliding) for sliding in slidings)
     if share >= (OPPOSED if slid else 0.0):
         return
     found = []
@@ -150,7 +150,7 @@ def check_signs(slidings: Sequence[Sliding], bench: Bench, *, mass: float, name:
         changed = pressures + force + way
         if changed != 1:
             continue
-        turned = [_turned(one, bench, mass, pressures, force, way) for one in slidings]
+        turned = [_turned(sliding, bench, mass, pressures, force, way) for sliding in slidings]
         if opposed(turned) > SURE and (way or _size(turned) < _size(slidings)):
             found.append((_size(turned), pressures, force))
     about = (
@@ -181,14 +181,16 @@ def check_signs(slidings: Sequence[Sliding], bench: Bench, *, mass: float, name:
 
 def _size(slidings: Sequence[Sliding]) -> float:
     """Mean size of the friction [N]."""
-    return float(np.mean(np.concatenate([np.abs(one.friction[one.moving]) for one in slidings])))
+    return float(
+        np.mean(np.concatenate([np.abs(sliding.friction[sliding.moving]) for sliding in slidings]))
+    )
 
 
 def _turned(
-    one: Sliding, bench: Bench, mass: float, pressures: bool, force: bool, way: bool
+    sliding: Sliding, bench: Bench, mass: float, pressures: bool, force: bool, way: bool
 ) -> Sliding:
     """The friction with one channel reversed."""
-    piece = one.piece
+    piece = sliding.piece
     channels = dict(piece.channels)
     if pressures and "p2" in channels:
         channels["p1"], channels["p2"] = channels["p2"], channels["p1"]
@@ -198,5 +200,5 @@ def _turned(
     other = RecordSection(
         piece.time, channels, sign * piece.velocity, sign * piece.acceleration, piece.sound
     )
-    load = one.resisting[0] - mass * piece.acceleration[0] if "F_L" not in channels else 0.0
-    return _one(other, bench, mass, float(load), one.resting)
+    load = sliding.resisting[0] - mass * piece.acceleration[0] if "F_L" not in channels else 0.0
+    return _one(other, bench, mass, float(load), sliding.resting)

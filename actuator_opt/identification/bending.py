@@ -332,12 +332,12 @@ def _range(loop: Loop, specimen: Specimen) -> tuple[list[float], float, float, b
     return zeros, low, high, by_strain
 
 
-def _parameter(found: Term, unsure: float) -> Parameter:
+def _parameter(term: Term, unsure: float) -> Parameter:
     """A slope with its bounds, widened by its change along the part."""
-    error = float(np.sqrt(found.variance))
-    half = quantile(found.freedom) * error + unsure * abs(found.value)
-    near = half <= WEAK * abs(found.value)
-    return Parameter(found.value, found.value - half, found.value + half, error, bool(near))
+    error = float(np.sqrt(term.variance))
+    half = quantile(term.freedom) * error + unsure * abs(term.value)
+    near = half <= WEAK * abs(term.value)
+    return Parameter(term.value, term.value - half, term.value + half, error, bool(near))
 
 
 def _modulus(slope: Parameter, specimen: Specimen, *, published: bool = False) -> Parameter:
@@ -384,7 +384,7 @@ def _doubts_of_record(
             f"%: the slope is taken between {100 * strains[0]:.2g} and {100 * strains[1]:.2g} %"
         )
     if cut:
-        low, high = (1e3 * one for one in result.deflections)
+        low, high = (1e3 * deflection for deflection in result.deflections)
         words = "force over deflection is curved: the slope is taken from its straight part"
         found.append(f"{words}, from {low:.3g} to {high:.3g} mm")
     if abs(result.bent) > BENT:

@@ -115,7 +115,7 @@ def resampled(
     curve_known = stribeck if isinstance(stribeck, StribeckFit) else None
     if isinstance(lugre, LuGreFit):
         reference = 0.0 if curve_known is None else curve_known.reference_pressure
-        slowest = np.inf if curve_known is None else min(one.speed for one in points)
+        slowest = np.inf if curve_known is None else min(point.speed for point in points)
         found = windows(slidings, motion, reference, slowest, settling)
         if found is not None:
             lugre = _lugre(found, points, curve_known, lugre, count, second)
@@ -142,7 +142,7 @@ def resampled_stribeck(
 
     def slopes(rows: Array) -> Array:
         steps = 1j * COMPLEX_STEP * np.eye(rows.shape[1])
-        return np.stack([np.imag(model(rows + one)) / COMPLEX_STEP for one in steps], axis=-1)
+        return np.stack([np.imag(model(rows + step)) / COMPLEX_STEP for step in steps], axis=-1)
 
     best = searched(names, values)[None]
     rest = fit.residuals / errors
@@ -208,7 +208,7 @@ def _lugre(
         fit.parameters, problem.search, np.concatenate(rows), fit.values, blocks - 1, wider
     )
     was = {f"{SYMBOLS[n]} is {fit.parameters[n].verdict}" for n in _bristles(fit.parameters)}
-    doubts = [one for one in fit.doubts if one not in was]
+    doubts = [doubt for doubt in fit.doubts if doubt not in was]
     doubts += [
         f"{SYMBOLS[name]} is {parameters[name].verdict}"
         for name in _bristles(parameters)
@@ -282,8 +282,8 @@ def _search(
     } | dict(ends)
     best = searched(names, values)
     pairs = [usual.get(name, (-np.inf, np.inf)) for name in names]
-    low = np.minimum([one[0] for one in pairs], best)
-    return FitSearch(names, low, np.maximum([one[1] for one in pairs], best))
+    low = np.minimum([pair[0] for pair in pairs], best)
+    return FitSearch(names, low, np.maximum([pair[1] for pair in pairs], best))
 
 
 def searched(names: Sequence[str], values: Mapping[str, float]) -> Array:

@@ -58,7 +58,7 @@ def _shape(points: Sequence[FrictionPoint], stribeck: StribeckFit) -> Iterator[s
     if found is None or found.lower <= STRIBECK_EXPONENT <= found.upper:
         return
     values = {name: stribeck.values[name] for name in ("coulomb", "static", "stribeck_speed")}
-    speed = np.array([one.speed for one in points])
+    speed = np.array([point.speed for point in points])
     own, other = (
         friction.stribeck_level(speed=speed, exponent=one, **values)
         for one in (found.value, STRIBECK_EXPONENT)
@@ -74,7 +74,7 @@ def _shape(points: Sequence[FrictionPoint], stribeck: StribeckFit) -> Iterator[s
 def extrapolated(bench: Bench, points: Sequence[FrictionPoint]) -> Iterator[str]:
     """Duties of the design beyond the record."""
     fastest = max(case.speed for case in bench.design.load_cases)
-    speed, pressure = max(one.speed for one in points), max(one.pressure for one in points)
+    speed, pressure = max(point.speed for point in points), max(point.pressure for point in points)
     if fastest > FARTHER * speed or bench.supply_pressure > FARTHER * pressure:
         yield (
             f"the record reaches {1000.0 * speed:.3g} mm/s and {pressure / 100000.0:.3g} bar, "
@@ -254,10 +254,10 @@ def calibration(identification: Identification) -> Calibration:
     )
 
 
-def _beyond_range(one: Learned) -> str | None:
+def _beyond_range(learned: Learned) -> str | None:
     """Why a design cannot state a number, or None."""
-    quantity = INPUTS[one.name]
-    out = [v for v in one.values().values() if not quantity.lower <= v <= quantity.upper]
+    quantity = INPUTS[learned.name]
+    out = [v for v in learned.values().values() if not quantity.lower <= v <= quantity.upper]
     if not out:
         return None
     return f"measured {quantity.text(out[0])}, but a design accepts {quantity.range_text()}"
@@ -285,8 +285,8 @@ def refuse_films(design: Design) -> None:
 def _pressures(points: Sequence[FrictionPoint]) -> tuple[Array, Array]:
     """Chamber pressures of the points [Pa]."""
     return (
-        np.array([one.pressure_1 for one in points]),
-        np.array([one.pressure_2 for one in points]),
+        np.array([point.pressure_1 for point in points]),
+        np.array([point.pressure_2 for point in points]),
     )
 
 
@@ -300,7 +300,7 @@ def _from_fits(
     """
     bench = identification.bench
     known = {name: _best(identification, name) for name in _ASKED}
-    pressure = np.array([one.pressure for one in identification.points])
+    pressure = np.array([point.pressure for point in identification.points])
     coulomb = known["coulomb"]
     middle = (stribeck.parameters["coulomb"] if coulomb is None else coulomb[0]).value
     slope = stribeck.values["pressure_slope"]
@@ -337,13 +337,13 @@ def _from_level(
 
     If the speed is within the design's Stribeck rise, the upper bound assumes no rise.
     """
-    speed = np.array([one.speed for one in points])
-    measured = np.array([one.friction * np.sign(one.velocity) for one in points])
+    speed = np.array([point.speed for point in points])
+    measured = np.array([point.friction * np.sign(point.velocity) for point in points])
     level, viscous = bench.sliding(speed, *_pressures(points))
     coulomb = np.asarray(bench.coulomb(*_pressures(points)))
     factors = (measured - viscous) / level
     value = float(np.mean(factors))
-    errors = np.array([one.error for one in points]) / level
+    errors = np.array([point.error for point in points]) / level
     scatter = float(np.std(factors, ddof=1)) if factors.size > 1 else 0.0
     error = max(scatter, float(np.mean(errors))) / sqrt(factors.size)
     half = quantile(max(factors.size - 1, 1)) * error
@@ -373,9 +373,9 @@ def _best(identification: Identification, name: str) -> tuple[Parameter, str] | 
     return min(found, key=lambda one: one[0].standard_error / one[0].value, default=None)
 
 
-def _times(one: Parameter, factor: float) -> Parameter:
+def _times(parameter: Parameter, factor: float) -> Parameter:
     """A parameter in another unit, `factor` > 0."""
-    value, lower, upper, error, known = one
+    value, lower, upper, error, known = parameter
     return Parameter(factor * value, factor * lower, factor * upper, factor * error, known)
 
 
@@ -391,7 +391,7 @@ def _ratio(over: Parameter, under: Parameter) -> Parameter:
 def _coefficient(factor: Parameter, bench: Bench, source: str) -> Learned:
     """One factor for all coefficients of rings and wipers."""
     stated = {ring.groove.path: float(ring["friction_coefficient"]) for ring in bench.rings}
-    stated |= {one.path: float(one.coefficient) for one in bench.wipers}
+    stated |= {wiper.path: float(wiper.coefficient) for wiper in bench.wipers}
     shares = {f"{path}friction_coefficient": value for path, value in stated.items()}
     return Learned("friction_coefficient", factor, shares, shares, source)
 

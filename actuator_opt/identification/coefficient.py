@@ -63,7 +63,7 @@ def coefficient(
     -------
     median over windows with bounds from the order statistics, or the reason for none
     """
-    rows = np.concatenate([_windows(one, motion) for one in slidings])
+    rows = np.concatenate([_windows(sliding, motion) for sliding in slidings])
     if rows.shape[0] < 2:
         return (
             f"no sliding of {WINDOW:g} s above {1e3 * LEAST_SPEED:g} mm/s in one direction: "
@@ -103,4 +103,4 @@ def _windows(sliding: Sliding, motion: ConditionedRecord) -> Array:
     kept &= np.mean(np.abs(cut(piece.velocity)), axis=1) > LEAST_SPEED
     second = piece.channels.get("p2", np.zeros_like(piece.time))
     parts = (sliding.friction * way, piece["p1"], second, np.abs(piece.velocity))
-    return np.stack([np.mean(cut(one), axis=1)[kept] for one in parts], axis=1)
+    return np.stack([np.mean(cut(part), axis=1)[kept] for part in parts], axis=1)

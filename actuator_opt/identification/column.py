@@ -37,7 +37,7 @@ def parse_column(
     """
     sheet = read_sheet(text, name)
     cells = header_cells(sheet)
-    names = [one[0] for one in cells]
+    names = [cell[0] for cell in cells]
 
     def fault(message: str, remedy: str) -> InputError:
         return InputError(Diagnostic(message, remedy, file=name, line=sheet.header_line))

@@ -84,7 +84,7 @@ class Unequal(NamedTuple):
 
 def spread(points: Sequence[FrictionPoint], pressures: Sequence[float], area: float) -> float:
     """Pressure range relative to the least one that shows an effect."""
-    own = APART * max(abs(one.friction) for one in points) / area
+    own = APART * max(abs(point.friction) for point in points) / area
     return (max(pressures) - min(pressures)) / max(SPREAD * max(pressures), own, 1.0)
 
 
@@ -103,27 +103,27 @@ def unequal(points: Sequence[FrictionPoint], area: float) -> Unequal | None:
     -------
     the share e; None if no chamber's pressure varies enough in both directions
     """
-    way = np.array([np.sign(one.velocity) for one in points])
-    both = [[one for one in points if one.velocity * w > 0] for w in (1, -1)]
+    way = np.array([np.sign(point.velocity) for point in points])
+    both = [[point for point in points if point.velocity * w > 0] for w in (1, -1)]
     if not all(both):
         return None
     chambers = [
         [[x.pressure_1 for x in one] for one in both],
         [[x.pressure_2 for x in one] for one in both],
     ]
-    widths = [min(spread(points, x, area) for x in one) for one in chambers]
+    widths = [min(spread(points, x, area) for x in chamber) for chamber in chambers]
     chamber = 1 + int(np.argmax(widths))
     if widths[chamber - 1] < 1:
         return None
     second = chamber == 2
-    groups = _groups(np.array([one.speed for one in points]))
+    groups = _groups(np.array([point.speed for point in points]))
     levels = (groups[:, None] == np.unique(groups)) * way[:, None]
-    pressure = np.array([one.pressure for one in points])
-    force = area * np.array([one.pressure_2 if second else one.pressure_1 for one in points])
+    pressure = np.array([point.pressure for point in points])
+    force = area * np.array([point.pressure_2 if second else point.pressure_1 for point in points])
     beside = [way * (pressure - pressure.mean()), np.ones_like(way), force]
     matrix = np.concatenate([levels, np.stack(beside, axis=1)], axis=1)
-    friction = np.array([one.friction for one in points])
-    error = np.hypot([one.error for one in points], 1e-3 * np.max(np.abs(friction)))
+    friction = np.array([point.friction for point in points])
+    error = np.hypot([point.error for point in points], 1e-3 * np.max(np.abs(friction)))
     scaled, target = matrix / error[:, None], friction / error
     size = np.abs(scaled).max(axis=0)
     spare = target.size - int(np.linalg.matrix_rank(scaled / size))

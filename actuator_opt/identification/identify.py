@@ -59,7 +59,7 @@ def lag_of(lugre: LuGreFit | str) -> Parameter | None:
     return None if isinstance(lugre, str) else lugre.parameters.get("lag")
 
 
-def taken_off(found: Parameter | None) -> tuple[float, str]:
+def taken_off(parameter: Parameter | None) -> tuple[float, str]:
     """The lag to correct [s], 0 for none, with a note.
 
     A lag is corrected if its 95 % bounds lie above zero. A negative one is not: sigma_0 z + sigma_1
@@ -68,18 +68,18 @@ def taken_off(found: Parameter | None) -> tuple[float, str]:
 
     Parameters
     ----------
-    found : the lag as fitted, with sigma_1 fixed at 0
+    parameter : the lag as fitted, with sigma_1 fixed at 0
 
     Returns
     -------
     the lag, and a note that may be empty
     """
-    if found is None:
+    if parameter is None:
         return 0.0, ""
-    value, lower, upper = (1e3 * x for x in found[:3])
+    value, lower, upper = (1e3 * x for x in parameter[:3])
     if not isfinite(upper - lower):
         return 0.0, CANNOT
-    if not -EARLIEST <= found.value <= 0.99 * LAG:
+    if not -EARLIEST <= parameter.value <= 0.99 * LAG:
         beyond = f"beyond {-1000.0 * EARLIEST:g} to {1000.0 * LAG:g} ms, which no sensor has"
         return 0.0, f"the reversals fit a lag {beyond}: not corrected, {STATE}"
     bounds = f"{lower:.2f} to {upper:.2f}"
@@ -89,19 +89,19 @@ def taken_off(found: Parameter | None) -> tuple[float, str]:
             "to σ₁/σ₀, or a lagging position; the record cannot show which. No lag is "
             f"corrected, {STATE}"
         )
-    if lower > 0 and found.value > LEAST_LAG:
-        return found.value, (
+    if lower > 0 and parameter.value > LEAST_LAG:
+        return parameter.value, (
             f"the pressures lag by {value:.2f} ms ({bounds}), from the reversals; corrected"
         )
     return 0.0, ""
 
 
-def undone(found: Parameter, left: Parameter | None) -> str:
+def undone(parameter: Parameter, left: Parameter | None) -> str:
     """Why a lag correction is undone because another lag remains; else empty."""
     if left is None or left.lower <= 0 <= left.upper:
         return ""
     return (
-        f"correcting the pressures by {1000.0 * found.value:.2f} ms leaves a lag of "
+        f"correcting the pressures by {1000.0 * parameter.value:.2f} ms leaves a lag of "
         f"{1000.0 * left.value:.2f} ms: the lag fits some other effect, so none is corrected; "
         f"{STATE}"
     )
@@ -211,7 +211,7 @@ def _moving(
     mass: float,
 ) -> None:
     """Reject a record of a rod at rest, beyond its stroke, or with wrong signs."""
-    travel = max(float(np.ptp(one["x"][one.sound])) for one in motion.pieces)
+    travel = max(float(np.ptp(piece["x"][piece.sound])) for piece in motion.pieces)
     quality = motion.quality["x"]
     band = min(2 * motion.cutoff * motion.sample_time, 1.0)
     if travel <= max(STEPS * quality.resolution, NOISES * quality.noise * np.sqrt(band)):
@@ -225,7 +225,7 @@ def _moving(
             f"x travels {1000.0 * travel:.4g} mm, but the stroke is {1000.0 * bench.stroke:.4g} mm",
             "check the unit of x, and cylinder.stroke of the design",
         )
-    if any(one.moving.any() for one in slidings):
+    if any(sliding.moving.any() for sliding in slidings):
         check_signs(slidings, bench, mass=mass, name=record.name)
 
 
@@ -247,7 +247,7 @@ def _remarks(
 
 def _outside(slidings: Sequence[Sliding], bench: Bench) -> list[str]:
     """A note if the position leaves the stroke."""
-    place = np.concatenate([one.piece["x"] for one in slidings])
+    place = np.concatenate([sliding.piece["x"] for sliding in slidings])
     beyond = OUTSIDE * bench.stroke
     if place.min() >= -beyond and place.max() <= bench.stroke + beyond:
         return []
@@ -288,7 +288,11 @@ def _pace(motion: ConditionedRecord) -> list[str]:
 
     v = k dx/dt, k = sum v x'/sum x'^2 with the noise of x' taken off.
     """
-    both = [(one["v"][one.sound], one.velocity[one.sound]) for one in motion.pieces if "v" in one]
+    both = [
+        (piece["v"][piece.sound], piece.velocity[piece.sound])
+        for piece in motion.pieces
+        if "v" in piece
+    ]
     if not both:
         return []
     stated, found = (np.concatenate(one) for one in zip(*both, strict=True))
@@ -379,11 +383,11 @@ def _sizes(
     which only counts for the largest value. Without sliding the mean is that of the moving rod.
     """
     bent = BENDS / SETTLING * settling
-    moving = any(one.moving.any() for one in slidings)
-    whole = [one.moving if moving else one.piece.sound for one in slidings]
-    every = [np.abs(one.friction[at]) for one, at in zip(slidings, whole, strict=True)]
-    parts = [np.abs(one.friction[settled(one, bent)]) for one in slidings]
-    slides = any(one.size for one in parts)
+    moving = any(sliding.moving.any() for sliding in slidings)
+    whole = [sliding.moving if moving else sliding.piece.sound for sliding in slidings]
+    every = [np.abs(sliding.friction[at]) for sliding, at in zip(slidings, whole, strict=True)]
+    parts = [np.abs(sliding.friction[settled(sliding, bent)]) for sliding in slidings]
+    slides = any(part.size for part in parts)
     friction = np.concatenate(parts if slides else every)
     batches = int(np.clip(independent(friction.size, motion) / 5, 2, 20))
     means = np.array([np.mean(one) for one in np.array_split(friction, batches)])
@@ -395,12 +399,12 @@ def _sizes(
 
 def _fits(points: Sequence[FrictionPoint]) -> dict[str, LawFit | str]:
     """Fits of the secant damping over speed, weighted by relative errors."""
-    speeds = different([one.speed for one in points])
+    speeds = different([point.speed for point in points])
     if len(speeds) < LEAST_SPEEDS:
         why = f"{len(speeds)} different speeds: a model of damping over speed needs {LEAST_SPEEDS}"
         return dict.fromkeys(LAWS, why)
-    speed = np.array([one.speed for one in points])
-    damping = np.array([one.damping for one in points])
+    speed = np.array([point.speed for point in points])
+    damping = np.array([point.damping for point in points])
     found: dict[str, LawFit | str] = {}
     for name, fit in LAWS.items():
         positive = damping > 0

@@ -161,8 +161,8 @@ class Windows:
         while at a start a lower cut-off blurs the motion. The friction shows which is better.
         """
         costs = [
-            np.sum(replace(self, velocity=one).misfit(values)[0] ** 2, axis=-1)
-            for one in self.options
+            np.sum(replace(self, velocity=option).misfit(values)[0] ** 2, axis=-1)
+            for option in self.options
         ]
         best = np.argmin(np.stack(costs), axis=0)
         return replace(self, velocity=self.options[best, np.arange(best.size)])
@@ -240,7 +240,7 @@ def windows(
     steady = np.where(cut([told[id(one)] for one, _ in lanes])[:, kept], 0.0, 1.0)
     span = (-before * stride, after * stride)
     paces = [velocities(one.piece, motion, at + span[0], at + span[1]) for one, at in lanes]
-    options = np.stack([one[:, ::stride] for one in paces], axis=1)
+    options = np.stack([pace[:, ::stride] for pace in paces], axis=1)
     slopes = np.abs(np.gradient(options[-1], step, axis=-1))
     sharpest = max(float(np.median(np.max(slopes, axis=-1))), 1e-12)
     resolution = motion.quality["x"].resolution
@@ -314,13 +314,18 @@ def _lanes(
     slidings: Sequence[Sliding], motion: ConditionedRecord, room: tuple[int, int]
 ) -> list[tuple[Sliding, int]]:
     """Sections and samples of windows: reversals and starts, else spread over the record."""
-    places = [(one, at) for one in slidings for at in _turns(one, motion) if _fits(one, at, room)]
+    places = [
+        (sliding, at)
+        for sliding in slidings
+        for at in _turns(sliding, motion)
+        if _fits(sliding, at, room)
+    ]
     if not places:
         places = [
-            (one, at)
-            for one in slidings
-            for at in range(room[0], one.piece.time.size, room[0] + room[1])
-            if _fits(one, at, room)
+            (sliding, at)
+            for sliding in slidings
+            for at in range(room[0], sliding.piece.time.size, room[0] + room[1])
+            if _fits(sliding, at, room)
         ]
     if not places:
         return []
@@ -457,9 +462,9 @@ class LugreProblem:
                 }
         else:
             apart = found.step * float(found.kept[1] - found.kept[0])
-            noise = [one.error * np.sqrt(max(one.weight / apart, 1.0)) for one in points]
+            noise = [point.error * np.sqrt(max(point.weight / apart, 1.0)) for point in points]
             self.noise = float(np.median(noise))
-            least = SHARED if any(one.kind == "sweep" for one in points) else 1e-3
+            least = SHARED if any(point.kind == "sweep" for point in points) else 1e-3
             self.steady = Steady(points, stribeck.errors * max(stribeck.scatter, least))
             self.begin = {name: one.value for name, one in stribeck.parameters.items()}
             self.held = dict(stribeck.held)
@@ -537,7 +542,7 @@ class LugreProblem:
             "lag": (-LAG, LAG),
         }
         pairs = [ends.get(name, (-np.inf, np.inf)) for name in self.names]
-        return np.array([one[0] for one in pairs]), np.array([one[1] for one in pairs])
+        return np.array([pair[0] for pair in pairs]), np.array([pair[1] for pair in pairs])
 
     def start(self) -> Array:
         """The best of a grid of bristle stiffnesses and lags (and Stribeck speeds)."""
@@ -676,7 +681,7 @@ class LugreProblem:
             spare=spare,
         )
         by_lanes = self.lanes(residuals, steep) * chain
-        own_error = np.array([one.standard_error for one in told.parameters.values()])
+        own_error = np.array([parameter.standard_error for parameter in told.parameters.values()])
         with np.errstate(invalid="ignore"):
             more = np.sqrt(np.maximum(by_lanes**2 - own_error**2, 0.0))
         more = np.where(np.isfinite(own_error), more, 0.0)
@@ -820,7 +825,7 @@ def fit_lugre(
     """
     curve_known = stribeck if isinstance(stribeck, StribeckFit) else None
     reference = 0.0 if curve_known is None else curve_known.reference_pressure
-    slowest = np.inf if curve_known is None else min(one.speed for one in points)
+    slowest = np.inf if curve_known is None else min(point.speed for point in points)
     found = windows(slidings, motion, reference, slowest, settling)
     if found is None:
         return no_windows(motion)
@@ -912,7 +917,7 @@ def _as_the_points(
         doubts.append("areas or sensors are wrong, according to the points of steady sliding")
     elif not np.isfinite(level.upper) and not (speed is not None and speed.identifiable):
         if np.isfinite(parameters["coulomb"].upper):
-            fastest = 1e3 * max(one.speed for one in points)
+            fastest = 1e3 * max(point.speed for point in points)
             doubts.append(
                 f"F_C is the friction level up to {fastest:.3g} mm/s: steady sliding there does "
                 "not separate it from F_S and σ₂; give more and faster speeds"

@@ -98,7 +98,7 @@ def steady_points(
         for one, (_, left) in zip(moderated, found, strict=True)
     ]
     merged = _merged(plateaus)
-    moving = sum(float(one.moving.sum()) for one in slidings) * motion.sample_time
+    moving = sum(float(sliding.moving.sum()) for sliding in slidings) * motion.sample_time
     held = sum(one.weight for one in plateaus)
     speeds = {round(np.log(one.speed) / ALIKE) for one in merged}
     if merged and (len(speeds) >= 3 or held > 0.4 * moving):
@@ -122,11 +122,11 @@ def _moderated(points: Sequence[FrictionPoint], motion: ConditionedRecord) -> li
     """
     if not points:
         return []
-    count = np.array([max(2 * motion.cutoff * one.weight - 1, 1.0) for one in points])
-    own = np.array([one.error for one in points]) ** 2 * count
+    count = np.array([max(2 * motion.cutoff * point.weight - 1, 1.0) for point in points])
+    own = np.array([point.error for point in points]) ** 2 * count
     drawn = (PRIOR * np.median(own) + count * own) / (PRIOR + count)
     errors = np.sqrt(drawn / count)
-    return [one._replace(error=float(error)) for one, error in zip(points, errors, strict=True)]
+    return [point._replace(error=float(error)) for point, error in zip(points, errors, strict=True)]
 
 
 def _plateaus(
@@ -205,17 +205,17 @@ def _point(sliding: Sliding, motion: ConditionedRecord, at: Array, kind: Kind) -
 
 def _merged(points: Sequence[FrictionPoint]) -> list[FrictionPoint]:
     """Points of similar velocity and pressure merged, weighted by their duration."""
-    highest = max((one.pressure for one in points), default=0.0)
+    highest = max((point.pressure for point in points), default=0.0)
     groups: list[list[FrictionPoint]] = []
-    for one in sorted(points, key=lambda x: x.velocity):
+    for point in sorted(points, key=lambda x: x.velocity):
         for group in groups:
             lead = group[0]
-            like = abs(one.velocity / lead.velocity - 1) < ALIKE
-            if like and abs(one.pressure - lead.pressure) <= LEVELS * highest:
-                group.append(one)
+            like = abs(point.velocity / lead.velocity - 1) < ALIKE
+            if like and abs(point.pressure - lead.pressure) <= LEVELS * highest:
+                group.append(point)
                 break
         else:
-            groups.append([one])
+            groups.append([point])
     return [_mean(group) for group in groups]
 
 
@@ -244,21 +244,23 @@ def _swept(
     A bin passed in one way only is left out, as a lag would count as friction there. The velocity
     is that of the lowest cut-off the position allows; its resolution would blur slow bins.
     """
-    parts = [settled(one, settling) for one in slidings]
+    parts = [settled(sliding, settling) for sliding in slidings]
     if not any(at.size for at in parts):
         return []
 
     def all_of(values: Sequence[Array]) -> Array:
-        return np.concatenate([one[at] for one, at in zip(values, parts, strict=True)])
+        return np.concatenate([value[at] for value, at in zip(values, parts, strict=True)])
 
-    pieces = [one.piece for one in slidings]
-    paces = [velocities(one, motion, 0, one.time.size)[-1] for one in pieces]
+    pieces = [sliding.piece for sliding in slidings]
+    paces = [velocities(piece, motion, 0, piece.time.size)[-1] for piece in pieces]
     velocity = all_of(paces)
-    rising = all_of([one * np.gradient(one) for one in paces]) > 0
-    friction = all_of([one.friction for one in slidings])
-    pressure = all_of([one.pressure for one in slidings])
-    first = all_of([one["p1"] for one in pieces])
-    second = all_of([one["p2"] if "p2" in one else np.zeros(one.time.size) for one in pieces])
+    rising = all_of([pace * np.gradient(pace) for pace in paces]) > 0
+    friction = all_of([sliding.friction for sliding in slidings])
+    pressure = all_of([sliding.pressure for sliding in slidings])
+    first = all_of([piece["p1"] for piece in pieces])
+    second = all_of(
+        [piece["p2"] if "p2" in piece else np.zeros(piece.time.size) for piece in pieces]
+    )
     speed_bin = np.floor(PER_DECADE * np.log10(np.abs(velocity)))
     top = float(np.percentile(pressure, 99)) or 1.0
     level_bin = np.floor(pressure / (2 * LEVELS * top))
@@ -269,7 +271,7 @@ def _swept(
     own: list[FrictionPoint] = []
     for at in groups[: len(found)]:
         halves = _alike(at, np.abs(velocity[at]), rising[at])
-        if halves is None or min(independent(one.size, motion) for one in halves) < 3:
+        if halves is None or min(independent(half.size, motion) for half in halves) < 3:
             continue
         for half in halves:
             size = independent(half.size, motion)
@@ -340,7 +342,7 @@ def by_pressure(points: Sequence[FrictionPoint]) -> list[list[FrictionPoint]]:
     ----------
     points : of steady sliding
     """
-    highest = max((one.pressure for one in points), default=0.0)
+    highest = max((point.pressure for point in points), default=0.0)
     groups: list[list[FrictionPoint]] = []
     for one in sorted(points, key=lambda point: point.pressure):
         if groups and one.pressure - groups[-1][0].pressure <= LEVELS * highest:

@@ -545,7 +545,7 @@ def _columns(
     faults: list[Diagnostic] = []
 
     def fault(message: str, remedy: str, file: str = sheet.name) -> None:
-        if not any(one.message == message for one in faults):
+        if not any(fault.message == message for fault in faults):
             line = sheet.header_line if file == sheet.name else None
             faults.append(Diagnostic(message, remedy, file=file, line=line))
 

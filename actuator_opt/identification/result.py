@@ -116,24 +116,24 @@ class Identification(Displayed):
         `stiffness` with closed ports at the record's pressures, NaN if the position lies beyond the
         stroke; `growth` of the bore radius at the piston seal.
         """
-        pieces = [one.piece for one in self.slidings]
+        pieces = [sliding.piece for sliding in self.slidings]
 
         def joined(parts: list[Array]) -> Array:
             return np.concatenate(parts)
 
-        first = joined([one["p1"] for one in pieces])
+        first = joined([piece["p1"] for piece in pieces])
         found = {
-            "time": joined([one.time for one in pieces]),
-            "position": joined([one["x"] for one in pieces]),
-            "velocity": joined([one.velocity for one in pieces]),
-            "acceleration": joined([one.acceleration for one in pieces]),
+            "time": joined([piece.time for piece in pieces]),
+            "position": joined([piece["x"] for piece in pieces]),
+            "velocity": joined([piece.velocity for piece in pieces]),
+            "acceleration": joined([piece.acceleration for piece in pieces]),
             "pressure_1": first,
         }
         if "p2" in pieces[0]:
-            found["pressure_2"] = joined([one["p2"] for one in pieces])
-        found["friction"] = joined([one.friction for one in self.slidings])
-        found["stiffness"] = joined([self.stiffness_along(one) for one in self.slidings])
-        found["growth"] = joined([self.growth_along(one) for one in self.slidings])
+            found["pressure_2"] = joined([piece["p2"] for piece in pieces])
+        found["friction"] = joined([sliding.friction for sliding in self.slidings])
+        found["stiffness"] = joined([self.stiffness_along(sliding) for sliding in self.slidings])
+        found["growth"] = joined([self.growth_along(sliding) for sliding in self.slidings])
         return found
 
     def to_dict(self) -> dict[str, Any]:
@@ -155,7 +155,7 @@ class Identification(Displayed):
             **_coefficient(self.coefficient),
             **_model("stribeck", self.stribeck),
             **_model("lugre", self.lugre),
-            "damping": [_point(one) for one in self.points],
+            "damping": [_point(point) for point in self.points],
             "stiffness": _range(series["stiffness"]),
             "growth_at_seal": _range(series["growth"]),
             "fits": {name: _fit(one) for name, one in self.fits.items()},
@@ -207,16 +207,16 @@ def _model(name: str, found: StribeckFit | LuGreFit | str) -> dict[str, Any]:
     }
 
 
-def _point(one: FrictionPoint) -> dict[str, Any]:
+def _point(friction_point: FrictionPoint) -> dict[str, Any]:
     return {
-        "velocity": one.velocity,
-        "pressure": one.pressure,
-        "value": one.damping,
-        "standard_error": one.error / one.speed,
-        "friction": one.friction,
-        "pressure_1": one.pressure_1,
-        "pressure_2": one.pressure_2,
-        "method": one.kind,
+        "velocity": friction_point.velocity,
+        "pressure": friction_point.pressure,
+        "value": friction_point.damping,
+        "standard_error": friction_point.error / friction_point.speed,
+        "friction": friction_point.friction,
+        "pressure_1": friction_point.pressure_1,
+        "pressure_2": friction_point.pressure_2,
+        "method": friction_point.kind,
     }
 
 

@@ -92,13 +92,13 @@ def branches(deflection: Array, least: float) -> list[DeflectionBranch]:
     values = deflection.tolist()
     turns: list[int] = []
     low = high = way = 0
-    for k, one in enumerate(values):
-        low = k if one < values[low] else low
-        high = k if one > values[high] else high
-        if way >= 0 and values[high] - one >= least:
+    for k, value in enumerate(values):
+        low = k if value < values[low] else low
+        high = k if value > values[high] else high
+        if way >= 0 and values[high] - value >= least:
             turns.append(high)
             way, low = -1, k
-        elif way <= 0 and one - values[low] >= least:
+        elif way <= 0 and value - values[low] >= least:
             turns.append(low)
             way, high = 1, k
     turns.append(high if way > 0 else low)
@@ -175,8 +175,8 @@ def pooled(groups: Sequence[Sequence[Term]]) -> Term:
     """
     from scipy.special import fdtri  # slow import, rarely used
 
-    found = mean([mean(one) for one in groups])
-    spare = sum(len(one) - 1 for one in groups)
+    found = mean([mean(group) for group in groups])
+    spare = sum(len(group) - 1 for group in groups)
     if spare == 0 or found.variance == 0:
         return found
     middles = [(one, mean(group).value) for group in groups for one in group]
@@ -217,7 +217,7 @@ class Loop:
         self.record = record
         self.deflection, self.force, self.floor, self.both = _turned(*_channels(record))
         self.least = BACK * float(np.ptp(self.deflection))
-        self.branches = [self._kept(one) for one in branches(self.deflection, self.least)]
+        self.branches = [self._kept(branch) for branch in branches(self.deflection, self.least)]
 
     def _kept(self, branch: DeflectionBranch) -> DeflectionBranch:
         """A loading branch up to its highest force; slip or failure follows."""
@@ -255,15 +255,15 @@ class Loop:
             message = "F_L does not grow with w in the straight part"
             raise self.record.fault(message, "check both columns, and their noise")
         return [
-            float(np.mean(one.deflection) - (np.mean(one.force) - self.floor) / slope)
-            if one.deflection.size
+            float(np.mean(part.deflection) - (np.mean(part.force) - self.floor) / slope)
+            if part.deflection.size
             else inf
-            for one in parts
+            for part in parts
         ]
 
     def top(self, zeros: Sequence[float]) -> float:
         """Largest deflection from zero, median of the branches."""
-        tops = [float(np.max(self.deflection[one.samples])) for one in self.branches]
+        tops = [float(np.max(self.deflection[branch.samples])) for branch in self.branches]
         return float(np.median([a - b for a, b in zip(tops, zeros, strict=True) if isfinite(b)]))
 
     def hysteresis(self) -> float | None:
@@ -273,7 +273,7 @@ class Loop:
         integral of F dw around the loop over that of F dw above zero.
         """
         pairs, shares = list(pairwise(self.branches)), []
-        for both in [one for one in pairs if one[0].loading] or pairs:
+        for both in [pair for pair in pairs if pair[0].loading] or pairs:
             passes = [self.deflection[one.samples] for one in both]
             ends = max(np.min(w) for w in passes), min(np.max(w) for w in passes)
             lost = done = 0.0
@@ -291,7 +291,7 @@ def slopes(parts: Sequence[Part], degree: int, record: Record) -> Term:
     """Coefficient of a degree, mean of loading and unloading; every branch has its own offsets."""
     groups = by_way(parts, degree)
     if not groups:
-        most = max((one.deflection.size for one in parts), default=0)
+        most = max((part.deflection.size for part in parts), default=0)
         message = f"{most} samples in the straight part of the longest loading"
         remedy = "sample faster, load slower, or check noise and units of the channels"
         raise record.fault(f"{message}, {FEWEST} are needed", remedy)
@@ -301,9 +301,9 @@ def slopes(parts: Sequence[Part], degree: int, record: Record) -> Term:
 def by_way(parts: Sequence[Part], degree: int) -> dict[bool, list[Term]]:
     """Coefficients of the branches, by direction of loading."""
     groups: dict[bool, list[Term]] = {}
-    for one in parts:
-        if one.deflection.size >= FEWEST and np.unique(one.deflection).size > degree + 1:
-            groups.setdefault(one.loading, []).append(term(one.deflection, one.force, degree))
+    for part in parts:
+        if part.deflection.size >= FEWEST and np.unique(part.deflection).size > degree + 1:
+            groups.setdefault(part.loading, []).append(term(part.deflection, part.force, degree))
     return groups
 
 
@@ -313,9 +313,9 @@ def scatter(parts: Sequence[Part]) -> float:
     Noise of the deflection alone lowers the slope by this share [derived].
     """
     found = [
-        1 - float(np.corrcoef(one.deflection, one.force)[0, 1]) ** 2
-        for one in parts
-        if one.deflection.size >= FEWEST and np.ptp(one.force) > 0
+        1 - float(np.corrcoef(part.deflection, part.force)[0, 1]) ** 2
+        for part in parts
+        if part.deflection.size >= FEWEST and np.ptp(part.force) > 0
     ]
     return min(found, default=0.0)
 
@@ -383,14 +383,14 @@ def _turned(w: Array, force: Array) -> tuple[Array, Array, float, bool]:
 
 def straight(loop: Loop, zeros: Sequence[float], low: float, high: float) -> Straight:
     """The longest part of a range with constant slope, else the whole range."""
-    found: list[Straight] = []
+    straights: list[Straight] = []
     for first, last in CUTS:
         ends = low + first * (high - low), low + last * (high - low)
         parts = loop.cut(*ends, zeros)
-        if found and not all(by_way(parts, 2).get(one.loading) for one in parts):
+        if straights and not all(by_way(parts, 2).get(part.loading) for part in parts):
             break
         slope, curve = slopes(parts, 1, loop.record), slopes(parts, 2, loop.record)
-        if found and slope.value <= 0:
+        if straights and slope.value <= 0:
             break
         new = loop.zeros(parts)
         length = ends[1] - ends[0]
@@ -402,8 +402,8 @@ def straight(loop: Loop, zeros: Sequence[float], low: float, high: float) -> Str
         one = Straight(parts, whole, bent, beyond, (first, last) != CUTS[0])
         if abs(bent) <= BENT or beyond == 0:
             return one
-        found.append(one)
-    return found[0]
+        straights.append(one)
+    return straights[0]
 
 
 SHARE = 0.999

@@ -134,7 +134,7 @@ def fit_stribeck(points: Sequence[FrictionPoint], area: float) -> StribeckFit | 
     -------
     the fit, or the reason for none
     """
-    speeds = different([one.speed for one in points])
+    speeds = different([point.speed for point in points])
     if len(speeds) < 2:
         at = f"one speed, {1e3 * speeds[0]:.3g} mm/s" if speeds else "no steady sliding"
         return f"{at}: a Stribeck curve needs plateaus or sweeps of 2 speeds, 5 for F_S and v_s"
@@ -178,9 +178,9 @@ def fit_stribeck(points: Sequence[FrictionPoint], area: float) -> StribeckFit | 
 def _doubted(fit: StribeckFit, points: Sequence[FrictionPoint], area: float) -> StribeckFit:
     """The fit with doubts about the friction itself: areas, sensors, other influences."""
     even = unequal(points, area)
-    plunger = all(one.pressure_2 == 0 for one in points)
+    plunger = all(point.pressure_2 == 0 for point in points)
     wrong = [] if even is None or not even.sure else [even.says(area, plunger)]
-    measured = np.array([one.friction for one in points])
+    measured = np.array([point.friction for point in points])
     impossible = list(misled(fit.parameters, measured, fit.residuals, fit.errors))
     parameters = opened(fit.parameters, fit.parameters if impossible else ())
     doubts = (*fit.doubts, *wrong, *impossible, *ways(parameters, even))
@@ -207,18 +207,18 @@ def held_error(parameters: Mapping[str, Parameter], other: Mapping[str, float]) 
 def different(speeds: Sequence[float]) -> list[float]:
     """Speeds that differ by more than `DIFFERENT`."""
     found: list[float] = []
-    for one in sorted(speeds):
-        if not found or one > found[-1] * (1 + DIFFERENT):
-            found.append(one)
+    for speed in sorted(speeds):
+        if not found or speed > found[-1] * (1 + DIFFERENT):
+            found.append(speed)
     return found
 
 
 def _beside(points: Sequence[FrictionPoint], area: float) -> list[str]:
     """Offset and pressure effect, if the points can show them."""
-    ways = {one.velocity > 0 for one in points}
+    ways = {point.velocity > 0 for point in points}
     found = ["offset"] if len(ways) == 2 else []
     for way in ways:
-        pressures = [one.pressure for one in points if (one.velocity > 0) == way]
+        pressures = [point.pressure for point in points if (point.velocity > 0) == way]
         if len(points) > 4 and spread(points, pressures, area) > 1:
             return [*found, "pressure_slope"]
     return found
@@ -228,11 +228,11 @@ class Steady:
     """Points as arrays, with weights 1/error; their curve is the mean over each point's spread."""
 
     def __init__(self, points: Sequence[FrictionPoint], error: Array | None = None) -> None:
-        self.velocity = np.array([one.velocity for one in points])
-        self.spread = np.array([one.spread for one in points])
-        pressure = np.array([one.pressure for one in points])
-        errors = np.array([one.error for one in points])
-        self.friction = np.array([one.friction for one in points])
+        self.velocity = np.array([point.velocity for point in points])
+        self.spread = np.array([point.spread for point in points])
+        pressure = np.array([point.pressure for point in points])
+        errors = np.array([point.error for point in points])
+        self.friction = np.array([point.friction for point in points])
         self.largest = float(np.max(np.abs(self.friction)))
         self.error = np.hypot(errors, MODEL * self.largest) if error is None else error
         self.reference = float(np.mean(pressure))
@@ -294,7 +294,7 @@ def _fit(points: Sequence[FrictionPoint], names: tuple[str, ...], exponent: floa
     sizes = np.array([max(abs(own[name]), 1e-3 * scale[name]) for name in names])
     rest = data.residual(best)
     chance = float(np.sqrt(np.sum(rest**2) / max(rest.size - len(own), 1)))
-    if any(one.kind == "sweep" for one in points):
+    if any(point.kind == "sweep" for point in points):
         rest = rest * max(SHARED / max(chance, 1e-9), 1.0)
     told = known(own, jacobian / data.error[:, None], rest, sizes)
     return StribeckFit(

@@ -275,8 +275,8 @@ def derive(end: End) -> EndThread:
     """The thread of an end, derived once."""
     if "thread" not in end.known:
         end.known["thread"] = _derived(end)
-    found: EndThread = end.known["thread"]
-    return found
+    end_thread: EndThread = end.known["thread"]
+    return end_thread
 
 
 def _derived(end: End) -> EndThread:

@@ -294,13 +294,19 @@ def sensitivities(film: Film, stepped: Sequence[Contact]) -> Vector:
     return np.array(slopes).reshape(len(slopes), 4)
 
 
-def _imaginary(found: NewtonResidual) -> NewtonResidual:
+def _imaginary(newton_residual: NewtonResidual) -> NewtonResidual:
     """Derivatives of residuals along a step."""
     flow, complementarity, bent = (
-        np.imag(part) / STEP for part in (found.flow, found.complementarity, found.film)
+        np.imag(part) / STEP
+        for part in (newton_residual.flow, newton_residual.complementarity, newton_residual.film)
     )
-    ends = (float(np.imag(found.ends[0])) / STEP, float(np.imag(found.ends[1])) / STEP)
-    return NewtonResidual(flow, complementarity, bent, float(np.imag(found.load)) / STEP, ends)
+    ends = (
+        float(np.imag(newton_residual.ends[0])) / STEP,
+        float(np.imag(newton_residual.ends[1])) / STEP,
+    )
+    return NewtonResidual(
+        flow, complementarity, bent, float(np.imag(newton_residual.load)) / STEP, ends
+    )
 
 
 def _moved(state: FilmState, change: FilmState) -> FilmState:

@@ -264,16 +264,16 @@ def _allowed(state: FilmState, change: FilmState) -> float:
 
 
 def _measures(
-    flow: ReynoldsProblem, bed: Bed, state: FilmState, found: NewtonResidual
+    flow: ReynoldsProblem, bed: Bed, state: FilmState, newton_residual: NewtonResidual
 ) -> tuple[float, float, float]:
     """Relative flux spread, load residual, and the largest of the other scaled residuals."""
     passing = flux(flow, state.pressure, state.cavitation, state.film)
     carried = abs(flow.drive) * np.min(flow.gap(state.film)[1])
     spread = np.ptp(passing) / (abs(np.mean(passing)) + carried + 1e-300)
-    load = abs(found.load) / max(weights(flow.nodes) @ bed.static_pressure, 1e-12)
-    film = np.max(np.abs(found.film)) / np.max(state.film)
-    ends = max(abs(found.ends[0]), abs(found.ends[1]))
-    return spread, load, max(film, ends, np.max(np.abs(found.complementarity)))
+    load = abs(newton_residual.load) / max(weights(flow.nodes) @ bed.static_pressure, 1e-12)
+    film = np.max(np.abs(newton_residual.film)) / np.max(state.film)
+    ends = max(abs(newton_residual.ends[0]), abs(newton_residual.ends[1]))
+    return spread, load, max(film, ends, np.max(np.abs(newton_residual.complementarity)))
 
 
 def newton(flow: ReynoldsProblem, bed: Bed, state: FilmState) -> NewtonResult:

@@ -249,8 +249,8 @@ def layered_tube(*, layers: Sequence[TubeLayer], inner_radius: Array) -> Layered
     for layer in layers:
         radii.append(radii[-1] + layer.thickness)
     columns = [
-        (*one.stiffness, one.angle, one.expansion_1, one.expansion_2, one.expansion_3)
-        for one in layers
+        (*layer.stiffness, layer.angle, layer.expansion_1, layer.expansion_2, layer.expansion_3)
+        for layer in layers
     ]
     rows = [*zip(*columns, strict=True), radii[:-1], radii[1:]]
     values = stacked(rows)

@@ -294,8 +294,8 @@ def idle_metrics(actuator: ActuatorProblem) -> tuple[str, ...]:
     assert start is not None
     moved = {path: np.array([x, x]) for path, x in zip(actuator.paths, start, strict=True)}
     subject, goal = actuator.subject, actuator.goal
-    found = compute(subject, subject.values(moved)).computed
-    values = {name: worst_value(found, name, subject.cases, goal.aim) for name in goal.weights}
+    computed = compute(subject, subject.values(moved)).computed
+    values = {name: worst_value(computed, name, subject.cases, goal.aim) for name in goal.weights}
     return tuple(
         name for name, value in values.items() if np.size(value) == 1 and np.isfinite(value).all()
     )

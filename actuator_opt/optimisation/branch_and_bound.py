@@ -266,13 +266,13 @@ class Memory:
             self.hessians[box] = hessian_at(*end)
         return end[1].x, self.hessians[box]
 
-    def note(self, box: Box, evaluator: Evaluator, found: Nearest) -> None:
+    def note(self, box: Box, evaluator: Evaluator, nearest: Nearest) -> None:
         """Store the result of a box, unless steps from known results reach it easily."""
-        if found.optimum is not None and not (found.followed and box in self.ends):
-            self.ends[box] = evaluator, found.optimum
+        if nearest.optimum is not None and not (nearest.followed and box in self.ends):
+            self.ends[box] = evaluator, nearest.optimum
             self.hessians.pop(box, None)
-        elif found.optimum is None and found.missed is not None:
-            self.missed.setdefault(box, found.missed.x)
+        elif nearest.optimum is None and nearest.missed is not None:
+            self.missed.setdefault(box, nearest.missed.x)
 
 
 @dataclass

@@ -175,24 +175,24 @@ def search_choices(
     InputError
         every combination is impossible
     """
-    found = ChoiceSearch(goal_of(subject), possible(subject))
+    choice_search = ChoiceSearch(goal_of(subject), possible(subject))
     moving = bool(subject.design.variables)
-    for look in found.looks:
+    for look in choice_search.looks:
         if look.subject is None:
             continue
         try:
             if moving:
-                look.actuator = _with_goal(build(look.subject), found.goal)
+                look.actuator = _with_goal(build(look.subject), choice_search.goal)
                 look.checks = _missed_checks(look.actuator.fixed)
             else:
-                _evaluate(look, found.goal)
+                _evaluate(look, choice_search.goal)
         except InputError as error:
             _give_up(look, error)
-    _require_one(found.looks)
+    _require_one(choice_search.looks)
     if moving:
-        _look_at_all(found, settings)
-        _solve_best(found, settings, most)
-    return found
+        _look_at_all(choice_search, settings)
+        _solve_best(choice_search, settings, most)
+    return choice_search
 
 
 def _with_goal(actuator: ActuatorProblem, goal: Goal) -> ActuatorProblem:
@@ -232,34 +232,34 @@ def _evaluate(look: Look, goal: Goal) -> None:
         raise InputError(Diagnostic(message, path="objective"))
 
 
-def _look_at_all(found: ChoiceSearch, settings: ChoiceSettings) -> None:
+def _look_at_all(choice_search: ChoiceSearch, settings: ChoiceSettings) -> None:
     """Look quickly at every combination, in half of the available time."""
     began = time.perf_counter()
-    for look in found.looks:
+    for look in choice_search.looks:
         left = settings.left(0.5, began)
-        if look.actuator is None or (left is not None and left <= 0 and _any(found)):
+        if look.actuator is None or (left is not None and left <= 0 and _any(choice_search)):
             continue
         left = None if left is None else max(left, LEAST_SECONDS)
         try:
-            look_quickly(look, _starts(found, look), settings.seed, left)
+            look_quickly(look, _starts(choice_search, look), settings.seed, left)
         except InputError as error:
             _give_up(look, error)
         if look.hessian is None and look.feasible:
             look.hessian = hessian_of(look)
 
 
-def _any(found: ChoiceSearch) -> bool:
-    return any(look.x is not None for look in found.looks)
+def _any(choice_search: ChoiceSearch) -> bool:
+    return any(look.x is not None for look in choice_search.looks)
 
 
-def _starts(found: ChoiceSearch, look: Look) -> list[LookStart]:
+def _starts(choice_search: ChoiceSearch, look: Look) -> list[LookStart]:
     """Starts from the combinations that differ in the fewest values.
 
     A feasible neighbour is a start for a descent. An infeasible one shows best how close this
     combination comes to feasibility. The last neighbour, which changes least, may be followed step
     by step.
     """
-    known = [other for other in found.looks if other.x is not None and other is not look]
+    known = [other for other in choice_search.looks if other.x is not None and other is not look]
 
     def distance(other: Look) -> tuple[int, float]:
         differing = sum(other.values[path] != value for path, value in look.values.items())
@@ -284,11 +284,11 @@ def _starts(found: ChoiceSearch, look: Look) -> list[LookStart]:
     return starts or ([] if own is None else [LookStart(own, descend=True)])
 
 
-def _solve_best(found: ChoiceSearch, settings: ChoiceSettings, most: int) -> None:
+def _solve_best(choice_search: ChoiceSearch, settings: ChoiceSettings, most: int) -> None:
     """Solve the winner and combinations close to it from many starts, best first."""
     second = True
     for _ in range(most):
-        look = _promising(found)
+        look = _promising(choice_search)
         left = settings.left()
         if look is None or (left is not None and left <= 0):
             break
@@ -297,19 +297,19 @@ def _solve_best(found: ChoiceSearch, settings: ChoiceSettings, most: int) -> Non
         gained = look.feasible and look.objective < before - BETTER * abs(look.objective)
         if second and gained and look.x is not None:
             second = False
-            for other in found.looks:
+            for other in choice_search.looks:
                 near = other.violation <= DOUBTFUL
                 if other.solution is None and other.actuator is not None and near:
                     start = LookStart(look.x, descend=True)
                     look_quickly(other, [start], settings.seed, settings.left())
-    best = found.ranked()[0]
+    best = choice_search.ranked()[0]
     if best.solution is None:
         many_starts(best, settings)
 
 
-def _promising(found: ChoiceSearch) -> Look | None:
+def _promising(choice_search: ChoiceSearch) -> Look | None:
     """The next combination worth many starts; None if the rest is clearly worse."""
-    ranked, mendable = found.ranked(), found.mendable()
+    ranked, mendable = choice_search.ranked(), choice_search.mendable()
     best = ranked[0]
     if best.solution is None:
         return best
@@ -349,15 +349,15 @@ def many_starts(look: Look, settings: ChoiceSettings) -> None:
         look.missed = look.actuator.problem.constraint_names[worst]
 
 
-def record(found: ChoiceSearch, design: Design) -> Choices:
+def record(choice_search: ChoiceSearch, design: Design) -> Choices:
     """All combinations, the best first.
 
     Parameters
     ----------
-    found : the finished search
+    choice_search : the finished search
     design : the design of the file
     """
-    ranked, mendable = found.ranked(), found.mendable()
+    ranked, mendable = choice_search.ranked(), choice_search.mendable()
     best, rows = ranked[0], []
     least = best.objective if best.rounded is None else best.rounded
     for look in ranked:
@@ -372,12 +372,12 @@ def record(found: ChoiceSearch, design: Design) -> Choices:
                 how=look.how,
                 feasible=look.feasible,
                 status=_status(look, mendable, best.rounded is not None),
-                objective=found.goal.shown(look.objective)
+                objective=choice_search.goal.shown(look.objective)
                 if math.isfinite(look.objective)
                 else None,
                 cost=cost,
                 percent=100 * cost / abs(least) if cost and least else cost,
-                rounded=None if look.rounded is None else found.goal.shown(look.rounded),
+                rounded=None if look.rounded is None else choice_search.goal.shown(look.rounded),
             )
         )
     made = Choices("", tuple(rows), left_out(design))

@@ -98,28 +98,28 @@ class Cures:
     untried: tuple[str, ...] = ()
 
 
-def cures(actuator: ActuatorProblem, found: Conflict) -> Cures:
+def cures(actuator: ActuatorProblem, conflict: Conflict) -> Cures:
     """The fixed dimensions and choices that are enough alone.
 
     Parameters
     ----------
     actuator : the infeasible problem
-    found : its infeasibility
+    conflict : its infeasibility
     """
-    if found.laws or not found.joint:
+    if conflict.laws or not conflict.joint:
         return Cures()
-    least = WORTH * found.total / math.log(repairs.WIDEST)
-    gains = {path: gain for path, gain in _gains(actuator, found).items() if abs(gain) >= least}
-    dimensions, together, left = _dimensions(actuator, found.x, gains)
-    choices, others = _choices(actuator, found, gains)
+    least = WORTH * conflict.total / math.log(repairs.WIDEST)
+    gains = {path: gain for path, gain in _gains(actuator, conflict).items() if abs(gain) >= least}
+    dimensions, together, left = _dimensions(actuator, conflict.x, gains)
+    choices, others = _choices(actuator, conflict, gains)
     return Cures(dimensions, together, choices, (*left, *others))
 
 
-def _gains(actuator: ActuatorProblem, found: Conflict) -> dict[str, float]:
+def _gains(actuator: ActuatorProblem, conflict: Conflict) -> dict[str, float]:
     """Fall of the missed margins per relative growth of every number, by PATH."""
     subject = actuator.subject
     values = subject.values(
-        {path: np.array([x]) for path, x in zip(actuator.paths, found.x, strict=True)}
+        {path: np.array([x]) for path, x in zip(actuator.paths, conflict.x, strict=True)}
     )
     subject.touch(values)
     paths = [
@@ -134,10 +134,10 @@ def _gains(actuator: ActuatorProblem, found: Conflict) -> dict[str, float]:
     present = np.array([subject.numbers[path] for path in paths])
     varied = np.repeat(present[:, None].astype(complex), len(paths), axis=1)
     varied += np.diag(1j * STEP * present)
-    points = np.repeat(found.x[:, None], len(paths), axis=1)
+    points = np.repeat(conflict.x[:, None], len(paths), axis=1)
     margins = actuator.evaluate(points, dict(zip(paths, varied, strict=True))).constraints
     slopes = np.nan_to_num(np.imag(margins) / STEP, posinf=0.0, neginf=0.0)
-    return dict(zip(paths, (found.multipliers @ slopes).tolist(), strict=True))
+    return dict(zip(paths, (conflict.multipliers @ slopes).tolist(), strict=True))
 
 
 def _dimensions(
@@ -298,19 +298,19 @@ def outward(value: float, digits: int, upwards: bool) -> float:
 
 
 def _choices(
-    actuator: ActuatorProblem, found: Conflict, gains: Mapping[str, float]
+    actuator: ActuatorProblem, conflict: Conflict, gains: Mapping[str, float]
 ) -> tuple[tuple[Cure, ...], list[str]]:
     """Choices enough alone, least infeasible first; and those not tried."""
     subject, library = actuator.subject, load_library()
-    before = _missed(actuator.problem, found.x)
+    before = _missed(actuator.problem, conflict.x)
     offered: list[tuple[float, Cure, BoxProblem]] = []
-    margins = np.ravel(actuator.evaluate(found.x[:, None]).constraints)
+    margins = np.ravel(actuator.evaluate(conflict.x[:, None]).constraints)
     rows = zip(actuator.rows, margins.tolist(), strict=True)
     places = {row.place for row, margin in rows if not margin >= -repairs.NOTHING}
     for path, word, beside in _vocabulary(subject, library, gains, places):
         now = _word(subject.design, path)
         problem = None if word == now else _chosen(actuator, {path: word, **beside}, library)
-        missed = math.inf if problem is None else _missed(problem, found.x)
+        missed = math.inf if problem is None else _missed(problem, conflict.x)
         if problem is not None and missed < before - repairs.NOTHING:
             offered.append((missed, Cure(path, now, word, beside), problem))
     offered.sort(key=lambda one: (one[0], one[1].path))
@@ -320,7 +320,7 @@ def _choices(
             rest = dict.fromkeys(one.path for _, one, _ in offered[number:])
             return tuple(enough), [path for path in rest if path not in {c.path for c in enough}]
         tell("infeasible: searching for a sufficient choice", number / len(offered))
-        if repairs.near(problem, found.x) is not None:
+        if repairs.near(problem, conflict.x) is not None:
             enough.append(cure)
     return tuple(enough), []
 

@@ -32,13 +32,15 @@ class Evidence:
 
     def holds_for(self, other: BoxProblem, optimum: float) -> bool:
         """Whether a search of another problem would give the same result."""
-        one = self.problem
+        problem = self.problem
         if not self.ends or abs(optimum - self.optimum) > SAME_OPTIMUM * abs(self.optimum):
             return False
-        same = one.names == other.names and one.constraint_names == other.constraint_names
-        boxed = np.array_equal(one.lower, other.lower) and np.array_equal(one.upper, other.upper)
+        same = problem.names == other.names and problem.constraint_names == other.constraint_names
+        boxed = np.array_equal(problem.lower, other.lower) and np.array_equal(
+            problem.upper, other.upper
+        )
         exact = all(evaluator.exact for evaluator, _ in self.ends)
-        if not (same and boxed and exact) or one.equality_names or other.equality_names:
+        if not (same and boxed and exact) or problem.equality_names or other.equality_names:
             return False
         parts = [evaluator.columns(end.z[:, None]) for evaluator, end in self.ends]
         rows = np.split(
@@ -50,7 +52,7 @@ class Evidence:
             (end, evaluator.jacobian(end), *evaluator.values_and_slopes(part))
             for (evaluator, end), part in zip(self.ends, rows, strict=True)
         ]
-        differing = np.zeros(one.row_count, dtype=bool)
+        differing = np.zeros(problem.row_count, dtype=bool)
         for end, slopes, values, others in found:
             differing |= (values[:, 0] != end.rows) | (slopes != others).any(axis=1)
         return not differing[0] and all(

@@ -103,14 +103,14 @@ def _joint(
     problem: BoxProblem,
     groups: list[repairs.Indices],
     mask: npt.NDArray[np.bool_],
-    found: Point,
+    point: Point,
 ) -> tuple[RelaxedConstraint, ...]:
     """The relaxations at a point of the elastic problem, the largest first."""
-    amounts = found.x[len(problem.names) :]
+    amounts = point.x[len(problem.names) :]
     joint = [
         RelaxedConstraint(problem.constraint_names[group[0]], int(group[0]), float(amount))
         for group, amount in zip(groups, amounts, strict=True)
-        if amount > NOTHING and mask[group].all() and found.violation <= NOTHING
+        if amount > NOTHING and mask[group].all() and point.violation <= NOTHING
     ]
     return tuple(sorted(joint, key=lambda r: -(r.amount or 0.0)))
 
@@ -121,25 +121,25 @@ def _less(
     groups: list[repairs.Indices],
     candidates: list[repairs.Indices],
     sole: Sequence[RelaxedConstraint],
-    found: Point,
+    point: Point,
 ) -> Point | None:
     """A smaller joint relaxation, if one limit alone gives up less because the descent stalled."""
     alone = [(r.amount, group) for r, group in zip(sole, candidates, strict=True) if r.amount]
     amount, group = min(alone, key=lambda one: one[0], default=(np.inf, groups[0]))
-    if amount >= found.objective - NOTHING:
+    if amount >= point.objective - NOTHING:
         return None
-    x = found.x[: len(problem.names)]
+    x = point.x[: len(problem.names)]
     start = repairs.without_each(problem, [group], x, [ROOM * amount])[0]
     if start is None:
         return None
     lacks = repairs.missed(Evaluator(problem), start, groups)
     end = repairs.descend(evaluator.problem, start, lacks)
-    better = end.violation <= NOTHING and end.objective < found.objective
+    better = end.violation <= NOTHING and end.objective < point.objective
     return end if better else None
 
 
 def _taking_part(
-    evaluator: Evaluator, found: Point, quality: kkt.KktResidual
+    evaluator: Evaluator, point: Point, quality: kkt.KktResidual
 ) -> npt.NDArray[np.bool_]:
     """Constraints that take part in the conflict; dropping the others does not resolve it.
 
@@ -148,7 +148,7 @@ def _taking_part(
     """
     if quality.residual <= NOTHING:
         return np.asarray(quality.multipliers > 1e-7)
-    return found.rows[1 : 1 + evaluator.constraint_count] <= kkt.ACTIVE
+    return point.rows[1 : 1 + evaluator.constraint_count] <= kkt.ACTIVE
 
 
 def _groups(problem: BoxProblem) -> list[repairs.Indices]:

@@ -39,18 +39,18 @@ def explained(
     if solution.feasible or solution.kkt is None or limited:
         return None, solution
     points = [found.x for found in solution.optima] or [solution.x]
-    found = explain(actuator.problem, points)
-    objective = float(np.ravel(actuator.evaluate(found.x[:, None]).objective)[0])
-    closest = replace(solution, x=found.x, objective=objective, kkt=None)
-    return _card(actuator, found, cures(actuator, found), solution), closest
+    conflict = explain(actuator.problem, points)
+    objective = float(np.ravel(actuator.evaluate(conflict.x[:, None]).objective)[0])
+    closest = replace(solution, x=conflict.x, objective=objective, kkt=None)
+    return _card(actuator, conflict, cures(actuator, conflict), solution), closest
 
 
 def _card(
-    actuator: ActuatorProblem, found: Explanation, others: Cures, solution: Solution
+    actuator: ActuatorProblem, explanation: Explanation, others: Cures, solution: Solution
 ) -> Infeasibility:
-    named = {r.index for r in found.joint}
-    sole = sorted(found.sole, key=lambda r: math.inf if r.amount is None else r.amount)
-    joint = tuple(entry_of(actuator, r) for r in found.joint)
+    named = {r.index for r in explanation.joint}
+    sole = sorted(explanation.sole, key=lambda r: math.inf if r.amount is None else r.amount)
+    joint = tuple(entry_of(actuator, r) for r in explanation.joint)
     alone = tuple(
         entry_of(actuator, r)
         for r in sole
@@ -58,7 +58,7 @@ def _card(
         or r.index in named
         or actuator.rows[r.index].limit_of.origin != "check"
     )
-    bounds = tuple(_bound(actuator, bound) for bound in found.bounds)
+    bounds = tuple(_bound(actuator, bound) for bound in explanation.bounds)
     enough = [
         *(_cure(actuator, "dimension", cure) for cure in others.dimensions),
         *([_together(actuator, others.together)] if others.together else []),
@@ -71,10 +71,10 @@ def _card(
         joint=joint,
         sole=alone,
         bounds=bounds,
-        laws=found.laws,
-        total=found.total,
-        sentence=_sentence(joint, enough, found.laws),
-        evidence=_evidence(found, solution),
+        laws=explanation.laws,
+        total=explanation.total,
+        sentence=_sentence(joint, enough, explanation.laws),
+        evidence=_evidence(explanation, solution),
         cures=tuple(enough),
         untried=others.untried,
     )
@@ -251,12 +251,12 @@ def _sentence(
     return said
 
 
-def _evidence(found: Explanation, solution: Solution) -> str:
+def _evidence(explanation: Explanation, solution: Solution) -> str:
     """The status of the advice: confirmed by a design, or only not found."""
     count = len(solution.starts)
     starts = f"{count} start{'' if count == 1 else 's'}"
     tried = f"no feasible design was found from {starts}, selected from {solution.samples} points"
-    if found.laws:
+    if explanation.laws:
         return f"{tried}: this is evidence, not proof"
     return (
         f"{tried}: this is evidence, not proof. Each change listed as enough was confirmed by a "

@@ -369,9 +369,9 @@ def polish(
     return start
 
 
-def _acceptable(evaluator: Evaluator, first: NewtonState, found: NewtonState) -> bool:
+def _acceptable(evaluator: Evaluator, first: NewtonState, newton_state: NewtonState) -> bool:
     """Whether a point is no less feasible, and not costlier than start plus priced violation."""
-    if found.point.violation > max(FEASIBLE, first.point.violation):
+    if newton_state.point.violation > max(FEASIBLE, first.point.violation):
         return False
     owed = float(first.multipliers @ np.maximum(-first.near.margins, 0.0))
     m = evaluator.constraint_count
@@ -379,7 +379,7 @@ def _acceptable(evaluator: Evaluator, first: NewtonState, found: NewtonState) ->
     room = 1e-9 * max(abs(first.point.objective), first.scale)
     if first.point.violation > 1e-3:  # far away: any feasible point is an improvement
         return True
-    return found.point.objective <= first.point.objective + 2 * owed + room
+    return newton_state.point.objective <= first.point.objective + 2 * owed + room
 
 
 def _advance(evaluator: Evaluator, state: NewtonState) -> NewtonState | None:

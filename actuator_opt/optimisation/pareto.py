@@ -376,10 +376,10 @@ def _said(wish: Wish) -> str:
     return f"{wish.metric}:{wish.sense}"
 
 
-def _without(many: _Many, found: NoEnd, began: float) -> ParetoFront:
+def _without(many: _Many, no_end: NoEnd, began: float) -> ParetoFront:
     """The result without a front: nothing is feasible, or an end is missing."""
     subject = many.subject
-    solution = found.solution
+    solution = no_end.solution
     feasible = solution.violation <= FEASIBLE
     why = None if feasible else explained(many.actuator, solution)[0]
     return ParetoFront(
@@ -391,7 +391,7 @@ def _without(many: _Many, found: NoEnd, began: float) -> ParetoFront:
         design=subject.design,
         evaluation=evaluate(replace(subject, aims=many.actuator.subject.aims)),
         infeasibility=why,
-        unsolved=f"{_said(many.wished[found.objective])}: {solution.outcome.sentence}"
+        unsolved=f"{_said(many.wished[no_end.objective])}: {solution.outcome.sentence}"
         if feasible
         else "",
         seconds=time.perf_counter() - began,

@@ -175,8 +175,8 @@ def ends(
     """For each parameter the nearest change of the active set below and above its value."""
     return [
         (
-            min((one for one in changes if one.direction < 0), key=_size, default=None),
-            min((one for one in changes if one.direction > 0), key=_size, default=None),
+            min((change for change in changes if change.direction < 0), key=_size, default=None),
+            min((change for change in changes if change.direction > 0), key=_size, default=None),
         )
         for changes in _changes(found, given, moves, shifts)
     ]

@@ -61,7 +61,7 @@ def to_plain(found: Optimisation | ParetoFront) -> dict[str, Any]:
         if isinstance(value, Mapping):
             return {key: plain(below) for key, below in value.items()}
         if is_dataclass(value):
-            return {one.name: plain(getattr(value, one.name)) for one in fields(value)}
+            return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
         assert isinstance(value, Iterable), f"no plain data: {type(value).__name__}"
         return [plain(below) for below in value]
 

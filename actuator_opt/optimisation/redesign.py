@@ -141,31 +141,31 @@ class Redesign:
     def to_dict(self) -> dict[str, Any]:
         """As plain data for JSON, SI."""
         found: dict[str, Any] = {
-            "requirements": [one.to_dict() for one in self.shifts],
+            "requirements": [shift.to_dict() for shift in self.shifts],
             "moved": None if self.moved is None else self.moved.after.name,
             "sentences": list(self.sentences),
             "optimum": None,
         }
         before, after = self.best_before, self.best_after
         if before is not None and after is not None:
-            was = {one.path: one.value for one in before.variables}
+            was = {variable.path: variable.value for variable in before.variables}
             found["optimum"] = {
                 "objective": {
-                    one.metric: {"before": one.before, "after": one.after} for one in self.goals
+                    goal.metric: {"before": goal.before, "after": goal.after} for goal in self.goals
                 },
                 "status": {"before": before.status, "after": after.status},
                 "variables": {
-                    one.path: {"before": was.get(one.path), "after": one.value}
-                    for one in after.variables
+                    variable.path: {"before": was.get(variable.path), "after": variable.value}
+                    for variable in after.variables
                 },
                 "active": {"before": active(before), "after": active(after)},
             }
         return found
 
 
-def solved(one: Optimisation) -> bool:
+def solved(optimisation: Optimisation) -> bool:
     """Whether an optimisation found a feasible design."""
-    return one.evaluation.met and one.infeasibility is None
+    return optimisation.evaluation.met and optimisation.infeasibility is None
 
 
 def _values(name: str, *optima: Optimisation) -> list[float | None]:
@@ -173,9 +173,9 @@ def _values(name: str, *optima: Optimisation) -> list[float | None]:
     return [one.evaluation.metrics[name].value if solved(one) else None for one in optima]
 
 
-def active(one: Optimisation) -> list[str]:
+def active(optimisation: Optimisation) -> list[str]:
     """The active limits of an optimum."""
-    return [] if one.kkt is None else list(one.kkt.active)
+    return [] if optimisation.kkt is None else list(optimisation.kkt.active)
 
 
 def redesign(
@@ -253,29 +253,29 @@ def _optimum_words(
             for one in (before, after)
         ]
         return [f"before, {states[0]}; now, {states[1]}", *_repairs(after)]
-    parts = [_goal_words(one) for one in goals]
+    parts = [_goal_words(goal) for goal in goals]
     return [f"the best design: {', '.join(parts)}", *_active_words(active(before), active(after))]
 
 
-def _goal_words(one: ObjectiveChange) -> str:
+def _goal_words(objective_change: ObjectiveChange) -> str:
     """A metric of the objective before and after."""
-    old, new = one.before, one.after
+    old, new = objective_change.before, objective_change.after
     if old is None or new is None:
-        return f"{one.metric} has no value"
-    was, now = one.quantity.text(old, 5), one.quantity.text(new, 5)
+        return f"{objective_change.metric} has no value"
+    was, now = objective_change.quantity.text(old, 5), objective_change.quantity.text(new, 5)
     if was == now:
-        return f"{one.metric} stays {now}"
+        return f"{objective_change.metric} stays {now}"
     change = f" ({100 * (new / old - 1):+.1f} %)" if old else ""
-    return f"{one.metric} {was} to {now}{change}"
+    return f"{objective_change.metric} {was} to {now}{change}"
 
 
-def _repairs(one: Optimisation) -> list[str]:
+def _repairs(optimisation: Optimisation) -> list[str]:
     """The sufficient single change, and the smallest change of limits."""
-    if one.infeasibility is None:
+    if optimisation.infeasibility is None:
         return []
-    first = next((cure for cure in one.infeasibility.cures if cure["advised"]), None)
+    first = next((cure for cure in optimisation.infeasibility.cures if cure["advised"]), None)
     alone = [] if first is None else [f"enough alone: {change_text(first)}"]
-    joint = one.infeasibility.joint
+    joint = optimisation.infeasibility.joint
     found = "; ".join(change_text(row) for row in joint)
     unsafe = any(row["safety_factor"] for row in joint)
     warned = " (weakens a safety factor: not advised)" if unsafe else ""

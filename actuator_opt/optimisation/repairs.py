@@ -404,5 +404,5 @@ def _opened(problem: BoxProblem, bound: Opening, x: Vector) -> float | None:
     if start is None:
         return None
     evaluator = Evaluator(opened)
-    found = go(evaluator, evaluator.point(evaluator.space.to_z(start)))
-    return float(found.x[j]) if found.violation <= NOTHING else None
+    point = go(evaluator, evaluator.point(evaluator.space.to_z(start)))
+    return float(point.x[j]) if point.violation <= NOTHING else None

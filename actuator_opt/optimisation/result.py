@@ -211,7 +211,7 @@ class Rounding:
             "runners_up": [asdict(row) for row in self.runners_up],
             "notes": list(self.notes),
             "unmade": list(self.unmade),
-            "remedies": [asdict(one) for one in self.remedies],
+            "remedies": [asdict(remedy) for remedy in self.remedies],
             "evaluation": None if self.evaluation is None else self.evaluation.to_dict(),
         }
 
@@ -263,7 +263,7 @@ class Choices:
 
     def count(self, *how: How) -> int:
         """Number of combinations searched in these ways."""
-        return sum(one.how in how for one in self.combinations)
+        return sum(combination.how in how for combination in self.combinations)
 
     @property
     def tried(self) -> int:
@@ -273,11 +273,11 @@ class Choices:
     @property
     def feasible(self) -> int:
         """Number of combinations that meet all requirements."""
-        return sum(one.feasible for one in self.combinations)
+        return sum(combination.feasible for combination in self.combinations)
 
     def to_dict(self) -> dict[str, Any]:
         """The "choices" of `optimise --json` (SI)."""
-        first, *others = (one.to_dict() for one in self.combinations)
+        first, *others = (combination.to_dict() for combination in self.combinations)
         return {
             "outcome": self.sentence,
             "combinations": len(self.combinations),

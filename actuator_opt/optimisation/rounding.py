@@ -65,7 +65,7 @@ def size_remedies(
     actuator: ActuatorProblem,
     solution: Solution,
     listed: Sequence[Listed],
-    found: SizeSearch,
+    size_search: SizeSearch,
     until: float | None = None,
 ) -> tuple[tuple[SizeRemedy, ...], str]:
     """The changes of one number that allow better sizes, best design first; else a note.
@@ -76,45 +76,45 @@ def size_remedies(
     listed, found : the sizes, and the result of their search
     until : time of `time.perf_counter` to stop at
     """
-    below = math.inf if found.objective is None else found.objective
+    below = math.inf if size_search.objective is None else size_search.objective
     cheap = below - solution.objective <= COSTLY / 100 * abs(solution.objective)
     remedies: list[SizeRemedy] = []
-    smaller = [] if cheap else _smaller(listed, solution.x, found)
+    smaller = [] if cheap else _smaller(listed, solution.x, size_search)
     for assignment in smaller:
         if until is not None and time.perf_counter() > until:
             break
         tell("rounding costs much: searching for a limit that allows a smaller size")
         held = _Held(actuator, listed, assignment, solution.x, below)
-        remedies += [*held.relaxed(_limits(actuator, solution, found)), *held.repressured()]
+        remedies += [*held.relaxed(_limits(actuator, solution, size_search)), *held.repressured()]
     better = actuator.goal.sign
     note = f"no change of one limit, load or the supply pressure by up to {100 * SMALL:g} % "
     note = f"{note}allows better sizes" if smaller and not remedies else ""
     return tuple(sorted(remedies, key=lambda remedy: better * remedy.objective)), note
 
 
-def _smaller(listed: Sequence[Listed], x: Vector, found: SizeSearch) -> list[Assignment]:
+def _smaller(listed: Sequence[Listed], x: Vector, size_search: SizeSearch) -> list[Assignment]:
     """Combinations of sizes with the most rounded size at its other neighbour.
 
     The least infeasible sizes if no sized design is feasible.
     """
-    if found.assignment is None:
-        return [] if found.nearest is None else [found.nearest]
+    if size_search.assignment is None:
+        return [] if size_search.nearest is None else [size_search.nearest]
     moves = []
-    for k, (one, row) in enumerate(zip(listed, found.assignment, strict=True)):
+    for k, (one, row) in enumerate(zip(listed, size_search.assignment, strict=True)):
         here = x[list(one.index)]
         scale = np.where(here == 0, 1.0, np.abs(here))
         moves.append((float(np.max(np.abs(one.rows[row] - here) / scale)), k))
     _, k = max(moves)
-    others = set(listed[k].around(x[list(listed[k].index)])) - {found.assignment[k]}
-    missed = (a for a, objective in found.tried.items() if not math.isfinite(objective))
+    others = set(listed[k].around(x[list(listed[k].index)])) - {size_search.assignment[k]}
+    missed = (a for a, objective in size_search.tried.items() if not math.isfinite(objective))
     return [a for a in missed if a[k] in others][:MOST_SIZES]
 
 
-def _limits(actuator: ActuatorProblem, solution: Solution, found: SizeSearch) -> list[int]:
+def _limits(actuator: ActuatorProblem, solution: Solution, size_search: SizeSearch) -> list[int]:
     """Rows of the tightest requirements and loads, at the optimum or the sizes."""
     margins = solution.constraints
-    if found.missed is not None:
-        margins = np.minimum(margins, found.missed.rows[1 : 1 + len(margins)])
+    if size_search.missed is not None:
+        margins = np.minimum(margins, size_search.missed.rows[1 : 1 + len(margins)])
     least: dict[str, tuple[float, int]] = {}
     for index, (row, margin) in enumerate(zip(actuator.rows, margins.tolist(), strict=True)):
         limit = row.limit_of
@@ -449,29 +449,29 @@ def _percent(cost: float, solution: Solution) -> float | None:
 
 
 def _rounding(
-    actuator: ActuatorProblem, solution: Solution, sizes: ListedSizes, found: SizeSearch
+    actuator: ActuatorProblem, solution: Solution, sizes: ListedSizes, size_search: SizeSearch
 ) -> Rounding:
     shown = actuator.goal.shown
-    feasible = sum(math.isfinite(objective) for objective in found.tried.values())
+    feasible = sum(math.isfinite(objective) for objective in size_search.tried.values())
     before = Rounding(
         met=False,
-        sentence=f"none of {len(found.tried)} designs of {sizes.name} meets all requirements"
-        + ("" if found.complete else ", and the search stopped at its limit")
-        + _nearest(actuator, sizes, found),
+        sentence=f"none of {len(size_search.tried)} designs of {sizes.name} meets all requirements"
+        + ("" if size_search.complete else ", and the search stopped at its limit")
+        + _nearest(actuator, sizes, size_search),
         remedy=f"{_FINER[sizes.name]}, widen the bounds of these variables, or relax a requirement",
         name=sizes.name,
         objective_before=shown(solution.objective),
-        tried=len(found.tried),
+        tried=len(size_search.tried),
         feasible=feasible,
-        solves=found.solves,
-        complete=found.complete,
+        solves=size_search.solves,
+        complete=size_search.complete,
         notes=_unmade(actuator, actuator.subject.design)[1],
     )
-    if found.x is None or found.objective is None:
+    if size_search.x is None or size_search.objective is None:
         return before
-    design, evaluation = design_at(actuator, found.x)
-    cost = _cost(found.objective, solution)
-    sentence, remedy = _sentence(sizes.name, evaluation.met, found.complete)
+    design, evaluation = design_at(actuator, size_search.x)
+    cost = _cost(size_search.objective, solution)
+    sentence, remedy = _sentence(sizes.name, evaluation.met, size_search.complete)
     unmade, notes = _unmade(actuator, design)
     return replace(
         before,
@@ -480,30 +480,34 @@ def _rounding(
         met=evaluation.met,
         sentence=sentence,
         remedy=remedy,
-        objective_after=shown(found.objective),
+        objective_after=shown(size_search.objective),
         cost=cost,
         percent=_percent(cost, solution),
-        variables=_variables(actuator, solution, sizes, found.x, design),
+        variables=_variables(actuator, solution, sizes, size_search.x, design),
         plies={path: count for path, ply in layers(design) if (count := plies(ply)) is not None},
-        runners_up=_runners_up(actuator, solution, sizes.listed, found),
+        runners_up=_runners_up(actuator, solution, sizes.listed, size_search),
         design=design,
         evaluation=evaluation,
     )
 
 
-def _nearest(actuator: ActuatorProblem, sizes: ListedSizes, found: SizeSearch) -> str:
+def _nearest(actuator: ActuatorProblem, sizes: ListedSizes, size_search: SizeSearch) -> str:
     """Describe the limits that the nearest sizes miss, if none is feasible."""
-    if found.nearest is None or found.missed is None or found.missed.violation <= 0:
+    if (
+        size_search.nearest is None
+        or size_search.missed is None
+        or size_search.missed.violation <= 0
+    ):
         return ""
-    margins = found.missed.rows[1 : 1 + len(actuator.problem.constraint_names)]
+    margins = size_search.missed.rows[1 : 1 + len(actuator.problem.constraint_names)]
     worst = actuator.problem.constraint_names[int(np.argmin(margins))]
     said = [
         f"{path} {quantity_of(path, actuator.subject.design).text(value)}"
-        for path, value in _chosen(actuator, sizes.listed, found.nearest).items()
+        for path, value in _chosen(actuator, sizes.listed, size_search.nearest).items()
     ]
     if len(said) > MOST_SAID:
         said = [*said[:MOST_SAID], "…"]
-    by = 100 * found.missed.violation
+    by = 100 * size_search.missed.violation
     return f"; the nearest, {', '.join(said)}, misses {worst} by {by:.2g} %"
 
 
@@ -590,13 +594,13 @@ def _variables(
 
 
 def _runners_up(
-    actuator: ActuatorProblem, solution: Solution, listed: Sequence[Listed], found: SizeSearch
+    actuator: ActuatorProblem, solution: Solution, listed: Sequence[Listed], size_search: SizeSearch
 ) -> tuple[RunnerUp, ...]:
     """The next best of the rounded designs."""
     others = sorted(
         (objective, assignment)
-        for assignment, objective in found.tried.items()
-        if assignment != found.assignment and math.isfinite(objective)
+        for assignment, objective in size_search.tried.items()
+        if assignment != size_search.assignment and math.isfinite(objective)
     )
     rows = []
     for objective, assignment in others[:RUNNERS_UP]:

@@ -78,16 +78,20 @@ def certified(actuator: ActuatorProblem, solution: Solution) -> Certificate:
     return Certificate(words, evidence, bound, gap, covers, dropped, found.boxes)
 
 
-def enumerated(found: Optimisation, goal: Goal) -> Certificate | None:
+def enumerated(optimisation: Optimisation, goal: Goal) -> Certificate | None:
     """The certificate from trying all combinations of the choices, if nothing else is free."""
-    choices = found.choices
-    if choices is None or not found.evaluation.met:
+    choices = optimisation.choices
+    if choices is None or not optimisation.evaluation.met:
         return None
     if choices.count("not tried"):
         return Certificate("no proof: not every combination was evaluated", "")
     words = f"all {len(choices.combinations)} combinations were evaluated: "
-    wish, value = goal.sign, found.objective_value
-    met = [one.objective for one in choices.combinations if one.feasible and one.objective]
+    wish, value = goal.sign, optimisation.objective_value
+    met = [
+        combination.objective
+        for combination in choices.combinations
+        if combination.feasible and combination.objective
+    ]
     best = min((wish * one for one in met), default=wish * value)
     words += "none that meets all requirements is better"
     if best < wish * value:  # a check that some combination meets outranks the objective
@@ -180,14 +184,16 @@ def optimise(
     choices: Choices | None = None
     if subject.design.choices:
         settings = ChoiceSettings(algorithm, starts, SAMPLES, seed, until)
-        found = search_choices(subject, settings, MOST_SOLVED if sizes is None else 1)
+        choice_search = search_choices(subject, settings, MOST_SOLVED if sizes is None else 1)
         if sizes is not None:
-            sized = best_of_sizes(found, wanted, settings)
-        choices = record(found, subject.design)
-        best = found.ranked()[0] if sized is None else sized.look
+            sized = best_of_sizes(choice_search, wanted, settings)
+        choices = record(choice_search, subject.design)
+        best = choice_search.ranked()[0] if sized is None else sized.look
         if best.actuator is None or best.solution is None:
-            only = _enumerated(subject, found, choices, seed, began)
-            return replace(only, certificate=enumerated(only, found.goal)) if certify else only
+            only = _enumerated(subject, choice_search, choices, seed, began)
+            return (
+                replace(only, certificate=enumerated(only, choice_search.goal)) if certify else only
+            )
         actuator, solution = best.actuator, best.solution
     else:
         actuator = build(subject, fault)
@@ -322,10 +328,10 @@ def _idle(actuator: ActuatorProblem) -> tuple[str, ...]:
 
 
 def _enumerated(
-    subject: PreparedDesign, found: ChoiceSearch, choices: Choices, seed: int, began: float
+    subject: PreparedDesign, choice_search: ChoiceSearch, choices: Choices, seed: int, began: float
 ) -> Optimisation:
     """The best combination of the choices, if nothing else is free."""
-    best = found.ranked()[0]
+    best = choice_search.ranked()[0]
     assert best.subject is not None
     status, remedy = "optimal", ""
     if not best.feasible:
@@ -334,8 +340,8 @@ def _enumerated(
         status=status,
         sentence=choices.sentence,
         remedy=remedy,
-        objective_metric=found.goal.single or "weighted",
-        objective_value=found.goal.shown(best.objective),
+        objective_metric=choice_search.goal.single or "weighted",
+        objective_value=choice_search.goal.shown(best.objective),
         design=best.subject.design,
         evaluation=evaluate(best.subject),
         start=evaluate(subject),

@@ -378,7 +378,7 @@ def _settle(search: Descents, best: SearchResult) -> tuple[Point, tuple[str, ...
 
 
 def _outcome(
-    search: Descents, swept: Sweep, point: Point, found: kkt.KktResidual | None
+    search: Descents, swept: Sweep, point: Point, kkt_residual: kkt.KktResidual | None
 ) -> Outcome:
     evaluator = search.evaluator
     feasible = point.valid and point.violation <= FEASIBLE
@@ -386,17 +386,17 @@ def _outcome(
         return Outcome.INTERRUPTED if feasible else Outcome.INTERRUPTED_INFEASIBLE
     if not point.valid:
         return Outcome.UNDEFINED
-    if evaluator.space.size == 0 or found is None:
+    if evaluator.space.size == 0 or kkt_residual is None:
         return Outcome.NOTHING_FREE if feasible else Outcome.INFEASIBLE
-    if evaluator.exhausted and not (feasible and found.residual <= RESIDUAL):
+    if evaluator.exhausted and not (feasible and kkt_residual.residual <= RESIDUAL):
         return Outcome.LIMIT if feasible else Outcome.LIMIT_INFEASIBLE
     if not feasible:
         return Outcome.INFEASIBLE
     if not evaluator.influence[0].any() and swept.spread <= 1e-12:
         return Outcome.FLAT
-    if found.residual > RESIDUAL:
+    if kkt_residual.residual > RESIDUAL:
         return Outcome.NOT_STATIONARY
-    if found.curvature is kkt.Curvature.NEGATIVE:
+    if kkt_residual.curvature is kkt.Curvature.NEGATIVE:
         return Outcome.SADDLE
     return Outcome.LIMIT if evaluator.exhausted else Outcome.OPTIMUM
 

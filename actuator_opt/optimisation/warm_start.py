@@ -170,15 +170,15 @@ class WarmStart:
         changes : difference of each number by PATH
         size : units that make a change of the numbers' own size
         """
-        found = self.optimum
+        optimum = self.optimum
         given = self._along(changes, size)
-        moves, shifts = prices.movement(found, given)
-        active = np.flatnonzero(found.margins <= kkt.ACTIVE)
-        below, above = prices.one_sided(found, given, active)[:, 0]
+        moves, shifts = prices.movement(optimum, given)
+        active = np.flatnonzero(optimum.margins <= kkt.ACTIVE)
+        below, above = prices.one_sided(optimum, given, active)[:, 0]
         moved = np.zeros(len(self.point.x))
         slope = self.evaluator.space.slope(self.point.x[:, None])[:, 0]
         moved[self.evaluator.space.free] = slope * moves[:, 0]
-        low, high = prices.ends(found, given, moves, shifts)[0]
+        low, high = prices.ends(optimum, given, moves, shifts)[0]
         return LinearPath(
             float(below), float(above), moved,
             None if low is None else (float(low.distance), low.text),
@@ -244,12 +244,12 @@ class WarmStart:
             np.array_equal(getattr(own, name), getattr(space, name)) for name in ("lower", "upper")
         )
         if box:
-            return [replace(one, rows=near.constraint_count) for one in self.valleys]
+            return [replace(valley, rows=near.constraint_count) for valley in self.valleys]
         result = []
-        for one in self.valleys:
-            point = near.point(space.to_z(near.problem.inside(one.point.x)))
+        for valley in self.valleys:
+            point = near.point(space.to_z(near.problem.inside(valley.point.x)))
             if same:
-                result.append(replace(one, rows=near.constraint_count, point=point))
+                result.append(replace(valley, rows=near.constraint_count, point=point))
             elif point.valid:
                 result.append(valley_at(near, point))
         return result

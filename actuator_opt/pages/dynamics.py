@@ -132,7 +132,7 @@ def lumped_sentence(study: DynamicsStudy) -> str:
     """How far the lumped lines follow transmission lines; nothing without lines."""
     if study.distributed is None:
         return ""
-    lumped = next(one for one in study.responses if one.place == "weakest position")
+    lumped = next(response for response in study.responses if response.place == "weakest position")
     apart = np.abs(np.asarray(study.distributed) / np.asarray(lumped.magnitude) - 1)
     reach = {}
     for share in (0.01, 0.1):
@@ -193,7 +193,7 @@ def _loop(
         "A curve for each place and direction of the spool that governs a margin or the bandwidth."
         " Arrows: the margins where they are least; red: what is required."
     )
-    if any(_passes_behind(one) for one in loops):
+    if any(_passes_behind(loop) for loop in loops):
         note += (
             " Behind the load's resonance the curve passes -1 on its far side: there the margin is"
             " the angle up to -180 degrees, and the loop holds as long as the gain margin is above"
@@ -206,17 +206,17 @@ def _loop(
     ]
 
 
-def _passes_behind(one: LoopStudy) -> bool:
+def _passes_behind(loop_study: LoopStudy) -> bool:
     """Whether the phase margin is that of a crossover beyond -180 degrees."""
-    if one.crossover is None or one.gain_margin <= 1:
+    if loop_study.crossover is None or loop_study.gain_margin <= 1:
         return False
-    above = np.asarray(one.open_magnitude) >= 1
-    return bool(np.any(np.asarray(one.open_phase)[above] < -math.pi))
+    above = np.asarray(loop_study.open_magnitude) >= 1
+    return bool(np.any(np.asarray(loop_study.open_phase)[above] < -math.pi))
 
 
 def _loop_table(evaluation: Evaluation, loops: tuple[LoopStudy, ...]) -> Block:
     first = loops[0]
-    at = {(one.case, one.place): one for one in loops}
+    at = {(loop.case, loop.place): loop for loop in loops}
     tuned = (
         "half the ultimate gain: Ziegler and Nichols' rule for proportional control"
         if first.tuned
@@ -258,15 +258,15 @@ def _loop_table(evaluation: Evaluation, loops: tuple[LoopStudy, ...]) -> Block:
     return Table("Position loop: gain, margins, bandwidth", columns, rows, note=note, on="paper")
 
 
-def _remark(name: str, one: LoopStudy, tuned: str) -> str:
+def _remark(name: str, loop_study: LoopStudy, tuned: str) -> str:
     if name == "position_gain":
         return tuned
-    if name == "ultimate_gain" and one.ultimate_frequency > 0:
-        return f"swings at {text.number(one.ultimate_frequency)} Hz"
-    if name == "gain_margin" and 0 < one.gain_margin < math.inf:
-        return f"{text.number(20 * math.log10(one.gain_margin), 3)} dB"
-    if name == "phase_margin" and one.crossover is not None:
-        return f"open loop crosses 0 dB at {text.number(one.crossover)} Hz"
+    if name == "ultimate_gain" and loop_study.ultimate_frequency > 0:
+        return f"swings at {text.number(loop_study.ultimate_frequency)} Hz"
+    if name == "gain_margin" and 0 < loop_study.gain_margin < math.inf:
+        return f"{text.number(20 * math.log10(loop_study.gain_margin), 3)} dB"
+    if name == "phase_margin" and loop_study.crossover is not None:
+        return f"open loop crosses 0 dB at {text.number(loop_study.crossover)} Hz"
     if name == "bandwidth":
         return "closed loop falls to \N{MINUS SIGN}3 dB"
     return ""

@@ -160,8 +160,8 @@ def _mode_words(study: DynamicsStudy, both: bool) -> list[tuple[str, dict[str, A
 
 def _stiffness_range(responses: Sequence[Response], shown: Sequence[float]) -> tuple[float, float]:
     """Decades (log10, kN/mm) that show the curves down to a thousandth of the static stiffness."""
-    statics = [one.static / 1e6 for one in responses]
-    values = [float(v) / 1e6 for one in responses for v in one.magnitude if v > 0]
+    statics = [response.static / 1e6 for response in responses]
+    values = [float(v) / 1e6 for response in responses for v in response.magnitude if v > 0]
     low = max(min([*values, *statics]), min(statics) / DEEPEST)
     low, high = min([low, *shown]), max([*values, *statics, *shown])
     return math.log10(low) - 0.15, math.log10(high) + 0.15
@@ -182,11 +182,11 @@ def magnitude_panel(
     near = [row.limit / 1e6 for row in requirements if shaken and row.limit > 0]
     axes = Axes(ink, box, across, _stiffness_range(study.responses, [*results, *near]))
     axes.frame_at(title, x_label, level_ticks(*across), level_ticks(*axes.y_range), upright=True)
-    for one in study.responses:
-        level = axes.y(math.log10(one.static / 1e6))
+    for response in study.responses:
+        level = axes.y(math.log10(response.static / 1e6))
         ink.line((box[0], level), (box[0] + box[2], level), **STATIC)
-    for one, style in zip(study.responses, STYLES, strict=False):
-        ink.path(axes.clipped(xs, logs(one.magnitude / 1e6)), **style)
+    for response, style in zip(study.responses, STYLES, strict=False):
+        ink.path(axes.clipped(xs, logs(response.magnitude / 1e6)), **style)
     for case in shaken:
         x = math.log10(case.frequency)
         if not inside(axes, x):
@@ -207,7 +207,7 @@ def _phase_panel(
     requirements: Sequence[Requirement],
 ) -> Axes:
     xs, across = frequency_axis(study)
-    curves = [[math.degrees(float(p)) for p in one.phase] for one in study.responses]
+    curves = [[math.degrees(float(p)) for p in response.phase] for response in study.responses]
     low = -180.0 if min(min(curve) for curve in curves) < -1.0 else 0.0
     axes = Axes(ink, box, across, (low, 180.0))
     marks = [(float(v), degrees(v)) for v in range(int(low), 181, 45 if low == 0 else 90)]
@@ -265,11 +265,11 @@ def response_figure(
     below = _phase_panel(ink, (left, 21.0 + upper, span, lower), study, shaken, phase)
     _letters(axes, below.top + below.height, shaken)
     x, y = left + span + 4.0, axes.top + 1.0
-    for one, style in zip(study.responses, STYLES, strict=False):
+    for response, style in zip(study.responses, STYLES, strict=False):
         ink.line((x, y), (x + 6.0, y), **style)
-        place = f"{one.place}, {trimmed(1e3 * one.position, 3)} mm"
+        place = f"{response.place}, {trimmed(1e3 * response.position, 3)} mm"
         ink.text(x + 7.5, y, fitted(place, width - x - 7.5))
-        ink.text(x + 7.5, y + _ROW, f"static {number(one.static / 1e6)}", color=GREY)
+        ink.text(x + 7.5, y + _ROW, f"static {number(response.static / 1e6)}", color=GREY)
         y += 2 * _ROW + 1.0
     ink.line((x, y), (x + 6.0, y), **STATIC)
     ink.text(x + 7.5, y, "static, ports closed", color=GREY)
@@ -327,7 +327,9 @@ def compact_figure(
     damping_panel(ink, (69.0, 12.0, panel, tall), study, damping)
     box = (131.0, 12.0, width - 136.0, tall)
     magnitude_panel(ink, box, study, (), (), "frequency, Hz", "Dynamic stiffness, kN/mm")
-    entries = [(one.place, style) for one, style in zip(study.responses, STYLES, strict=False)]
+    entries = [
+        (response.place, style) for response, style in zip(study.responses, STYLES, strict=False)
+    ]
     legend(ink, width, 1.8, [*entries, ("static", STATIC)])
     return ink
 
@@ -447,7 +449,7 @@ def _loop_magnitude_panel(
     loops: Sequence[LoopStudy],
     required: Sequence[Requirement],
 ) -> None:
-    rows = [[decibels(float(v)) for v in one.open_magnitude] for one in loops]
+    rows = [[decibels(float(v)) for v in loop.open_magnitude] for loop in loops]
     one = loops[governing(loops, "gain_margin")]
     known = 0 < one.gain_margin < math.inf
     margin = decibels(one.gain_margin) if known else 0.0
@@ -476,7 +478,7 @@ def _loop_phase_panel(
     loops: Sequence[LoopStudy],
     required: Sequence[Requirement],
 ) -> None:
-    rows = [[math.degrees(float(p)) for p in one.open_phase] for one in loops]
+    rows = [[math.degrees(float(p)) for p in loop.open_phase] for loop in loops]
     index = governing(loops, "phase_margin")
     one = loops[index]
     lowest, highest = min(min(row) for row in rows), max(max(row) for row in rows)
@@ -515,7 +517,7 @@ def _closed_panel(
     loops: Sequence[LoopStudy],
     required: Sequence[Requirement],
 ) -> None:
-    rows = [[decibels(float(v)) for v in one.closed_magnitude] for one in loops]
+    rows = [[decibels(float(v)) for v in loop.closed_magnitude] for loop in loops]
     highest = max(max(row) for row in rows)
     axes = Axes(ink, box, across, (-40.0, min(max(highest, 0.0), 60.0) + 5.0))
     axes.frame_at(
@@ -534,9 +536,9 @@ def _closed_panel(
             corner = axes.y(HALF_POWER)
             away = -3.2 if row.sense == "min" else 3.2
             ink.line((at + away, corner), (at, corner), (at, bottom), **LIMIT)
-    for one, style in zip(loops, STYLES, strict=False):
-        if one.bandwidth is not None and inside(axes, math.log10(one.bandwidth)):
-            dot(axes, math.log10(one.bandwidth), HALF_POWER, style["stroke"])
+    for loop, style in zip(loops, STYLES, strict=False):
+        if loop.bandwidth is not None and inside(axes, math.log10(loop.bandwidth)):
+            dot(axes, math.log10(loop.bandwidth), HALF_POWER, style["stroke"])
 
 
 Words = list[tuple[str, str]]
@@ -545,10 +547,10 @@ Words = list[tuple[str, str]]
 def _names(ink: Ink, x: float, y: float, loops: Sequence[LoopStudy]) -> float:
     """What each curve is; returns where the next line may stand."""
     room = ink.width - x - 7.5
-    for one, style in zip(loops, STYLES, strict=False):
+    for loop, style in zip(loops, STYLES, strict=False):
         ink.line((x, y), (x + 6.0, y), **style)
-        direction, _, place = one.place.partition(", ")
-        ink.text(x + 7.5, y, fitted(f"{one.case}, {direction}", room))
+        direction, _, place = loop.place.partition(", ")
+        ink.text(x + 7.5, y, fitted(f"{loop.case}, {direction}", room))
         ink.text(x + 7.5, y + _ROW, fitted(place, room), color=GREY)
         y += 2 * _ROW + 0.6
     return y

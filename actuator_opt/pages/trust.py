@@ -179,7 +179,7 @@ def _course_block(optimisation: Optimisation) -> list[Block]:
     ys = [y for value in values for y in (value, value)]
     for line in axes.clipped(xs, ys):
         ink.line(*line, pen=0.35, stroke=BLUE)
-    ends = [(k, one) for k, one in enumerate(optimisation.starts, start=1) if one is not None]
+    ends = [(k, start) for k, start in enumerate(optimisation.starts, start=1) if start is not None]
     if ends:
         span = (0.5, len(optimisation.starts) + 0.5)
         heights = [_above(one, best) for _, one in ends]

@@ -304,18 +304,18 @@ def _input(given: Input) -> tuple[str, ...]:
 # ---- figures ----
 
 
-def shown(found: Uncertainty) -> list[LimitYield]:
+def shown(uncertainty: Uncertainty) -> list[LimitYield]:
     """Requirements and failing checks, the most endangered first."""
-    failing = [one for one in found.checks if one.rate.value < 1]
-    return [*found.required, *failing][:MOST]
+    failing = [check for check in uncertainty.checks if check.rate.value < 1]
+    return [*uncertainty.required, *failing][:MOST]
 
 
-def margins_figure(found: Uncertainty, *, width: float = 180.0) -> Ink:
+def margins_figure(uncertainty: Uncertainty, *, width: float = 180.0) -> Ink:
     """A strip per requirement: 1 to 99 % as a line, 5 to 95 % as a box, median, design."""
-    lines = shown(found)
+    lines = shown(uncertainty)
     top = 9.0
     ink = Ink(width, top + ROW * max(len(lines), 1) + 10.0)
-    known = [x for one in lines for x in (*one.margins, one.margin) if x is not None]
+    known = [x for line in lines for x in (*line.margins, line.margin) if x is not None]
     low = max(min([*known, 0.0]), LOWEST)
     high = min(max([*known, 0.02]), HIGHEST)
     room = 0.04 * (high - low)
@@ -328,8 +328,8 @@ def margins_figure(found: Uncertainty, *, width: float = 180.0) -> Ink:
     ink.text(zero, top - 2.6, "limit", size=6.5, anchor="center", color=RED, bold=True)
     _key(ink, top)
     ink.text(width, top - 2.6, "met by", size=6.5, anchor="right", color=GREY)
-    for index, one in enumerate(lines):
-        _strip(ink, axes, top + ROW * (index + 0.5), one, width)
+    for index, line in enumerate(lines):
+        _strip(ink, axes, top + ROW * (index + 0.5), line, width)
     return ink
 
 
@@ -344,9 +344,9 @@ def _key(ink: Ink, top: float) -> None:
     ink.text(64.0, y, "nominal", size=6.5)
 
 
-def _strip(ink: Ink, axes: Axes, y: float, one: LimitYield, width: float) -> None:
-    name = fitted(one.name, NAMES - 2.0, 6.5)
-    ink.text(NAMES - 1.6, y, name, size=6.5, anchor="right", bold=one.required)
+def _strip(ink: Ink, axes: Axes, y: float, limit_yield: LimitYield, width: float) -> None:
+    name = fitted(limit_yield.name, NAMES - 2.0, 6.5)
+    ink.text(NAMES - 1.6, y, name, size=6.5, anchor="right", bold=limit_yield.required)
     left, right = axes.left, axes.left + axes.width
 
     def place(margin: float | None) -> float:
@@ -354,20 +354,23 @@ def _strip(ink: Ink, axes: Axes, y: float, one: LimitYield, width: float) -> Non
             return left
         return min(max(axes.x(100 * max(min(margin, 1e3), -1e3)), left), right)
 
-    p1, p5, p50, p95, p99 = (place(x) for x in one.margins)
+    p1, p5, p50, p95, p99 = (place(x) for x in limit_yield.margins)
     ink.line((p1, y), (p99, y), pen=0.3)
     ink.box(p5, y - 1.4, max(p95 - p5, 0.1), 2.8, fill=LIGHT, pen=0.15)
     ink.line((p50, y - 1.4), (p50, y + 1.4), pen=0.5, stroke=BLUE)
     for edge, inner, beyond in (
-        (left, left + 2.0, _below(one.margins[0], axes)),
-        (right, right - 2.0, _above(one.margins[-1], axes)),
+        (left, left + 2.0, _below(limit_yield.margins[0], axes)),
+        (right, right - 2.0, _above(limit_yield.margins[-1], axes)),
     ):
         if beyond:
             ink.arrow((edge, y), (inner, y), length=1.6, color=GREY)
-    if one.margin is not None and axes.x_range[0] <= 100 * one.margin <= axes.x_range[1]:
-        ink.circle(place(one.margin), y, 0.8, fill=BLACK, pen=0.1)
-    colour = BLACK if one.rate.value > 0.5 else RED
-    ink.text(width, y, percent(one.rate.value), size=6.5, anchor="right", color=colour)
+    if (
+        limit_yield.margin is not None
+        and axes.x_range[0] <= 100 * limit_yield.margin <= axes.x_range[1]
+    ):
+        ink.circle(place(limit_yield.margin), y, 0.8, fill=BLACK, pen=0.1)
+    colour = BLACK if limit_yield.rate.value > 0.5 else RED
+    ink.text(width, y, percent(limit_yield.rate.value), size=6.5, anchor="right", color=colour)
 
 
 def _below(margin: float | None, axes: Axes) -> bool:
@@ -378,14 +381,14 @@ def _above(margin: float | None, axes: Axes) -> bool:
     return margin is not None and 100 * margin > axes.x_range[1]
 
 
-def tornado(found: Uncertainty, output: str, *, width: float = 180.0) -> Ink | None:
+def tornado(uncertainty: Uncertainty, output: str, *, width: float = 180.0) -> Ink | None:
     """Bars of one output at the 95 % (dark) and 5 % (light) points of every input that matters."""
-    ranked, _ = found.of_output(output)
-    ends = {one.path: one for one in found.of_output(output)[1]}
-    centre = found.nominal[output]
+    ranked, _ = uncertainty.of_output(output)
+    ends = {one.path: one for one in uncertainty.of_output(output)[1]}
+    centre = uncertainty.nominal[output]
     if centre is None:
         return None
-    metric = output in found.units
+    metric = output in uncertainty.units
     quantity = text.metric(output) if metric else None
     factor = 100.0 if quantity is None else quantity.to_display(1.0) - quantity.to_display(0.0)
     matter = [x for x in ranked if (x.total or 0.0) >= LEAST_SHARE][:SHOWN]
@@ -401,14 +404,14 @@ def tornado(found: Uncertainty, output: str, *, width: float = 180.0) -> Ink | N
     return bars(
         lines,
         axis=f"{label}, {unit}" if quantity is None else f"change of {label}, {unit}",
-        centre=f"nominal {value_words(found, output, centre)}",
+        centre=f"nominal {value_words(uncertainty, output, centre)}",
         ends=("95 %", "5 %"),
         columns=("alone", "with others"),
         width=width,
     )
 
 
-def _changes(one: Swing, centre: float, factor: float) -> tuple[float | None, float | None]:
+def _changes(swing: Swing, centre: float, factor: float) -> tuple[float | None, float | None]:
     """Changes at the upper and the lower end, in display units."""
 
     def change(value: float | None) -> float | None:
@@ -416,7 +419,7 @@ def _changes(one: Swing, centre: float, factor: float) -> tuple[float | None, fl
             return None
         return factor * (value - centre)
 
-    return change(one.at_95), change(one.at_5)
+    return change(swing.at_95), change(swing.at_5)
 
 
 def _percent(index: float | None) -> str:

@@ -523,7 +523,7 @@ def _differences(evaluation: Evaluation, study: WallStudy) -> Block:
     note = f"The design uses the {used}; the thin laminate is a fast mode, for thin walls."
     if evaluation.design.barrel.autofrettage_pressure is not None:
         note += " It knows no autofrettage."
-    rows = [row(one) for one in study.differences]
+    rows = [row(difference) for difference in study.differences]
     return Table(
         "Barrel wall: exact tube against thin laminate", columns, rows, note=note, on="paper"
     )

@@ -212,9 +212,9 @@ class Scale:
             kept = self._spaced(sorted(found, key=lambda tick: -abs(tick[0])), room, across)
         return kept
 
-    def _spaced(self, found: Ranked, room: float, across: bool) -> Ticks:
+    def _spaced(self, ranked: Ranked, room: float, across: bool) -> Ticks:
         kept: list[tuple[float, str]] = []
-        for place, words, _ in found:
+        for place, words, _ in ranked:
             if all(self._apart(place, words, tick, room, across) for tick in kept):
                 kept.append((place, words))
         return sorted(kept)
@@ -320,12 +320,12 @@ def _both_ways(low: float, high: float, ways: Sequence[int]) -> Scale:
     ends = (-end if -1 in ways else 0.0, end if 1 in ways else 0.0)
 
     def candidates(count: int) -> Ranked:
-        found: Ranked = [(0.0, "0", 0)]
+        ranked: Ranked = [(0.0, "0", 0)]
         for place, words in level_ticks(math.log10(low), math.log10(high)):
             rank = 1 if abs(place - round(place)) < 1e-9 else 2
             along = CORE + place - math.log10(low)
-            found += [(way * along, words if way > 0 else MINUS + words, rank) for way in ways]
-        return found
+            ranked += [(way * along, words if way > 0 else MINUS + words, rank) for way in ways]
+        return ranked
 
     return Scale(at, ends, candidates)
 

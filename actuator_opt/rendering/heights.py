@@ -104,7 +104,7 @@ def height(block: Block, width: float = FULL) -> float:
     if isinstance(block, Notes):
         if block.on == "terminal":
             return 0.0
-        lines = [len(wrap(joined(soft(one)), width, 7.0)) for one in block.items]
+        lines = [len(wrap(joined(soft(item)), width, 7.0)) for item in block.items]
         return HEAD + 1.5 + _note(block.note, width) + sum(3.2 * n + 0.5 for n in lines)
     if isinstance(block, Listing):
         return HEAD + 2.5 * len(block.text.splitlines())
@@ -158,7 +158,7 @@ def _widths(table: Table) -> list[float]:
 
 def _lines(table: Table, width: float) -> list[float]:
     """Lines of the heads and of every row: the flexible columns share what the others leave."""
-    columns = [k for k, one in enumerate(table.columns) if one.on != "terminal"]
+    columns = [k for k, column in enumerate(table.columns) if column.on != "terminal"]
     body = [cells_of(row) for row in table.rows]
     wides = dict(zip(columns, (_widths(table)[k] for k in columns), strict=True))
     spare = width - sum(wides.values())

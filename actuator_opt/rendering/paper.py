@@ -202,14 +202,14 @@ def _table(table: Table) -> dict[str, object]:
         "title": clean(table.title),
         "columns": [
             {
-                "head": soft(one.head, one.breaks)
-                if one.breaks and "\n" not in one.head
-                else one.head,
-                "align": one.align,
-                "width": one.width,
+                "head": soft(column.head, column.breaks)
+                if column.breaks and "\n" not in column.head
+                else column.head,
+                "align": column.align,
+                "width": column.width,
             }
-            | {name: True for name in ("mono", "strong") if getattr(one, name)}
-            for one in columns
+            | {name: True for name in ("mono", "strong") if getattr(column, name)}
+            for column in columns
         ],
         "rows": [
             [

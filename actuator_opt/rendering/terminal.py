@@ -296,4 +296,4 @@ def slot(console: Console, share: float, size: int = 13) -> str:
 
 def words(sentences: Sequence[str], console: Console, *styles: str) -> str:
     """Paragraphs, broken at the width of the terminal."""
-    return "\n".join(console.wrap(one, *styles) for one in sentences if one)
+    return "\n".join(console.wrap(sentence, *styles) for sentence in sentences if sentence)

@@ -206,8 +206,8 @@ def translate(outputs: Sequence[Any]) -> tuple[dict[str, Any], list[Any]]:
             message = "the method cvodes cannot look up a record"
             raise InputError(Diagnostic(message, "integrate by lsoda, without --fast"))
         else:
-            known[node.index] = _operation(casadi, node.op, [said(one) for one in node.args])
-    return free, [said(one) for one in outputs]
+            known[node.index] = _operation(casadi, node.op, [said(arg) for arg in node.args])
+    return free, [said(output) for output in outputs]
 
 
 def _operation(casadi: Any, op: str, args: Sequence[Any]) -> Any:
@@ -466,7 +466,7 @@ def integrate(
 
 def _flags(compiled: Compiled, t: float, y: Array, before: tuple[bool, ...]) -> tuple[bool, ...]:
     """Flags at an instant; switches keep their state."""
-    instants = tuple(t + APART >= one for one in compiled.instants)
+    instants = tuple(t + APART >= instant for instant in compiled.instants)
     if before:
         return instants + before[len(instants) :]
     guards = _each(compiled, compiled.guards, np.array([t]), y[None], ())
@@ -597,7 +597,7 @@ def _turn(
 
     times = np.linspace(span[0], span[1], PARTS + 1)
     states = run.advance(times, y, m, MOST)
-    margin, slope = (one[which : which + 1] for one in _margins(run, times, states, m))
+    margin, slope = (margin[which : which + 1] for margin in _margins(run, times, states, m))
     for k in np.flatnonzero(_suspects(times, margin, slope)[0]):
         low, high, here = float(times[k]), float(times[k + 1]), states[k]
         if margin[0, k] > 0 >= margin[0, k + 1]:

@@ -124,17 +124,17 @@ class Linear:
     def of(cls, circuit: Circuit) -> Linear:
         """Build from a circuit assembled with ``linear=True``; its integrals are left out."""
         system = circuit.system
-        states = [one for one in system.states if not one.integral]
-        symbols = [one.symbol for one in states]
+        states = [state for state in system.states if not state.integral]
+        symbols = [state.symbol for state in states]
         u = system.graph.variable("u")
-        rates = [one.rate for one in states]
+        rates = [state.rate for state in states]
         rows = jacobian([*rates, circuit.measured], [*symbols, u])
         unpack = system.unpack(symbols, "y")
         return cls(
             circuit=circuit,
-            names=tuple(one.name for one in states),
-            initial=np.array([one.initial for one in states]),
-            scale=np.array([one.tolerance for one in states]),
+            names=tuple(state.name for state in states),
+            initial=np.array([state.initial for state in states]),
+            scale=np.array([state.tolerance for state in states]),
             slopes=function("slopes", "t, y, u, m", unpack, [x for row in rows for x in row]),
             rates=function("rates", "t, y, u, m", unpack, rates),
             flags=(False,) * len(system.flags),
@@ -163,7 +163,7 @@ class Linear:
         still = {one: 0.0 for one in ("speed", "shaft_speed") if self._known(one)}
         centre = self.circuit.centre
         guesses = (self.steady(centre + volts, **(still | states)) for volts in self._guesses())
-        held = next((one for one in guesses if one is not None), None)
+        held = next((guess for guess in guesses if guess is not None), None)
         rest = self._with(still | states) if held is None else held[0]
         loops = []
         for side in (1.0, -1.0):
@@ -172,7 +172,7 @@ class Linear:
                 beside = centre + side * TOUCH
                 there = self.steady(beside, **(states | {"spool": beside}))
                 if there is None:
-                    there = np.where([one == "spool" for one in self.names], beside, rest), beside
+                    there = np.where([name == "spool" for name in self.names], beside, rest), beside
             assert there is not None
             loops.append(self.loop(*there))
         return Around(loops, held is not None)
@@ -192,9 +192,9 @@ class Linear:
         from scipy.optimize import root
 
         begin = self._with({"spool": guess} | states)
-        given = {one.replace("_", " ") for one in states} | set(PLACES)
-        free = np.array([k for k, one in enumerate(self.names) if one not in given])
-        kept = np.array([k for k, one in enumerate(self.names) if one not in PLACES])
+        given = {state.replace("_", " ") for state in states} | set(PLACES)
+        free = np.array([k for k, name in enumerate(self.names) if name not in given])
+        kept = np.array([k for k, name in enumerate(self.names) if name not in PLACES])
         size = np.append(SIZE * self.scale[free], 1.0)
         unit = self.scale[kept]
         columns = np.append(free, len(self.names))
@@ -337,9 +337,9 @@ def margins(loop: OpenLoop, law: ControllerLaw) -> LoopMargins:
     stable = not _grow(law.closed(loop))
     factors = [-1 / value.real for _, value in _crossings(loop, response)]
     if stable:
-        gain = min((one for one in factors if one > 1), default=inf)
+        gain = min((factor for factor in factors if factor > 1), default=inf)
     else:
-        gain = max((one for one in factors if one <= 1), default=0.0)
+        gain = max((factor for factor in factors if factor <= 1), default=0.0)
     omega = loop.frequencies
     value = response(omega)
     size = np.abs(value)
@@ -354,7 +354,7 @@ def margins(loop: OpenLoop, law: ControllerLaw) -> LoopMargins:
 
 def least(loops: Sequence[OpenLoop]) -> tuple[Ultimate, OpenLoop]:
     """The loop with the lowest ultimate gain; one that is unstable open comes first."""
-    found = [(Ultimate(0.0, inf) if one.swings else ultimate(one), one) for one in loops]
+    found = [(Ultimate(0.0, inf) if loop.swings else ultimate(loop), loop) for loop in loops]
     return min(found, key=lambda pair: pair[0].gain)
 
 

@@ -199,11 +199,13 @@ class Simulation(Displayed):
             "balance": {
                 "mass": self.balance.mass,
                 "energy": self.balance.energy,
-                "flows": {one.name: one.energy for one in self.balance.flows},
+                "flows": {flow.name: flow.energy for flow in self.balance.flows},
                 "stored": {one.name: one.energy for one in self.balance.stored},
             },
             "dynamic_stiffness": self._shaken(),
-            "events": [{"name": one.name, "time": one.time, "on": one.on} for one in self.events],
+            "events": [
+                {"name": event.name, "time": event.time, "on": event.on} for event in self.events
+            ],
             "second_integrator": self._second(),
             "notes": list(self.notes),
             "evaluations": self.evaluations,
@@ -258,13 +260,13 @@ class Simulation(Displayed):
             "frequency": self.shaken.frequency,
             "windows": [
                 {
-                    "time": one.time,
-                    "position": one.position,
-                    "stiffness": abs(one.stiffness),
-                    "phase": float(np.angle(one.stiffness)),
-                    "standard_error": one.standard_error,
+                    "time": window.time,
+                    "position": window.position,
+                    "stiffness": abs(window.stiffness),
+                    "phase": float(np.angle(window.stiffness)),
+                    "standard_error": window.standard_error,
                 }
-                for one in self.shaken.windows
+                for window in self.shaken.windows
             ],
         }
 
@@ -347,17 +349,22 @@ def shaken(
     cycles = int(scenario.analysis.window_cycles)
     try:
         pieces = windows(time=t, frequency=tone, cycles=cycles)
-        found = tuple(_window(t[one], x[one], -force[one], tone) for one in pieces)
+        found = tuple(_window(t[piece], x[piece], -force[piece], tone) for piece in pieces)
     except InputError as error:
         return None, error.diagnostics[0].message
     return HarmonicLoad(tone, found), ""
 
 
 def _window(time: Array, position: Array, force: Array, frequency: float) -> Window:
-    one = dynamic_stiffness_of_record(
+    dynamic_stiffness = dynamic_stiffness_of_record(
         time=time, position=position, force=force, frequency=frequency
     )
-    return Window(float(np.mean(time)), float(np.mean(position)), one.stiffness, one.standard_error)
+    return Window(
+        float(np.mean(time)),
+        float(np.mean(position)),
+        dynamic_stiffness.stiffness,
+        dynamic_stiffness.standard_error,
+    )
 
 
 def _answer(step: Servo, apart: float) -> tuple[dict[str, float | None], dict[str, str]]:
@@ -401,8 +408,8 @@ def values(
         why |= reasons
     chambers = [signals[name] for name in ("pressure_a", "pressure_b") if name in signals]
     if chambers:
-        found["peak_pressure"] = float(max(np.max(one) for one in chambers))
-        lowest = float(min(np.min(one) for one in chambers))
+        found["peak_pressure"] = float(max(np.max(chamber) for chamber in chambers))
+        lowest = float(min(np.min(chamber) for chamber in chambers))
         found["lowest_pressure"] = lowest
         found["cavitation_margin"] = lowest + ATMOSPHERIC_PRESSURE - plant.oil.vapour_pressure
     if "position" in signals:
@@ -545,9 +552,9 @@ def failed(stuck: Stuck, compiled: Compiled, plant: Plant) -> Unsolvable:
     flags = np.zeros((len(compiled.system.flags), 1), dtype=bool)
     signals = compiled.signals(np.array([stuck.time]), stuck.state[:, None], list(flags))
     words = [
-        f"{one.label} {one.quantity.text(float(signals[one.name][0]))}"
-        for one in compiled.system.signals
-        if one.name in TOLD and np.isfinite(signals[one.name][0])
+        f"{signal.label} {signal.quantity.text(float(signals[signal.name][0]))}"
+        for signal in compiled.system.signals
+        if signal.name in TOLD and np.isfinite(signals[signal.name][0])
     ]
     (fault,) = stuck.diagnostics
     at = f" ({', '.join(words)})" if words else ""

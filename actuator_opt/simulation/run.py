@@ -98,23 +98,36 @@ def run(
     compiled = circuit.system.compiled()
     step = scenario.sample_time or scenario.duration / SAMPLES
     try:
-        found = integrate(compiled, duration=scenario.duration, sample_time=step, method=method)
+        trajectory = integrate(
+            compiled, duration=scenario.duration, sample_time=step, method=method
+        )
     except Stuck as stuck:
         raise failed(stuck, compiled, own) from None
-    signals = compiled.signals(found.time, found.states, found.flags)
-    added = balance(circuit, found)
-    followed = reading.servo(scenario, found.time, signals)
-    dynamic, still = reading.shaken(scenario, found.time, signals)
+    signals = compiled.signals(trajectory.time, trajectory.states, trajectory.flags)
+    added = balance(circuit, trajectory)
+    followed = reading.servo(scenario, trajectory.time, signals)
+    dynamic, still = reading.shaken(scenario, trajectory.time, signals)
     values, why = reading.values(
-        scenario, own, found.time, signals, added, found.events, followed, dynamic, still, records
+        scenario,
+        own,
+        trajectory.time,
+        signals,
+        added,
+        trajectory.events,
+        followed,
+        dynamic,
+        still,
+        records,
     )
     result = Simulation(
         scenario=scenario,
         plant=own,
         spec_hash=spec,
-        time=found.time,
+        time=trajectory.time,
         signals=signals,
-        told={one.name: Told(one.label, one.quantity) for one in circuit.system.signals},
+        told={
+            signal.name: Told(signal.label, signal.quantity) for signal in circuit.system.signals
+        },
         balance=added,
         values=values,
         why=why,
@@ -122,7 +135,7 @@ def run(
         tuned=tuned,
         servo=followed,
         shaken=dynamic,
-        events=found.events,
+        events=trajectory.events,
         notes=(
             *recorded_notes(scenario, records),
             *_notes(circuit, own, tuned),
@@ -131,12 +144,12 @@ def run(
             *_coarse(step, signals),
             *_unsettled(scenario, own),
         ),
-        evaluations=found.evaluations,
+        evaluations=trajectory.evaluations,
         seconds=perf_counter() - begin,
     )
     if not verify:
         return result
-    second = _second(compiled, scenario, step, found, signals, SECOND[method])
+    second = _second(compiled, scenario, step, trajectory, signals, SECOND[method])
     return replace(result, second=second)
 
 

@@ -77,7 +77,11 @@ class ParameterEffects:
     @property
     def largest(self) -> float:
         """Largest reliable effect on any result [%]."""
-        known = [one for one in self.effects.values() if one.percent is not None and one.reliable]
+        known = [
+            effect
+            for effect in self.effects.values()
+            if effect.percent is not None and effect.reliable
+        ]
         return max((abs(one.percent or 0.0) for one in known), default=0.0)
 
 
@@ -102,22 +106,22 @@ class Sensitivities(Displayed):
             "results": dict(self.results),
             "parameters": [
                 {
-                    "path": one.path,
-                    "origin": one.origin,
-                    "value": one.value,
-                    "unit": one.quantity.si_unit,
-                    "per": one.unit,
-                    "largest": one.largest,
+                    "path": parameter.path,
+                    "origin": parameter.origin,
+                    "value": parameter.value,
+                    "unit": parameter.quantity.si_unit,
+                    "per": parameter.unit,
+                    "largest": parameter.largest,
                     "effects": {
                         name: {
                             "percent": effect.percent,
                             "change": effect.change,
                             "reliable": effect.reliable,
                         }
-                        for name, effect in one.effects.items()
+                        for name, effect in parameter.effects.items()
                     },
                 }
-                for one in self.parameters
+                for parameter in self.parameters
             ],
             "skipped": dict(self.skipped),
             "step": self.step,
@@ -159,19 +163,25 @@ def sensitivities(
     bench = _Bench.of(scenario, subject, {} if records is None else records)
     base = bench.base()
     chosen = _results(base, results)
-    found: list[ParameterEffects] = []
+    parameter_effectses: list[ParameterEffects] = []
     skipped: dict[str, str] = {}
     for one in steps("varying each parameter", [*bench.targets(names)]):
         if one.value == 0:
             skipped[one.path] = "it is 0, so a relative step has no effect"
             continue
         try:
-            found.append(bench.parameter(one, chosen, step))
+            parameter_effectses.append(bench.parameter(one, chosen, step))
         except (InputError, Unsolvable) as error:
             skipped[one.path] = str(error)
-    found.sort(key=lambda one: -one.largest)
+    parameter_effectses.sort(key=lambda one: -one.largest)
     return Sensitivities(
-        scenario.name, chosen, tuple(found), skipped, step, bench.runs, perf_counter() - begin
+        scenario.name,
+        chosen,
+        tuple(parameter_effectses),
+        skipped,
+        step,
+        bench.runs,
+        perf_counter() - begin,
     )
 
 

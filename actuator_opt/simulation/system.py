@@ -132,7 +132,7 @@ class System:
         """A flag that is true after an instant; the integration restarts there."""
         if time <= 0:
             return True
-        known = next((one for one in self.instants if one.time == time), None)
+        known = next((instant for instant in self.instants if instant.time == time), None)
         if known is None:
             known = Instant(f"m_{len(self.instants)}", time)
             self.instants.append(known)
@@ -146,13 +146,15 @@ class System:
 
     def signal(self, name: str, label: str, quantity: Quantity, value: Expression) -> None:
         """Add an output signal; a later one of the same name replaces it."""
-        self.signals = [one for one in self.signals if one.name != name]
+        self.signals = [signal for signal in self.signals if signal.name != name]
         self.signals.append(Signal(name, label, quantity, value))
 
     @property
     def flags(self) -> list[str]:
         """Names of the flags, those of the instants first."""
-        return [one.flag for one in self.instants] + [one.flag for one in self.switches]
+        return [instant.flag for instant in self.instants] + [
+            switch.flag for switch in self.switches
+        ]
 
     def unpack(self, symbols: Sequence[Symbol], states: str) -> dict[str, str]:
         """Generated code that reads the states from an argument, and the flags from ``m``."""
@@ -208,12 +210,14 @@ class Compiled:
             system=system,
             rates=function("rates", "t, y, m", one, rates),
             slopes=slopes,
-            guards=vectorised("guards", "t, y, m", many, [one.guard for one in system.switches]),
+            guards=vectorised(
+                "guards", "t, y, m", many, [switch.guard for switch in system.switches]
+            ),
             guard_rates=vectorised("guard_rates", "t, y, m", many, _along(system)),
-            told=vectorised("told", "t, y, m", many, [one.value for one in system.signals]),
+            told=vectorised("told", "t, y, m", many, [signal.value for signal in system.signals]),
             initial=np.array([state.initial for state in system.states]),
             tolerances=np.array([state.tolerance for state in system.states]),
-            instants=tuple(one.time for one in system.instants),
+            instants=tuple(instant.time for instant in system.instants),
             bends=np.unique(np.array(system.bends, dtype=float)),
         )
 
@@ -222,8 +226,8 @@ class Compiled:
         with np.errstate(all="ignore"):
             values = self.told(t, y, tuple(m))
         return {
-            one.name: np.broadcast_to(np.asarray(value, dtype=float), np.shape(t)).copy()
-            for one, value in zip(self.system.signals, values, strict=True)
+            signal.name: np.broadcast_to(np.asarray(value, dtype=float), np.shape(t)).copy()
+            for signal, value in zip(self.system.signals, values, strict=True)
         }
 
 
@@ -236,7 +240,7 @@ def _along(system: System) -> list[Expression]:
     """Rates of the guards along the solution."""
     symbols, rates = [state.symbol for state in system.states], [s.rate for s in system.states]
     found = []
-    for row in jacobian([one.guard for one in system.switches], [*symbols, system.time]):
+    for row in jacobian([switch.guard for switch in system.switches], [*symbols, system.time]):
         slopes = zip(row, [*rates, 1.0], strict=True)
         found.append(sum((slope * rate for slope, rate in slopes), start=0.0))
     return found

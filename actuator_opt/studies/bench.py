@@ -104,7 +104,7 @@ class Bench:
 
     def coulomb(self, pressure_1: Array, pressure_2: Array) -> Array:
         """Return the design's Coulomb friction [N]: rings and wipers, no side load on guides."""
-        wiped = sum(float(one.friction) for one in self.wipers)
+        wiped = sum(float(wiper.friction) for wiper in self.wipers)
         return sum((own for _, own in self._coulomb(pressure_1, pressure_2)), wiped)
 
     def _coulomb(self, pressure_1: Array, pressure_2: Array) -> Iterator[tuple[Ring, Array]]:
@@ -118,7 +118,7 @@ class Bench:
         The level is Coulomb friction plus the breakaway friction that remains at a speed [m/s].
         Gauge pressures [Pa].
         """
-        level = sum((float(one.friction) for one in self.wipers), 0.0 * speed)
+        level = sum((float(wiper.friction) for wiper in self.wipers), 0.0 * speed)
         viscous = 0.0 * speed
         for ring, coulomb in self._coulomb(pressure_1, pressure_2):
             level = level + ring.element.friction_law.level(ring.sizes, coulomb, speed)
@@ -130,8 +130,8 @@ class Bench:
         held = [ring for ring in self._held(pressure_1, pressure_2) if _leads(ring)]
         touches = [seal_contact(ring) for ring in held]
         around = [float(ring["diameter"]) for ring in held]
-        force = sum(d * float(one.line_load) for d, one in zip(around, touches, strict=True))
-        area = sum(d * float(one.width) for d, one in zip(around, touches, strict=True))
+        force = sum(d * float(touch.line_load) for d, touch in zip(around, touches, strict=True))
+        area = sum(d * float(touch.width) for d, touch in zip(around, touches, strict=True))
         return force / area
 
     @property
@@ -151,7 +151,10 @@ class Bench:
 
     def _held(self, pressure_1: Array, pressure_2: Array) -> list[Ring]:
         """Return the rings at chamber pressures; the first of each row seals the pressure."""
-        p1, p2 = (np.maximum(one, 0.0) for one in np.broadcast_arrays(pressure_1, pressure_2))
+        p1, p2 = (
+            np.maximum(broadcast_array, 0.0)
+            for broadcast_array in np.broadcast_arrays(pressure_1, pressure_2)
+        )
         seen = {"piston": np.abs(p1 - p2), "rod": p1 if self.plunger else p2}
         outer = {"piston": np.minimum(p1, p2), "rod": 0.0 * p2}
         found = []
@@ -200,7 +203,7 @@ def _leads(ring: Ring) -> bool:
 
 def _first(parts: dict[str, Array]) -> list[Array]:
     """Return the compliances of the first load case, (1, positions) each."""
-    return [np.atleast_2d(np.asarray(one))[:1] for one in parts.values()]
+    return [np.atleast_2d(np.asarray(part))[:1] for part in parts.values()]
 
 
 def bench(subject: PreparedDesign) -> Bench:
@@ -231,8 +234,8 @@ def bench(subject: PreparedDesign) -> Bench:
         supply_pressure=float(v["supply.pressure"]),
         rings=tuple(floats(ring, 0) for ring in done.rings),
         wipers=tuple(
-            WiperFriction(one.path, _first_of(one.coefficient), _first_of(one.friction))
-            for one in wipers(v, subject.design, g, done.state)
+            WiperFriction(wiper.path, _first_of(wiper.coefficient), _first_of(wiper.friction))
+            for wiper in wipers(v, subject.design, g, done.state)
         ),
         springs=done.springs,
         oil_pressures=(_first_of(done.state.holding_a), _first_of(done.state.holding_b)),

@@ -65,13 +65,13 @@ class Sealing:
         return Sealing((self.rings[index],), self.outward, self.growth)
 
 
-def sealing(found: Base, place: Place, case: int) -> Sealing:
+def sealing(base: Base, place: Place, case: int) -> Sealing:
     """Return the rings of a place with the oil and outer side of a load case, driven."""
-    rings = tuple(floats(ring, case) for ring in of_place(found.rings, place))
-    pressure = float(of_case(found.state.driven_pressure, case))
+    rings = tuple(floats(ring, case) for ring in of_place(base.rings, place))
+    pressure = float(of_case(base.state.driven_pressure, case))
     growth = 0.0
     if place == "piston" and pressure > 0:
-        grown = SEAL_STEP * of_case(found.wall.case_growth, case)
+        grown = SEAL_STEP * of_case(base.wall.case_growth, case)
         growth = float(np.max(np.real(grown))) / pressure
     return Sealing(rings, drives(place) == "out", growth)
 

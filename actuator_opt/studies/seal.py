@@ -265,7 +265,7 @@ class SealStudy(Displayed):
             "mass_residual": _worst(both.values(), "mass_residual"),
         }
         if self.elements:
-            found["finite_elements"] = [_element_dict(one) for one in self.elements]
+            found["finite_elements"] = [_element_dict(element) for element in self.elements]
         return found if self.map is None else found | {"map": _map_dict(self.map)}
 
 
@@ -292,10 +292,10 @@ def _contact_dict(point: RingPoint) -> dict[str, Any]:
     }
 
 
-def _element_dict(one: MountedContact) -> dict[str, float]:
+def _element_dict(mounted_contact: MountedContact) -> dict[str, float]:
     names = ("pressure", "line_load", "width", "peak_pressure")
-    return {name: float(getattr(one, name)) for name in names} | {
-        "von_mises": float(np.max(one.field.von_mises))
+    return {name: float(getattr(mounted_contact, name)) for name in names} | {
+        "von_mises": float(np.max(mounted_contact.field.von_mises))
     }
 
 

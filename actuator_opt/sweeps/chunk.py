@@ -126,9 +126,9 @@ class Study:
             if isinstance(subject, str):
                 failures |= dict.fromkeys(map(int, places), subject)
                 continue
-            found = evaluate_many(subject, varied, len(places), self.wanted)
-            self._fill(rows, places, found)
-            lost = places[np.isnan(found.metrics["mass"])]
+            many = evaluate_many(subject, varied, len(places), self.wanted)
+            self._fill(rows, places, many)
+            lost = places[np.isnan(many.metrics["mass"])]
             failures |= dict.fromkeys(map(int, lost), NO_ANSWER)
         rows[list(failures), len(points.numbers) :] = np.nan
         chunk = self.judged(first, StoredNumbers(rows, failures), n)
@@ -235,12 +235,12 @@ class Study:
         feasible = rows.numbers[:, place[FEASIBLE]] == 1.0
         return Chunk(first, rows, computed, self.goal.sign * total, feasible)
 
-    def _fill(self, rows: Array, places: Array, found: Many) -> None:
+    def _fill(self, rows: Array, places: Array, many: Many) -> None:
         start = len(self.plan.numeric)
         for k, name in enumerate(self.metrics):
-            rows[places, start + k] = found.metrics[name]
-        margin = np.where(np.isfinite(found.margin), found.margin, np.nan)
-        rows[places, -3:] = np.stack([margin, found.missed, found.feasible], axis=1)
+            rows[places, start + k] = many.metrics[name]
+        margin = np.where(np.isfinite(many.margin), many.margin, np.nan)
+        rows[places, -3:] = np.stack([margin, many.missed, many.feasible], axis=1)
 
     def quantity(self, metric: str) -> Quantity:
         """Return the quantity of a metric."""

@@ -220,7 +220,7 @@ def field(study: Study) -> Field:
         at = np.unique(np.round(np.linspace(0, len(one) - 1, min(len(one), FINEST))).astype(int))
         kept.append(order[at])
     chunks = [study.chunk(int(i) * wide, wide, kept[1]) for i in kept[0]]
-    xs, ys = (one[at] for one, at in zip(values, kept, strict=True))
+    xs, ys = (value[at] for value, at in zip(values, kept, strict=True))
     failed = np.zeros((len(xs), len(ys)), dtype=bool)
     for k, one in enumerate(chunks):
         failed[k, list(one.rows.failures)] = True
@@ -232,8 +232,8 @@ def field(study: Study) -> Field:
     gone = _cut_away(study, margins)
     margins[:, failed & ~gone] = np.nan  # a negative wall keeps the margins of its shape
     failed |= gone
-    rows = np.stack([one.rows.numbers for one in chunks])
-    thinned = any(len(one) > FINEST for one in values)
+    rows = np.stack([chunk.rows.numbers for chunk in chunks])
+    thinned = any(len(value) > FINEST for value in values)
     return Field(study, xs, ys, rows, margins, failed, room, thinned)
 
 

@@ -132,7 +132,7 @@ def _with_unit(texts: list[str]) -> list[str]:
         unit = units.split(texts[-1])[1]
     except units.UnitError:
         return texts
-    return [f"{one} {unit}" if unit and _bare(one) is not None else one for one in texts]
+    return [f"{text} {unit}" if unit and _bare(text) is not None else text for text in texts]
 
 
 def _number(path: str, text: str, design: Design, metrics: Metrics) -> float:

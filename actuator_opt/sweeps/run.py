@@ -191,7 +191,7 @@ def sweep(
         the database cannot be used
     """
     began = time.perf_counter()
-    found = Swept(
+    swept = Swept(
         study,
         study.plan.count,
         feasible=0 if study.full else None,
@@ -201,20 +201,20 @@ def sweep(
     starts = range(0, study.plan.count, size)
     computed = partial(_computed, study, len(starts), workers, scheduler)
     if not study.full:
-        chunks = computed(ChunkTask(first, size, None, found.limit(keep), keep) for first in starts)
+        chunks = computed(ChunkTask(first, size, None, swept.limit(keep), keep) for first in starts)
     elif store is None:
         chunks = computed(ChunkTask(first, size) for first in starts)
     else:
         chunks = _stored(study, starts, computed, store)
     for number, chunk in enumerate(chunks):
-        found.add(chunk, keep)
+        swept.add(chunk, keep)
         if each is not None:
             each(chunk)
         progress.tell("evaluating designs", (number + 1) / len(starts))
-    if not study.full and not found.best:
-        _explain(found)
-    found.seconds = time.perf_counter() - began
-    return found
+    if not study.full and not swept.best:
+        _explain(swept)
+    swept.seconds = time.perf_counter() - began
+    return swept
 
 
 def _chunk_size(study: Study) -> int:
@@ -224,14 +224,14 @@ def _chunk_size(study: Study) -> int:
     return CHUNK if study.full else REDUCED
 
 
-def _explain(found: Swept) -> None:
+def _explain(swept: Swept) -> None:
     """Count the missed limits of a sample, when no design is feasible and few were evaluated."""
-    count, part = found.study.plan.count, CHUNK // LOOKS
-    found.missed = {}
+    count, part = swept.study.plan.count, CHUNK // LOOKS
+    swept.missed = {}
     every = range(0, count, part)
     spread = np.linspace(0, count - part, LOOKS).astype(int).tolist()
     for first in spread if len(every) > LOOKS else every:  # no point is examined twice
-        found.count_missed(found.study.chunk(first, part))
+        swept.count_missed(swept.study.chunk(first, part))
 
 
 def swept_again(
@@ -252,7 +252,7 @@ def swept_again(
         no such file, other models, or a sweep that is missing or incomplete
     """
     began = time.perf_counter()
-    found = Swept(study, study.plan.count, sample=Sample(tuple(watch)))
+    swept = Swept(study, study.plan.count, sample=Sample(tuple(watch)))
     with reading(store, VERSION) as reader:
         number = reader.number(study.hash)
         base = Database(reader.connection, number, study.hash, len(study.columns), store)
@@ -264,12 +264,12 @@ def swept_again(
                 remedy = "run the sweep again with --store to compute them"
                 raise refused(store, message, remedy)
             chunk = study.judged(first, rows, 0)
-            found.add(chunk, keep)
+            swept.add(chunk, keep)
             if each is not None:
                 each(chunk)
-            progress.tell("reading designs", min(first + size, found.requested) / found.requested)
-    found.seconds = time.perf_counter() - began
-    return found
+            progress.tell("reading designs", min(first + size, swept.requested) / swept.requested)
+    swept.seconds = time.perf_counter() - began
+    return swept
 
 
 def _computed(

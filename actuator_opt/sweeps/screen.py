@@ -178,7 +178,7 @@ def screen(
         return None
     own = {symbol: f"v[{k}]" for k, symbol in enumerate(traced.variables.values())}
     objectives = list(dict.fromkeys(traced.objectives))
-    if not objectives or not all(_closed(one, own) for one in objectives):
+    if not objectives or not all(_closed(objective, own) for objective in objectives):
         return None
     claims = list(
         {

@@ -311,12 +311,12 @@ class UncertainModel:
         ]
         return np.concatenate(parts, axis=1)
 
-    def flat(self, found: DrawnInputs) -> Vector:
+    def flat(self, drawn_inputs: DrawnInputs) -> Vector:
         """Stack margins, their least and metrics; a margin without a value is infinite."""
-        margins = np.where(np.abs(found.margins) < 1e9, found.margins, np.nan)
+        margins = np.where(np.abs(drawn_inputs.margins) < 1e9, drawn_inputs.margins, np.nan)
         with np.errstate(all="ignore"):
-            least = np.min(found.margins[self.own], axis=0, initial=np.inf)
-        return np.concatenate([margins, least[None], found.metrics])
+            least = np.min(drawn_inputs.margins[self.own], axis=0, initial=np.inf)
+        return np.concatenate([margins, least[None], drawn_inputs.metrics])
 
     @np.errstate(all="ignore")
     def where(self, values: Vector) -> DrawnInputs:

@@ -168,8 +168,8 @@ class Uncertainty(Displayed):
 
     def of_output(self, output: str) -> tuple[list[Index], list[Swing]]:
         """Return indices and swings of one output, the largest first."""
-        found = [one for one in self.indices if one.output == output]
-        swings = [one for one in self.swings if one.output == output]
+        found = [index for index in self.indices if index.output == output]
+        swings = [swing for swing in self.swings if swing.output == output]
         found.sort(key=lambda one: (-(one.total or 0.0), one.path))
         swings.sort(key=lambda one: (-one.size, one.path))
         return found, swings
@@ -187,15 +187,15 @@ class Uncertainty(Displayed):
             "seed": self.seed,
             "inputs": [one.to_dict() for one in self.inputs],
             "requirements": [one.to_dict() for one in self.required],
-            "checks": [one.to_dict() for one in self.checks],
+            "checks": [check.to_dict() for check in self.checks],
             "outputs": {
                 name: {"value": value, "unit": self.units.get(name, "")}
                 for name, value in self.nominal.items()
             },
-            "indices": [one.to_dict() for one in self.indices],
+            "indices": [index.to_dict() for index in self.indices],
             "index_rows": self.index_rows,
             "dropped": self.dropped,
-            "tornado": [one.to_dict() for one in self.swings],
+            "tornado": [swing.to_dict() for swing in self.swings],
             "notes": list(self.notes),
             "seconds": self.seconds,
         }
@@ -215,9 +215,9 @@ class Uncertainty(Displayed):
         return "\n".join([words, "", aligned(rows, right=(1, 2, 3, 4))])
 
 
-def _worst(one: LimitYield) -> tuple[float, float, str]:
-    low = one.margins[0]
-    return one.rate.value, -np.inf if low is None else low, one.name
+def _worst(limit_yield: LimitYield) -> tuple[float, float, str]:
+    low = limit_yield.margins[0]
+    return limit_yield.rate.value, -np.inf if low is None else low, limit_yield.name
 
 
 def number(value: float) -> float | None:

@@ -220,17 +220,17 @@ class _Way:
         margins = dict(zip(self.names, near.nominal.tolist(), strict=True))
         return {name: max(min(kept, margins[name]), 0.0) for name, kept in asked.items()}
 
-    def _keep(self, found: Optimisation, seen: _Seen, reserves: dict[str, float]) -> None:
+    def _keep(self, optimisation: Optimisation, seen: _Seen, reserves: dict[str, float]) -> None:
         """Keep the better design: yield counts before the objective."""
-        sign = -1.0 if found.design.objective.maximise is not None else 1.0
+        sign = -1.0 if optimisation.design.objective.maximise is not None else 1.0
 
         def rank(one: Optimisation, at: _Seen) -> tuple[float, float]:
             missed = 1 - at.rate
             enough = AIM * (1 + ROOM / 2) * self.allowed
             return max(missed - enough, 0.0), sign * one.best_objective
 
-        if rank(found, seen) <= rank(self.found, self.seen):
-            self.found, self.seen, self.reserves = found, seen, reserves
+        if rank(optimisation, seen) <= rank(self.found, self.seen):
+            self.found, self.seen, self.reserves = optimisation, seen, reserves
 
     def result(self) -> Optimisation:
         """Return the last design with prices, verified with an independent sample."""
@@ -298,10 +298,10 @@ class _Way:
         told = [f"{x} {100 * self.refused[x]:.2g} %" for lack, x in lacks[:3] if lack < 0]
         return ", ".join(told) or "those below"
 
-    def _words(self, made: Robust, found: Optimisation) -> str:
-        quantity = of_metric(found.objective_metric)
+    def _words(self, made: Robust, optimisation: Optimisation) -> str:
+        quantity = of_metric(optimisation.objective_metric)
         before, after = (
-            quantity.text(x, 5) for x in (made.nominal_objective, found.best_objective)
+            quantity.text(x, 5) for x in (made.nominal_objective, optimisation.best_objective)
         )
         shown = f"{_percent(made.rate)} ({_percent(made.lower)} to {_percent(made.upper)})"
         cost = (
@@ -315,7 +315,7 @@ class _Way:
             rest += f"; not covered, as missed anyway: {', '.join(made.left_out)}"
         if self.refused:
             return (
-                f"{_none(found)} the reserves needed for a yield of {_percent(self.target)}: "
+                f"{_none(optimisation)} the reserves needed for a yield of {_percent(self.target)}: "
                 f"{self._wanting()}. The design shown meets all limits in {shown} of "
                 f"{made.samples} independent draws; without reserves {quantity.label} is "
                 f"{before} at a yield of {_percent(made.nominal_rate)}{rest}. The changes "
@@ -335,18 +335,20 @@ class _Way:
         )
 
 
-def _none(found: Optimisation) -> str:
+def _none(optimisation: Optimisation) -> str:
     """Return the start of a sentence that no design meets something."""
-    sizes = "" if found.rounding is None else f" of {found.rounding.name}"
+    sizes = "" if optimisation.rounding is None else f" of {optimisation.rounding.name}"
     return f"no design{sizes} meets"
 
 
-def _solved(found: Optimisation) -> bool:
+def _solved(optimisation: Optimisation) -> bool:
     """Whether an optimum meets all limits with their reserves, in the requested sizes."""
-    infeasible = found.status == "infeasible" or found.status.startswith("limit_inf")
-    usable = found.status != "undefined" and not found.status.startswith("interrupted")
-    made = found.rounding is None or found.rounding.met
-    return not infeasible and usable and made and found.evaluation.met
+    infeasible = optimisation.status == "infeasible" or optimisation.status.startswith("limit_inf")
+    usable = optimisation.status != "undefined" and not optimisation.status.startswith(
+        "interrupted"
+    )
+    made = optimisation.rounding is None or optimisation.rounding.met
+    return not infeasible and usable and made and optimisation.evaluation.met
 
 
 def _covered_rate(model: UncertainModel, covered: Held, count: int, seed: int) -> Rate:

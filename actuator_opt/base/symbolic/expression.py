@@ -536,15 +536,15 @@ def is_boolean(symbol: Symbol) -> bool:
 def needed(outputs: Sequence[Any], known: Iterable[Symbol] = ()) -> list[Symbol]:
     """Nodes that the outputs need, operands first; operands of `known` nodes are left out."""
     seen: set[int] = {one.index for one in known}
-    found: list[Symbol] = []
+    symbols: list[Symbol] = []
     stack = [out for out in outputs if isinstance(out, Symbol)]
     while stack:
         node = stack.pop()
         if node.index not in seen:
             seen.add(node.index)
-            found.append(node)
+            symbols.append(node)
             stack.extend(node.operands)
-    return sorted(found, key=lambda node: node.index)
+    return sorted(symbols, key=lambda node: node.index)
 
 
 xp = Namespace
@@ -558,7 +558,7 @@ def jacobian(outputs: Sequence[Any], variables: Sequence[Symbol]) -> list[list[A
     A choice has the derivative of the selected branch; flags have none; a tabulated function has
     its given slope; a root has zero slope at zero, where its true slope is infinite.
     """
-    known: dict[int, Slopes] = {one.index: {k: 1.0} for k, one in enumerate(variables)}
+    known: dict[int, Slopes] = {variable.index: {k: 1.0} for k, variable in enumerate(variables)}
     for node in needed(outputs):
         if node.index not in known and not is_boolean(node):
             slopes = _slopes(node, known)
@@ -673,7 +673,7 @@ def _compiled(
     nodes = needed(outputs, known)
     scope["_nan"], scope["_inf"] = math.nan, math.inf
     if nodes:
-        scope |= {f"_table{i}": one for i, one in enumerate(nodes[0].graph.tables)}
+        scope |= {f"_table{i}": table for i, table in enumerate(nodes[0].graph.tables)}
     used = {node.args[0] for node in nodes if node.op in ("variable", "flag")}
     lines = [
         f" {names} = {code}"

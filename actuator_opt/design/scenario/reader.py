@@ -190,9 +190,9 @@ def recorded_notes(scenario: Scenario, records: Records) -> Iterator[str]:
             )
         time, values = records[part.file or "", part.column or ""]
         absent = [
-            one
-            for one in gaps(time + part.start, values)
-            if first < one.first < min(last, scenario.duration) and one.last > 0
+            gap
+            for gap in gaps(time + part.start, values)
+            if first < gap.first < min(last, scenario.duration) and gap.last > 0
         ]
         if absent:
             yield f"{name}: {gap_words(absent)}, interpolated linearly"
@@ -219,7 +219,7 @@ def gaps(time: Array, values: Array) -> list[SampleGap]:
     return sorted(found)
 
 
-def gap_words(found: list[SampleGap]) -> str:
+def gap_words(sample_gaps: list[SampleGap]) -> str:
     """Number of missing samples and where: the only gap, or the first and the last.
 
     >>> gap_words([Gap(0.2, 0.2, 1)])
@@ -229,13 +229,13 @@ def gap_words(found: list[SampleGap]) -> str:
     """
     said = [
         f"from {one.first:.4g} to {one.last:.4g} s" if one.size > 1 else f"at {one.first:.4g} s"
-        for one in (found[0], found[-1])
+        for one in (sample_gaps[0], sample_gaps[-1])
     ]
-    count = sum(one.size for one in found)
+    count = sum(sample_gap.size for sample_gap in sample_gaps)
     head = "1 sample is missing" if count == 1 else f"{count} samples are missing"
-    if len(found) == 1:
+    if len(sample_gaps) == 1:
         return f"{head} {said[0]}"
-    return f"{head} in {len(found)} places, first {said[0]}, last {said[1]}"
+    return f"{head} in {len(sample_gaps)} places, first {said[0]}, last {said[1]}"
 
 
 STEP = 0.1

@@ -70,7 +70,7 @@ def _distinct(
         return dict(given), lambda result: result
     designs = np.ascontiguousarray(np.concatenate(rows).T)
     known: dict[bytes, int] = {}
-    back = np.array([known.setdefault(one.tobytes(), len(known)) for one in designs])
+    back = np.array([known.setdefault(design.tobytes(), len(known)) for design in designs])
     if len(known) == count:
         return dict(given), lambda result: result
     first = np.unique(back, return_index=True)[1]

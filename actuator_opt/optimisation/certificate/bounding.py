@@ -46,9 +46,9 @@ class Products:
 
     def __init__(self, products: Sequence[Product], first: int, columns: int) -> None:
         self.first, self.rows = first, 4 * len(products)
-        atoms = [(one.first, one.second, one.out) for one in products]
+        atoms = [(product.first, product.second, product.out) for product in products]
         self.atoms = np.array(atoms, dtype=np.int32).reshape(-1, 3)
-        self.level = np.exp([one.level for one in products])
+        self.level = np.exp([product.level for product in products])
         self.columns = np.repeat(self.atoms, 4, axis=0)
         """Columns (rows, 3) of x, y and w."""
         starts, shape = 3 * np.arange(self.rows + 1), (self.rows, columns)
@@ -499,7 +499,7 @@ class Leads:
     def of(self, node: Symbol) -> Symbol:
         """The lead of a value."""
         if node.index not in self._known:
-            under = {self.of(one) for one in node.operands}
+            under = {self.of(operand) for operand in node.operands}
             self._known[node.index] = under.pop() if len(under) == 1 else node
         return self._known[node.index]
 
@@ -548,13 +548,13 @@ WIDE = 0.3
 class _Plain:
     """Plain atoms of a relaxation with known ranges."""
 
-    def __init__(self, found: Relaxation) -> None:
-        self.found = found
+    def __init__(self, relaxation: Relaxation) -> None:
+        self.found = relaxation
         self.known: dict[Powers, int] = {}
         self.tops: dict[int, float] = {}
         self.tables = {
             curve.out.powers[0][0]: curve
-            for curve in found.curves
+            for curve in relaxation.curves
             if isinstance(curve.kind, SampledFunction)
         }
 
@@ -604,13 +604,13 @@ class _Plain:
             self.found.links.append(Link(number, under, level, curve))
 
 
-def straighten(found: Relaxation) -> None:
+def straighten(relaxation: Relaxation) -> None:
     """Add plain numbers for the wide sums of a relaxation."""
-    plain = _Plain(found)
-    for whole, part, rest in list(found.splits):
+    plain = _Plain(relaxation)
+    for whole, part, rest in list(relaxation.splits):
         if plain.width(part - rest) < WIDE:
             continue
-        scale = found.reach(whole)[1]
+        scale = relaxation.reach(whole)[1]
         own = plain.term(whole, scale)
         sums = plain.term(part, scale) + plain.term(rest, scale)
-        found.rows += [ConstraintRow(own, sums), ConstraintRow(sums, own)]
+        relaxation.rows += [ConstraintRow(own, sums), ConstraintRow(sums, own)]

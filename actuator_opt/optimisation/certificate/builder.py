@@ -168,9 +168,9 @@ class Builder:
         if not isinstance(value, Symbol):
             return Signomial.number(value) if math.isfinite(value) else None
         if value.index not in self._sums:
-            found = self._expand(value)
-            kept = found is not None and len(found.terms) <= LARGEST
-            self._sums[value.index] = found if kept else None
+            signomial = self._expand(value)
+            kept = signomial is not None and len(signomial.terms) <= LARGEST
+            self._sums[value.index] = signomial if kept else None
         return self._sums[value.index]
 
     def _expand(self, node: Symbol) -> Signomial | None:
@@ -239,7 +239,7 @@ class Builder:
 
     def _terms(self, node: Symbol) -> Signomial:
         """A sum by its operands, each an atom; operands of unknown sign are expanded."""
-        first, second = (self.opened(one) for one in node.args)
+        first, second = (self.opened(arg) for arg in node.args)
         return first.plus(second, -1.0 if node.op == "sub" else 1.0)
 
     def opened(self, value: Any) -> Signomial:
@@ -364,11 +364,11 @@ class Builder:
 
     def _curve(self, kind: Kind, argument: Form, low: float, high: float) -> Form:
         """A new atom as a function of a monomial's logarithm; ends are logarithms."""
-        one = Mixed([kind])
+        mixed = Mixed([kind])
         out = self.found.atom(
             math.exp(low),
             math.exp(high),
-            lambda y: float(one.value(np.array([argument.at(y)]))[0]),
+            lambda y: float(mixed.value(np.array([argument.at(y)]))[0]),
         )
         self.found.curves.append(AtomFunction(kind, argument, out))
         return out
@@ -378,7 +378,7 @@ def _power(value: Any, lead: Symbol) -> bool:
     """Whether a value is a number times a power of another."""
     if value is lead or not isinstance(value, Symbol):
         return True
-    return value.op in _MONOMIAL and all(_power(one, lead) for one in value.args)
+    return value.op in _MONOMIAL and all(_power(arg, lead) for arg in value.args)
 
 
 LEAST_DECAY = 1e-3
@@ -470,10 +470,10 @@ class Envelopes:
                 length_2=lengths[1],
             )
             stiffer = maximum(wall.shear_stiffness, rod.shear_stiffness)
-            found = self.unknown("critical_load", lambda done: done.beam.critical)
+            symbol = self.unknown("critical_load", lambda done: done.beam.critical)
             most = column.engesser_load(critical_load=load, shear_stiffness=stiffer)
-            self.problem.facts.append((most, found))
-            return found
+            self.problem.facts.append((most, symbol))
+            return symbol
 
         return critical
 
@@ -635,7 +635,7 @@ def refuse(design: Design) -> None:
     for there, what in (
         (bool(design.rod.layup), "a rod of layers"),
         (design.linkage is not None, "a linkage"),
-        (any(one.friction_law.film for one in elements), "a seal with an oil film"),
+        (any(element.friction_law.film for element in elements), "a seal with an oil film"),
     ):
         if there:
             raise Unknown(f"{what} has no envelope yet")
@@ -712,11 +712,11 @@ def _hoop(layer: plies.Layer) -> Array:
     equilibrium of the wall (`tube_bounds.greatest_pressure`).
     """
     strengths = layer.strengths
-    along = _largest([one.tension_1 for one in strengths])
+    along = _largest([strength.tension_1 for strength in strengths])
     around = tube_bounds.ply_hoop_strength(
         tension_1=along,
-        tension_2=_largest([one.tension_2 for one in strengths]),
-        shear_12=_largest([one.shear_12 for one in strengths]),
+        tension_2=_largest([strength.tension_2 for strength in strengths]),
+        shear_12=_largest([strength.shear_12 for strength in strengths]),
         angle=layer.angle,
     )
     return maximum(around, along)

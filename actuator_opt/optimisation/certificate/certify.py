@@ -93,7 +93,7 @@ def trace(actuator: ActuatorProblem, x: Vector) -> Traced:
     subject, problem = actuator.subject, actuator.problem
     refuse(subject.design)
     graph = Graph()
-    found = Traced(
+    traced = Traced(
         graph,
         {
             path: graph.variable(variable(k), (float(low), float(high)))
@@ -110,24 +110,24 @@ def trace(actuator: ActuatorProblem, x: Vector) -> Traced:
     for i, case in enumerate(subject.design.load_cases):
         design = subject.design.model_copy(update={"load_cases": [case]})
         one = replace(subject, design=design)
-        values = Values(subject.numbers, one.cases, found.variables)
-        envelopes = Envelopes(found, subject, there, falls, i)
+        values = Values(subject.numbers, one.cases, traced.variables)
+        envelopes = Envelopes(traced, subject, there, falls, i)
         out = MetricArrays()
         try:
             with np.errstate(all="ignore"):
                 done = statics(one, values, out, envelopes.implicit())
         except (TypeError, AttributeError):  # symbols raise this for operations they do not support
             raise Unknown("one of its models is not a closed expression of the variables") from None
-        found.facts += [(part, 0.0) for part in done.mass_parts.values()]
-        found.facts += _along_the_stroke(envelopes, done, out, positions)
+        traced.facts += [(part, 0.0) for part in done.mass_parts.values()]
+        traced.facts += _along_the_stroke(envelopes, done, out, positions)
         envelopes.joint(done, out)
         if envelopes.bearable is not None:
             proof = values["supply.proof_ratio"] * values["supply.pressure"]
-            least = found.unknown("proof_factor", _least_proof)
-            found.facts.append((envelopes.bearable / proof, least))
+            least = traced.unknown("proof_factor", _least_proof)
+            traced.facts.append((envelopes.bearable / proof, least))
             out.put("proof_factor", least)
-        _collect(actuator, found, list(limits), out, values, first=i == 0)
-    return found
+        _collect(actuator, traced, list(limits), out, values, first=i == 0)
+    return traced
 
 
 def _least_proof(done: ModelRun) -> float:
@@ -166,7 +166,7 @@ def _along_the_stroke(
 
 def _collect(
     actuator: ActuatorProblem,
-    found: Traced,
+    traced: Traced,
     limits: list[MetricLimit],
     out: MetricArrays,
     values: Values,
@@ -178,7 +178,7 @@ def _collect(
     case = values.cases[0]
     if goal.single is not None:
         for value in _applying(out, goal.single, ""):
-            found.objectives.append(goal.sign * value[1])
+            traced.objectives.append(goal.sign * value[1])
     for limit in limits:
         if limit.case is not None and limit.case != case:
             continue
@@ -186,7 +186,7 @@ def _collect(
         limited = limit.value(values)
         varies = isinstance(limited, Symbol)
         if varies and not limited.bounds[0] > 0:
-            found.dropped[limit.name] = "its limit varies and may be zero"
+            traced.dropped[limit.name] = "its limit varies and may be zero"
             continue
         bound = 1.0 if varies else float(np.squeeze(limited))
         for place, value in rows:
@@ -195,11 +195,11 @@ def _collect(
             if isinstance(value, Symbol) or varies:
                 where = ", ".join(x for x in (case, place) if x)
                 claimed = value / limited if varies else value
-                found.claims.append(TracedLimit(limit, f"{limit.name} ({where})", claimed, bound))
+                traced.claims.append(TracedLimit(limit, f"{limit.name} ({where})", claimed, bound))
             else:
-                found.dropped.setdefault(limit.name, "no variable affects its traced value")
+                traced.dropped.setdefault(limit.name, "no variable affects its traced value")
         if not rows and (first or limit.case is not None):
-            found.dropped[limit.name] = "its model is not a closed expression"
+            traced.dropped[limit.name] = "its model is not a closed expression"
 
 
 def _applying(out: MetricArrays, metric: str, case: str) -> Iterator[tuple[str, Any]]:

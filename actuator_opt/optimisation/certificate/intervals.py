@@ -89,7 +89,7 @@ def cancelling(nodes: Sequence[Symbol]) -> dict[Symbol, Signomial]:
 
     found = {}
     for node in nodes:
-        parts = [expanded(one) for one in node.args] if node.op in _ALGEBRA else [None]
+        parts = [expanded(arg) for arg in node.args] if node.op in _ALGEBRA else [None]
         whole = None if None in parts else _ALGEBRA[node.op](*parts)
         if whole is not None and len(whole.terms) <= LARGEST:
             sizes = sum(part.size for part in parts if part is not None)
@@ -179,7 +179,7 @@ def decided(condition: Any) -> bool | None:
     if condition.op == "not":
         inner = decided(args[0])
         return None if inner is None else not inner
-    sides = [decided(one) for one in args]
+    sides = [decided(arg) for arg in args]
     settles = condition.op == "or"
     if settles in sides:
         return settles
@@ -234,7 +234,7 @@ def _forward(node: Symbol) -> Bounds:
 def _difference(node: Symbol) -> Bounds:
     """Bounds of a difference; for squares also as (a - b)(a + b), if a - b is traced."""
     low, high = bounds("sub", node.args)
-    first, second = (_root_of(one) for one in node.args)
+    first, second = (_root_of(arg) for arg in node.args)
     if first is not None and second is not None:
         apart = node.graph.known.get(("sub", ("#", first.index), ("#", second.index)))
         if apart is not None:
@@ -350,7 +350,7 @@ def _holds(condition: Any, *, held: bool) -> bool:
     if condition.op in ("and", "or"):
         if held != (condition.op == "and"):
             return False
-        gains = [_holds(one, held=held) for one in condition.args]
+        gains = [_holds(arg, held=held) for arg in condition.args]
         return any(gains)
     less, more = condition.args if held else reversed(condition.args)
     gained = narrow(less, (-math.inf, bounds_of(more)[1]))
@@ -443,7 +443,7 @@ class Layout:
             for curve, number in zip(self.relaxation.curves, self.direction, strict=True)
             if curve.kind == "exp" and len(curve.out.powers) == 1
         }
-        found = [(way[one.first], way[one.second]) for one in self.relaxation.products]
+        found = [(way[product.first], way[product.second]) for product in self.relaxation.products]
         first, second = np.array(found, dtype=np.intp).reshape(-1, 2).T
         return first, second
 
@@ -501,9 +501,9 @@ class Box:
     @classmethod
     def whole(cls, layout: Layout) -> Box:
         """The box given by the bounds of the traced values."""
-        found = layout.relaxation
+        relaxation = layout.relaxation
         none = np.zeros(layout.directions)
-        lower, upper = (np.clip(ends, -FAR, FAR) for ends in (found.lower, found.upper))
+        lower, upper = (np.clip(ends, -FAR, FAR) for ends in (relaxation.lower, relaxation.upper))
         return cls(lower, upper, none - FAR, none + FAR)
 
     def range(self, form: Form) -> tuple[float, float]:

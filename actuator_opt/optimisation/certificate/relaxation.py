@@ -104,12 +104,12 @@ class Tables:
     """Several tables with equally many samples, one argument each."""
 
     def __init__(self, tables: Sequence[SampledFunction]) -> None:
-        self.low = np.array([one.low for one in tables])
-        self.step = np.array([one.step for one in tables])
-        self.values = np.stack([one.values for one in tables])
-        self.room = np.array([one.room for one in tables])
-        self.convex = np.array([one.convex for one in tables])
-        self.rising = np.array([one.rising for one in tables])
+        self.low = np.array([table.low for table in tables])
+        self.step = np.array([table.step for table in tables])
+        self.values = np.stack([table.values for table in tables])
+        self.room = np.array([table.room for table in tables])
+        self.convex = np.array([table.convex for table in tables])
+        self.rising = np.array([table.rising for table in tables])
         self.last = self.values.shape[1] - 1
         self.rows = np.arange(len(tables))
         self.turning, self.waving = (

@@ -107,7 +107,7 @@ def _together(
     """Local optima of each objective, best first, from simultaneous runs."""
     objectives = replace(objectives, evaluate=_remembering(objectives.evaluate))
     evaluators = [objectives.like(checked, k) for k in range(objectives.count)]
-    swept = [sweep(one, effort.samples, effort.seed) for one in evaluators]
+    swept = [sweep(evaluator, effort.samples, effort.seed) for evaluator in evaluators]
     starts = [_starts(*pair, effort.starts) for pair in zip(evaluators, swept, strict=True)]
     which = np.arange(objectives.count, dtype=float)[None]
     picked = objectives.picked()
@@ -150,7 +150,7 @@ def _optima(ended: Sequence[Point], settled: Sequence[Point | None]) -> list[Vec
     ]  # fmt: skip
     if not good or min(open_, default=np.inf) < good[0].objective:
         return []
-    return [one.x for one in distinct_ends(good)]
+    return [distinct_end.x for distinct_end in distinct_ends(good)]
 
 
 def normalised(objectives: Objectives, checked: Evaluator, found: Ends) -> tuple[Tracer, Vector]:
@@ -209,16 +209,16 @@ def better(tracer: Tracer, designs: Sequence[FrontDesign], effort: FrontEffort) 
     if tracer.exact and designs:
         reached = _reached(tracer, designs, effort)
     found = []
-    for number, (one, points) in enumerate(zip(designs, reached, strict=True)):
+    for number, (design, points) in enumerate(zip(designs, reached, strict=True)):
         ends = [(point.objective, point.x) for point in points]
         if not ends:
             best = solve(
-                tracer.at(one.level, one.way),
+                tracer.at(design.level, design.way),
                 starts=effort.starts, samples=effort.samples, seed=effort.seed + number,
             )  # fmt: skip
             ends = [(best.objective, best.x)] if best.violation <= FEASIBLE else []
-        level, x = min(ends, key=lambda pair: pair[0], default=(np.inf, one.point.x))
-        if level < one.point.objective - OVERLOOKED:
+        level, x = min(ends, key=lambda pair: pair[0], default=(np.inf, design.point.x))
+        if level < design.point.objective - OVERLOOKED:
             found.append(x[:-1])
     return found
 
@@ -227,8 +227,10 @@ def _reached(
     tracer: Tracer, designs: Sequence[FrontDesign], effort: FrontEffort
 ) -> list[list[Point]]:
     """Feasible points reached by runs, separately for each level."""
-    evaluators = [tracer.like(tracer.at(one.level, one.way)) for one in designs]
-    parameters = np.stack([np.concatenate([one.level, one.way]) for one in designs], axis=1)
+    evaluators = [tracer.like(tracer.at(design.level, design.way)) for design in designs]
+    parameters = np.stack(
+        [np.concatenate([design.level, design.way]) for design in designs], axis=1
+    )
     given = tracer.parametric, evaluators, parameters
     starts = _overlooked_starts(tracer, designs, effort)
     ended = descents_from(*given, starts, effort.seed, tolerance=TOLERANCE, rounds=ROUNDS)
@@ -258,8 +260,8 @@ def _overlooked_starts(
     missed = inner.violations(margins, "sum")
     missed = np.where(np.isfinite(units).all(axis=0), missed, np.inf)
     result = []
-    for one in designs:
-        t = ((units - one.level[:, None]) / one.way[:, None]).max(axis=0)
+    for design in designs:
+        t = ((units - design.level[:, None]) / design.way[:, None]).max(axis=0)
         order = np.lexsort((t, missed))
         order = order[np.isfinite(missed[order]) & (order >= (own is not None))][:KEEP]
         begun = [] if own is None else [tracer.to_t(np.append(z[:, 0], 0.0), float(t[0]))]

@@ -89,8 +89,8 @@ class Objectives:
         with np.errstate(all="ignore"):
             return np.asarray(self._stacked(self.evaluate(x), x), dtype=float)
 
-    def _stacked(self, found: PointValues, points: Array) -> Array:
-        parts = found.objective
+    def _stacked(self, point_values: PointValues, points: Array) -> Array:
+        parts = point_values.objective
         return np.stack([np.broadcast_to(np.asarray(f), points.shape[1:]) for f in parts])
 
     def scaled(self, ideal: Vector, width: Vector) -> ParametricProblem:

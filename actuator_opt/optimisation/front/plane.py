@@ -162,8 +162,8 @@ def fill_plane(search: FrontSearch, count: int) -> None:
 def _nearest(search: FrontSearch, steps: int) -> list[Place]:
     """The lattice places nearest to the known designs."""
     found: set[Place] = set()
-    for one in search.designs:
-        exact = (one.unit - one.unit.mean()) * steps
+    for design in search.designs:
+        exact = (design.unit - design.unit.mean()) * steps
         whole = np.rint(exact).astype(int)
         whole[int(np.argmax(np.abs(exact - whole)))] -= whole.sum()
         found.add(tuple(whole.tolist()))
@@ -224,11 +224,13 @@ def _all_bettered(search: FrontSearch, found: Sequence[FrontDesign | None]) -> l
     return search.tracer.placed(done)
 
 
-def _freed(search: FrontSearch, one: FrontDesign, firm: npt.NDArray[np.bool_]) -> FrontStart:
+def _freed(
+    search: FrontSearch, front_design: FrontDesign, firm: npt.NDArray[np.bool_]
+) -> FrontStart:
     """A start that improves the other objectives, with the firm ones bounded."""
-    level, way = np.where(firm, one.unit + HOLD, one.level), (~firm).astype(float)
-    t = float((one.unit - one.level)[~firm].max())
-    return FrontStart(level, way, search.tracer.to_t(one.point.z, t), one.hessian)
+    level, way = np.where(firm, front_design.unit + HOLD, front_design.level), (~firm).astype(float)
+    t = float((front_design.unit - front_design.level)[~firm].max())
+    return FrontStart(level, way, search.tracer.to_t(front_design.point.z, t), front_design.hessian)
 
 
 def _renormalised(search: FrontSearch) -> bool:
@@ -281,13 +283,13 @@ def _apart(search: FrontSearch, chosen: Indices) -> list[tuple[int, int]]:
     return sorted(found, key=lambda pair: -found[pair])
 
 
-def _middle(search: FrontSearch, one: FrontDesign, other: FrontDesign) -> FrontStart:
+def _middle(search: FrontSearch, front_design: FrontDesign, other: FrontDesign) -> FrontStart:
     """A start at the level midway between two designs."""
-    level = (one.unit + other.unit) / 2
+    level = (front_design.unit + other.unit) / 2
     level = level - level.mean() + 1 / len(level)
-    z = (one.point.z + other.point.z) / 2
-    t = float((one.unit + other.unit).mean() / 2 - 1 / len(level))
-    return FrontStart(level, np.ones(len(level)), search.tracer.to_t(z, t), one.hessian)
+    z = (front_design.point.z + other.point.z) / 2
+    t = float((front_design.unit + other.unit).mean() / 2 - 1 / len(level))
+    return FrontStart(level, np.ones(len(level)), search.tracer.to_t(z, t), front_design.hessian)
 
 
 def _crossed(search: FrontSearch) -> bool:
@@ -313,10 +315,10 @@ def _crossed(search: FrontSearch) -> bool:
     return bool(others) and not before <= {id(search.designs[k]) for k in search.chosen()}
 
 
-def _elsewhere(one: FrontDesign, new: FrontDesign) -> bool:
+def _elsewhere(front_design: FrontDesign, new: FrontDesign) -> bool:
     """Whether an equally good design at the same level differs."""
-    far = np.abs(new.point.z[:-1] - one.point.z[:-1]).max() > ELSEWHERE
-    return bool(far and new.point.objective < one.point.objective + BETTER)
+    far = np.abs(new.point.z[:-1] - front_design.point.z[:-1]).max() > ELSEWHERE
+    return bool(far and new.point.objective < front_design.point.objective + BETTER)
 
 
 def _doubtful(search: FrontSearch, chosen: Indices) -> list[tuple[int, int]]:
@@ -351,7 +353,7 @@ def fill_line(search: FrontSearch, count: int) -> None:
             break
         tell("following the front", 1 - missing / count)
         search.sort()
-        places = np.array([one.level[0] for one in search.designs])
+        places = np.array([design.level[0] for design in search.designs])
         more = plane.between(places, search.units, min(missing, GROWTH * (len(places) - 1) - 1))
         if not len(more):
             break
@@ -362,7 +364,7 @@ def fill_line(search: FrontSearch, count: int) -> None:
 def between_on_line(search: FrontSearch, places: Sequence[float] | Vector) -> list[FrontStart]:
     """Starts at places u between the known designs, from their neighbours."""
     search.sort()
-    known = [one.level[0] for one in search.designs]
+    known = [design.level[0] for design in search.designs]
     return [
         _between(search.designs, int(np.searchsorted(known, u)), float(u), np.ones(2))
         for u in places
@@ -509,7 +511,7 @@ def _pairs(kept: tracer.Indices) -> Iterator[tuple[int, int]]:
 
 def _among(search: FrontSearch, left: int, right: int) -> tracer.Indices:
     """Designs at levels between two given ones, in order."""
-    levels = np.array([one.level[0] for one in search.designs])
+    levels = np.array([design.level[0] for design in search.designs])
     low, high = sorted((levels[left], levels[right]))
     order = np.argsort(levels, kind="stable")
     within = (levels[order] >= low) & (levels[order] <= high)

@@ -229,11 +229,11 @@ class Tracer:
         """The designs at their own levels, for which every design of a front is the best."""
         if not designs:
             return []
-        units = self.unit(np.stack([one.point.x[:-1] for one in designs], axis=1))
+        units = self.unit(np.stack([design.point.x[:-1] for design in designs], axis=1))
         way = np.ones(len(units))
         starts = [
-            FrontStart(unit, way, self.to_t(one.point.z, 0.0), one.hessian)
-            for one, unit in zip(designs, units.T, strict=True)
+            FrontStart(unit, way, self.to_t(design.point.z, 0.0), design.hessian)
+            for design, unit in zip(designs, units.T, strict=True)
         ]
         return self._at_own(starts)
 
@@ -246,11 +246,11 @@ class Tracer:
         points = self._changed(starts).points(z)
         return [self._design(s, p, s.hessian) for s, p in zip(starts, points, strict=True)]
 
-    def prices(self, one: FrontDesign) -> Vector:
+    def prices(self, front_design: FrontDesign) -> Vector:
         """Price of each objective's level at a design (objectives,)."""
         m, count = len(self.objectives.problem.constraint_names), self.objectives.count
-        jacobian = self.evaluator.jacobian(one.point)
-        active = kkt.active_set(self.evaluator, one.point)
+        jacobian = self.evaluator.jacobian(front_design.point)
+        active = kkt.active_set(self.evaluator, front_design.point)
         equalities = jacobian[1 + self.evaluator.constraint_count :]
         held, _ = kkt.multipliers(jacobian[0], active, equalities)
         every = np.zeros(self.evaluator.constraint_count)
@@ -293,12 +293,12 @@ class Tracer:
             )
             units = np.concatenate([np.stack([d.unit for d in designs], axis=1), rest], axis=1)
             better = []
-            for k, one in enumerate(designs):
+            for k, design in enumerate(designs):
                 if k in lost:
                     continue
-                levels = ((units - one.level[:, None]) / one.way[:, None]).max(axis=0)
+                levels = ((units - design.level[:, None]) / design.way[:, None]).max(axis=0)
                 best = int(np.argmin(levels))
-                if levels[best] < one.point.objective - BETTER:
+                if levels[best] < design.point.objective - BETTER:
                     better.append((k, x[:, best], float(levels[best])))
             if not better:
                 break
@@ -317,13 +317,13 @@ class Tracer:
         """The designs, each replaced where a descent from another start is better."""
         news = list(begun)
         while news:
-            levels = np.stack([one.level for one in news], axis=1)
+            levels = np.stack([new.level for new in news], axis=1)
             starts = []
-            for one in designs:
-                near = news[int(np.argmin(distances(levels, one.level)))]
-                t = float(((near.unit - one.level) / one.way).max())
+            for design in designs:
+                near = news[int(np.argmin(distances(levels, design.level)))]
+                t = float(((near.unit - design.level) / design.way).max())
                 starts.append(
-                    FrontStart(one.level, one.way, self.to_t(near.point.z, t), near.hessian)
+                    FrontStart(design.level, design.way, self.to_t(near.point.z, t), near.hessian)
                 )
             news = []
             for k, new in enumerate(self._descended(starts)):
@@ -340,7 +340,7 @@ class Tracer:
 
     def _changed(self, starts: Sequence[FrontStart]) -> ChangedProblems:
         """The problems at the levels of some starts."""
-        levels = np.stack([np.concatenate([one.level, one.way]) for one in starts], axis=1)
+        levels = np.stack([np.concatenate([start.level, start.way]) for start in starts], axis=1)
         return ChangedProblems(self.parametric, self.evaluator, levels)
 
     def _descent(self, hessian: Vector, radius: float = RADIUS) -> Descent:
@@ -405,13 +405,15 @@ class Tracer:
             return None
         return self.located(start, best.x)
 
-    def polished(self, one: FrontDesign) -> FrontDesign:
+    def polished(self, front_design: FrontDesign) -> FrontDesign:
         """The design after exact Newton steps."""
-        own = self.like(self.at(one.level, one.way))
-        point = kkt.polish(own, own.point(one.point.z))
+        own = self.like(self.at(front_design.level, front_design.way))
+        point = kkt.polish(own, own.point(front_design.point.z))
         own.jacobian(point)
         return self._design(
-            FrontStart(one.level, one.way, point.z, one.hessian), point, one.hessian
+            FrontStart(front_design.level, front_design.way, point.z, front_design.hessian),
+            point,
+            front_design.hessian,
         )
 
     def located(self, start: FrontStart, x: Vector) -> FrontDesign:
@@ -477,7 +479,7 @@ class FrontSearch:
         """As `found`, but continue from a known design where it is better at the level."""
         found = self.found(starts)
         good = [k for k, one in enumerate(found) if one is not None]
-        known = np.stack([one.point.x[:-1] for one in self.designs], axis=1)
+        known = np.stack([design.point.x[:-1] for design in self.designs], axis=1)
         more = np.concatenate([self.others, known], axis=1)
         rest = np.concatenate([self.rest, self.units], axis=1)
         exchanged = self.tracer.exchange([one for one in found if one is not None], more, rest)
@@ -495,7 +497,7 @@ class FrontSearch:
 
     def _pass(self, designs: Sequence[FrontDesign]) -> None:
         """Record the objectives of designs that are replaced."""
-        self.passed += [self.tracer.values(one.unit[:, None])[:, 0] for one in designs]
+        self.passed += [self.tracer.values(design.unit[:, None])[:, 0] for design in designs]
 
     def rescale(self, low: Vector, wide: Vector) -> None:
         """Normalise to another range (objectives,), in current units."""
@@ -539,7 +541,7 @@ class FrontSearch:
     def cross(self) -> None:
         """Retry each side of a jump in the variables from the other side."""
         self.sort()
-        z = np.stack([one.point.z[:-1] for one in self.designs], axis=1)
+        z = np.stack([design.point.z[:-1] for design in self.designs], axis=1)
         steps = np.abs(np.diff(z, axis=1)).max(axis=0)
         starts, chosen = [], []
         for k in np.flatnonzero(steps > JUMP * np.median(steps)).tolist():
@@ -564,7 +566,7 @@ class FrontSearch:
     @property
     def units(self) -> Vector:
         """Normalised objectives of all designs (objectives, k)."""
-        return np.stack([one.unit for one in self.designs], axis=1)
+        return np.stack([design.unit for design in self.designs], axis=1)
 
     def chosen(self) -> Indices:
         """The distinct non-dominated designs, those at all levels first."""

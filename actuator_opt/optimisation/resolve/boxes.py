@@ -100,9 +100,9 @@ def _finished(task: BoxTask, end: Nearest) -> Nearest:
     """Continue by SLSQP from a point that is only feasible."""
     if end.optimum is None or end.followed:
         return end
-    found = nlopt_wrapper.run(task.evaluator, end.optimum, "LD_SLSQP", most=MOST_STEPS).point
-    found = kkt.polish(task.evaluator, found, iterations=8, tolerance=1e-10)
-    return Nearest(found if _met(found) else end.optimum)
+    point = nlopt_wrapper.run(task.evaluator, end.optimum, "LD_SLSQP", most=MOST_STEPS).point
+    point = kkt.polish(task.evaluator, point, iterations=8, tolerance=1e-10)
+    return Nearest(point if _met(point) else end.optimum)
 
 
 def _approach(task: BoxTask) -> Steps[Nearest]:

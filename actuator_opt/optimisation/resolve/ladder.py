@@ -182,15 +182,15 @@ class _Ends:
         return self.optima, inside
 
 
-def _beaten(one: Point | None) -> float:
+def _beaten(point: Point | None) -> float:
     """Objective below which another design is clearly better."""
-    return np.inf if one is None else one.objective - BETTER * abs(one.objective)
+    return np.inf if point is None else point.objective - BETTER * abs(point.objective)
 
 
-def _better(one: Point | None, other: Point | None) -> Point | None:
-    if one is None or other is None:
-        return one or other
-    return other if other.objective < one.objective else one
+def _better(point: Point | None, other: Point | None) -> Point | None:
+    if point is None or other is None:
+        return point or other
+    return other if other.objective < point.objective else point
 
 
 def other_optima(evaluator: Evaluator, solution: Solution) -> list[Point]:

@@ -414,7 +414,7 @@ def descents_from(
     parts = [evaluators[k].columns(z[:, None]) for k, z in places]
     owners = np.repeat([k for k, _ in places], parts[0].shape[1]).astype(np.intp)
     values = np.split(rows(np.concatenate(parts, axis=1), owners), len(parts), axis=1)
-    tasks = [DescentTask(one, []) for one in evaluators]
+    tasks = [DescentTask(evaluator, []) for evaluator in evaluators]
     for (k, z), part in zip(places, values, strict=True):
         point = evaluators[k].entered(z, part)
         if point.valid:
@@ -472,9 +472,9 @@ def _descent(evaluator: Evaluator, point: Point, hessian: Vector) -> Descent:
 def distinct_ends(points: Sequence[Point]) -> list[Point]:
     """Distinct ends of runs, the best first."""
     kept: list[Point] = []
-    for one in sorted(points, key=lambda p: (p.violation > ARRIVAL[2], p.objective)):
-        if not any(_near(one, known) for known in kept):
-            kept.append(one)
+    for point in sorted(points, key=lambda p: (p.violation > ARRIVAL[2], p.objective)):
+        if not any(_near(point, known) for known in kept):
+            kept.append(point)
     return kept
 
 

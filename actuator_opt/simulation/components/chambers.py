@@ -406,58 +406,65 @@ def side(circuit: Circuit, name: Chamber, ends: str, start: float) -> ChamberPor
 
 
 def connect(
-    circuit: Circuit, one: ChamberPort, ends: str, feed: Expression, *, held: float
+    circuit: Circuit, chamber_port: ChamberPort, ends: str, feed: Expression, *, held: float
 ) -> Expression:
     """Flow into the chamber; `feed` is the flow at the end, `held` a pressure held there."""
-    feed = FEEDS[ends](circuit, one, feed, held)
-    if one.line is not None:
-        feed = _through_line(circuit, one, one.line, feed)
-    if one.outer is not None:
-        return -_through_throttle(circuit, one, one.outer, feed)
+    feed = FEEDS[ends](circuit, chamber_port, feed, held)
+    if chamber_port.line is not None:
+        feed = _through_line(circuit, chamber_port, chamber_port.line, feed)
+    if chamber_port.outer is not None:
+        return -_through_throttle(circuit, chamber_port, chamber_port.outer, feed)
     return feed
 
 
-def _through_line(circuit: Circuit, one: ChamberPort, flow: Symbol, feed: Expression) -> Expression:
+def _through_line(
+    circuit: Circuit, chamber_port: ChamberPort, flow: Symbol, feed: Expression
+) -> Expression:
     """Flow of the line towards the chamber."""
-    data, word = circuit.plant.lines[one.name], one.name.upper()
-    inner = one.pressure if one.outer is None else one.outer
+    data, word = circuit.plant.lines[chamber_port.name], chamber_port.name.upper()
+    inner = chamber_port.pressure if chamber_port.outer is None else chamber_port.outer
     lost = data.resistance * flow
-    circuit.system.rate(flow, (one.end - inner - lost) / data.inertance)
-    circuit.door(f"line {word}", lost * flow, state=f"line loss {one.name}")
+    circuit.system.rate(flow, (chamber_port.end - inner - lost) / data.inertance)
+    circuit.door(f"line {word}", lost * flow, state=f"line loss {chamber_port.name}")
     motion = 0.5 * data.inertance * flow * flow
     circuit.audit.stored.append((f"oil in motion in line {word}", motion))
-    if isinstance(one.end, Symbol):
-        _far(circuit, one, f"far end {word}", one.end, feed - flow)
+    if isinstance(chamber_port.end, Symbol):
+        _far(circuit, chamber_port, f"far end {word}", chamber_port.end, feed - flow)
     else:
-        circuit.door("held ports", one.end * flow, state=f"held work {one.name}", into=True)
+        circuit.door(
+            "held ports", chamber_port.end * flow, state=f"held work {chamber_port.name}", into=True
+        )
     return flow
 
 
 def _through_throttle(
-    circuit: Circuit, one: ChamberPort, outer: Expression, feed: Expression
+    circuit: Circuit, chamber_port: ChamberPort, outer: Expression, feed: Expression
 ) -> Expression:
     """Flow of the one-way valve out of the chamber."""
-    word = one.name.upper()
+    word = chamber_port.name.upper()
     assert circuit.plant.throttle is not None
-    drop = one.pressure - outer
+    drop = chamber_port.pressure - outer
     flow = one_way_valve.one_way_flow(pressure_difference=drop, **circuit.plant.throttle)
-    circuit.door(f"throttle {word}", drop * flow, state=f"throttle loss {one.name}")
+    circuit.door(f"throttle {word}", drop * flow, state=f"throttle loss {chamber_port.name}")
     circuit.system.signal(
-        f"flow_throttle_{one.name}", f"flow out of chamber {word}", SCENARIOS["flow_value"], flow
+        f"flow_throttle_{chamber_port.name}",
+        f"flow out of chamber {word}",
+        SCENARIOS["flow_value"],
+        flow,
     )
     if isinstance(outer, Symbol):
-        _far(circuit, one, f"behind throttle {word}", outer, feed + flow)
+        _far(circuit, chamber_port, f"behind throttle {word}", outer, feed + flow)
     else:
-        circuit.door("held ports", outer * flow, state=f"held work {one.name}")
+        circuit.door("held ports", outer * flow, state=f"held work {chamber_port.name}")
     return flow
 
 
 def _far(
-    circuit: Circuit, one: ChamberPort, name: str, pressure: Symbol, inflow: Expression
+    circuit: Circuit, chamber_port: ChamberPort, name: str, pressure: Symbol, inflow: Expression
 ) -> None:
     """Volume at the far end: half of the line behind a throttle."""
-    data = circuit.plant.lines[one.name]
-    share = 0.5 if one.outer is not None and one.line is not None else 1.0
+    data = circuit.plant.lines[chamber_port.name]
+    share = 0.5 if chamber_port.outer is not None and chamber_port.line is not None else 1.0
     if share * data.far_volume < LEAST_NODE:
         circuit.system.notes.append(f"{name}: volume taken as {LEAST_NODE * 1e6:.2g} ml")
     node(
@@ -470,19 +477,19 @@ def _far(
     )
 
 
-def _reducing(circuit: Circuit, one: ChamberPort, held: float) -> Expression:
+def _reducing(circuit: Circuit, chamber_port: ChamberPort, held: float) -> Expression:
     """Flow of the reducing valve into the line."""
     system, data = circuit.system, circuit.plant.reducing_valve
     assert data is not None
-    regulated = system.state(f"reducing valve {one.name}", 0.0, tolerance=FLOW)
-    rate = system.state(f"reducing valve rate {one.name}", 0.0, tolerance=100 * FLOW)
+    regulated = system.state(f"reducing valve {chamber_port.name}", 0.0, tolerance=FLOW)
+    rate = system.state(f"reducing valve rate {chamber_port.name}", 0.0, tolerance=100 * FLOW)
     system.rate(regulated, rate)
     system.rate(
         rate,
         supply.reducing_valve_acceleration(
             flow=regulated,
             rate=rate,
-            pressure=one.end,
+            pressure=chamber_port.end,
             set_pressure=held,
             conductance=data["conductance"],
             natural_frequency=data["natural_frequency"],
@@ -491,26 +498,34 @@ def _reducing(circuit: Circuit, one: ChamberPort, held: float) -> Expression:
     )
     flow = supply.reducing_valve_flow(
         flow=regulated,
-        pressure=one.end,
+        pressure=chamber_port.end,
         set_pressure=held,
         largest_flow=REDUCING_FLOW,
         passive_conductance=data["passive_conductance"],
     )
-    circuit.door("held ports", one.end * flow, state=f"reducing work {one.name}", into=True)
+    circuit.door(
+        "held ports", chamber_port.end * flow, state=f"reducing work {chamber_port.name}", into=True
+    )
     return flow
 
 
-def _given(circuit: Circuit, one: ChamberPort, feed: Expression, held: float) -> Expression:
+def _given(
+    circuit: Circuit, chamber_port: ChamberPort, feed: Expression, held: float
+) -> Expression:
     """Flow from the valve, or zero."""
     return feed
 
 
-def _nothing(circuit: Circuit, one: ChamberPort, feed: Expression, held: float) -> Expression:
+def _nothing(
+    circuit: Circuit, chamber_port: ChamberPort, feed: Expression, held: float
+) -> Expression:
     return 0.0
 
 
-def _regulated(circuit: Circuit, one: ChamberPort, feed: Expression, held: float) -> Expression:
-    return _reducing(circuit, one, held)
+def _regulated(
+    circuit: Circuit, chamber_port: ChamberPort, feed: Expression, held: float
+) -> Expression:
+    return _reducing(circuit, chamber_port, held)
 
 
 FEEDS = per_kind(

@@ -169,18 +169,18 @@ class RecordFitProblem:
         scenario, plant = self.put(x)
         gains = None if self.tuned is None else self.tuned.gains
         circuit = assemble(scenario, plant, self.records, gains)
-        idle = {id(one[1]) for one in circuit.audit.flows}
+        idle = {id(flow[1]) for flow in circuit.audit.flows}
         idle |= {id(one[2]) for one in circuit.audit.mass}
         states = circuit.system.states
-        circuit.system.states = [one for one in states if id(one.symbol) not in idle]
+        circuit.system.states = [state for state in states if id(state.symbol) not in idle]
         compiled = circuit.system.compiled()
         self.runs += 1
-        found = integrate(
+        trajectory = integrate(
             compiled, duration=scenario.duration, sample_time=self.step, relative=RELATIVE
         )
-        signals = compiled.signals(found.time, found.states, found.flags)
-        self._known = key, found.time, signals
-        return found.time, signals
+        signals = compiled.signals(trajectory.time, trajectory.states, trajectory.flags)
+        self._known = key, trajectory.time, signals
+        return trajectory.time, signals
 
     def apart(self, x: Array) -> dict[str, Array]:
         """Simulated less measured, by channel."""
@@ -643,16 +643,18 @@ def fit(
     )  # fmt: skip
 
 
-def _natural(one: FitParameter, told: FittedParameters, problem: RecordFitProblem) -> Parameter:
+def _natural(
+    fit_parameter: FitParameter, fitted_parameters: FittedParameters, problem: RecordFitProblem
+) -> Parameter:
     """A parameter in its own unit from the searched value.
 
     Bounds apply to the parameter itself, not to its logarithm, as the effect of an air content or a
     leakage is proportional. None is below zero.
     """
-    x = told.parameters[one.name]
+    x = fitted_parameters.parameters[fit_parameter.name]
     half = x.upper - x.value
-    if not one.positive:
-        near = one.near or float(problem.sizes[problem.names.index(one.name)])
+    if not fit_parameter.positive:
+        near = fit_parameter.near or float(problem.sizes[problem.names.index(fit_parameter.name)])
         sure = bool(half <= max(WEAK * abs(x.value), near))
         return Parameter(x.value, float(x.lower), float(x.upper), x.standard_error, sure)
     value = float(np.exp(x.value))
@@ -670,13 +672,13 @@ def _edge(problem: RecordFitProblem, x: Array, k: int) -> Literal["lower", "uppe
     return "upper" if problem.high[k] - x[k] < room else None
 
 
-def _correlations(told: FittedParameters) -> dict[tuple[str, str], float]:
+def _correlations(fitted_parameters: FittedParameters) -> dict[tuple[str, str], float]:
     """Correlations between the errors of bounded parameters."""
     found = {}
-    for (i, one), (k, other) in combinations(enumerate(told.parameters), 2):
-        size = np.sqrt(told.covariance[i, i] * told.covariance[k, k])
+    for (i, one), (k, other) in combinations(enumerate(fitted_parameters.parameters), 2):
+        size = np.sqrt(fitted_parameters.covariance[i, i] * fitted_parameters.covariance[k, k])
         if np.isfinite(size) and size > 0:
-            found[one, other] = float(np.clip(told.covariance[i, k] / size, -1.0, 1.0))
+            found[one, other] = float(np.clip(fitted_parameters.covariance[i, k] / size, -1.0, 1.0))
     return found
 
 

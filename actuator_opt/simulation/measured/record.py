@@ -117,8 +117,8 @@ def parse_measured(
         text, name=name, columns=columns, channels=COLUMNS, units=units, needed=SIGNALS
     )
     notes = [
-        f"{one}; channels are {', '.join(SIGNALS)}" if one.startswith("columns that") else one
-        for one in record.notes
+        f"{note}; channels are {', '.join(SIGNALS)}" if note.startswith("columns that") else note
+        for note in record.notes
     ]
     return AlignedRecord.of(replace(record, notes=tuple(notes)))
 

@@ -188,18 +188,20 @@ class Stand:
         gains = None if gain is None else ControllerGains(gain, inf, 0.0)
         circuit = assemble(scenario, self.plant, {}, gains)
         system = circuit.system
-        system.states = [one for one in system.states if not one.integral]
+        system.states = [state for state in system.states if not state.integral]
         compiled = system.compiled()
-        names = [one.name for one in system.states]
+        names = [state.name for state in system.states]
         if start is not None:
             own = dict(zip(names, compiled.initial.tolist(), strict=True))
             begin = np.array([start.get(name, value) for name, value in own.items()])
             compiled = replace(compiled, initial=begin)
         relative = max(RELATIVE * min(self.scale, 1.0), FINEST)
-        found = integrate(compiled, duration=duration, sample_time=sample_time, relative=relative)
-        signals = compiled.signals(found.time, found.states, found.flags)
-        last = dict(zip(names, found.states[:, -1].tolist(), strict=True))
-        return RunRecord(found.time, signals, last)
+        trajectory = integrate(
+            compiled, duration=duration, sample_time=sample_time, relative=relative
+        )
+        signals = compiled.signals(trajectory.time, trajectory.states, trajectory.flags)
+        last = dict(zip(names, trajectory.states[:, -1].tolist(), strict=True))
+        return RunRecord(trajectory.time, signals, last)
 
     def _control(self, gain: float, reference: Sequence[PositionSignal]) -> Controller:
         """A proportional position loop, with the rate limit of the scenario."""
@@ -294,7 +296,7 @@ class Stand:
             spool=None if spool is None else (float(np.min(spool)), float(np.max(spool))),
             pressures=(float(np.mean(chambers[0])), float(np.mean(chambers[1]))),
             pulse=0.5 * float(np.ptp(chambers[0])),
-            lowest=float(min(np.min(one) for one in chambers)),
+            lowest=float(min(np.min(chamber) for chamber in chambers)),
             stopped=bool(np.any(signals["stop_force"] != 0)),
         )
 
@@ -502,8 +504,8 @@ def phase_margin(
     values = [above(share) for share in grid]
     found = [
         float(brentq(above, low, high, xtol=EXACT))
-        for low, high, one, two in zip(grid, grid[1:], values, values[1:], strict=False)
-        if (one > 0) != (two > 0)
+        for low, high, value, two in zip(grid, grid[1:], values, values[1:], strict=False)
+        if (value > 0) != (two > 0)
     ]
     one = next((seen[share] for share in found if _no_sine(seen[share])), seen[grid[0]])
     why = _no_sine(one)
@@ -595,14 +597,14 @@ def dynamic_stiffness(
     names = ("dynamic_stiffness", "dynamic_phase")
     if facts.stopped:
         return ExperimentResult(dict.fromkeys(names), how, facts, "the piston creeps onto its stop")
-    one = dynamic_stiffness_of_record(
+    stiffness = dynamic_stiffness_of_record(
         time=record.time,
         position=record.signals["position"],
         force=-record.signals["load_force"],
         frequency=frequency,
     ).stiffness
     return ExperimentResult(
-        dict(zip(names, (abs(one), float(np.angle(one))), strict=True)), how, facts
+        dict(zip(names, (abs(stiffness), float(np.angle(stiffness))), strict=True)), how, facts
     )
 
 

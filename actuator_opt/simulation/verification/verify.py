@@ -149,13 +149,17 @@ def verify(
         tally.runs += 1
         result = simulate(scenario, subject, records=records)
     bench = _Bench(scenario, LinearTier.of(subject), tally, scale)
-    asked = [one for one in evaluate(subject).requirements if one.metric in DYNAMIC]
-    rows = [bench.row(one) for one in steps("verifying each requirement", asked)]
+    asked = [
+        requirement
+        for requirement in evaluate(subject).requirements
+        if requirement.metric in DYNAMIC
+    ]
+    rows = [bench.row(step) for step in steps("verifying each requirement", asked)]
     rows += [
         VerifiedRequirement(
-            "scenario", one.metric, one.sense, one.limit, None, None, one.value, None, one.met,
-            where=scenario.name, how="the scenario itself", why=one.why)
-        for one in result.requirements
+            "scenario", requirement.metric, requirement.sense, requirement.limit, None, None, requirement.value, None, requirement.met,
+            where=scenario.name, how="the scenario itself", why=requirement.why)
+        for requirement in result.requirements
     ]  # fmt: skip
     return Verification(
         subject.design.name,
