@@ -200,7 +200,8 @@ class Session:
     def __repr__(self) -> str:
         """Name and objective of the design."""
         optimum = self.optimum
-        return f"<Session {optimum.design.name!r}: {optimum.objective_metric} {self._objective_text()}>"
+        name, metric = optimum.design.name, optimum.objective_metric
+        return f"<Session {name!r}: {metric} {self._objective_text()}>"
 
     def solve(
         self, changes: Changes, *, prices: bool = False, stop: Callable[[], bool] | None = None

@@ -315,7 +315,8 @@ class _Way:
             rest += f"; not covered, as missed anyway: {', '.join(made.left_out)}"
         if self.refused:
             return (
-                f"{_none(optimisation)} the reserves needed for a yield of {_percent(self.target)}: "
+                f"{_none(optimisation)} the reserves needed for a yield of"
+                f" {_percent(self.target)}: "
                 f"{self._wanting()}. The design shown meets all limits in {shown} of "
                 f"{made.samples} independent draws; without reserves {quantity.label} is "
                 f"{before} at a yield of {_percent(made.nominal_rate)}{rest}. The changes "

@@ -157,7 +157,8 @@ def verify(
     rows = [bench.row(step) for step in steps("verifying each requirement", asked)]
     rows += [
         VerifiedRequirement(
-            "scenario", requirement.metric, requirement.sense, requirement.limit, None, None, requirement.value, None, requirement.met,
+            "scenario", requirement.metric, requirement.sense, requirement.limit, None, None,
+            requirement.value, None, requirement.met,
             where=scenario.name, how="the scenario itself", why=requirement.why)
         for requirement in result.requirements
     ]  # fmt: skip
