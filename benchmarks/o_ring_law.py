@@ -5,7 +5,7 @@
 
 The ring is in plane strain, of incompressible neo-Hookean rubber, without friction, in a groove
 1.4 sections wide with rigid walls. The groove's width does not matter while the ring does not fill
-it. The coefficients stand in `actuator_opt/models/seals.py`; `tests/test_models_seal_fit.py` holds
+it. The coefficients stand in `actuator_opt/models/seals.py`; `tests/models/test_models_seal_fit.py` holds
 them against the grid.
 """
 

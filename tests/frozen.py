@@ -45,7 +45,8 @@ from pathlib import Path
 from typing import Any
 from unittest import mock
 
-sys.path[0:0] = [str(Path(__file__).resolve().parents[1]), str(Path(__file__).resolve().parent)]
+HERE = Path(__file__).resolve().parent
+sys.path[0:0] = [str(HERE.parent), str(HERE), str(HERE / "cases")]
 
 from frozen_cases import ROOT, SHIPPED, Case, Step, cases  # noqa: E402
 

@@ -2,7 +2,7 @@
 
 Of every input it must hold: no traceback, an exit code that README names and never 70, no more than
 `BOUND` seconds of processor time, and under ``--json`` one JSON object without NaN. Warnings count
-as faults of the program. `tests/test_fuzz.py` runs a few hundred inputs; more:
+as faults of the program. `tests/cli/test_fuzz.py` runs a few hundred inputs; more:
 
     python tests/fuzz.py --count 5000 --seed 1
     python tests/fuzz.py --seed 1 --only 1234 --debug    # one of them again, with its traceback

@@ -1,0 +1,263 @@
+"""Joints of caps and head: every kind is whole, and nothing incomplete is let in."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import pkgutil
+from dataclasses import MISSING, fields, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import actuator_opt as ao
+from actuator_opt import joints
+from actuator_opt.base import kinds
+from actuator_opt.base.errors import InputError
+from actuator_opt.design import read_design, with_values
+from actuator_opt.design.schema import json_schema
+from actuator_opt.design.writer import init_text
+from actuator_opt.evaluation import compute
+from actuator_opt.evaluation.validity import describe, function_of
+from actuator_opt.joints.joint import Joint, check
+from actuator_opt.joints.kinds import JOINTS
+from actuator_opt.metrics import METRICS
+
+DESIGNS = Path(__file__).parents[2] / "designs"
+STEEL = (DESIGNS / "steel_baseline.yaml").read_text("utf-8").partition("\nvariables:")[0] + "\n"
+RETENTION = STEEL[STEEL.index("retention:\n") : STEEL.index("\nclevis:")]
+BLOCKS = {
+    "bond": "type: bond\n  material: epoxy_structural\n  length: 20 mm\n  wall: 2 mm\n",
+    "thread": "type: thread\n  length: 10 mm\n  wall: 2 mm\n  thread:\n    pitch: 1 mm\n",
+    "tie_rods": "type: tie_rods\n  material: steel_bolt_12_9\n  length: 8 mm\n  count: 6\n"
+    "  preload: 40 kN\n  thread:\n    diameter: 6 mm\n    pitch: 1 mm\n",
+}
+"""A retention of each kind on a steel cylinder."""
+BARE = STEEL.replace(RETENTION, "")
+VALUES = {
+    "wall": "3 mm",
+    "material": "steel_42crmo4",
+    "count": "7",
+    "preload": "5 kN",
+    "thread": "{diameter: 6 mm, pitch: 1 mm}",
+}
+"""A value of every key that some joint does not use, none of them a default."""
+
+each = pytest.mark.parametrize("joint", JOINTS.values(), ids=JOINTS.names)
+
+
+def text_of(block):
+    """The steel cylinder with another retention."""
+    return STEEL.replace(RETENTION, f"retention:\n  {block}")
+
+
+def faults(text):
+    """Every fault of a file."""
+    with pytest.raises(InputError) as error:
+        read_design(text, materials=ao.load_library())
+    return error.value.diagnostics
+
+
+def without(block, key):
+    """A block without the line of a key and what stands below it."""
+    lines, kept, depth = block.splitlines(), [], None
+    for line in lines:
+        indent = len(line) - len(line.lstrip())
+        if depth is not None and indent > depth:
+            continue
+        depth = indent if line.lstrip().startswith(f"{key}:") else None
+        if depth is None:
+            kept.append(line)
+    return "\n".join(kept) + "\n"
+
+
+# --- every kind -----------------------------------------------------------------------------
+
+
+def modules_with_joints(package):
+    """Every joint that stands in a module of a package, by module."""
+    return {
+        name: joint
+        for _, name, _ in pkgutil.iter_modules(package.__path__)
+        if isinstance(
+            joint := getattr(importlib.import_module(f"{package.__name__}.{name}"), "JOINT", None),
+            Joint,
+        )
+    }
+
+
+def unregistered(found):
+    """Joints of modules that the registry does not list, and modules named otherwise."""
+    return [name for name, joint in found.items() if JOINTS.get(name) is not joint]
+
+
+def test_every_module_is_registered_under_its_name():
+    """A joint is in the registry under the name of its module; one that is not is found."""
+    found = modules_with_joints(joints)
+    assert tuple(sorted(found)) == tuple(sorted(JOINTS.names))
+    assert unregistered(found) == []
+    assert unregistered(found | {"weld": replace(found["bond"], name="weld")}) == ["weld"]
+    assert set(BLOCKS) == set(JOINTS.names)
+
+
+@each
+def test_words(joint):
+    """Name and meaning stand in the schema of the design file and in the start file's comment."""
+    schema = json_schema()["properties"]["retention"]["properties"]["type"]
+    assert joint.name in schema["enum"]
+    assert f"{joint.name}: {joint.help}" in json.dumps(schema)
+    (line,) = (one for one in init_text().splitlines() if one.startswith("  type: bond"))
+    assert joint.name in line
+    with pytest.raises(InputError, match=joint.name):
+        read_design(text_of("type: weld\n  length: 10 mm\n"))
+
+
+@each
+def test_what_it_needs(joint):
+    """Without a key that it needs a file is refused at that key, with a remedy."""
+    for field in joint.fields:
+        parts = field.key.split(".")
+        if field.missing:
+            (fault,) = faults(text_of(without(BLOCKS[joint.name], parts[-1])))
+            assert fault.path == f"retention.{field.key}"
+            assert fault.message == field.missing
+            assert fault.remedy
+
+
+@each
+def test_what_it_refuses(joint):
+    """A key that it does not use is one fault, unless a choice among the joints uses it."""
+    used = {field.key.partition(".")[0] for field in joint.fields}
+    refused = [key for key in VALUES if key not in used]
+    assert refused
+    for key in refused:
+        text = text_of(f"{BLOCKS[joint.name]}  {key}: {VALUES[key]}\n")
+        (fault,) = faults(text)
+        assert fault.path == f"retention.{key}"
+        assert fault.remedy.startswith("remove the line")
+        users = [one.name for one in JOINTS.values() if key in {field.key for field in one.fields}]
+        listed = f"{text}choices:\n  retention.type: [{joint.name}, {users[0]}]\n"
+        assert getattr(read_design(listed).design.retention, key) is not None
+
+
+@each
+def test_a_default_is_no_statement(joint):
+    """Defaults of keys that it does not use stand in every design, and are no fault."""
+    design = read_design(text_of(BLOCKS[joint.name])).design
+    assert with_values(design, {"retention.length": design.retention.length}) == design
+
+
+@each
+def test_its_metrics(joint):
+    """The factors of retention and its own metrics are computed; those of others say why not."""
+    subject = ao.read(text_of(BLOCKS[joint.name])).subject()
+    computed = compute(subject, subject.values()).computed
+    for metric in ("retention_factor", "retention_burst_factor", *joint.metrics):
+        values = computed.metrics[metric].values()
+        assert values
+        assert all(np.isfinite(np.real(value)).all() for value in values)
+        assert metric in METRICS
+    for other in JOINTS.values():
+        for metric, absent in other.metrics.items():
+            if other is not joint:
+                assert metric not in computed.metrics
+                assert computed.why[metric] == absent
+
+
+@each
+def test_its_mass(joint):
+    """What it adds is no less than nothing, and lightens no part by more than it adds."""
+    evaluation = ao.evaluate(ao.read(text_of(BLOCKS[joint.name])))
+    bare = ao.evaluate(ao.read(BARE))
+    gained = {part: evaluation.mass_parts[part] - bare.mass_parts[part] for part in bare.mass_parts}
+    assert sum(gained.values()) > 0
+    assert all(gain >= 0 for part, gain in gained.items() if part != "barrel")
+
+
+def volume(polygon):
+    """Volume of a polygon of the half-section turned about the axis."""
+    turned = sum(
+        (x2 - x1) * (r1 * r1 + r1 * r2 + r2 * r2)
+        for (x1, r1), (x2, r2) in zip(polygon, polygon[1:] + polygon[:1], strict=True)
+    )
+    return abs(np.pi * turned / 3)
+
+
+@each
+def test_its_outline(joint):
+    """The section shows the joint, and its turned parts and bars weigh what the mass model says."""
+    found = ao.read(text_of(BLOCKS[joint.name]))
+    evaluation, bare = ao.evaluate(found), ao.evaluate(ao.read(BARE))
+    drawn = [one for one in evaluation.outlines if one not in bare.outlines]
+    assert drawn
+    numbers = found.subject().numbers
+    names = {"caps": "caps"} | {one.part: "fastening" for one in drawn if one.bars}
+    for outline in drawn:
+        if outline.part not in names:
+            continue
+        part = names[outline.part]
+        if outline.bars:
+            (polygon,) = outline.polygons
+            xs, rs = zip(*polygon, strict=True)
+            size = np.pi / 4 * (max(rs) - min(rs)) ** 2 * (max(xs) - min(xs)) * outline.bars
+        else:
+            size = sum(volume(polygon) for polygon in outline.polygons)
+        weight = size * numbers[f"materials.{outline.material}.density"]
+        own = evaluation.mass_parts[part] - (bare.mass_parts[part] if outline.bars else 0.0)
+        assert weight == pytest.approx(own, rel=1e-9)
+
+
+@each
+def test_its_models(joint):
+    """Each model behind its places has a source, and each place of its factors a model."""
+    for model in joint.models.values():
+        assert describe(function_of(model)).reference
+    subject = ao.read(text_of(BLOCKS[joint.name])).subject()
+    computed = compute(subject, subject.values()).computed
+    for place in computed.metrics["retention_factor"]:
+        assert ("retention_factor", place) in joint.models
+
+
+# --- what is not whole ----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("piece", [field.name for field in fields(Joint)])
+def test_a_missing_piece_is_no_joint(piece):
+    """No piece has a default: leaving one out fails where the joint is made."""
+    assert all(field.default is field.default_factory is MISSING for field in fields(Joint))
+    bond = JOINTS["bond"]
+    pieces = {field.name: getattr(bond, field.name) for field in fields(Joint)}
+    del pieces[piece]
+    with pytest.raises(TypeError, match=piece):
+        Joint(**pieces)
+
+
+def test_two_of_one_name():
+    """A doubled name is refused by the registry."""
+    bond = JOINTS["bond"]
+    with pytest.raises(ValueError, match="bond"):
+        kinds.kinds("joint", bond, replace(JOINTS["thread"], name="bond"))
+
+
+def test_empty_pieces():
+    """A piece that must be given is neither None nor empty text."""
+    for piece in ("help", "noun"):
+        with pytest.raises(ValueError, match=piece):
+            kinds.kinds("joint", replace(JOINTS["bond"], **{piece: ""}))
+    for piece in ("fit", "mass", "outline", "strength"):
+        with pytest.raises(ValueError, match=piece):
+            kinds.kinds("joint", replace(JOINTS["bond"], **{piece: None}))
+
+
+def test_two_that_claim_one_metric():
+    """A metric, a model's place or a key of its own belongs to one joint."""
+    rods = JOINTS["tie_rods"]
+    with pytest.raises(ValueError, match="joint_factor"):
+        check([rods, replace(JOINTS["bond"], metrics=rods.metrics)])
+
+
+def test_an_unknown_word():
+    """The nearest word is offered."""
+    with pytest.raises(KeyError, match="tie_rods"):
+        JOINTS["tie_rod"]

@@ -1,0 +1,165 @@
+"""Every model says what it takes, gives, when it holds, where it comes from, and is tested.
+
+``pytest -s tests/project/test_references.py -k table`` prints equation -> function -> test.
+"""
+
+from __future__ import annotations
+
+import inspect
+import re
+from importlib.resources import files
+from pathlib import Path
+
+import pytest
+import yaml
+from model_samples import public_functions
+
+from actuator_opt.evaluation.validity import describe, function_of
+from actuator_opt.metrics.metric import CRITERION
+from actuator_opt.metrics.table import ROWS
+from actuator_opt.models import elastomer, seals
+
+ROOT = Path(__file__).parents[2]
+REFERENCES = yaml.safe_load((files("actuator_opt") / "references.yaml").read_text("utf-8"))
+FUNCTIONS = public_functions()
+SECTIONS = ["Parameters", "Returns", "Notes", "References", "Examples"]
+UNITLESS = {
+    "bool", "Ends", "PlyStrength", "Sequence[WallLayer]", "tuple[str, str]", "Sequence[TubeLayer]",
+    "LayeredTube", "TubeState", "LineEnd", "Side", "LinearActuator", "OpenLoop",
+    "Chamber",
+}  # fmt: skip
+"""Annotations of arguments that carry no unit of their own."""
+WALKS = {"model_samples.py", "test_models_laws.py", "test_references.py"}
+"""Tests that walk all models: they show laws, not values."""
+LONGEST_RANGE = 90
+"""Characters of a valid range: it is printed in a table of the report."""
+
+
+def keys(text):
+    """Reference keys of a text: bracketed words that have an entry, or look as if they should."""
+    words = set(re.findall(r"\[([A-Z][\w-]*)\]", text))
+    return {word for word in words if word in REFERENCES or re.search(r"[A-Za-z-]\d{3,}", word)}
+
+
+def sections(function):
+    """Head and sections of a docstring, in the order they stand."""
+    parts = re.split(r"^(\w+)\n-{3,}\n", inspect.getdoc(function), flags=re.MULTILINE)
+    return {
+        "": parts[0].strip(),
+        **dict(zip(parts[1::2], map(str.strip, parts[2::2]), strict=True)),
+    }
+
+
+def entries(text):
+    """Description of every name of a Parameters section."""
+    found = {}
+    for names, description in re.findall(
+        r"^(\w[\w, ]*) : (.*(?:\n .*)*)", text, flags=re.MULTILINE
+    ):
+        found.update(dict.fromkeys(re.split(r",\s*", names), description))
+    return found
+
+
+def cited_text():
+    """Every source, test and material file, as one text."""
+    paths = [p for d in ("actuator_opt", "tests", "materials") for p in (ROOT / d).rglob("*")]
+    wanted = [p for p in paths if p.suffix in {".py", ".yaml"} and p.name != "references.yaml"]
+    return "\n".join(p.read_text("utf-8") for p in sorted(wanted))
+
+
+@pytest.mark.parametrize("key", REFERENCES)
+def test_references_are_complete(key):
+    """Author, title, place and year (a note says why one is missing), and how it was seen."""
+    entry = REFERENCES[key]
+    assert set(entry) <= {"author", "title", "where", "year", "doi", "seen", "note"}
+    assert all(entry[part].strip() for part in ("author", "title", "where"))
+    assert entry["seen"] in {"source", "recalled"}
+    assert isinstance(entry["year"], int) or (entry["year"] is None and entry["note"])
+
+
+def test_cited_keys_and_references_match():
+    """No key is cited without an entry, and no entry is idle."""
+    assert keys(cited_text()) == set(REFERENCES)
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_every_model_is_documented(name):
+    """Summary, unit of every argument and result, valid range, source, example: in this order."""
+    parts = sections(FUNCTIONS[name])
+    assert [part for part in parts if part not in ("", "Raises")] == SECTIONS
+    summary = parts[""].partition("\n")[0]
+    assert summary.endswith(".")
+    documented = entries(parts["Parameters"])
+    arguments = inspect.signature(FUNCTIONS[name]).parameters
+    assert set(documented) == set(arguments)
+    for argument, parameter in arguments.items():
+        if parameter.annotation not in UNITLESS:
+            assert re.search(r"\[[^\]]+\]", documented[argument]), f"no unit: {argument}"
+    assert re.search(r"\[[^\]]+\]", parts["Returns"]), "no unit of the result"
+    valid = re.match(r"Valid: (.*?)(?:\n\n|\Z)", parts["Notes"], flags=re.DOTALL)
+    assert len(" ".join(valid[1].split())) <= LONGEST_RANGE
+    assert ">>> " in parts["Examples"]
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_every_model_has_a_source(name):
+    """A known key, or [derived] followed by the derivation."""
+    reference = " ".join(sections(FUNCTIONS[name])["References"].split())
+    derived = re.findall(r"\[derived\]([^;\[]*)", reference)
+    assert derived or keys(reference)
+    assert set(re.findall(r"\[([^\]]+)\]", reference)) <= {"derived", *REFERENCES}
+    assert all(re.search(r"\w{2,}", reason) for reason in derived), "[derived] without a reason"
+
+
+@pytest.mark.parametrize("law", [*seals.LAWS.values(), *elastomer.MODULUS_LAWS.values()])
+def test_every_law_of_a_registry_has_a_source(law):
+    """Registry entries cite a known key or a derivation, as functions do."""
+    assert keys(law.reference) or re.search(r"\[derived\] \w+", law.reference)
+    assert keys(law.reference) <= set(REFERENCES)
+
+
+@pytest.mark.parametrize("metric", ROWS)
+def test_metrics_find_their_source(metric):
+    """What the evaluation reads from a docstring is there: source and valid range."""
+    row = ROWS[metric]
+    for name in {row.model, *row.by_wall.values(), *row.at.values()} - {None, CRITERION}:
+        model = describe(function_of(name))
+        assert model.name == name
+        assert model.name in FUNCTIONS
+        assert model.reference
+        assert 0 < len(model.valid) <= LONGEST_RANGE
+
+
+def names_used(text):
+    """Model functions a test file names: ``module.function``, or imported from its module."""
+    used = set(re.findall(r"(?<![\w.])(\w+\.\w+)", text))
+    for module, several, one in re.findall(
+        r"from actuator_opt\.models\.(\w+) import (?:\(([^)]*)\)|(.*))", text
+    ):
+        used |= {f"{module}.{name}" for name in re.findall(r"\w+", several or one)}
+    return used
+
+
+def equation_table():
+    """Rows of source, function, test files: the value tests that name the function."""
+    tests = {
+        path.name: names_used(path.read_text("utf-8"))
+        for path in sorted((ROOT / "tests").glob("test_*.py"))
+        if path.name not in WALKS
+    }
+    return [
+        (
+            " ".join(sections(function)["References"].split()),
+            name,
+            [file for file, used in tests.items() if name in used],
+        )
+        for name, function in FUNCTIONS.items()
+    ]
+
+
+def test_table_of_equations_has_a_test_for_each():
+    """Every public model function is named by a test of its values."""
+    rows = equation_table()
+    for reference, name, tests in rows:
+        print(f"{reference} -> {name} -> {', '.join(tests)}")
+    assert [name for _, name, tests in rows if not tests] == []
