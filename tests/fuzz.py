@@ -29,14 +29,17 @@ from functools import cache
 from pathlib import Path
 from unittest import mock
 
-from cli_runner import BENCH, DESIGNS, Result, one_object, run
+HERE = Path(__file__).resolve().parent
+sys.path[0:0] = [str(HERE), str(HERE / "cases")]
 
-import actuator_opt as ao
-from actuator_opt.api.reports import origin
-from actuator_opt.cli import streams
-from actuator_opt.design.writer import init_text
-from actuator_opt.pages.report import outcome
-from actuator_opt.rendering.attachments import embed
+from cli_runner import BENCH, DESIGNS, Result, one_object, run  # noqa: E402
+
+import actuator_opt as ao  # noqa: E402
+from actuator_opt.api.reports import origin  # noqa: E402
+from actuator_opt.cli import streams  # noqa: E402
+from actuator_opt.design.writer import init_text  # noqa: E402
+from actuator_opt.pages.report import outcome  # noqa: E402
+from actuator_opt.rendering.attachments import embed  # noqa: E402
 
 BOUND = 30.0
 """Seconds of processor time for any of these inputs: a choice, ten times what the slowest takes."""

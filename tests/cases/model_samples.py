@@ -26,10 +26,10 @@ import samples_motion
 import samples_rods
 import samples_servo
 import samples_tube
+from actuator_opt.models.ply_discount import WallLayer
 
 import actuator_opt.models
 from actuator_opt.models import elastomer, seals
-from actuator_opt.models.ply_discount import WallLayer
 from actuator_opt.models.strength_modes import PlyStrength
 
 SCALAR_ONLY = {
