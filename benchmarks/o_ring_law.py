@@ -5,8 +5,8 @@
 
 The ring is in plane strain, of incompressible neo-Hookean rubber, without friction, in a groove
 1.4 sections wide with rigid walls. The groove's width does not matter while the ring does not fill
-it. The coefficients stand in `actuator_opt/models/seals.py`; `tests/models/test_models_seal_fit.py` holds
-them against the grid.
+it. The coefficients are in `actuator_opt/models/seals.py`; `tests/models/test_models_seal_fit.py`
+compares them with the grid.
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
-"""Recorded runs: the commands of `runs`, and `rerun` of a report; `doctor` of the installation."""
+"""Recorded runs: the commands of `runs`, and `rerun` of a report."""
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -12,7 +11,7 @@ from ..base import files as store, runs as run_store
 from ..base.errors import Diagnostic, ExitCode, UsageError
 from . import streams
 from .job import Job
-from .options import REPORTS, AllPages, Format, Json, NoRecord, Out, PluginFile, Quiet
+from .options import REPORTS, AllPages, Format, Json, NoRecord, PluginFile, Quiet
 
 runs = typer.Typer(
     help="Recorded runs: list, show, delete, prune. Each optimise, pareto and sweep is recorded.",
@@ -144,25 +143,3 @@ def rerun(
     if out is not None:
         store.require_apart(out / f"{Path(report).stem}.pdf", report)
     return job.deliver(job.run(verbs.rerun, report, plugins=plugin or []))
-
-
-def doctor(out: Out = REPORTS, as_json: Json = False, quiet: Quiet = False) -> ExitCode:
-    """Check the installation and its optional libraries."""
-    from .. import api as verbs
-
-    found = verbs.doctor(out=out, runs=run_store.folder(), terminal=_terminal())
-    return Job(as_json=as_json, quiet=quiet).deliver(found)
-
-
-def _terminal() -> str:
-    """Capabilities of standard output, in words."""
-    style, stream = streams.style(), sys.stdout
-    encoding = "none" if stream is None else stream.encoding or "ascii"
-    parts = [
-        f"encoding {encoding}",
-        "Unicode signs" if style["unicode"] else "plain ASCII signs",
-        "colour" if style["colour"] else "no colour",
-        f"{style['width']} columns",
-        "a terminal" if stream is not None and stream.isatty() else "not a terminal",
-    ]
-    return ", ".join(parts)

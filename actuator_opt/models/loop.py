@@ -259,7 +259,7 @@ def ultimate_gain(*, loop: PositionOpenLoop) -> UltimateGain:
 
     Examples
     --------
-    >>> loop = OpenLoop((1.0,), (0.0, 1.0, 1.4e-3, 1e-6))  # omega 1000 1/s, zeta 0.7
+    >>> loop = PositionOpenLoop((1.0,), (0.0, 1.0, 1.4e-3, 1e-6))  # omega 1000 1/s, zeta 0.7
     >>> limit = ultimate_gain(loop=loop)
     >>> print(f"{limit.gain:.1f}, {limit.frequency:.2f} Hz")
     1400.0, 159.15 Hz
@@ -349,7 +349,7 @@ def margins(*, loop: PositionOpenLoop, gain: Array) -> PositionLoopMargins:
 
     Examples
     --------
-    >>> loop = OpenLoop((1.0,), (0.0, 1.0))  # an integrator
+    >>> loop = PositionOpenLoop((1.0,), (0.0, 1.0))  # an integrator
     >>> m = margins(loop=loop, gain=100.0)
     >>> print(f"{m.phase_margin:.4f} rad, {m.crossover:.3f} Hz, {m.bandwidth:.3f} Hz")
     1.5708 rad, 15.915 Hz, 15.915 Hz

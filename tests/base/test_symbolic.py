@@ -9,8 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hypothesis import assume, example, given, settings, strategies as st
-from model_samples import cases, leaves, public_functions
-from test_models_laws import called
+from model_samples import called, cases, leaves, public_functions
 
 import actuator_opt.simulation.components
 from actuator_opt.base import numeric

@@ -26,10 +26,10 @@ import samples_motion
 import samples_rods
 import samples_servo
 import samples_tube
-from actuator_opt.models.ply_discount import WallLayer
 
 import actuator_opt.models
 from actuator_opt.models import elastomer, seals
+from actuator_opt.models.burst_ladder import BurstLadder, WallLayer
 from actuator_opt.models.strength_modes import PlyStrength
 
 SCALAR_ONLY = {
@@ -419,3 +419,27 @@ def cases():
             yield f"seals.LAWS.{law.name}.{quantity}", getattr(law, quantity), ring
     for law in elastomer.MODULUS_LAWS.values():
         yield f"elastomer.MODULUS_LAWS.{law.name}", law.modulus, {"hardness": 72.0}
+
+
+def outputs(result, dims):
+    """List the numbers of a result of `dims` batch axes: its parts, leading axes taken apart."""
+    if result is None or isinstance(result, bool | str):
+        return []
+    if isinstance(result, BurstLadder):
+        pressures = [result.first_ply_pressure, result.burst_pressure]
+        return [*pressures, result.liner_yield_pressure]
+    if dataclasses.is_dataclass(result):
+        result = [getattr(result, field.name) for field in dataclasses.fields(result)]
+    if isinstance(result, dict):
+        result = list(result.values())
+    if isinstance(result, tuple | list):
+        return [number for part in result for number in outputs(part, dims)]
+    if getattr(result, "ndim", 0) <= dims:
+        return [result]
+    return [number for i in range(result.shape[0]) for number in outputs(result[i, ...], dims)]
+
+
+def called(function, sample, numbers, dims):
+    """Outputs of a model at a sample with its numbers replaced."""
+    arguments = rebuilt(sample, iter(numbers))
+    return outputs(function(*arguments.pop("*", ()), **arguments), dims)

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 from cli_runner import run
-from test_sweep import KNEE, NEAR, STEEL
+from sweep_case import KNEE, NEAR, STEEL
 
 SETS = [word for path, value in NEAR.items() for word in ("--set", f"{path}={value}")]
 BORES = ["--vary", "cylinder.bore=20.9..21.1 mm:3"]

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 from actuator_opt.base import quantities, units
-from actuator_opt.design import LoadedDesign, Source, read_design, with_values
+from actuator_opt.design import FileSource, LoadedDesign, read_design, with_values
 from actuator_opt.design.build import build
 from actuator_opt.design.paths import numbers
 from actuator_opt.design.writer import exact_text, init_text, scalar, to_yaml
@@ -49,7 +49,7 @@ def load(text):
     document = parse(text, "f")
     built = build(document.data)
     assert built.design is not None, built.faults
-    return LoadedDesign(built.design, Source(document))
+    return LoadedDesign(built.design, FileSource(document))
 
 
 def test_unchanged_design_gives_the_same_text():

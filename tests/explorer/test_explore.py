@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from cli_runner import run
-from test_sweep import KNEE, NEAR
+from sweep_case import KNEE, NEAR
 
 import actuator_opt as ao
 from actuator_opt.base.database import Checksums, study_checksum

@@ -11,8 +11,8 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from sweep_case import KNEE, NEAR
 from test_explore import command_of, data_of, unpacked
-from test_sweep import KNEE, NEAR
 
 import actuator_opt as ao
 

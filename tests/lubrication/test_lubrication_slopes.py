@@ -12,8 +12,8 @@ from actuator_opt.base.numeric import STEP
 from actuator_opt.lubrication import (
     Elastic,
     Lubricant,
-    SealElement,
     Surface,
+    TandemSeal,
     sensitivities,
     solve_film,
     solve_tandem,
@@ -86,7 +86,7 @@ def step_ring(width=2e-3, excess=5e6):
             position=PLACES, sealed_pressure=sealed, outer_pressure=outer, excess=excess
         )
 
-    return SealElement(static, Elastic(300e6, 0.46), ROUGH)
+    return TandemSeal(static, Elastic(300e6, 0.46), ROUGH)
 
 
 def lip_seal(width=4e-3, excess=1.5e6):
@@ -97,7 +97,7 @@ def lip_seal(width=4e-3, excess=1.5e6):
             position=PLACES, sealed_pressure=sealed, outer_pressure=outer, excess=excess
         )
 
-    return SealElement(static, Elastic(43e6, 0.48), ROUGH)
+    return TandemSeal(static, Elastic(43e6, 0.48), ROUGH)
 
 
 def tandem(inner, outer, speed, sealed=10e6, **more):

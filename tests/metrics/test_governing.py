@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from cli_runner import run
-from test_sweep import NEAR
+from sweep_case import NEAR
 
 import actuator_opt as ao
 from actuator_opt.design.model import Limit, Objective

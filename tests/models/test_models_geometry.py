@@ -9,8 +9,7 @@ import re
 
 import numpy as np
 import pytest
-from model_samples import cases, leaves, public_functions
-from test_models_laws import called
+from model_samples import called, cases, leaves, public_functions
 
 from actuator_opt.base.numeric import PAIRS, sizes
 from actuator_opt.models import barrel, forces

@@ -6,45 +6,25 @@ The points are in `model_samples`; a public function without one fails here.
 from __future__ import annotations
 
 import copy
-import dataclasses
 import inspect
 
 import array_api_strict as strict
 import numpy as np
 import pytest
-from model_samples import SAMPLES, SCALAR_ONLY, cases, leaves, public_functions, rebuilt
+from model_samples import (
+    SAMPLES,
+    SCALAR_ONLY,
+    called,
+    cases,
+    leaves,
+    public_functions,
+)
 from samples_dynamics import ROOTS
-
-from actuator_opt.models.burst_ladder import BurstLadder
 
 STEP = 1e-30
 CASES = [pytest.param(function, sample, id=label) for label, function, sample in cases()]
 ANY_NAMESPACE = [case for case in CASES if case.id not in ROOTS]
 ROWS, COLUMNS = np.array([[0.99], [1.0], [1.01]]), np.array([[1.0, 1.005]])
-
-
-def outputs(result, dims):
-    """List the numbers of a result of `dims` batch axes: its parts, leading axes taken apart."""
-    if result is None or isinstance(result, bool | str):
-        return []
-    if isinstance(result, BurstLadder):
-        pressures = [result.first_ply_pressure, result.burst_pressure]
-        return [*pressures, result.liner_yield_pressure]
-    if dataclasses.is_dataclass(result):
-        result = [getattr(result, field.name) for field in dataclasses.fields(result)]
-    if isinstance(result, dict):
-        result = list(result.values())
-    if isinstance(result, tuple | list):
-        return [number for part in result for number in outputs(part, dims)]
-    if getattr(result, "ndim", 0) <= dims:
-        return [result]
-    return [number for i in range(result.shape[0]) for number in outputs(result[i, ...], dims)]
-
-
-def called(function, sample, numbers, dims):
-    """Outputs of a model at a sample with its numbers replaced."""
-    arguments = rebuilt(sample, iter(numbers))
-    return outputs(function(*arguments.pop("*", ()), **arguments), dims)
 
 
 def plain(value):

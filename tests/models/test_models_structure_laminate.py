@@ -6,11 +6,10 @@ from math import cos, inf, pi, radians, sin, sqrt
 
 import numpy as np
 import pytest
-from actuator_opt.models.ply_discount import WallLayer
 from hypothesis import given, settings, strategies as st
 
 from actuator_opt.models import barrel, laminate, ply
-from actuator_opt.models.burst_ladder import burst_by_ply_discount
+from actuator_opt.models.burst_ladder import WallLayer, burst_by_ply_discount
 from actuator_opt.models.strength_modes import PlyStrength
 
 LIMITS = PlyStrength(1900e6, 1300e6, 55e6, 190e6, 85e6)

@@ -23,7 +23,7 @@ from actuator_opt.pages.measured import drawn, measured_figures
 from actuator_opt.pages.simulation_figures import simulation_figure
 from actuator_opt.rendering import terminal
 from actuator_opt.simulation.components.circuit import acts_after, at_start
-from actuator_opt.simulation.measured import Measured, fit, overlay, parse_measured
+from actuator_opt.simulation.measured import AlignedRecord, fit, overlay, parse_measured
 from actuator_opt.studies.plant import plant
 
 REPLAY = f"""\
@@ -179,7 +179,7 @@ def record(count=4, lag=0.0):
     time, first = np.unique(made.time, return_index=True)
     rng = np.random.default_rng(4)
     kept = (time < 0.0901) & ~((time > 0.0499) & (time < 0.0601))
-    return Measured(
+    return AlignedRecord(
         {
             name: ((time + lag)[kept], (made.signals[name][first] + size * noise)[kept])
             for name, size in list(NOISE.items())[:count]
@@ -206,7 +206,7 @@ def test_a_record_that_ends_early_is_compared_while_it_lasts():
         "all channels: measured from 0 to 0.09 s, simulated from 0 to 0.1 s: only the overlap "
         "is compared" in found.notes
     )
-    late = Measured({"position": tuple(one[40:] for one in record().channels["position"])})
+    late = AlignedRecord({"position": tuple(one[40:] for one in record().channels["position"])})
     notes = overlay(ao.simulate(trial()), late).notes
     assert any(one.startswith("position: measured from 0.02 to 0.09 s") for one in notes)
 
@@ -227,7 +227,7 @@ def test_every_channel_is_drawn_with_what_is_left_over(count):
     made = [*measured_figures(found)]
     assert [boxes_collide(ink) for ink in made] == [[]] * len(made)
     words = [one[0] for ink in made for one in ink.text_boxes()]
-    assert sum(one.startswith("Measured less simulated, ") for one in words) == count
+    assert sum(one.startswith("AlignedRecord less simulated, ") for one in words) == count
     assert words.count("±2σ of noise") == count
     assert {"Pressure A, bar", "measured", "simulated"} <= set(words)
     assert not [one for one in words if "…" in one]
@@ -317,7 +317,7 @@ def test_bad_records_are_told_in_one_line(text, message, line):
 def test_a_record_in_another_unit_is_told():
     """Millimetres that are called metres, bar that are called MPa."""
     good = record(3).channels
-    wrong = Measured(
+    wrong = AlignedRecord(
         {
             "position": (good["position"][0], 1e3 * good["position"][1]),
             "pressure_a": (good["pressure_a"][0], 10 * good["pressure_a"][1]),
@@ -336,7 +336,7 @@ def test_a_record_of_a_million_samples_is_thinned_for_a_fit():
     time = np.linspace(0.0, 0.1, 1_000_001)[:-1]
     rng = np.random.default_rng(1)
     course = np.interp(time, made.time, made.signals["pressure_a"])
-    wide = Measured({"pressure_a": (time, course + 1e4 * rng.standard_normal(time.size))})
+    wide = AlignedRecord({"pressure_a": (time, course + 1e4 * rng.standard_normal(time.size))})
     assert overlay(made, wide).residuals["pressure_a"].count == 1_000_000
     own = plant(trial().actuator.subject())
     found = fit(trial().scenario, own, {}, wide, ("air_content",))
@@ -346,7 +346,7 @@ def test_a_record_of_a_million_samples_is_thinned_for_a_fit():
 
 def test_a_record_that_stands_still_is_not_fitted_to():
     """No channel that moves: one line, not a search."""
-    still = Measured({"position": (np.linspace(0, 0.1, 50), np.full(50, 0.055))})
+    still = AlignedRecord({"position": (np.linspace(0, 0.1, 50), np.full(50, 0.055))})
     own = plant(trial().actuator.subject())
     with pytest.raises(InputError, match="every channel is constant; fit to a record with motion"):
         fit(trial().scenario, own, {}, still, ("air_content",))
@@ -361,7 +361,9 @@ def test_a_fit_at_the_end_of_a_range_says_which_way():
     whole = made.signals["pressure_a"][first]
     more = whole[0] + 0.2 * (whole - whole[0]) + 1e3 * noise
     own = plant(trial().actuator.subject())
-    found = fit(trial().scenario, own, {}, Measured({"pressure_a": (time, more)}), ("air_content",))
+    found = fit(
+        trial().scenario, own, {}, AlignedRecord({"pressure_a": (time, more)}), ("air_content",)
+    )
     assert found.parameters["air_content"].at_bound == "upper"
     assert any("upper end of its range, 20 %: the record suggests more" in o for o in found.doubts)
 

@@ -19,6 +19,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from cli_runner import run as cli
+from sweep_case import KNEE, NEAR, STEEL, WAYS
 
 import actuator_opt as ao
 from actuator_opt.base.database import NumberColumn, StoredNumbers, opened
@@ -26,20 +27,6 @@ from actuator_opt.base.errors import InputError, UsageError
 from actuator_opt.evaluation import compute
 from actuator_opt.optimisation.actuator import goal_of
 from actuator_opt.sweeps import Swept, chunk, run
-
-KNEE = "designs/knee.yaml"
-STEEL = "designs/steel_baseline.yaml"
-NEAR = {  # the optimum of the shipped knee with some room at every limit
-    "barrel.layup[0].thickness": "0.98 mm", "barrel.layup[1].thickness": "2.95 mm",
-    "barrel.layup[2].thickness": "0.92 mm", "barrel.layup[2].angle": "20 deg",
-    "rod.outer_diameter": "10.85 mm", "rod.inner_diameter": "5.3 mm", "piston.length": "10.4 mm",
-    "head.length": "6 mm", "caps.thickness": "5.6 mm", "retention.wall": "2.75 mm",
-    "retention.length": "18.6 mm", "seals.piston.squeeze": "12.45 %",
-    "seals.rod.squeeze": "12.25 %", "cylinder.bore": "21.02 mm",
-    "requirements.stiffness_min.min": "9.7 kN/mm", "requirements.friction_running.max": "296 N",
-    "requirements.seal_gap.max": "34.5 um",
-}  # fmt: skip
-WAYS = ["cylinder.bore=20.9..21.1 mm", "barrel.layup[1].thickness=2.6..3.4 mm"]
 
 
 @pytest.fixture(scope="module")
@@ -120,7 +107,7 @@ def test_a_screen_loses_none_of_the_best(more, monkeypatch):
 def test_another_engine_finds_the_same():
     """With JAX the same designs come out, to the bit; it is kept out of this process's forks."""
     script = (
-        "import sys; sys.path.insert(0, 'tests/cases')\n"
+        "import sys; sys.path[0:0] = ['tests/sweeps', 'tests/cases']\n"
         "import test_sweep as t\n"
         "t.run.REDUCED, t.chunk.WORTH = 256, 100\n"
         "for more in ('dimensions', 'limits'): t.screened_and_whole_agree(more, 'jax')\n"

@@ -8,7 +8,7 @@ import threading
 import time
 
 import pytest
-from test_sweep import STEEL
+from sweep_case import STEEL
 
 import actuator_opt as ao
 from actuator_opt.base.errors import UsageError

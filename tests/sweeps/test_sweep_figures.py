@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
-from test_sweep import KNEE, NEAR, STEEL, WAYS
+from sweep_case import KNEE, NEAR, STEEL, WAYS
 
 import actuator_opt as ao
 from actuator_opt.api import reports

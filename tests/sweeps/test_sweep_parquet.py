@@ -11,7 +11,7 @@ import tracemalloc
 import numpy as np
 import pytest
 from cli_runner import run as terminal
-from test_sweep import KNEE, NEAR, STEEL, WAYS
+from sweep_case import KNEE, NEAR, STEEL, WAYS
 
 import actuator_opt as ao
 from actuator_opt.base.database import StoredNumbers
@@ -164,8 +164,8 @@ signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, 300_000))
 import actuator_opt as ao
 from actuator_opt.base.errors import InputError
-from actuator_opt.rendering import parquet
-parquet.GROUP = int(sys.argv[4])
+from actuator_opt.rendering import series
+series.GROUP = int(sys.argv[4])
 vary = ["cylinder.bore=18..26 mm", "rod.outer_diameter=9..13 mm"]
 try:
     ao.sweep(

@@ -222,9 +222,9 @@ def gaps(time: Array, values: Array) -> list[SampleGap]:
 def gap_words(sample_gaps: list[SampleGap]) -> str:
     """Number of missing samples and where: the only gap, or the first and the last.
 
-    >>> gap_words([Gap(0.2, 0.2, 1)])
+    >>> gap_words([SampleGap(0.2, 0.2, 1)])
     '1 sample is missing at 0.2 s'
-    >>> gap_words([Gap(0.2, 0.3, 11), Gap(0.5, 0.5, 1), Gap(1.0, 2.0, 9)])
+    >>> gap_words([SampleGap(0.2, 0.3, 11), SampleGap(0.5, 0.5, 1), SampleGap(1.0, 2.0, 9)])
     '21 samples are missing in 3 places, first from 0.2 to 0.3 s, last from 1 to 2 s'
     """
     said = [

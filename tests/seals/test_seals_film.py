@@ -20,8 +20,8 @@ from actuator_opt.lubrication import (
     Contact,
     Elastic,
     Lubricant,
-    SealElement,
     Surface,
+    TandemSeal,
     solve_film,
     solve_tandem,
 )
@@ -192,8 +192,8 @@ PAIR = f"{STEP}, friction: film, secondary: {{{U_CUP}, friction: film}}"
 def tandem(speed, sealed, **options):
     """Step ring and U-cup in a row on the rod."""
     return solve_tandem(
-        inner=SealElement(static("step_ring"), elastic("step_ring"), surface("step_ring", "rod")),
-        outer=SealElement(static("u_cup"), elastic("u_cup"), surface("u_cup", "rod")),
+        inner=TandemSeal(static("step_ring"), elastic("step_ring"), surface("step_ring", "rod")),
+        outer=TandemSeal(static("u_cup"), elastic("u_cup"), surface("u_cup", "rod")),
         lubricant=OIL, speed=speed, sealed_pressure=sealed + AIR, outer_pressure=AIR, **options
     )  # fmt: skip
 
