@@ -70,7 +70,7 @@ class ExtrusionTable:
 class Deviation:
     """A gland dimension outside its limits; `excess` is the signed distance."""
 
-    what: str
+    quantity: str
     value: float
     lower: float
     upper: float

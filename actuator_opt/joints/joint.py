@@ -108,7 +108,7 @@ class Usual(NamedTuple):
     """A ratio with a usual range in sensible designs; `path` is the value to check."""
 
     path: str
-    what: str
+    meaning: str
     least: float
     most: float
     source: str

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..evaluation.result import Evaluation
-from ..evaluation.wall_study import YIELD, Difference, Ratio, WallProfile, WallStudy
+from ..evaluation.wall_alternatives import Difference
+from ..evaluation.wall_study import YIELD, Ratio, WallProfile, WallStudy
 from ..models.strength import CRITERIA
 from ..rendering import text
 from ..rendering.axes import Axes, fitted, legend
