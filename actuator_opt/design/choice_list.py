@@ -15,7 +15,7 @@ from typing import Any, TypeAlias
 from ..base import errors
 from ..base.errors import Fault
 from ..base.quantities import Quantity
-from .kinds import Fraction, MaterialName, Text, ValueFault, what
+from .kinds import Fraction, MaterialName, Text, ValueFault, shape_in_words
 from .material import ROLES
 from .model import Design
 from .paths import Target, resolve
@@ -50,7 +50,11 @@ def recheck(tree: dict[str, Any]) -> Iterator[Fault]:
             continue
         if not isinstance(values, list):
             if values is not None:
-                given = f'"{errors.shown(values)}"' if isinstance(values, str) else what(values)
+                given = (
+                    f'"{errors.shown(values)}"'
+                    if isinstance(values, str)
+                    else shape_in_words(values)
+                )
                 good = errors.shown(values) if isinstance(values, str) else _example(target)
                 yield Fault(loc, f"need a list of allowed values, not {given}", f"write [{good}]")
             continue

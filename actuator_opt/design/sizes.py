@@ -15,7 +15,7 @@ from typing import Any
 from ..base import errors
 from ..base.errors import Fault
 from ..base.quantities import Quantity
-from .kinds import ValueFault, example, read_quantity, what
+from .kinds import ValueFault, example, read_quantity, shape_in_words
 from .paths import resolve
 from .standard_sizes import SERIES, SizeSeries
 from .structure import FileView, Loc, child, child_at, number_of, value_at
@@ -70,7 +70,7 @@ def read(loc: Loc, bounds: dict[str, Any], quantity: Quantity) -> Iterator[Fault
             series = SERIES[sizes]
             yield Fault(here, f"{sizes} has no sizes for {loc[-1]}", f"it is for {series.suits}")
     elif not isinstance(sizes, list):
-        yield Fault(here, f"need sizes, not {what(sizes)}", f"write {good}, or a series")
+        yield Fault(here, f"need sizes, not {shape_in_words(sizes)}", f"write {good}, or a series")
     elif not sizes:
         yield Fault(here, "the list is empty", f"write e.g. {good}, or remove the line")
     elif len(sizes) > MOST_SIZES:
