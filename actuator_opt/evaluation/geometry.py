@@ -118,7 +118,7 @@ class Groove:
     pieces: tuple[GroovePart, ...]
 
 
-def _element(v: Values, place: str, path: str, element: SealElement) -> Groove:
+def _element_groove(v: Values, place: str, path: str, element: SealElement) -> Groove:
     sizes = {key: v[path + key] for key in ("section", "squeeze", *element.seal_type.needed)}
     base_groove = element.seal_type.groove(sizes)
     default = base_groove.width
@@ -167,10 +167,10 @@ def grooves(v: Values, design: Design, name: Literal["piston", "rod"]) -> tuple[
                 pieces=(GroovePart(seal.guide.material, depth * v[f"{path}width"], depth / 2),),
             )
         )
-    place_grooves.append(_element(v, f"{name} seal", at, seal))
+    place_grooves.append(_element_groove(v, f"{name} seal", at, seal))
     if seal.secondary is not None:
         place_grooves.append(
-            _element(v, f"{name} secondary seal", f"{at}secondary.", seal.secondary)
+            _element_groove(v, f"{name} secondary seal", f"{at}secondary.", seal.secondary)
         )
     if seal.wiper is not None:
         path = f"{at}wiper."
