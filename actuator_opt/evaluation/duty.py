@@ -28,7 +28,7 @@ def compute(
     state: LoadState,
     wall: Wall,
     section: RodSection,
-    held: LoadedJoint | None,
+    loaded_joint: LoadedJoint | None,
     stop: Demand,
     net: Array,
     out: MetricArrays,
@@ -36,7 +36,7 @@ def compute(
     """All life and service metrics; `net` is the force of every case, `stop` that into a stop."""
     supply = v["supply.pressure"]
     push, pull = supply * g.area_a, supply * g.area_b
-    _endurance(v, stock, design, wall, section, held, supply, push, pull, out)
+    _endurance(v, stock, design, wall, section, loaded_joint, supply, push, pull, out)
     _end_stop(v, design, g, state, supply, stop, net, out)
     _trapped(v, stock, design, g, state, wall, supply, out)
     _layers(stock, wall, out)
@@ -51,7 +51,7 @@ def _endurance(
     design: Design,
     wall: Wall,
     section: RodSection,
-    held: LoadedJoint | None,
+    loaded_joint: LoadedJoint | None,
     supply: Array,
     push: Array,
     pull: Array,
@@ -65,7 +65,9 @@ def _endurance(
             force=pull, diameter=v["rod.thread.diameter"], pitch=v["rod.thread.pitch"]
         )
         loads.append(("rod thread", section.end_material, stress, stress / 2))
-    joint_fatigue = Fatigue() if held is None else held.joint.fatigue(held.loaded)
+    joint_fatigue = (
+        Fatigue() if loaded_joint is None else loaded_joint.joint.fatigue(loaded_joint.loaded)
+    )
     loads.extend(joint_fatigue.pulsed)
     life, factor, unknown = {}, {}, []
     for place, name, span, mean in loads:

@@ -252,7 +252,7 @@ class ModelRun:
     wall: Wall
     rings: tuple[Ring, ...]
     rod: RodSection
-    held: strength.LoadedJoint | None
+    joint: strength.LoadedJoint | None
     beam: Beam
     springs: springs.Springs
     motion: motion.Motion
@@ -304,7 +304,7 @@ class Statics:
 
     base: Base
     rod: RodSection
-    held: strength.LoadedJoint | None
+    joint: strength.LoadedJoint | None
     mass_parts: dict[str, Array]
     breakaway: Array
     branches: dict[circuit.Chamber, circuit.ChamberLines]
@@ -347,15 +347,15 @@ def statics(
     beam = beam_module.derive(
         v, design, g, case_state, barrel, rod, parts, critical_load=implicit.critical_load
     )
-    held = strength.joint_under_load(v, design, stock, g, barrel)
-    strength.compute(v, design, stock, g, case_state, barrel, rod, beam, held, out)
+    loaded_joint = strength.joint_under_load(v, design, stock, g, barrel)
+    strength.compute(v, design, stock, g, case_state, barrel, rod, beam, loaded_joint, out)
     stop = joint.at_stop(case_state.demands, case_state.push)
     stop = replace(stop, mass=_moving(stop.mass, parts))
-    duty.compute(v, design, stock, g, case_state, barrel, rod, held, stop, net, out)
+    duty.compute(v, design, stock, g, case_state, barrel, rod, loaded_joint, stop, net, out)
     thread = v["rod.thread.diameter"] if design.rod.thread is not None else g.rod_diameter
     for name, value in geometry_module.lands(g, thread / 2).items():
         out.put(name, value)
-    strength.joint_metrics(held, out)
+    strength.joint_metrics(loaded_joint, out)
     if not g.rod_thicknesses:
         out.skip("geometry_rod_bore", "the rod has no layers")
     if not g.has_skirts:
@@ -366,7 +366,7 @@ def statics(
     return Statics(
         base=basis,
         rod=rod,
-        held=held,
+        joint=loaded_joint,
         mass_parts=parts,
         breakaway=friction.breakaway,
         branches=branches,
@@ -406,7 +406,7 @@ def compute(subject: PreparedDesign, v: Values, wanted: Container[str] | None = 
         wall=s.base.wall,
         rings=s.base.rings,
         rod=s.rod,
-        held=s.held,
+        joint=s.joint,
         beam=s.beam,
         springs=s.springs,
         motion=linear,

@@ -317,9 +317,8 @@ def _loop(v: Values, motion: Motion, out: MetricArrays) -> Iterable[tuple[str, s
     if near:
         yield (
             "bandwidth",
-            f"at {near} of {len(widths)} places the closed loop falls to -3 dB only at or "
-            "above the "
-            "load resonance: there it oscillates and does not follow the signal",
+            f"at {near} of {len(widths)} places the closed loop falls to -3 dB only at or above "
+            "the load resonance: there it oscillates and does not follow the signal",
         )
     least = min(float(np.min(np.real(x))) for x in out.metrics["ultimate_gain"].values())
     margin = min(float(np.min(np.real(x))) for x in out.metrics["gain_margin"].values())

@@ -318,9 +318,8 @@ def warnings(s: Springs) -> Iterable[tuple[str, str]]:
             if give is not None and not (np.all(give.a0) and np.all(give.b0)):
                 yield (
                     "stiffness_min",
-                    f"as published, {cause} on one chamber only have no effect: the missing "
-                    "ones of the "
-                    "other chamber are added as infinitely stiff",
+                    f"as published, {cause} on a single chamber have no effect: the other chamber "
+                    "counts as infinitely stiff",
                 )
     if s.seals is not None:
         yield (

@@ -146,9 +146,8 @@ def _leak_at_rest(subject: PreparedDesign) -> Iterable[tuple[str, str]]:
     ):
         yield (
             "rod_leakage",
-            "the film of the rod seals also leaks on the instroke: an averaged film passes "
-            "oil at any "
-            "gap, even at rest, where a real elastomer seal is tight; rod_leakage is too high",
+            "the film of the rod seals also leaks on the instroke: an averaged film passes oil at "
+            "any gap, even at rest, where a real elastomer seal is tight; rod_leakage is too high",
         )
 
 
@@ -273,8 +272,8 @@ def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tupl
             yield metric, text
     yield from (("", text) for text in proportions.warnings(subject, v, g))
     yield from _wall_warnings(subject, run)
-    if run.held is not None:
-        yield from run.held.joint.warnings(run.held.loaded, METRICS)
+    if run.joint is not None:
+        yield from run.joint.joint.warnings(run.joint.loaded, METRICS)
     yield from _rod_warnings(subject, run)
     yield from _bond_warnings(run)
     for part, assumption in (
@@ -395,8 +394,7 @@ def _bond_warnings(run: ModelRun) -> Iterable[tuple[str, str]]:
             "",
             f"bond of the {place}: the elastic edge shears of force and of temperature add up to "
             f"{sums[place]:.2f} times the strength; each is checked alone, because a ductile "
-            "adhesive "
-            "yields and relieves both",
+            "adhesive yields and relieves both",
         )
 
 

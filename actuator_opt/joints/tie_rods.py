@@ -122,9 +122,8 @@ def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tu
         force = float(np.max(np.real(_clamp(loaded).preload)))
         yield (
             "joint_factor",
-            f"no tie-rod preload stated: assumed {force / 1e3:.1f} kN, which keeps the "
-            "joint closed "
-            "at proof pressure",
+            f"no tie-rod preload stated: assumed {force / 1e3:.1f} kN, which keeps the joint "
+            "closed at proof pressure",
         )
 
 
@@ -142,7 +141,7 @@ JOINT = Joint(
         JointField("count"),
         JointField(
             "thread",
-            "missing: required by tie_rods",
+            "missing: required by tie rods",
             'add a block "thread:" with diameter, pitch',
         ),
         JointField("thread.diameter", "missing: required by tie rods", 'add e.g. "diameter: 6 mm"'),

@@ -90,8 +90,8 @@ def law_warnings(seal: SealSizes) -> Iterable[str]:
     if not (low - ON_LIMIT <= remaining and nominal <= high + ON_LIMIT):
         squeeze = nominal if nominal > high else remaining
         yield (
-            f"squeeze {100 * squeeze:.3g} % outside the "
-            f"{100 * low:.0f}-{100 * high:.0f} % the {law.name} law was compared with data on"
+            f"squeeze {100 * squeeze:.3g} %, the {law.name} law was compared with data from "
+            f"{100 * low:.0f} to {100 * high:.0f} %"
         )
     if ratio > law.pressure_range[1]:
         yield (

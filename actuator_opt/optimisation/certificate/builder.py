@@ -589,7 +589,7 @@ class Envelopes:
     @staticmethod
     def joint(done: Statics, out: MetricArrays) -> None:
         """Treat the joint of caps and head where its factor is not convex."""
-        held = done.held
+        held = done.joint
         if held is None or held.joint.envelope is None:
             return
         burst = out.metrics.get("retention_burst_factor", {})
