@@ -97,9 +97,9 @@ def variant(
     load_cell: bool = True,
 ) -> Springs:
     """Springs of the design with one bulk modulus, no air, chosen lines and topology."""
-    chain = {"topology": topology, "seals": "sliding"}
+    options = {"topology": topology, "seals": "sliding"}
     if not load_cell:
-        chain["load_cell"] = None  # type: ignore[assignment]
+        options["load_cell"] = None  # type: ignore[assignment]
     oil = design.fluid.material
     changed = design.model_copy(
         update={
@@ -107,7 +107,7 @@ def variant(
                 update={"air_content": 0.0, "bulk_modulus_law": "constant"}
             ),
             "lines": tuple(lines),
-            "stiffness": design.stiffness.model_copy(update=chain),
+            "stiffness": design.stiffness.model_copy(update=options),
             "materials": design.materials
             | {oil: design.materials.get(oil, {}) | {"bulk_modulus": bulk_modulus}},
         }
@@ -128,9 +128,9 @@ def temperature_of(design: Design, viscosity: float) -> float:
     """
     subject = prepare(design)
     v = subject.values()
-    stock = MaterialValues(v, subject.materials, subject.factors, subject.constants)
+    materials = MaterialValues(v, subject.materials, subject.factors, subject.constants)
     warm = np.linspace(253.15, 393.15, 1401)
-    viscosities = np.log(np.ravel(state.kinematic_viscosity(v, design.fluid, stock, warm)))
+    viscosities = np.log(np.ravel(state.kinematic_viscosity(v, design.fluid, materials, warm)))
     return float(np.interp(-np.log(viscosity), -viscosities, warm, left=np.nan, right=np.nan))
 
 
@@ -141,8 +141,8 @@ def first(values: Array) -> Array:
 
 def unstretched(springs: Springs) -> Springs:
     """The springs without the barrel's axial stretch, which the thesis leaves out."""
-    rest = {name: give for name, give in springs.chambers.items() if name != "stretch"}
-    return replace(springs, chambers=rest)
+    others = {name: give for name, give in springs.chambers.items() if name != "stretch"}
+    return replace(springs, chambers=others)
 
 
 @dataclass(frozen=True, slots=True)

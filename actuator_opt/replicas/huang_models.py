@@ -218,20 +218,20 @@ def single(name: str, sealing: Sealing) -> SealArrangement:
 def kinds(seals: Sealings, mapped: FilmMap) -> tuple[SealArrangement, ...]:
     """Every seal type of both cylinders, the tandem, and the tandem with drained room between."""
     plunger = seals.plunger
-    every = [single(f"{kind_name(seals.piston.rings[0])}, piston", seals.piston.alone(0))]
-    every += [
+    arrangements = [single(f"{kind_name(seals.piston.rings[0])}, piston", seals.piston.alone(0))]
+    arrangements += [
         single(f"{kind_name(ring)}, plunger, alone", plunger.alone(k))
         for k, ring in enumerate(plunger.rings)
     ]
     j = mapped.at(ENDS[0], TYPICAL)[1]
     ends = [float(mapped.damping[mapped.at(p, TYPICAL)[0], j]) for p in ENDS]
     if len(plunger.rings) == 2:
-        every.append(SealArrangement(BOTH, nan, (ends[0], ends[1])))
+        arrangements.append(SealArrangement(BOTH, nan, (ends[0], ends[1])))
         low, high = (drained(seals, p) for p in ENDS)
-        every.append(SealArrangement(DRAINED, nan, (low, high)))
+        arrangements.append(SealArrangement(DRAINED, nan, (low, high)))
     low, high = (float(secant_of(row, TYPICAL)) for row in (HUANG_TABLE_2[0], HUANG_TABLE_2[-1]))
-    every.append(SealArrangement("plunger, measured (table 2)", nan, (low, high)))
-    return tuple(every)
+    arrangements.append(SealArrangement("plunger, measured (table 2)", nan, (low, high)))
+    return tuple(arrangements)
 
 
 def drained(seals: Sealings, pressure: float, speed: float = TYPICAL, **changes: float) -> float:
@@ -392,13 +392,13 @@ class StepRingFilm:
 
 def profiles(seals: Sealings) -> tuple[StepRingFilm, ...]:
     """Figure 18, without the pressures that have no film."""
-    every = []
+    films = []
     for pressure in FILM_PRESSURES:
         solved = solve(seals.plunger.row(pressure, FILM_SPEED))
         if not solved.why:
             film = solved.films[0]
-            every.append(StepRingFilm(pressure, film.x, film.film, film.mean_film))
-    return tuple(every)
+            films.append(StepRingFilm(pressure, film.x, film.film, film.mean_film))
+    return tuple(films)
 
 
 CONTACT_PRESSURE = 0.1e6
