@@ -22,7 +22,7 @@ from ..evaluation.build import spec_hash
 from ..evaluation.kernel import governing
 from ..evaluation.limits import MetricArrays
 from .actuator import ActuatorProblem, Fault, Goal, build, idle_metrics
-from .front.front import Front, FrontSettings, NoEnd, front
+from .front.front import Front, FrontSettings, NoAnchor, front
 from .front.objectives import Objectives
 from .front.plane import FrontGap
 from .infeasibility_card import explained
@@ -259,7 +259,7 @@ def pareto(
         Objectives(names, many.actuator.problem, many.evaluate),
         FrontSettings(count=count, seed=seed, checks=checks),
     )
-    if isinstance(found, NoEnd):
+    if isinstance(found, NoAnchor):
         return _without(many, found, began)
     return _result(many, found, seed, began)
 
@@ -376,10 +376,10 @@ def _said(wish: Wish) -> str:
     return f"{wish.metric}:{wish.sense}"
 
 
-def _without(many: _Many, no_end: NoEnd, began: float) -> ParetoFront:
+def _without(many: _Many, no_anchor: NoAnchor, began: float) -> ParetoFront:
     """The result without a front: nothing is feasible, or an end is missing."""
     subject = many.subject
-    solution = no_end.solution
+    solution = no_anchor.solution
     feasible = solution.violation <= FEASIBLE
     why = None if feasible else explained(many.actuator, solution)[0]
     return ParetoFront(
@@ -391,7 +391,7 @@ def _without(many: _Many, no_end: NoEnd, began: float) -> ParetoFront:
         design=subject.design,
         evaluation=evaluate(replace(subject, aims=many.actuator.subject.aims)),
         infeasibility=why,
-        unsolved=f"{_said(many.wished[no_end.objective])}: {solution.outcome.sentence}"
+        unsolved=f"{_said(many.wished[no_anchor.objective])}: {solution.outcome.sentence}"
         if feasible
         else "",
         seconds=time.perf_counter() - began,
