@@ -53,8 +53,8 @@ class Goal:
         """The objective of every design, to be minimised."""
         total: Array = 0.0
         for metric, weight in self.weights.items():
-            worst = worst_value(computed, metric, cases, self.aim)
-            total = total + weight / self.scales[metric] * worst
+            value = worst_value(computed, metric, cases, self.aim)
+            total = total + weight / self.scales[metric] * value
         return self.sign * total
 
     def shown(self, objective: float) -> float:
@@ -70,8 +70,8 @@ def worst_value(computed: MetricArrays, metric: str, cases: tuple[str, ...], aim
     InputError
         the metric is not computed
     """
-    worst = extreme(computed, metric, cases, worst_of(aim))
-    if worst is None:
+    value = extreme(computed, metric, cases, worst_of(aim))
+    if value is None:
         reason = computed.why.get(metric, "it does not apply to this design")
         raise InputError(
             Diagnostic(
@@ -80,23 +80,23 @@ def worst_value(computed: MetricArrays, metric: str, cases: tuple[str, ...], aim
                 path="objective",
             )
         )
-    return worst
+    return value
 
 
 def goal_of(subject: PreparedDesign) -> Goal:
     """The objective of a design; weighted metrics are divided by their present value."""
     objective = subject.design.objective
     sign = 1.0 if objective.aim == "min" else -1.0
-    stated = objective.minimise if objective.minimise is not None else objective.maximise
-    assert stated is not None
-    if isinstance(stated, str):
-        return Goal({stated: 1.0}, {stated: 1.0}, sign)
-    done = compute(subject, subject.values())
+    weights = objective.minimise if objective.minimise is not None else objective.maximise
+    assert weights is not None
+    if isinstance(weights, str):
+        return Goal({weights: 1.0}, {weights: 1.0}, sign)
+    run = compute(subject, subject.values())
     scales = {}
-    for metric in stated:
-        present = worst_value(done.computed, metric, subject.cases, objective.aim)
+    for metric in weights:
+        present = worst_value(run.computed, metric, subject.cases, objective.aim)
         scales[metric] = abs(float(np.squeeze(present))) or 1.0
-    return Goal(dict(stated), scales, sign)
+    return Goal(dict(weights), scales, sign)
 
 
 @dataclass
@@ -159,23 +159,23 @@ class ActuatorProblem:
         self,
         points: Array,
         parameters: Mapping[str, Array] | None = None,
-        seen: list[MetricArrays] | None = None,
+        outputs: list[MetricArrays] | None = None,
     ) -> PointValues:
         """Objective and constraint margins of points (variables, designs).
 
-        Adds the computed metrics to `seen`.
+        Adds the computed metrics to `outputs`.
         """
         varied = dict(parameters or {}) | dict(zip(self.paths, points, strict=True))
         numbers = self.subject.values(varied)
         count = points.shape[1]
-        done = compute(self.subject, numbers, self.wanted)
-        if seen is not None:
-            seen.append(done.computed)
+        run = compute(self.subject, numbers, self.wanted)
+        if outputs is not None:
+            outputs.append(run.computed)
         if self.refusals.names and not any(np.iscomplexobj(v) for v in varied.values()):
-            self.refusals.add(done.computed, count)
+            self.refusals.add(run.computed, count)
         return PointValues(
-            self.goal.value(done.computed, self.subject.cases),
-            _margins(self.rows, done.computed, numbers, count, self.subject.reserves),
+            self.goal.value(run.computed, self.subject.cases),
+            _margins(self.rows, run.computed, numbers, count, self.subject.reserves),
         )
 
 
@@ -185,37 +185,37 @@ def _bounded(margin: Array) -> Array:
     Keeps the sign, and both value and slope where the limit is just met.
     """
     large = real(margin) > 1e9
-    held = where(large, 0.0, margin)
-    inside = where(real(held) > 0, held / (1 + where(real(held) > 0, held, 0.0)), held)
-    return where(large, 1.0, inside)
+    finite = where(large, 0.0, margin)
+    bounded = where(real(finite) > 0, finite / (1 + where(real(finite) > 0, finite, 0.0)), finite)
+    return where(large, 1.0, bounded)
 
 
 def _margins(
-    wanted: tuple[LimitRow, ...],
+    rows: tuple[LimitRow, ...],
     computed: MetricArrays,
     numbers: Numbers,
     count: int,
     reserves: Mapping[str, float],
 ) -> Array:
     """Margins of the wanted rows less their reserves (rows, designs), all in one pass."""
-    if not wanted:
+    if not rows:
         return np.empty((0, count))
     complex_ = any(np.iscomplexobj(value) for value in numbers.varied.values())
-    value = np.empty((len(wanted), count), dtype=complex if complex_ else float)
-    bounds = [row.limit_of.value(numbers) for row in wanted]
+    value = np.empty((len(rows), count), dtype=complex if complex_ else float)
+    bounds = [row.limit_of.value(numbers) for row in rows]
     width = max(getattr(bound, "size", 1) for bound in bounds)
-    bound = np.empty((len(wanted), width), dtype=value.dtype)
-    for i, row in enumerate(wanted):
+    bound = np.empty((len(rows), width), dtype=value.dtype)
+    for i, row in enumerate(rows):
         array = computed.metrics[row.limit_of.metric][row.place]
         if row.case_index is not None:
             array = array[row.case_index]
         value[i], bound[i] = array, bounds[i]
     value = where(real(value) == np.inf, UNLIMITED, value)
-    sign = np.array([[1.0 if row.limit_of.sense == "min" else -1.0] for row in wanted])
-    beyond = sign * margin(value, bound, "min")
+    sign = np.array([[1.0 if row.limit_of.sense == "min" else -1.0] for row in rows])
+    margins = sign * margin(value, bound, "min")
     if reserves:
-        beyond = beyond - np.array([[reserves.get(row.limit_of.name, 0.0)] for row in wanted])
-    return _bounded(beyond)
+        margins = margins - np.array([[reserves.get(row.limit_of.name, 0.0)] for row in rows])
+    return _bounded(margins)
 
 
 @np.errstate(all="ignore")  # the solver handles values that are not finite
@@ -256,12 +256,12 @@ def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProble
         limit for limit in all_limits(subject.design, subject.plugins) if limit.origin != "advice"
     )
     numbers = subject.values({path: np.array([v, v]) for path, v in zip(paths, start, strict=True)})
-    done = compute(subject, numbers)
-    goal.value(done.computed, subject.cases)
-    everything = [row for limit in limits for row in rows_of(limit, done.computed, numbers)]
+    run = compute(subject, numbers)
+    goal.value(run.computed, subject.cases)
+    all_rows = [row for limit in limits for row in rows_of(limit, run.computed, numbers)]
     _check_read(numbers, paths, fault)
-    rows = tuple(row for row in everything if np.size(row.margin) > 1)
-    fixed = tuple(row for row in everything if np.size(row.margin) == 1)
+    rows = tuple(row for row in all_rows if np.size(row.margin) > 1)
+    fixed = tuple(row for row in all_rows if np.size(row.margin) == 1)
     missed = [  # a check that no variable can fix is reported, but does not constrain the search
         row
         for row in fixed
@@ -280,11 +280,11 @@ def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProble
         relaxable=tuple(row.limit_of.origin != "geometry" for row in rows),
         groups=tuple(limits.index(row.limit_of) for row in rows),
     )
-    wanted = frozenset({row.limit_of.metric for row in rows} | set(goal.weights))
-    own = {plugin.name for plugin in subject.plugins}
-    refusals, lenient = Refusals(wanted & own), replace(subject, lenient=True)
-    asked = None if own else wanted
-    holder.append(ActuatorProblem(lenient, goal, paths, rows, fixed, problem, asked, refusals))
+    metrics = frozenset({row.limit_of.metric for row in rows} | set(goal.weights))
+    plugin_names = {plugin.name for plugin in subject.plugins}
+    refusals, lenient = Refusals(metrics & plugin_names), replace(subject, lenient=True)
+    required = None if plugin_names else metrics
+    holder.append(ActuatorProblem(lenient, goal, paths, rows, fixed, problem, required, refusals))
     return holder[0]
 
 
@@ -292,9 +292,9 @@ def idle_metrics(actuator: ActuatorProblem) -> tuple[str, ...]:
     """Metrics of the objective that no variable affects at all."""
     start = actuator.problem.start
     assert start is not None
-    moved = {path: np.array([x, x]) for path, x in zip(actuator.paths, start, strict=True)}
+    points = {path: np.array([x, x]) for path, x in zip(actuator.paths, start, strict=True)}
     subject, goal = actuator.subject, actuator.goal
-    computed = compute(subject, subject.values(moved)).computed
+    computed = compute(subject, subject.values(points)).computed
     values = {name: worst_value(computed, name, subject.cases, goal.aim) for name in goal.weights}
     return tuple(
         name for name, value in values.items() if np.size(value) == 1 and np.isfinite(value).all()
@@ -380,7 +380,7 @@ def responses(
     )
 
 
-def with_bounds(found: Responses, evaluator: Evaluator, multipliers: Vector) -> Responses:
+def with_bounds(derivatives: Responses, evaluator: Evaluator, multipliers: Vector) -> Responses:
     """Return the same with a parameter "NAME lower" or "NAME upper" for each bound that costs.
 
     `multipliers` (2 nf,) are those of the lower, then the upper bounds.
@@ -390,20 +390,20 @@ def with_bounds(found: Responses, evaluator: Evaluator, multipliers: Vector) -> 
     priced = np.flatnonzero(multipliers > 0)
     names, values, shifts = [], [], np.zeros((2 * nf, len(priced)))
     for k, i in enumerate(priced):
-        j, upper = int(i) % nf, bool(i >= nf)
-        limit = (problem.upper if upper else problem.lower)[space.free[j]]
+        j, is_upper = int(i) % nf, bool(i >= nf)
+        limit = (problem.upper if is_upper else problem.lower)[space.free[j]]
         slope = limit if space.logarithmic[j] else space.scale[j]
-        names.append(f"{problem.names[space.free[j]]} {'upper' if upper else 'lower'}")
+        names.append(f"{problem.names[space.free[j]]} {'upper' if is_upper else 'lower'}")
         values.append(limit)
-        shifts[i, k] = (1.0 if upper else -1.0) / slope
-    extra = len(priced)
+        shifts[i, k] = (1.0 if is_upper else -1.0) / slope
+    count = len(priced)
     return replace(
-        found,
-        names=(*found.names, *names),
-        values=np.concatenate([found.values, np.array(values, dtype=float)]),
-        rows=np.concatenate([found.rows, np.zeros((len(found.rows), extra))], axis=1),
-        mixed=np.concatenate([found.mixed, np.zeros((nf, extra))], axis=1),
-        bounds=np.concatenate([found.bounds, shifts], axis=1),
+        derivatives,
+        names=(*derivatives.names, *names),
+        values=np.concatenate([derivatives.values, np.array(values, dtype=float)]),
+        rows=np.concatenate([derivatives.rows, np.zeros((len(derivatives.rows), count))], axis=1),
+        mixed=np.concatenate([derivatives.mixed, np.zeros((nf, count))], axis=1),
+        bounds=np.concatenate([derivatives.bounds, shifts], axis=1),
     )
 
 
@@ -419,9 +419,9 @@ def perturbed(parametric: ParametricProblem, name: str, k: int, value: float) ->
     problem = parametric.problem
     variable, side = name.rsplit(" ", 1)
     j = list(problem.names).index(variable)
-    bound = (problem.upper if side == "upper" else problem.lower).copy()
-    bound[j] = value
-    lower, upper = (bound, problem.upper) if side == "lower" else (problem.lower, bound)
+    bounds = (problem.upper if side == "upper" else problem.lower).copy()
+    bounds[j] = value
+    lower, upper = (bounds, problem.upper) if side == "lower" else (problem.lower, bounds)
     if lower[j] > upper[j]:
         return None
     return replace(problem, lower=lower, upper=upper, start=None)
@@ -441,21 +441,21 @@ def _row_slopes(
     count = len(steps)
     if count == 0:
         return np.zeros((len(point.rows), 0)), ()
-    at = np.repeat(parametric.parameters[:, None], count, axis=1)
+    parameters = np.repeat(parametric.parameters[:, None], count, axis=1)
     x = np.repeat(point.x[:, None], count, axis=1)
-    moves = np.diag(steps)
-    both = _rows(
+    shifts = np.diag(steps)
+    rows = _rows(
         parametric,
         np.concatenate([x, x], axis=1),
-        np.concatenate([at + moves, at - moves], axis=1),
+        np.concatenate([parameters + shifts, parameters - shifts], axis=1),
     ).real
-    above, below = both[:, :count], both[:, count:]
+    above, below = rows[:, :count], rows[:, count:]
     middle = point.rows[:, None]
     above = np.where(np.isfinite(above), above, 2 * middle - below)
     below = np.where(np.isfinite(below), below, 2 * middle - above)
     crude = np.nan_to_num((above - below) / (2 * steps))
     try:
-        fine = _rows(parametric, x, at + 1j * STEP * moves).imag / STEP / steps
+        fine = _rows(parametric, x, parameters + 1j * STEP * shifts).imag / STEP / steps
     except (TypeError, ValueError, np.exceptions.ComplexWarning):
         return crude, tuple(parametric.parameter_names)
     room = 1e-4 * np.abs(crude).max(axis=0) + 1e-6 * (1 + np.abs(point.rows).max()) / np.abs(steps)
@@ -482,8 +482,8 @@ def _mixed(
         seeds = evaluator.space.slope(point.x[:, None])[:, 0]
         x[evaluator.space.free, np.arange(nf)] += 1j * STEP * seeds
         for sign in (1.0, -1.0):
-            at = parametric.parameters[:, None] + sign * np.diag(steps)
-            rows = _rows(parametric, np.tile(x, count), np.repeat(at, nf, axis=1))
+            columns = parametric.parameters[:, None] + sign * np.diag(steps)
+            rows = _rows(parametric, np.tile(x, count), np.repeat(columns, nf, axis=1))
             part = (rows.imag / STEP).reshape(len(rows), count, nf)
             slopes.append(np.tensordot(weights, part, axes=1))
     else:
@@ -492,10 +492,10 @@ def _mixed(
             for k in range(count):
                 parameters = parametric.parameters.copy()
                 parameters[k] += sign * 100 * steps[k]
-                near = Evaluator(parametric.at(parameters))
-                near.complex_works = evaluator.complex_works
-                near.difference_rows = evaluator.difference_rows
-                side.append(weights @ near.jacobians(point.z[:, None])[:, 0])
+                changed = Evaluator(parametric.at(parameters))
+                changed.complex_works = evaluator.complex_works
+                changed.difference_rows = evaluator.difference_rows
+                side.append(weights @ changed.jacobians(point.z[:, None])[:, 0])
             slopes.append(np.array(side))
         steps = 100 * steps
     return np.asarray(np.nan_to_num((slopes[0] - slopes[1]) / (2 * steps[:, None])).T)

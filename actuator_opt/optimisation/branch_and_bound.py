@@ -79,26 +79,26 @@ class Listed:
     def at(self, x: Vector, rows: Rows) -> int | None:
         """The row at a point (k,), or None."""
         span = np.ptp(self.rows, axis=0)
-        near = np.abs(self.rows[list(rows)] - x) <= ON * span + SAME * np.abs(x)
-        found = np.flatnonzero(near.all(axis=1))
-        return rows[int(found[0])] if len(found) else None
+        matches = np.abs(self.rows[list(rows)] - x) <= ON * span + SAME * np.abs(x)
+        positions = np.flatnonzero(matches.all(axis=1))
+        return rows[int(positions[0])] if len(positions) else None
 
     def around(self, x: Vector) -> list[int]:
         """The nearest rows of a point (k,), for all roundings; only itself if it is a row."""
-        every = tuple(range(len(self.rows)))
-        here = self.at(x, every)
-        if here is not None:
-            return [here]
+        all_rows = tuple(range(len(self.rows)))
+        own_row = self.at(x, all_rows)
+        if own_row is not None:
+            return [own_row]
         span = np.ptp(self.rows, axis=0)
         off = (self.rows - x) / np.where(span > 0, span, 1.0)
         distance = np.abs(off).sum(axis=1)
-        found = []
+        rows = []
         for sides in itertools.product((1, -1), repeat=len(x)):
-            there = np.flatnonzero((off * sides >= -ON).all(axis=1))
-            if len(there):
-                found.append(int(there[distance[there].argmin()]))
-        found = found or [int(distance.argmin())]
-        return sorted(dict.fromkeys(found), key=lambda row: float(distance[row]))
+            sector = np.flatnonzero((off * sides >= -ON).all(axis=1))
+            if len(sector):
+                rows.append(int(sector[distance[sector].argmin()]))
+        rows = rows or [int(distance.argmin())]
+        return sorted(dict.fromkeys(rows), key=lambda row: float(distance[row]))
 
 
 def with_rows(box: Box, k: int, rows: Rows) -> Box:
@@ -169,8 +169,8 @@ def search(
     x: Vector,
     *,
     most: int = MOST_SOLVES,
-    until: float | None = None,
-    below: float = np.inf,
+    deadline: float | None = None,
+    cutoff: float = np.inf,
     memory: Memory | None = None,
 ) -> SizeSearch:
     """The best point with every listed variable at one of its values.
@@ -181,24 +181,24 @@ def search(
     listed : the groups of its listed variables
     x : the continuous optimum (n,)
     most : limit of re-optimisations
-    until : time of `time.perf_counter` to stop at
-    below : ignore objectives that are not better than this
+    deadline : time of `time.perf_counter` to stop at
+    cutoff : ignore objectives that are not better than this
     memory : results of searches of similar problems with the same rows; extended by this search
     """
     remembered = memory is not None and memory.hessian is not None
-    run = _Run(problem, listed, x, most, until, below, memory or Memory())
+    run = _Run(problem, listed, x, most, deadline, cutoff, memory or Memory())
     if remembered:
         run.look_ahead()
     else:
         run.neighbours()
-    whole = tuple(tuple(range(len(one.rows))) for one in listed)
+    root = tuple(tuple(range(len(group.rows))) for group in listed)
     boxes = _Boxes()
-    if run.evaluates(whole):
-        run.evaluate(whole)
+    if run.evaluates(root):
+        run.evaluate(root)
     elif remembered:
-        boxes.add(run.start.objective, whole, run.x)
+        boxes.add(run.start.objective, root, run.x)
     else:
-        run.relax([whole], run.x, boxes)
+        run.relax([root], run.x, boxes)
     while boxes and not run.exhausted:
         bound, box, x = boxes.take(run.best)
         if not run.beaten(bound):
@@ -231,10 +231,12 @@ class _Boxes:
         """The newest of the most promising boxes."""
         while self._lowest[0][1] not in self._entries:
             heapq.heappop(self._lowest)
-        least, number = self._lowest[0]
+        lowest_bound, number = self._lowest[0]
         newest = next(reversed(self._entries))
-        room = TIE * (best - least) if best < np.inf else np.inf
-        return self._entries.pop(newest if self._entries[newest][0] <= least + room else number)
+        tolerance = TIE * (best - lowest_bound) if best < np.inf else np.inf
+        return self._entries.pop(
+            newest if self._entries[newest][0] <= lowest_bound + tolerance else number
+        )
 
 
 def at(
@@ -266,13 +268,13 @@ class Memory:
             self.hessians[box] = hessian_at(*end)
         return end[1].x, self.hessians[box]
 
-    def note(self, box: Box, evaluator: Evaluator, nearest: Nearest) -> None:
+    def note(self, box: Box, evaluator: Evaluator, end: Nearest) -> None:
         """Store the result of a box, unless steps from known results reach it easily."""
-        if nearest.optimum is not None and not (nearest.followed and box in self.ends):
-            self.ends[box] = evaluator, nearest.optimum
+        if end.optimum is not None and not (end.followed and box in self.ends):
+            self.ends[box] = evaluator, end.optimum
             self.hessians.pop(box, None)
-        elif nearest.optimum is None and nearest.missed is not None:
-            self.missed.setdefault(box, nearest.missed.x)
+        elif end.optimum is None and end.missed is not None:
+            self.missed.setdefault(box, end.missed.x)
 
 
 @dataclass
@@ -295,12 +297,12 @@ class _Run:
     ahead: dict[Box, tuple[BoxTask, Nearest]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.index = np.concatenate([one.index for one in self.listed]).astype(np.intp)
+        self.index = np.concatenate([group.index for group in self.listed]).astype(np.intp)
         self.reference = Evaluator(self.problem)
         self.start = start = self.reference.point(self.reference.space.to_z(self.x))
         self.x = start.x
-        others = np.setdiff1d(np.arange(len(self.x)), self.index)
-        self.only_listed = bool((self.problem.lower == self.problem.upper)[others].all())
+        unlisted = np.setdiff1d(np.arange(len(self.x)), self.index)
+        self.only_listed = bool((self.problem.lower == self.problem.upper)[unlisted].all())
         self.least = np.inf
         if self.memory.hessian is None and start.valid and self.reference.space.size:
             self.reference.check_gradients(start)
@@ -331,65 +333,65 @@ class _Run:
     def values(self, assignment: Assignment) -> Vector:
         """Values of the listed variables (d,)."""
         pairs = zip(self.listed, assignment, strict=True)
-        return np.concatenate([one.rows[row] for one, row in pairs])
+        return np.concatenate([group.rows[row] for group, row in pairs])
 
     def neighbours(self) -> None:
         """Try every rounding up and down, all at once if the problem allows."""
-        sides = [one.around(self.x[list(one.index)]) for one in self.listed]
-        chosen = list(itertools.islice(itertools.product(*sides), MOST_NEIGHBOURS))
-        for assignment, near in self.together(chosen):
-            if near is None:
+        sides = [group.around(self.x[list(group.index)]) for group in self.listed]
+        assignments = list(itertools.islice(itertools.product(*sides), MOST_NEIGHBOURS))
+        for assignment, start in self.together(assignments):
+            if start is None:
                 self.note(assignment, np.inf)
             elif not self.exhausted:
-                self.assigned(assignment, near)
+                self.assigned(assignment, start)
         self.confirmed()
 
-    def together(self, chosen: list[Assignment]) -> list[tuple[Assignment, Vector | None]]:
+    def together(self, assignments: list[Assignment]) -> list[tuple[Assignment, Vector | None]]:
         """Re-optimise assignments at once; return the rest, each with a start or None."""
-        here = self.x[self.index]
-        point, evaluator = self._near(here, here, self.x)
+        present = self.x[self.index]
+        point, evaluator = self._near(present, present, self.x)
         names = [self.problem.names[i] for i in self.index]
 
         def evaluate(points: Array, values: Array) -> PointValues:
-            full = np.array(points)
-            full[self.index] = values
-            return self.problem.evaluate(full)
+            x = np.array(points)
+            x[self.index] = values
+            return self.problem.evaluate(x)
 
-        parametric = ParametricProblem(evaluator.problem, names, here, evaluate)
+        parametric = ParametricProblem(evaluator.problem, names, present, evaluate)
         suits = point.valid and evaluator.space.size and applicable(parametric, evaluator)
-        if not suits or not chosen:
-            return [(assignment, self.x) for assignment in chosen]
-        values = np.stack([self.values(assignment) for assignment in chosen], axis=1)
-        starts = np.repeat(point.z[:, None], len(chosen), axis=1)
+        if not suits or not assignments:
+            return [(assignment, self.x) for assignment in assignments]
+        values = np.stack([self.values(assignment) for assignment in assignments], axis=1)
+        starts = np.repeat(point.z[:, None], len(assignments), axis=1)
         changed = ChangedProblems(parametric, evaluator, values)
-        known = changed.near_optimum(valley_at(evaluator, point), starts)
-        left = [k for k, optimum in enumerate(known) if optimum is None]
-        near = changed.chosen(left).restore(point.z)
-        for assignment, optimum in zip(chosen, known, strict=True):
+        optima = changed.near_optimum(valley_at(evaluator, point), starts)
+        unsolved = [k for k, optimum in enumerate(optima) if optimum is None]
+        restored = changed.chosen(unsolved).restore(point.z)
+        for assignment, optimum in zip(assignments, optima, strict=True):
             self.solves += 1
             if optimum is not None:
                 self.note(assignment, optimum.objective)
                 self.near[assignment] = optimum.x
         return [
-            (chosen[k], None if z is None else evaluator.space.to_x(z[:, None])[:, 0])
-            for k, z in zip(left, near, strict=True)
+            (assignments[k], None if z is None else evaluator.space.to_x(z[:, None])[:, 0])
+            for k, z in zip(unsolved, restored, strict=True)
         ]
 
-    def assigned(self, assignment: Assignment, near: Vector) -> float:
+    def assigned(self, assignment: Assignment, start: Vector) -> float:
         """Re-optimise the other variables of an assignment; infinite where that is infeasible."""
         if assignment not in self.points:
             values = self.values(assignment)
             box = tuple((row,) for row in assignment)
-            (found,) = self._descended([(box, values, values)], near, EXACT)
-            self.note(assignment, np.inf if found is None else found.objective)
-            if found is not None:
-                self.points[assignment] = found.x
+            (optimum,) = self._descended([(box, values, values)], start, EXACT)
+            self.note(assignment, np.inf if optimum is None else optimum.objective)
+            if optimum is not None:
+                self.points[assignment] = optimum.x
         return self.tried[assignment]
 
     def confirmed(self) -> Assignment | None:
         """The best assignment, with its point verified; None without a feasible one."""
         while True:
-            best = min(self.tried, key=lambda one: self.tried[one], default=None)
+            best = min(self.tried, key=lambda assignment: self.tried[assignment], default=None)
             if best is None or not self.tried[best] < self.below:
                 return None
             if best in self.points:
@@ -408,20 +410,20 @@ class _Run:
 
     def evaluate(self, box: Box) -> None:
         """Evaluate every assignment of a box without other free variables."""
-        chosen = list(itertools.product(*box))
-        points = np.repeat(self.x[:, None], len(chosen), axis=1)
-        for one, rows in zip(self.listed, np.array(chosen).T, strict=True):
-            points[list(one.index)] = one.rows[rows].T
+        assignments = list(itertools.product(*box))
+        points = np.repeat(self.x[:, None], len(assignments), axis=1)
+        for group, rows in zip(self.listed, np.array(assignments).T, strict=True):
+            points[list(group.index)] = group.rows[rows].T
         values = Evaluator.screen(self.problem.rows(points))
-        met = self.reference.violations(values, "worst") <= FEASIBLE
-        objectives = np.where(met, values[0], np.inf).tolist()
-        for assignment, objective in zip(chosen, objectives, strict=True):
+        feasible = self.reference.violations(values, "worst") <= FEASIBLE
+        objectives = np.where(feasible, values[0], np.inf).tolist()
+        for assignment, objective in zip(assignments, objectives, strict=True):
             self.tried.setdefault(assignment, objective)
         self.least = min(self.least, *objectives)
         self.solves += 1
         self.ends.append((self.reference, None))  # the box has no optimum to compare with
 
-    def relax(self, parts: Sequence[Box], near: Vector, boxes: _Boxes) -> None:
+    def relax(self, parts: Sequence[Box], x: Vector, boxes: _Boxes) -> None:
         """Add the boxes whose continuous optimum may improve on the best design."""
         large = []
         for box in parts:
@@ -431,51 +433,54 @@ class _Run:
                 large.append(box)
         self.visited += large
         bounds = [(box, *self._bounds(box)) for box in large]
-        for box, point in zip(large, self._descended(bounds, near, ROUGH), strict=True):
+        for box, point in zip(large, self._descended(bounds, x, ROUGH), strict=True):
             if point is not None and not self.beaten(point.objective):
                 boxes.add(point.objective, box, point.x)
 
     def _bounds(self, box: Box) -> tuple[Vector, Vector]:
         """Bounds of the listed variables in a box."""
-        left = [one.rows[list(rows)] for one, rows in zip(self.listed, box, strict=True)]
-        lower = np.concatenate([rows.min(axis=0) for rows in left])
-        return lower, np.concatenate([rows.max(axis=0) for rows in left])
+        values = [group.rows[list(rows)] for group, rows in zip(self.listed, box, strict=True)]
+        lower = np.concatenate([rows.min(axis=0) for rows in values])
+        return lower, np.concatenate([rows.max(axis=0) for rows in values])
 
     def parts(self, box: Box, x: Vector, objective: float) -> list[Box]:
         """The parts of a box left to search, given its continuous optimum."""
         widest: float = ON
         halves: tuple[int, list[list[int]]] | None = None
-        for k, (one, rows) in enumerate(zip(self.listed, box, strict=True)):
-            for column, index in enumerate(one.index):
-                values = one.values(column, rows)
+        for k, (group, rows) in enumerate(zip(self.listed, box, strict=True)):
+            for column, index in enumerate(group.index):
+                values = group.values(column, rows)
                 below, above, share = between(values, float(x[index]))
                 if share > widest:
-                    of = one.rows[:, column]
+                    column_values = group.rows[:, column]
                     widest = share
                     parts = [
-                        [r for r in rows if of[r] <= below],
-                        [r for r in rows if of[r] >= above],
+                        [r for r in rows if column_values[r] <= below],
+                        [r for r in rows if column_values[r] >= above],
                     ]
                     halves = k, parts if x[index] - below > above - x[index] else parts[::-1]
         if halves is not None:  # the nearer part last
             return [with_rows(box, halves[0], tuple(half)) for half in halves[1]]
-        found = [
-            one.at(x[list(one.index)], rows) for one, rows in zip(self.listed, box, strict=True)
+        rows_at = [
+            group.at(x[list(group.index)], rows)
+            for group, rows in zip(self.listed, box, strict=True)
         ]
-        if None in found:  # each value is listed, but not this combination
-            k = found.index(None)
-            one, rows = self.listed[k], box[k]
-            nearest = min(rows, key=lambda r: float(np.abs(one.rows[r] - x[list(one.index)]).sum()))
-            return [with_rows(box, k, part) for part in [*one.parts(rows, nearest), (nearest,)]]
-        assignment = tuple(row for row in found if row is not None)
+        if None in rows_at:  # each value is listed, but not this combination
+            k = rows_at.index(None)
+            group, rows = self.listed[k], box[k]
+            nearest = min(
+                rows, key=lambda r: float(np.abs(group.rows[r] - x[list(group.index)]).sum())
+            )
+            return [with_rows(box, k, part) for part in [*group.parts(rows, nearest), (nearest,)]]
+        assignment = tuple(row for row in rows_at if row is not None)
         room = CLOSE * abs(objective)
         if self.assigned(assignment, x) <= objective + room:
             return []  # nothing else in the box can be better
-        left = []
+        rest = []
         for k, row in enumerate(assignment):
-            left += [with_rows(box, k, part) for part in self.listed[k].parts(box[k], row)]
+            rest += [with_rows(box, k, part) for part in self.listed[k].parts(box[k], row)]
             box = with_rows(box, k, (row,))
-        return left
+        return rest
 
     def found(self, *, complete: bool) -> SizeSearch:
         """The result of the search."""
@@ -493,66 +498,68 @@ class _Run:
 
     def nearest(self) -> tuple[Assignment, Point] | tuple[None, None]:
         """The least infeasible of the first assignments, and its point."""
-        found = []
+        candidates = []
         for assignment in list(self.tried)[:MOST_MISSED]:
             box = tuple((row,) for row in assignment)
             values = self.values(assignment)
             point, _ = self._near(values, values, self.memory.missed.get(box, self.x))
             if box not in self.memory.missed and point.valid and not self.exhausted:
                 self.assigned(assignment, self.x)
-                near = self.memory.missed.get(box, self.x)
-                point, _ = self._near(values, values, near)
+                start = self.memory.missed.get(box, self.x)
+                point, _ = self._near(values, values, start)
             if point.valid:
-                found.append((point.violation, assignment, point))
-        if not found:
+                candidates.append((point.violation, assignment, point))
+        if not candidates:
             return None, None
-        _, assignment, point = min(found, key=lambda one: one[0])
+        _, assignment, point = min(candidates, key=lambda candidate: candidate[0])
         return assignment, point
 
     def _within(self, lower: Vector, upper: Vector) -> Evaluator:
         """The problem with bounds on its listed variables."""
-        least, most = self.problem.lower.copy(), self.problem.upper.copy()
-        least[self.index], most[self.index] = lower, upper
-        evaluator = Evaluator(replace(self.problem, lower=least, upper=most, start=None))
+        lowest, highest = self.problem.lower.copy(), self.problem.upper.copy()
+        lowest[self.index], highest[self.index] = lower, upper
+        evaluator = Evaluator(replace(self.problem, lower=lowest, upper=highest, start=None))
         evaluator.complex_works = self.reference.complex_works
         evaluator.difference_rows = self.reference.difference_rows
         evaluator.eager = True
         return evaluator
 
-    def _near(self, lower: Vector, upper: Vector, near: Vector) -> tuple[Point, Evaluator]:
+    def _near(self, lower: Vector, upper: Vector, start: Vector) -> tuple[Point, Evaluator]:
         """The point nearest to another, within bounds of the listed variables."""
         evaluator = self._within(lower, upper)
-        return evaluator.point(evaluator.space.to_z(evaluator.problem.inside(near))), evaluator
+        return evaluator.point(evaluator.space.to_z(evaluator.problem.inside(start))), evaluator
 
     def _task(
-        self, box: Box, lower: Vector, upper: Vector, near: Vector, criteria: Criteria
+        self, box: Box, lower: Vector, upper: Vector, start: Vector, criteria: Criteria
     ) -> BoxTask:
         """A box to re-optimise, from a nearby point or the result of a similar problem."""
-        known = self.memory.near(box)
-        hopeless = known is None and box in self.memory.missed
-        x, hessian = known or (self.memory.missed.get(box, near), self.memory.hessian)
+        warm_start = self.memory.near(box)
+        hopeless = warm_start is None and box in self.memory.missed
+        x, hessian = warm_start or (self.memory.missed.get(box, start), self.memory.hessian)
         evaluator = self._within(lower, upper)
-        above = self.best if criteria is ROUGH else np.inf
+        cutoff = self.best if criteria is ROUGH else np.inf
         x = evaluator.problem.inside(x)
-        return BoxTask(evaluator, x, hessian, criteria, hopeless, above)
+        return BoxTask(evaluator, x, hessian, criteria, hopeless, cutoff)
 
     def _descended(
-        self, bounds: Sequence[tuple[Box, Vector, Vector]], near: Vector, criteria: Criteria
+        self, bounds: Sequence[tuple[Box, Vector, Vector]], start: Vector, criteria: Criteria
     ) -> list[Point | None]:
         """The optimum in each box, from a nearby point or a similar problem; None without one."""
-        known = self.ahead if criteria is ROUGH else {}
+        precomputed = self.ahead if criteria is ROUGH else {}
         tasks = {
-            box: self._task(box, lower, upper, near, criteria)
+            box: self._task(box, lower, upper, start, criteria)
             for box, lower, upper in bounds
-            if box not in known
+            if box not in precomputed
         }
         ends = resolve_boxes(list(tasks.values()))
-        done = known | dict(zip(tasks, zip(tasks.values(), ends, strict=True), strict=True))
+        resolved = precomputed | dict(
+            zip(tasks, zip(tasks.values(), ends, strict=True), strict=True)
+        )
         self.solves += len(bounds)
-        found = []
+        optima = []
         for box, _, _ in bounds:
-            task, end = done[box]
+            task, end = resolved[box]
             self.memory.note(box, task.evaluator, end)
             self.ends.append((task.evaluator, end.optimum or end.missed))
-            found.append(end.optimum)
-        return found
+            optima.append(end.optimum)
+        return optima

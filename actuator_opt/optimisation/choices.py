@@ -130,10 +130,10 @@ def possible(subject: PreparedDesign) -> list[Look]:
                 subject.design, values, materials=library, metrics=subject.quantities
             )
             names = names_of_materials(design)
-            known: dict[str, Material] = {
+            materials: dict[str, Material] = {
                 name: subject.materials.get(name) or library.get(name) for name in names
             }
-            look.subject = prepare(design, known, subject.plugins)
+            look.subject = prepare(design, materials, subject.plugins)
         except InputError as error:
             _give_up(look, error)
         looks.append(look)
@@ -160,7 +160,7 @@ def _require_one(looks: Sequence[Look]) -> None:
 
 @np.errstate(all="ignore")  # a design without finite values is never the best
 def search_choices(
-    subject: PreparedDesign, settings: ChoiceSettings, most: int = MOST_SOLVED
+    subject: PreparedDesign, settings: ChoiceSettings, max_solved: int = MOST_SOLVED
 ) -> ChoiceSearch:
     """Look at every combination of the choices, and solve the best ones from many starts.
 
@@ -168,7 +168,7 @@ def search_choices(
     ----------
     subject : the design with its choices
     settings : settings for solving the best
-    most : maximum number solved
+    max_solved : maximum number solved
 
     Raises
     ------
@@ -176,12 +176,12 @@ def search_choices(
         every combination is impossible
     """
     choice_search = ChoiceSearch(goal_of(subject), possible(subject))
-    moving = bool(subject.design.variables)
+    has_variables = bool(subject.design.variables)
     for look in choice_search.looks:
         if look.subject is None:
             continue
         try:
-            if moving:
+            if has_variables:
                 look.actuator = _with_goal(build(look.subject), choice_search.goal)
                 look.checks = _missed_checks(look.actuator.fixed)
             else:
@@ -189,9 +189,9 @@ def search_choices(
         except InputError as error:
             _give_up(look, error)
     _require_one(choice_search.looks)
-    if moving:
+    if has_variables:
         _look_at_all(choice_search, settings)
-        _solve_best(choice_search, settings, most)
+        _solve_best(choice_search, settings, max_solved)
     return choice_search
 
 
@@ -236,12 +236,12 @@ def _look_at_all(choice_search: ChoiceSearch, settings: ChoiceSettings) -> None:
     """Look quickly at every combination, in half of the available time."""
     began = time.perf_counter()
     for look in choice_search.looks:
-        left = settings.left(0.5, began)
-        if look.actuator is None or (left is not None and left <= 0 and _any(choice_search)):
+        seconds = settings.left(0.5, began)
+        if look.actuator is None or (seconds is not None and seconds <= 0 and _any(choice_search)):
             continue
-        left = None if left is None else max(left, LEAST_SECONDS)
+        seconds = None if seconds is None else max(seconds, LEAST_SECONDS)
         try:
-            look_quickly(look, _starts(choice_search, look), settings.seed, left)
+            look_quickly(look, _starts(choice_search, look), settings.seed, seconds)
         except InputError as error:
             _give_up(look, error)
         if look.hessian is None and look.feasible:
@@ -259,47 +259,49 @@ def _starts(choice_search: ChoiceSearch, look: Look) -> list[LookStart]:
     combination comes to feasibility. The last neighbour, which changes least, may be followed step
     by step.
     """
-    known = [other for other in choice_search.looks if other.x is not None and other is not look]
+    solved = [other for other in choice_search.looks if other.x is not None and other is not look]
 
     def distance(other: Look) -> tuple[int, float]:
         differing = sum(other.values[path] != value for path, value in look.values.items())
         return differing, other.objective
 
-    good = min((other for other in known if other.feasible), key=distance, default=None)
-    bad = min((other for other in known if not other.feasible), key=distance, default=None)
+    feasible = min((other for other in solved if other.feasible), key=distance, default=None)
+    infeasible = min((other for other in solved if not other.feasible), key=distance, default=None)
     starts = []
-    closer = bad is not None and (good is None or distance(bad)[0] <= distance(good)[0])
-    if closer and bad is not None and bad.x is not None:
-        starts.append(LookStart(bad.x, descend=False))
-    if good is not None and good.x is not None:
-        starts.append(LookStart(good.x, descend=True))
-    last = min(
-        (other for other in known if other.hessian is not None),
+    infeasible_is_closer = infeasible is not None and (
+        feasible is None or distance(infeasible)[0] <= distance(feasible)[0]
+    )
+    if infeasible_is_closer and infeasible is not None and infeasible.x is not None:
+        starts.append(LookStart(infeasible.x, descend=False))
+    if feasible is not None and feasible.x is not None:
+        starts.append(LookStart(feasible.x, descend=True))
+    latest = min(
+        (other for other in solved if other.hessian is not None),
         key=lambda other: (distance(other)[0], -other.order),
         default=None,
     )
-    if last is not None and last.x is not None:
-        starts.append(LookStart(last.x, descend=True, hessian=last.hessian))
-    own = None if look.actuator is None else look.actuator.problem.start
-    return starts or ([] if own is None else [LookStart(own, descend=True)])
+    if latest is not None and latest.x is not None:
+        starts.append(LookStart(latest.x, descend=True, hessian=latest.hessian))
+    start = None if look.actuator is None else look.actuator.problem.start
+    return starts or ([] if start is None else [LookStart(start, descend=True)])
 
 
-def _solve_best(choice_search: ChoiceSearch, settings: ChoiceSettings, most: int) -> None:
+def _solve_best(choice_search: ChoiceSearch, settings: ChoiceSettings, max_solved: int) -> None:
     """Solve the winner and combinations close to it from many starts, best first."""
-    second = True
-    for _ in range(most):
+    first_gain = True
+    for _ in range(max_solved):
         look = _promising(choice_search)
-        left = settings.left()
-        if look is None or (left is not None and left <= 0):
+        seconds = settings.left()
+        if look is None or (seconds is not None and seconds <= 0):
             break
-        before = look.objective if look.feasible else math.inf
+        previous = look.objective if look.feasible else math.inf
         many_starts(look, settings)
-        gained = look.feasible and look.objective < before - BETTER * abs(look.objective)
-        if second and gained and look.x is not None:
-            second = False
+        gained = look.feasible and look.objective < previous - BETTER * abs(look.objective)
+        if first_gain and gained and look.x is not None:
+            first_gain = False
             for other in choice_search.looks:
-                near = other.violation <= DOUBTFUL
-                if other.solution is None and other.actuator is not None and near:
+                promising = other.violation <= DOUBTFUL
+                if other.solution is None and other.actuator is not None and promising:
                     start = LookStart(look.x, descend=True)
                     look_quickly(other, [start], settings.seed, settings.left())
     best = choice_search.ranked()[0]
@@ -318,9 +320,9 @@ def _promising(choice_search: ChoiceSearch) -> Look | None:
         if look.solution is not None or look.how != "quick":
             continue
         gap = look.objective - best.objective
-        near = gap <= NEAR * abs(best.objective)
+        close = gap <= NEAR * abs(best.objective)
         as_good = len(look.checks & mendable) <= len(best.checks & mendable)
-        if best.feasible and look.feasible and near and as_good:
+        if best.feasible and look.feasible and close and as_good:
             return look
         doubtful = not look.feasible and look.violation <= best.violation + DOUBTFUL
         if doubtful and solved < MOST_DOUBTFUL:
@@ -331,16 +333,16 @@ def _promising(choice_search: ChoiceSearch) -> Look | None:
 def many_starts(look: Look, settings: ChoiceSettings) -> None:
     """Solve a combination from many starts, including its best known point."""
     assert look.actuator is not None
-    left = settings.left()
-    known = [] if look.x is None else [look.x]
+    seconds = settings.left()
+    starts = [] if look.x is None else [look.x]
     solution = solve(
         look.actuator.problem,
         algorithm=settings.algorithm,
         starts=settings.starts,
         samples=settings.samples,
         seed=settings.seed,
-        max_seconds=None if left is None else max(left, LEAST_SECONDS),
-        more_starts=known,
+        max_seconds=None if seconds is None else max(seconds, LEAST_SECONDS),
+        more_starts=starts,
     )
     look.how, look.solution = "multistart", solution
     look.x, look.objective, look.violation = solution.x, solution.objective, solution.violation
@@ -362,9 +364,9 @@ def record(choice_search: ChoiceSearch, design: Design) -> Choices:
     least = best.objective if best.rounded is None else best.rounded
     for look in ranked:
         cost = None
-        reached = look.objective if look.rounded is None else look.rounded
+        objective = look.objective if look.rounded is None else look.rounded
         if look.feasible and best.feasible and look.sizing not in _WITHOUT:
-            cost = reached - least
+            cost = objective - least
             cost = 0.0 if abs(cost) <= EQUAL * abs(least) else cost
         rows.append(
             Combination(
@@ -380,8 +382,8 @@ def record(choice_search: ChoiceSearch, design: Design) -> Choices:
                 rounded=None if look.rounded is None else choice_search.goal.shown(look.rounded),
             )
         )
-    made = Choices("", tuple(rows), left_out(design))
-    return replace(made, sentence=_sentence(made))
+    choices = Choices("", tuple(rows), left_out(design))
+    return replace(choices, sentence=_sentence(choices))
 
 
 def _status(look: Look, mendable: frozenset[str], sized: bool) -> str:
@@ -392,19 +394,19 @@ def _status(look: Look, mendable: frozenset[str], sized: bool) -> str:
         return "not tried: time limit reached"
     checks = ", ".join(sorted(look.checks & mendable))
     if look.feasible:
-        said = (
+        outcome = (
             "all requirements are met" if look.solution is None else look.solution.outcome.sentence
         )
         if look.sizing:
-            said = f"{said}; {_SIZING[look.sizing]}"
+            outcome = f"{outcome}; {_SIZING[look.sizing]}"
         elif look.rounded is None and sized:
-            said = f"{said}; not searched further, as listed sizes cannot improve on the best"
+            outcome = f"{outcome}; not searched further, as listed sizes cannot improve on the best"
         if checks:
-            said = f"misses the check {checks}, which other choices meet; {said}"
+            outcome = f"misses the check {checks}, which other choices meet; {outcome}"
     else:
         by = f" by {100 * look.violation:.2g} %" if math.isfinite(look.violation) else ""
-        said = f"misses {look.missed}{by}" if look.missed else "no finite values at any point"
-    return _WAYS[look.how] + said
+        outcome = f"misses {look.missed}{by}" if look.missed else "no finite values at any point"
+    return _WAYS[look.how] + outcome
 
 
 _SIZING = {
@@ -424,18 +426,18 @@ _WITHOUT = ("none", "none better", "no size fits")
 _WAYS: dict[How, str] = {"multistart": "many starts: ", "quick": "quick look: ", "evaluated": ""}
 
 
-def _sentence(made: Choices) -> str:
+def _sentence(choices: Choices) -> str:
     """Count the combinations, the feasible ones, and those of each search, in words."""
-    total, fit = len(made.combinations), made.feasible
-    first = f"none of {total} combinations meets all requirements; the nearest one is shown"
-    if fit:
-        first = f"the best of {total} combinations; {fit} meet all requirements"
-    counts = ", ".join(_counts(made))
-    proof = "; a quick look proves nothing" if made.count("quick") else ""
-    return f"{first}; {counts}{proof}"
+    total, feasible = len(choices.combinations), choices.feasible
+    result = f"none of {total} combinations meets all requirements; the nearest one is shown"
+    if feasible:
+        result = f"the best of {total} combinations; {feasible} meet all requirements"
+    counts = ", ".join(_counts(choices))
+    proof = "; a quick look proves nothing" if choices.count("quick") else ""
+    return f"{result}; {counts}{proof}"
 
 
-def _counts(made: Choices) -> Iterator[str]:
+def _counts(choices: Choices) -> Iterator[str]:
     words: dict[How, str] = {
         "evaluated": "evaluated",
         "multistart": "solved from many starts",
@@ -443,9 +445,9 @@ def _counts(made: Choices) -> Iterator[str]:
         "not possible": "not possible",
         "not tried": "not tried within the time limit",
     }
-    for how, said in words.items():
-        if count := made.count(how):
-            yield f"{count} {said}"
+    for how, text in words.items():
+        if count := choices.count(how):
+            yield f"{count} {text}"
 
 
 _NOTHING_BETTER = SizeSearch(None, None, None, {}, 0, complete=True)
@@ -473,11 +475,11 @@ def best_of_sizes(choices: ChoiceSearch, wanted: Wanted, settings: ChoiceSetting
         the requested sizes fit no combination
     """
     searched = list(_searched(choices, wanted, settings))
-    better = [sized for sized in searched if sized.found.objective is not None]
-    winner = next(iter([*reversed(better), *searched]), None)
+    improved = [sized for sized in searched if sized.found.objective is not None]
+    winner = next(iter([*reversed(improved), *searched]), None)
     if winner is None:
         return None
-    if better:
+    if improved:
         _runners_up(winner, searched)
     if winner.look.solution is None:
         many_starts(winner.look, settings)
@@ -488,7 +490,7 @@ def _searched(choices: ChoiceSearch, wanted: Wanted, settings: ChoiceSettings) -
     """Search each promising combination for a better design than those before."""
     error: InputError | None = None
     memories: dict[object, Memory] = {}
-    alike: dict[object, list[Evidence]] = {}
+    evidence_by_sizes: dict[object, list[Evidence]] = {}
     mendable = choices.mendable()
     best, count = (math.inf, math.inf), 0
     for look in choices.ranked():
@@ -506,24 +508,28 @@ def _searched(choices: ChoiceSearch, wanted: Wanted, settings: ChoiceSettings) -
             continue
         if sizes is None:
             continue
-        key = tuple((one.index, one.rows.tobytes()) for one in sizes.listed)
+        key = tuple((group.index, group.rows.tobytes()) for group in sizes.listed)
         memory = memories.setdefault(key, Memory())
         problem = look.actuator.problem
-        if any(one.holds_for(problem, look.objective) for one in alike.get(key, ())):
+        if any(
+            group.holds_for(problem, look.objective) for group in evidence_by_sizes.get(key, ())
+        ):
             look.sizing = "none" if best[1] == math.inf else "none better"
             yield Sized(look, sizes, _NOTHING_BETTER, memory)
             continue
-        found = search(
-            problem, sizes.listed, look.x, until=settings.until, below=best[1], memory=memory
+        size_search = search(
+            problem, sizes.listed, look.x, deadline=settings.until, cutoff=best[1], memory=memory
         )
-        if found.complete:
-            alike.setdefault(key, []).append(Evidence(problem, look.objective, found.ends))
-        look.rounded, count = found.objective, count + 1
-        if found.objective is not None:
-            look.sizing, best = "found", (checks, found.objective)
+        if size_search.complete:
+            evidence_by_sizes.setdefault(key, []).append(
+                Evidence(problem, look.objective, size_search.ends)
+            )
+        look.rounded, count = size_search.objective, count + 1
+        if size_search.objective is not None:
+            look.sizing, best = "found", (checks, size_search.objective)
         else:
             look.sizing = "none" if best[1] == math.inf else "none better"
-        yield Sized(look, sizes, found, memory)
+        yield Sized(look, sizes, size_search, memory)
     if not count and error is not None:
         raise error
 
@@ -531,8 +537,8 @@ def _searched(choices: ChoiceSearch, wanted: Wanted, settings: ChoiceSettings) -
 def _runners_up(winner: Sized, searched: Sequence[Sized]) -> None:
     """Add the cost of the best sizes in the next best combinations."""
     assert winner.found.assignment is not None
-    others = [sized for sized in searched if sized.look.sizing == "none better"]
-    for sized in others[:RUNNERS_UP]:
+    candidates = [sized for sized in searched if sized.look.sizing == "none better"]
+    for sized in candidates[:RUNNERS_UP]:
         look = sized.look
         if sized.memory is not winner.memory or look.actuator is None or look.x is None:
             continue

@@ -108,11 +108,13 @@ def cures(actuator: ActuatorProblem, conflict: Conflict) -> Cures:
     """
     if conflict.laws or not conflict.joint:
         return Cures()
-    least = WORTH * conflict.total / math.log(repairs.WIDEST)
-    gains = {path: gain for path, gain in _gains(actuator, conflict).items() if abs(gain) >= least}
-    dimensions, together, left = _dimensions(actuator, conflict.x, gains)
-    choices, others = _choices(actuator, conflict, gains)
-    return Cures(dimensions, together, choices, (*left, *others))
+    threshold = WORTH * conflict.total / math.log(repairs.WIDEST)
+    gains = {
+        path: gain for path, gain in _gains(actuator, conflict).items() if abs(gain) >= threshold
+    }
+    dimensions, together, untried_dimensions = _dimensions(actuator, conflict.x, gains)
+    choices, untried_choices = _choices(actuator, conflict, gains)
+    return Cures(dimensions, together, choices, (*untried_dimensions, *untried_choices))
 
 
 def _gains(actuator: ActuatorProblem, conflict: Conflict) -> dict[str, float]:
@@ -162,16 +164,16 @@ def _dimensions(
         len(x) + k: _limit(quantity_of(path, design), start[len(x) + k], gains[path])
         for k, path in enumerate(tried)
     }
-    enough: list[Cure] = []
+    sufficient: list[Cure] = []
     for number, (path, place) in enumerate(zip(tried, limits, strict=True)):
-        if len(enough) == ENOUGH:
-            return _least_first(enough), (), candidates[number:]
+        if len(sufficient) == ENOUGH:
+            return _least_first(sufficient), (), candidates[number:]
         tell("infeasible: searching for a sufficient fixed dimension", number / len(tried))
-        enough += freed(problem, start, {place: limits[place]}, {place: path}, design)
+        sufficient += freed(problem, start, {place: limits[place]}, {place: path}, design)
     together: list[Cure] = []
-    if not enough and len(tried) > 1:
+    if not sufficient and len(tried) > 1:
         together = freed(problem, start, limits, dict(zip(limits, tried, strict=True)), design)
-    return _least_first(enough), tuple(together), candidates[len(tried) :]
+    return _least_first(sufficient), tuple(together), candidates[len(tried) :]
 
 
 def _limit(quantity: Quantity, now: float, gain: float) -> float:
@@ -212,23 +214,23 @@ def freed(
         return PointValues(change, problem.evaluate(points).constraints)
 
     free = replace(problem, lower=lower, upper=upper, evaluate=evaluate)
-    near = repairs.near(free, start)
-    if near is None:
+    feasible = repairs.near(free, start)
+    if feasible is None:
         return []
     evaluator = Evaluator(free)
-    end = repairs.go(evaluator, evaluator.point(evaluator.space.to_z(near)))
+    end = repairs.go(evaluator, evaluator.point(evaluator.space.to_z(feasible)))
     if end.violation > repairs.NOTHING:
         return []
-    found = []
+    result = []
     for place, limit in zip(places, ends, strict=True):
         old, value = float(start[place]), float(end.x[place])
         if abs(math.log(value / old)) > repairs.NOTHING:
             value = rounded_outward(quantity_of(paths[place], design), value, upwards=limit > old)
             value = min(max(value, lower[place]), upper[place])
-            found.append(Cure(paths[place], old, value))
+            result.append(Cure(paths[place], old, value))
         lower[place] = upper[place] = value
     fixed = replace(problem, lower=lower, upper=upper)
-    return found if repairs.near(fixed, start) is not None else []
+    return result if repairs.near(fixed, start) is not None else []
 
 
 def rounded_outward(quantity: Quantity, value: float, *, upwards: bool) -> float:
@@ -249,13 +251,13 @@ def opened(actuator: ActuatorProblem, paths: Sequence[str]) -> BoxProblem:
     Rows that only these variables affect count too, except for checks that cannot be met anyway.
     """
     subject, numbers = actuator.subject, actuator.subject.numbers
-    at = {path: numbers[path] for path in paths}
-    more = {path: Variable(lower=x, upper=x, start=x) for path, x in at.items()}
-    variables = dict(subject.design.variables) | more
-    wider = build(
+    values = {path: numbers[path] for path in paths}
+    added = {path: Variable(lower=x, upper=x, start=x) for path, x in values.items()}
+    variables = dict(subject.design.variables) | added
+    extended = build(
         replace(subject, design=subject.design.model_copy(update={"variables": variables}))
     )
-    return _kept(wider, _lost(actuator))
+    return _kept(extended, _lost(actuator))
 
 
 def _kept(actuator: ActuatorProblem, lost: frozenset[str]) -> BoxProblem:
@@ -293,8 +295,8 @@ def outward(value: float, digits: int, upwards: bool) -> float:
     places = digits - 1 - math.floor(math.log10(abs(value)))
     scaled = value * 10.0**places
     slack = 1e-7 * abs(scaled)
-    whole = math.ceil(scaled - slack) if upwards else math.floor(scaled + slack)
-    return round(whole / 10.0**places, max(places, 0))
+    rounded = math.ceil(scaled - slack) if upwards else math.floor(scaled + slack)
+    return round(rounded / 10.0**places, max(places, 0))
 
 
 def _choices(
@@ -302,7 +304,7 @@ def _choices(
 ) -> tuple[tuple[Cure, ...], list[str]]:
     """Choices enough alone, least infeasible first; and those not tried."""
     subject, library = actuator.subject, load_library()
-    before = _missed(actuator.problem, conflict.x)
+    present = _missed(actuator.problem, conflict.x)
     offered: list[tuple[float, Cure, BoxProblem]] = []
     margins = np.ravel(actuator.evaluate(conflict.x[:, None]).constraints)
     rows = zip(actuator.rows, margins.tolist(), strict=True)
@@ -311,18 +313,20 @@ def _choices(
         now = _word(subject.design, path)
         problem = None if word == now else _chosen(actuator, {path: word, **beside}, library)
         missed = math.inf if problem is None else _missed(problem, conflict.x)
-        if problem is not None and missed < before - repairs.NOTHING:
+        if problem is not None and missed < present - repairs.NOTHING:
             offered.append((missed, Cure(path, now, word, beside), problem))
-    offered.sort(key=lambda one: (one[0], one[1].path))
-    enough: list[Cure] = []
+    offered.sort(key=lambda offer: (offer[0], offer[1].path))
+    sufficient: list[Cure] = []
     for number, (_, cure, problem) in enumerate(offered):
-        if len(enough) == ENOUGH or number == MOST_CHOICES:
-            rest = dict.fromkeys(one.path for _, one, _ in offered[number:])
-            return tuple(enough), [path for path in rest if path not in {c.path for c in enough}]
+        if len(sufficient) == ENOUGH or number == MOST_CHOICES:
+            untried = dict.fromkeys(offer.path for _, offer, _ in offered[number:])
+            return tuple(sufficient), [
+                path for path in untried if path not in {c.path for c in sufficient}
+            ]
         tell("infeasible: searching for a sufficient choice", number / len(offered))
         if repairs.near(problem, conflict.x) is not None:
-            enough.append(cure)
-    return tuple(enough), []
+            sufficient.append(cure)
+    return tuple(sufficient), []
 
 
 def _missed(problem: BoxProblem, x: Vector) -> float:
@@ -344,15 +348,15 @@ def _vocabulary(
         return any(path.startswith(starts) for path in gains)
 
     for name in ("piston", "rod"):
-        seal, here = getattr(design.seals, name), f"seals.{name}"
-        missing = any(place.startswith(f"{name} seal") for place in places)
-        if missing or matters(f"{here}.", f"materials.{seal.compound}."):
+        seal, section = getattr(design.seals, name), f"seals.{name}"
+        fails = any(place.startswith(f"{name} seal") for place in places)
+        if fails or matters(f"{section}.", f"materials.{seal.compound}."):
             for word, count in BACK_UPS.items():
-                if count > seal.back_ups and (beside := _rings(seal, here, count)) is not None:
-                    yield f"{here}.back_up", word, beside
+                if count > seal.back_ups and (beside := _rings(seal, section, count)) is not None:
+                    yield f"{section}.back_up", word, beside
             if seal.seal_type.o_ring_gland:
                 for compound in SUBSTITUTES["seal"]:
-                    yield f"{here}.compound", compound, {}
+                    yield f"{section}.compound", compound, {}
     if design.retention is not None and matters("retention."):
         for joint in JOINTS.names:
             yield "retention.type", joint, {}
@@ -366,7 +370,7 @@ def _vocabulary(
                 yield f"{part}.material", other, {}
 
 
-def _rings(seal: Seal, here: str, count: int) -> dict[str, str] | None:
+def _rings(seal: Seal, section: str, count: int) -> dict[str, str] | None:
     """Further entries that more back-up rings need; None if no standard has their width."""
     if seal.back_up_material is not None and seal.back_up_thickness is not None:
         return {}
@@ -376,19 +380,19 @@ def _rings(seal: Seal, here: str, count: int) -> dict[str, str] | None:
     except InputError:
         return None
     thickness = INPUTS["part_length"].text(room / count, 2)
-    return {f"{here}.back_up_material": BACK_UP, f"{here}.back_up_thickness": thickness}
+    return {f"{section}.back_up_material": BACK_UP, f"{section}.back_up_thickness": thickness}
 
 
 def _word(design: Design, path: str) -> str:
     """The word or material at a PATH; "" if the design states none."""
-    found: object = design
+    value: object = design
     for step in re.split(r"\.|(?=\[)", path):
         layer = re.fullmatch(r"\[(\d+)\]", step)
-        if layer is not None and isinstance(found, tuple):
-            found = found[int(layer[1])]
+        if layer is not None and isinstance(value, tuple):
+            value = value[int(layer[1])]
         else:
-            found = getattr(found, step, None)
-    return found if isinstance(found, str) else ""
+            value = getattr(value, step, None)
+    return value if isinstance(value, str) else ""
 
 
 def _chosen(

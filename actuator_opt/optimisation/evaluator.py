@@ -96,24 +96,24 @@ class Evaluator:
     @property
     def late(self) -> bool:
         """Whether the time limit is reached or a stop is requested."""
-        used = time.perf_counter() - self.began
-        over = self.max_seconds is not None and used >= self.max_seconds
-        return over or (self.stop is not None and self.stop())
+        elapsed = time.perf_counter() - self.began
+        timed_out = self.max_seconds is not None and elapsed >= self.max_seconds
+        return timed_out or (self.stop is not None and self.stop())
 
     def check_limits(self) -> None:
         """Raise `LimitReached` if the run has used up its evaluations or its time."""
         if not self.limited:
             return
-        over = self.max_evaluations is not None and self.evaluations >= self.max_evaluations
-        if over or self.late:
+        counted_out = self.max_evaluations is not None and self.evaluations >= self.max_evaluations
+        if counted_out or self.late:
             self.exhausted = True
             raise LimitReached
 
     def point(self, z: Vector) -> Point:
         """Return the evaluated point at z (nf,); evaluated once."""
-        found = self._cache.get(z.tobytes())
-        if found is not None:
-            return found
+        point = self._cache.get(z.tobytes())
+        if point is not None:
+            return point
         foreseen = self.foreseen.pop(z.tobytes(), None)
         if foreseen is not None:
             return self.entered(z, foreseen)
@@ -159,10 +159,10 @@ class Evaluator:
 
     def _note(self, point: Point) -> None:
         """Store a point, and add it to the trace if it improves on the last entry."""
-        missed = point.violation if point.violation > 1e-6 else 0.0
+        excess = point.violation if point.violation > 1e-6 else 0.0
         if self.trace:
             _, objective, violation = self.trace[-1]
-            if (missed, point.objective) >= (violation if violation > 1e-6 else 0.0, objective):
+            if (excess, point.objective) >= (violation if violation > 1e-6 else 0.0, objective):
                 return
         self.best = point
         self.trace.append((self.evaluations, point.objective, point.violation))
@@ -267,9 +267,10 @@ class Evaluator:
     def _differences(self, z: Vector) -> Vector:
         n, count = z.shape
         step = DIFFERENCE_STEP * np.eye(n)[:, None, :]
-        both = [(z[:, :, None] + sign * step).reshape(n, count * n) for sign in (1, -1)]
+        points = [(z[:, :, None] + sign * step).reshape(n, count * n) for sign in (1, -1)]
         above, below = (
-            self.screen(self.problem.rows(self.space.to_x(side, inside=False))) for side in both
+            self.screen(self.problem.rows(self.space.to_x(point_set, inside=False)))
+            for point_set in points
         )
         slopes = (above - below) / (2 * DIFFERENCE_STEP)
         broken = np.isnan(slopes)
@@ -341,28 +342,28 @@ class Evaluator:
             sides = np.concatenate([z + moves, z - moves], axis=1)
             rows = self.screen(self.problem.rows(self.space.to_x(sides, inside=False)))
             slopes = (rows[:, :n] - rows[:, n:]) / (2 * step)
-            known = np.isfinite(slopes) & np.isfinite(exact)
-            size = np.abs(np.where(known, slopes, 0.0)).max(axis=1, initial=0.0)
+            comparable = np.isfinite(slopes) & np.isfinite(exact)
+            size = np.abs(np.where(comparable, slopes, 0.0)).max(axis=1, initial=0.0)
             room = 1e-4 * size + 1e-11 / step * (1.0 + np.abs(point.rows))
-            far = np.where(known, np.abs(slopes - exact) > room[:, None], False)
-            lost = np.isnan(exact).all(axis=1) & np.isfinite(slopes).all(axis=1)
-            wrong &= far.any(axis=1) | lost
+            differs = np.where(comparable, np.abs(slopes - exact) > room[:, None], False)
+            undefined = np.isnan(exact).all(axis=1) & np.isfinite(slopes).all(axis=1)
+            wrong &= differs.any(axis=1) | undefined
             if not wrong.any():
                 break
         return wrong
 
 
-def points_together(wanted: Sequence[tuple[Evaluator, Vector]]) -> list[Point]:
+def points_together(requests: Sequence[tuple[Evaluator, Vector]]) -> list[Point]:
     """Evaluate z (nf,) of each evaluator with its gradients, in one model call.
 
     The problems may differ only in their bounds.
     """
-    if len(wanted) == 1 or not all(evaluator.exact for evaluator, _ in wanted):
-        return [evaluator.point(z) for evaluator, z in wanted]
-    parts = [evaluator.columns(z[:, None]) for evaluator, z in wanted]
-    rows = wanted[0][0].problem.rows(np.concatenate(parts, axis=1))
+    if len(requests) == 1 or not all(evaluator.exact for evaluator, _ in requests):
+        return [evaluator.point(z) for evaluator, z in requests]
+    parts = [evaluator.columns(z[:, None]) for evaluator, z in requests]
+    rows = requests[0][0].problem.rows(np.concatenate(parts, axis=1))
     ends = np.cumsum([part.shape[1] for part in parts])[:-1]
     return [
         evaluator.entered(z, part)
-        for (evaluator, z), part in zip(wanted, np.split(rows, ends, axis=1), strict=True)
+        for (evaluator, z), part in zip(requests, np.split(rows, ends, axis=1), strict=True)
     ]

@@ -35,12 +35,18 @@ class Evidence:
         problem = self.problem
         if not self.ends or abs(optimum - self.optimum) > SAME_OPTIMUM * abs(self.optimum):
             return False
-        same = problem.names == other.names and problem.constraint_names == other.constraint_names
-        boxed = np.array_equal(problem.lower, other.lower) and np.array_equal(
+        same_names = (
+            problem.names == other.names and problem.constraint_names == other.constraint_names
+        )
+        same_box = np.array_equal(problem.lower, other.lower) and np.array_equal(
             problem.upper, other.upper
         )
         exact = all(evaluator.exact for evaluator, _ in self.ends)
-        if not (same and boxed and exact) or problem.equality_names or other.equality_names:
+        if (
+            not (same_names and same_box and exact)
+            or problem.equality_names
+            or other.equality_names
+        ):
             return False
         parts = [evaluator.columns(end.z[:, None]) for evaluator, end in self.ends]
         rows = np.split(
@@ -48,17 +54,17 @@ class Evidence:
             np.cumsum([part.shape[1] for part in parts])[:-1],
             axis=1,
         )
-        found = [
+        comparisons = [
             (end, evaluator.jacobian(end), *evaluator.values_and_slopes(part))
             for (evaluator, end), part in zip(self.ends, rows, strict=True)
         ]
         differing = np.zeros(problem.row_count, dtype=bool)
-        for end, slopes, values, others in found:
-            differing |= (values[:, 0] != end.rows) | (slopes != others).any(axis=1)
+        for end, slopes, values, other_slopes in comparisons:
+            differing |= (values[:, 0] != end.rows) | (slopes != other_slopes).any(axis=1)
         return not differing[0] and all(
             (_distance(end.rows, slopes)[differing] > NEAR.step).all()
-            and (_distance(values[:, 0], others)[differing] > NEAR.step).all()
-            for end, slopes, values, others in found
+            and (_distance(values[:, 0], other_slopes)[differing] > NEAR.step).all()
+            for end, slopes, values, other_slopes in comparisons
         )
 
 

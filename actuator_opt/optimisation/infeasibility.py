@@ -64,37 +64,37 @@ def explain(problem: BoxProblem, points: Sequence[Vector]) -> Conflict:
     tell("infeasible: searching for the smallest relaxation")
     m = len(problem.constraint_names)
     mask = np.ones(m, dtype=bool) if problem.relaxable is None else np.array(problem.relaxable)
-    everything = _groups(problem)
-    groups = [group for group in everything if mask[group].all()]
-    found, evaluator = _smallest(problem, groups, points)
+    all_groups = _groups(problem)
+    groups = [group for group in all_groups if mask[group].all()]
+    point, evaluator = _smallest(problem, groups, points)
     laws: tuple[str, ...] = ()
-    if found.violation > NOTHING and not mask.all():
-        groups = everything
-        found, evaluator = _smallest(problem, groups, points)
-        amounts = found.x[len(problem.names) :]
+    if point.violation > NOTHING and not mask.all():
+        groups = all_groups
+        point, evaluator = _smallest(problem, groups, points)
+        amounts = point.x[len(problem.names) :]
         laws = tuple(
             problem.constraint_names[group[0]]
             for group, amount in zip(groups, amounts, strict=True)
             if not mask[group].all() and amount > NOTHING
         )
-    quality = kkt.check(evaluator, found, objective_scale=1.0)
-    joint = _joint(problem, groups, mask, found)
+    quality = kkt.check(evaluator, point, objective_scale=1.0)
+    joint = _joint(problem, groups, mask, point)
     sole: tuple[RelaxedConstraint, ...] = ()
-    x = found.x[: len(problem.names)]
+    x = point.x[: len(problem.names)]
     if joint and not laws:
-        part = _taking_part(evaluator, found, quality)
+        part = _taking_part(evaluator, point, quality)
         named = {row.index for row in joint}
         candidates = [group for group in groups if part[group].any() or group[0] in named]
         sole = repairs.by_limits(problem, candidates, named, [x, *points[:STARTS]])
-        better = _less(problem, evaluator, groups, candidates, sole, found)
-        if better is not None:
-            found, quality = better, kkt.check(evaluator, better, objective_scale=1.0)
-            joint, x = _joint(problem, groups, mask, found), found.x[: len(problem.names)]
+        smaller = _less(problem, evaluator, groups, candidates, sole, point)
+        if smaller is not None:
+            point, quality = smaller, kkt.check(evaluator, smaller, objective_scale=1.0)
+            joint, x = _joint(problem, groups, mask, point), point.x[: len(problem.names)]
     openings = _binding_bounds(problem, evaluator, quality)
     if joint and not laws:
         openings = repairs.by_bounds(problem, openings, x)
     return Conflict(
-        joint, sole, openings, laws, x, float(found.objective), quality.residual,
+        joint, sole, openings, laws, x, float(point.objective), quality.residual,
         quality.multipliers,
     )  # fmt: skip
 
@@ -124,8 +124,8 @@ def _less(
     point: Point,
 ) -> Point | None:
     """A smaller joint relaxation, if one limit alone gives up less because the descent stalled."""
-    alone = [(r.amount, group) for r, group in zip(sole, candidates, strict=True) if r.amount]
-    amount, group = min(alone, key=lambda one: one[0], default=(np.inf, groups[0]))
+    single = [(r.amount, group) for r, group in zip(sole, candidates, strict=True) if r.amount]
+    amount, group = min(single, key=lambda entry: entry[0], default=(np.inf, groups[0]))
     if amount >= point.objective - NOTHING:
         return None
     x = point.x[: len(problem.names)]
@@ -134,8 +134,8 @@ def _less(
         return None
     lacks = repairs.missed(Evaluator(problem), start, groups)
     end = repairs.descend(evaluator.problem, start, lacks)
-    better = end.violation <= NOTHING and end.objective < point.objective
-    return end if better else None
+    improved = end.violation <= NOTHING and end.objective < point.objective
+    return end if improved else None
 
 
 def _taking_part(
@@ -171,29 +171,31 @@ def _smallest(
     stretched = repairs.separate(problem, groups, [room] * len(groups))
     ends: list[Point] = []
     for x, lacks in starts:
-        found = repairs.descend(stretched, x, lacks, ends)
-        if found.valid and not any(found is end for end in ends):
-            ends.append(found)
-    best = min(ends, key=lambda end: (max(end.violation - NOTHING, 0.0), end.objective))
-    return best, Evaluator(stretched)
+        elastic_end = repairs.descend(stretched, x, lacks, ends)
+        if elastic_end.valid and not any(elastic_end is end for end in ends):
+            ends.append(elastic_end)
+    smallest = min(ends, key=lambda end: (max(end.violation - NOTHING, 0.0), end.objective))
+    return smallest, Evaluator(stretched)
 
 
 def _binding_bounds(
     problem: BoxProblem, evaluator: Evaluator, quality: kkt.KktResidual
 ) -> tuple[Opening, ...]:
     """Bounds that limit the joint relaxation, the most helpful first."""
-    found = []
+    openings = []
     space = evaluator.space
     for k, j in enumerate(space.free):
         if j >= len(problem.names):
             continue
-        for side, held, limit in (
+        for side, multiplier, limit in (
             ("lower", quality.lower_multipliers[j], problem.lower[j]),
             ("upper", quality.upper_multipliers[j], problem.upper[j]),
         ):
-            if held > 1e-7:
+            if multiplier > 1e-7:
                 widening = 1.0 if space.logarithmic[k] else abs(limit) / space.scale[k]
-                found.append(
-                    Opening(problem.names[j], int(j), side, float(limit), float(held * widening))
+                openings.append(
+                    Opening(
+                        problem.names[j], int(j), side, float(limit), float(multiplier * widening)
+                    )
                 )
-    return tuple(sorted(found, key=lambda b: -b.gain))
+    return tuple(sorted(openings, key=lambda b: -b.gain))

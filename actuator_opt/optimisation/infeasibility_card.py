@@ -38,7 +38,7 @@ def explained(
     limited = solution.outcome is Outcome.LIMIT_INFEASIBLE
     if solution.feasible or solution.kkt is None or limited:
         return None, solution
-    points = [found.x for found in solution.optima] or [solution.x]
+    points = [optimum.x for optimum in solution.optima] or [solution.x]
     conflict = explain(actuator.problem, points)
     objective = float(np.ravel(actuator.evaluate(conflict.x[:, None]).objective)[0])
     closest = replace(solution, x=conflict.x, objective=objective, kkt=None)
@@ -46,12 +46,12 @@ def explained(
 
 
 def _card(
-    actuator: ActuatorProblem, explanation: Explanation, others: Cures, solution: Solution
+    actuator: ActuatorProblem, explanation: Explanation, remedies: Cures, solution: Solution
 ) -> Infeasibility:
     named = {r.index for r in explanation.joint}
     sole = sorted(explanation.sole, key=lambda r: math.inf if r.amount is None else r.amount)
     joint = tuple(entry_of(actuator, r) for r in explanation.joint)
-    alone = tuple(
+    single = tuple(
         entry_of(actuator, r)
         for r in sole
         if r.amount is not None
@@ -59,24 +59,24 @@ def _card(
         or actuator.rows[r.index].limit_of.origin != "check"
     )
     bounds = tuple(_bound(actuator, bound) for bound in explanation.bounds)
-    enough = [
-        *(_cure(actuator, "dimension", cure) for cure in others.dimensions),
-        *([_together(actuator, others.together)] if others.together else []),
-        *(_cure(actuator, "choice", cure) for cure in others.choices),
+    sufficient = [
+        *(_cure(actuator, "dimension", cure) for cure in remedies.dimensions),
+        *([_together(actuator, remedies.together)] if remedies.together else []),
+        *(_cure(actuator, "choice", cure) for cure in remedies.choices),
         *(_listed(bound, "bound") for bound in bounds if bound["needed"] is not None),
-        *(_listed(entry, _kind(entry)) for entry in alone if entry["needed"] is not None),
+        *(_listed(entry, _kind(entry)) for entry in single if entry["needed"] is not None),
     ]
-    enough.sort(key=lambda cure: KINDS.index(cure["kind"]))
+    sufficient.sort(key=lambda cure: KINDS.index(cure["kind"]))
     return Infeasibility(
         joint=joint,
-        sole=alone,
+        sole=single,
         bounds=bounds,
         laws=explanation.laws,
         total=explanation.total,
-        sentence=_sentence(joint, enough, explanation.laws),
+        sentence=_sentence(joint, sufficient, explanation.laws),
         evidence=_evidence(explanation, solution),
-        cures=tuple(enough),
-        untried=others.untried,
+        cures=tuple(sufficient),
+        untried=remedies.untried,
     )
 
 
@@ -115,8 +115,10 @@ def _cure(actuator: ActuatorProblem, kind: str, cure: Cure) -> dict[str, Any]:
     """A sufficient dimension or choice, as an entry."""
     entry: dict[str, Any] = {"kind": kind, "parameter": cure.path, "advised": True, "now": cure.now}
     if isinstance(cure.now, str) or isinstance(cure.needed, str):
-        more = ", ".join(f"{path.rpartition('.')[2]} {text}" for path, text in cure.beside.items())
-        needed = f"{cure.needed}, with {more}" if more else str(cure.needed)
+        further = ", ".join(
+            f"{path.rpartition('.')[2]} {text}" for path, text in cure.beside.items()
+        )
+        needed = f"{cure.needed}, with {further}" if further else str(cure.needed)
         texts = {"limit_text": str(cure.now), "needed_text": needed, "beside": dict(cure.beside)}
         return entry | {"needed": cure.needed, "change": None} | texts
     quantity = quantity_of(cure.path, actuator.subject.design)
@@ -141,7 +143,7 @@ def entry_of(actuator: ActuatorProblem, relaxed: RelaxedConstraint) -> dict[str,
         quantity = quantity_of(path, actuator.subject.design)
     needed = None if amount is None else _relaxed(row, limit, amount)
     change = None if needed is None or not limit else needed / limit - 1
-    shown = quantity or Quantity(row.limit_of.metric, "", "ratio", "", row.limit_of.metric)
+    display = quantity or Quantity(row.limit_of.metric, "", "ratio", "", row.limit_of.metric)
     entry: dict[str, Any] = {
         "requirement": row.limit_of.name,
         "parameter": path,
@@ -154,7 +156,7 @@ def entry_of(actuator: ActuatorProblem, relaxed: RelaxedConstraint) -> dict[str,
         "relaxation": amount,
         "change": change,
     }
-    return entry | _texts(shown, limit, needed, upwards=sense == "max")
+    return entry | _texts(display, limit, needed, upwards=sense == "max")
 
 
 def _guards(row: LimitRow) -> bool:
@@ -224,7 +226,7 @@ _ACTS = {"dimension": "free {}", "choice": "change {}", "bound": "open {}"}
 
 
 def _sentence(
-    joint: Sequence[Mapping[str, Any]], enough: Sequence[Mapping[str, Any]], laws: Sequence[str]
+    joint: Sequence[Mapping[str, Any]], sufficient: Sequence[Mapping[str, Any]], laws: Sequence[str]
 ) -> str:
     """The advice in one line: the first cure, or the smallest change of limits."""
     if laws:
@@ -234,32 +236,34 @@ def _sentence(
         )
     if not joint:
         return "infeasible, and the search gave no sufficient relaxation"
-    first = enough[0] if enough else None
+    first = sufficient[0] if sufficient else None
     if first is not None and first["kind"] in _ACTS:
         enough_text = "together are enough" if "together" in first else "alone is enough"
         return f"infeasible: {_ACTS[first['kind']].format(change_text(first))} {enough_text}"
     changes = "; ".join(change_text(entry) for entry in joint)
     unsafe = any(entry["safety_factor"] for entry in joint)
     if len(joint) == 1:
-        said = f"infeasible: the smallest change is {changes}"
+        sentence = f"infeasible: the smallest change is {changes}"
     else:
-        said = f"infeasible: the smallest joint change, of {len(joint)} limits, is {changes}"
+        sentence = f"infeasible: the smallest joint change, of {len(joint)} limits, is {changes}"
     if unsafe:
-        said += " (weakens a safety factor: not advised)"
+        sentence += " (weakens a safety factor: not advised)"
     if first is not None and (unsafe or len(joint) > 1) and first["advised"]:
-        said += f". One change alone is also enough: {change_text(first)}"
-    return said
+        sentence += f". One change alone is also enough: {change_text(first)}"
+    return sentence
 
 
 def _evidence(explanation: Explanation, solution: Solution) -> str:
     """The status of the advice: confirmed by a design, or only not found."""
     count = len(solution.starts)
     starts = f"{count} start{'' if count == 1 else 's'}"
-    tried = f"no feasible design was found from {starts}, selected from {solution.samples} points"
+    statement = (
+        f"no feasible design was found from {starts}, selected from {solution.samples} points"
+    )
     if explanation.laws:
-        return f"{tried}: this is evidence, not proof"
+        return f"{statement}: this is evidence, not proof"
     return (
-        f"{tried}: this is evidence, not proof. Each change listed as enough was confirmed by a "
+        f"{statement}: this is evidence, not proof. Each change listed as enough was confirmed by a "
         "feasible design. Smaller changes, or single changes not listed, were only not found to "
         f"be enough. Bounds and fixed dimensions were varied up to {WIDEST:g} times or down to "
         f"1/{WIDEST:g} of their value"

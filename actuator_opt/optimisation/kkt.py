@@ -21,7 +21,6 @@ from enum import Enum
 import numpy as np
 import numpy.typing as npt
 
-from . import kkt
 from .evaluator import Evaluator, LimitReached, Point
 from .problem import Vector
 
@@ -93,11 +92,11 @@ class KktResidual:
         return self.rank == self.count
 
 
-def nnls(matrix: Vector, vector: Vector, known: Vector | None = None) -> Vector:
+def nnls(matrix: Vector, vector: Vector, previous: Vector | None = None) -> Vector:
     """Non-negative least squares: min |matrix @ result - vector|, result >= 0.
 
     First all columns unconstrained (enough at a regular optimum), else the active-set method of
-    Lawson and Hanson, which ends on independent columns. `known` is the result of a similar
+    Lawson and Hanson, which ends on independent columns. `previous` is the result of a similar
     problem: the search starts from its positive columns.
     """
     size = np.sqrt((matrix**2).sum(axis=0))
@@ -111,8 +110,8 @@ def nnls(matrix: Vector, vector: Vector, known: Vector | None = None) -> Vector:
         if rank == len(used) and (guess >= 0).all():
             result[used] = guess / size[used]
             return result
-    first = np.zeros(len(used), dtype=bool) if known is None else known[used] > 0
-    result[used] = _lawson_hanson(scaled, vector, first) / size[used]
+    passive = np.zeros(len(used), dtype=bool) if previous is None else previous[used] > 0
+    result[used] = _lawson_hanson(scaled, vector, passive) / size[used]
     return result
 
 
@@ -210,11 +209,13 @@ def multipliers(
         matrix = np.concatenate([matrix, extra])
         vector = np.concatenate([vector, np.zeros(active.count)])
     inequality = nnls(matrix, vector)
-    free = np.zeros(len(equalities))
+    equality_multipliers = np.zeros(len(equalities))
     if len(equalities):
-        rest = slope - active.gradients.T @ inequality
-        free = np.asarray(np.linalg.lstsq(equalities.T, rest, rcond=1e-12)[0], dtype=float)
-    return inequality, free
+        remainder = slope - active.gradients.T @ inequality
+        equality_multipliers = np.asarray(
+            np.linalg.lstsq(equalities.T, remainder, rcond=1e-12)[0], dtype=float
+        )
+    return inequality, equality_multipliers
 
 
 def slope_scale(evaluator: Evaluator, point: Point, objective_scale: float = 0.0) -> float:
@@ -235,10 +236,10 @@ def _priced(
     jacobian = evaluator.jacobian(point)
     active = active_set(evaluator, point)
     equalities = jacobian[1 + evaluator.constraint_count :]
-    inequality, free = multipliers(jacobian[0], active, equalities)
-    rest = jacobian[0] - active.gradients.T @ inequality - equalities.T @ free
+    inequality, equality_multipliers = multipliers(jacobian[0], active, equalities)
+    gradient = jacobian[0] - active.gradients.T @ inequality - equalities.T @ equality_multipliers
     size = slope_scale(evaluator, point, objective_scale)
-    return active, inequality, free, float(np.linalg.norm(rest)) / size
+    return active, inequality, equality_multipliers, float(np.linalg.norm(gradient)) / size
 
 
 def residual(evaluator: Evaluator, point: Point) -> float:
@@ -252,7 +253,7 @@ def check(
     """Check the optimality conditions at a point."""
     problem, m = evaluator.problem, evaluator.constraint_count
     jacobian = evaluator.jacobian(point)
-    active, inequality, free, left = _priced(evaluator, point, objective_scale)
+    active, inequality, equality_multipliers, residual = _priced(evaluator, point, objective_scale)
     equalities = jacobian[1 + m :]
     stacked = np.concatenate([active.gradients, equalities])
     size = np.sqrt((stacked**2).sum(axis=1, keepdims=True))
@@ -260,20 +261,40 @@ def check(
     if len(stacked) == 0:
         rank = 0
     a, b = len(active.constraint), len(active.constraint) + len(active.lower)
-    held, low, high = np.zeros(m), np.zeros(len(problem.names)), np.zeros(len(problem.names))
+    constraint_multipliers, lower, upper = (
+        np.zeros(m),
+        np.zeros(len(problem.names)),
+        np.zeros(len(problem.names)),
+    )
     free_variables = evaluator.space.free
-    held[active.constraint] = inequality[:a]
-    low[free_variables[active.lower]] = inequality[a:b]
-    high[free_variables[active.upper]] = inequality[b:]
+    constraint_multipliers[active.constraint] = inequality[:a]
+    lower[free_variables[active.lower]] = inequality[a:b]
+    upper[free_variables[active.upper]] = inequality[b:]
     labels = [problem.constraint_names[i] for i in active.constraint]
     labels += list(problem.equality_names)
     labels += [f"{problem.names[free_variables[j]]} lower" for j in active.lower]
     labels += [f"{problem.names[free_variables[j]]} upper" for j in active.upper]
-    found = None
+    sign = None
     if curvature:
         strong = active.gradients[inequality * np.sqrt((active.gradients**2).sum(axis=1)) > 0]
-        found = _curvature(evaluator, point, held, free, np.concatenate([strong, equalities]))
-    return KktResidual(left, tuple(labels), len(stacked), rank, held, free, low, high, found)
+        sign = _curvature(
+            evaluator,
+            point,
+            constraint_multipliers,
+            equality_multipliers,
+            np.concatenate([strong, equalities]),
+        )
+    return KktResidual(
+        residual,
+        tuple(labels),
+        len(stacked),
+        rank,
+        constraint_multipliers,
+        equality_multipliers,
+        lower,
+        upper,
+        sign,
+    )
 
 
 def lagrangian_weights(constraints: Vector, equalities: Vector) -> Vector:
@@ -291,10 +312,10 @@ def null_space(rows: Vector, size: int) -> Vector:
 
 
 def _curvature(
-    evaluator: Evaluator, point: Point, constraints: Vector, equalities: Vector, held: Vector
+    evaluator: Evaluator, point: Point, constraints: Vector, equalities: Vector, rows: Vector
 ) -> Curvature:
     size = evaluator.space.size
-    basis = null_space(held, size)
+    basis = null_space(rows, size)
     if basis.shape[1] == 0:
         return Curvature.VERTEX
     weights = lagrangian_weights(constraints, equalities)
@@ -319,7 +340,7 @@ class NewtonState:
     """A point with the data for the next step."""
 
     point: Point
-    near: kkt.Active
+    near: Active
     multipliers: Vector
     equality_multipliers: Vector
     measure: float
@@ -330,14 +351,14 @@ def state_at(evaluator: Evaluator, point: Point) -> NewtonState:
     """A point with its multipliers and optimality residual."""
     m = evaluator.constraint_count
     jacobian = evaluator.jacobian(point)
-    near = kkt.active_set(evaluator, point, width=0.1)
+    active = active_set(evaluator, point, width=0.1)
     equalities = jacobian[1 + m :]
-    held, free = kkt.multipliers(jacobian[0], near, equalities, damping=DAMPING)
-    scale = kkt.slope_scale(evaluator, point)
-    rest = jacobian[0] - near.gradients.T @ held - equalities.T @ free
-    slack = float(held @ np.maximum(near.margins, 0.0))
-    measure = (float(np.linalg.norm(rest)) + slack) / scale + point.violation
-    return NewtonState(point, near, held, free, measure, scale)
+    inequality, equality_multipliers = multipliers(jacobian[0], active, equalities, damping=DAMPING)
+    scale = slope_scale(evaluator, point)
+    gradient = jacobian[0] - active.gradients.T @ inequality - equalities.T @ equality_multipliers
+    slack = float(inequality @ np.maximum(active.margins, 0.0))
+    measure = (float(np.linalg.norm(gradient)) + slack) / scale + point.violation
+    return NewtonState(point, active, inequality, equality_multipliers, measure, scale)
 
 
 def polish(
@@ -349,7 +370,7 @@ def polish(
     """
     if not start.valid or evaluator.space.size == 0:
         return start
-    first = state = state_at(evaluator, start)
+    initial = state = state_at(evaluator, start)
     visited = [state]
     try:
         for _ in range(iterations):
@@ -364,22 +385,22 @@ def polish(
         pass
     visited.sort(key=lambda s: (max(s.point.violation - FEASIBLE, 0.0), s.measure))
     for candidate in visited:
-        if _acceptable(evaluator, first, candidate):
+        if _acceptable(evaluator, initial, candidate):
             return candidate.point
     return start
 
 
-def _acceptable(evaluator: Evaluator, first: NewtonState, newton_state: NewtonState) -> bool:
+def _acceptable(evaluator: Evaluator, initial: NewtonState, newton_state: NewtonState) -> bool:
     """Whether a point is no less feasible, and not costlier than start plus priced violation."""
-    if newton_state.point.violation > max(FEASIBLE, first.point.violation):
+    if newton_state.point.violation > max(FEASIBLE, initial.point.violation):
         return False
-    owed = float(first.multipliers @ np.maximum(-first.near.margins, 0.0))
+    allowance = float(initial.multipliers @ np.maximum(-initial.near.margins, 0.0))
     m = evaluator.constraint_count
-    owed += float(np.abs(first.equality_multipliers) @ np.abs(first.point.rows[1 + m :]))
-    room = 1e-9 * max(abs(first.point.objective), first.scale)
-    if first.point.violation > 1e-3:  # far away: any feasible point is an improvement
+    allowance += float(np.abs(initial.equality_multipliers) @ np.abs(initial.point.rows[1 + m :]))
+    room = 1e-9 * max(abs(initial.point.objective), initial.scale)
+    if initial.point.violation > 1e-3:  # far away: any feasible point is an improvement
         return True
-    return newton_state.point.objective <= first.point.objective + 2 * owed + room
+    return newton_state.point.objective <= initial.point.objective + 2 * allowance + room
 
 
 def _advance(evaluator: Evaluator, state: NewtonState) -> NewtonState | None:
@@ -429,23 +450,25 @@ def quadratic_step(
     `hessian` (nf, nf) is that of the Lagrangian over `scale`, positive definite.
     """
     m = evaluator.constraint_count
-    rows = kkt.active_set(evaluator, point, width=1.0)
+    rows = active_set(evaluator, point, width=1.0)
     jacobian = evaluator.jacobian(point)
     slope, equalities = jacobian[0] / scale, jacobian[1 + m :]
     shift = np.zeros_like(slope)
     basis = np.eye(len(slope))
     if len(equalities):
         shift = np.linalg.lstsq(equalities, -point.rows[1 + m :], rcond=1e-12)[0]
-        basis = kkt.null_space(equalities, len(slope))
+        basis = null_space(equalities, len(slope))
     inner, prices = quadratic_programme(
         basis.T @ hessian @ basis,
         basis.T @ (slope + hessian @ shift),
         rows.gradients @ basis,
         rows.margins + rows.gradients @ shift,
     )
-    held = prices[: len(rows.constraint)]
-    free = np.abs(equality_multipliers) / scale
-    return shift + basis @ inner, 2 * max(held.max(initial=0.0), free.max(initial=0.0)) + 1.0
+    constraint_prices = prices[: len(rows.constraint)]
+    equality_prices = np.abs(equality_multipliers) / scale
+    return shift + basis @ inner, 2 * max(
+        constraint_prices.max(initial=0.0), equality_prices.max(initial=0.0)
+    ) + 1.0
 
 
 def convex_hessian(evaluator: Evaluator, state: NewtonState) -> Vector:
@@ -454,23 +477,25 @@ def convex_hessian(evaluator: Evaluator, state: NewtonState) -> Vector:
     Adding multiples of the active rows' outer products leaves the solution on those rows unchanged.
     If that is not enough, negative curvatures count by their magnitude.
     """
-    m, near = evaluator.constraint_count, state.near
-    full = np.zeros(m)
-    full[near.constraint] = state.multipliers[: len(near.constraint)]
-    firm = state.multipliers > 1e-6 * state.scale
-    a, b = len(near.constraint), len(near.constraint) + len(near.lower)
-    close = near.margins <= 1e-8
-    fixed = np.concatenate([near.lower[(firm & close)[a:b]], near.upper[(firm & close)[b:]]])
+    m, active = evaluator.constraint_count, state.near
+    constraint_multipliers = np.zeros(m)
+    constraint_multipliers[active.constraint] = state.multipliers[: len(active.constraint)]
+    significant = state.multipliers > 1e-6 * state.scale
+    a, b = len(active.constraint), len(active.constraint) + len(active.lower)
+    at_limit = active.margins <= 1e-8
+    fixed = np.concatenate(
+        [active.lower[(significant & at_limit)[a:b]], active.upper[(significant & at_limit)[b:]]]
+    )
     columns = np.setdiff1d(np.arange(evaluator.space.size), fixed)
-    weights = kkt.lagrangian_weights(full, state.equality_multipliers)
+    weights = lagrangian_weights(constraint_multipliers, state.equality_multipliers)
     hessian = evaluator.hessian(state.point, weights, columns) / state.scale
     size = max(float(np.abs(hessian).max(initial=0.0)), 1e-3)
     hessian[fixed, fixed] = size
     floor = 1e-7 * size
-    held = near.gradients[firm]
-    held = held / np.sqrt((held**2).sum(axis=1, keepdims=True))
+    rows = active.gradients[significant]
+    rows = rows / np.sqrt((rows**2).sum(axis=1, keepdims=True))
     for weight in (0.0, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 100.0, 1e3):
-        convex = hessian + weight * size * (held.T @ held)
+        convex = hessian + weight * size * (rows.T @ rows)
         if np.linalg.eigvalsh(convex)[0] > floor:
             return np.asarray(convex)
     values, vectors = np.linalg.eigh(hessian)
@@ -478,33 +503,36 @@ def convex_hessian(evaluator: Evaluator, state: NewtonState) -> Vector:
 
 
 def quadratic_programme(
-    hessian: Vector, slope: Vector, rows: Vector, margins: Vector, known: Vector | None = None
+    hessian: Vector, slope: Vector, rows: Vector, margins: Vector, previous: Vector | None = None
 ) -> tuple[Vector, Vector]:
     """Minimise d'Hd/2 + slope'd subject to margins + rows d >= 0, with multipliers (a,) >= 0.
 
-    Inconsistent rows give the step of least violation instead. `known` are multipliers of a similar
+    Inconsistent rows give the step of least violation instead. `previous` are multipliers of a similar
     programme, which only save time.
     """
     factor = np.linalg.cholesky(hessian)
-    moved = np.linalg.solve(factor, slope)
+    scaled_slope = np.linalg.solve(factor, slope)
     prices = np.zeros(len(margins))
     if len(margins) == 0:
-        return -np.linalg.solve(factor.T, moved), prices
-    turned = np.linalg.solve(factor, rows.T).T
-    needed = turned @ moved - margins
-    length = np.sqrt((turned**2).sum(axis=1))
+        return -np.linalg.solve(factor.T, scaled_slope), prices
+    scaled_rows = np.linalg.solve(factor, rows.T).T
+    needed = scaled_rows @ scaled_slope - margins
+    length = np.sqrt((scaled_rows**2).sum(axis=1))
     useful = length > 1e-12
-    turned, needed = turned[useful] / length[useful, None], needed[useful] / length[useful]
+    scaled_rows, needed = (
+        scaled_rows[useful] / length[useful, None],
+        needed[useful] / length[useful],
+    )
     unit = np.zeros(len(slope) + 1)
     unit[-1] = 1.0
-    stacked = np.concatenate([turned.T, needed[None, :]])
-    weights = kkt.nnls(stacked, unit, None if known is None else known[useful])
+    stacked = np.concatenate([scaled_rows.T, needed[None, :]])
+    weights = nnls(stacked, unit, None if previous is None else previous[useful])
     residual = stacked @ weights - unit
     if -residual[-1] <= 1e-12:  # the rows contradict each other
         missed = -margins
-        worst = missed > 0
-        step = np.linalg.lstsq(rows[worst], missed[worst], rcond=1e-8)[0]
+        violated = missed > 0
+        step = np.linalg.lstsq(rows[violated], missed[violated], rcond=1e-8)[0]
         return np.asarray(step, dtype=float), prices
     nearest = -residual[:-1] / residual[-1]
     prices[useful] = weights / -residual[-1] / length[useful]
-    return np.linalg.solve(factor.T, nearest - moved), prices
+    return np.linalg.solve(factor.T, nearest - scaled_slope), prices

@@ -56,9 +56,11 @@ class Algorithm:
 def _table(text: str) -> dict[str, Algorithm]:
     table = {}
     for line in text.strip().splitlines():
-        name, scope, rows, most, effort, about = (cell.strip() for cell in line.split("|"))
+        name, scope, rows, variables, evaluations, about = (
+            cell.strip() for cell in line.split("|")
+        )
         table[name] = Algorithm(
-            name, scope, "i" in rows, "e" in rows, int(most), int(effort), about
+            name, scope, "i" in rows, "e" in rows, int(variables), int(evaluations), about
         )
     return table
 
@@ -124,17 +126,20 @@ def find(text: str) -> tuple[Algorithm, Algorithm | None]:
     """
     name = OLDER.get(text.strip().upper(), text.strip().upper())
     outer, _, inner = name.partition("+")
-    first = _one(outer)
-    if first.scope != "wrapper":
+    outer_algorithm = _one(outer)
+    if outer_algorithm.scope != "wrapper":
         if inner:
-            raise _refusal(f"{first.name} takes no inner algorithm", f"write {first.name}")
-        return first, None
-    second = _one(inner or INSIDE[first.name])
-    if second.scope == "wrapper":
+            raise _refusal(
+                f"{outer_algorithm.name} takes no inner algorithm", f"write {outer_algorithm.name}"
+            )
+        return outer_algorithm, None
+    inner_algorithm = _one(inner or INSIDE[outer_algorithm.name])
+    if inner_algorithm.scope == "wrapper":
         raise _refusal(
-            f"{second.name} cannot be the inner algorithm of {first.name}", "name a local algorithm"
+            f"{inner_algorithm.name} cannot be the inner algorithm of {outer_algorithm.name}",
+            "name a local algorithm",
         )
-    return first, second
+    return outer_algorithm, inner_algorithm
 
 
 def _one(name: str) -> Algorithm:
@@ -144,8 +149,8 @@ def _one(name: str) -> Algorithm:
     short = [a for a in ALGORITHMS.values() if a.name.split("_", 1)[-1] == name]
     if len(short) == 1:
         return short[0]
-    near = difflib.get_close_matches(name, [*ALGORITHMS, *OLDER], n=3, cutoff=0.5)
-    choice = ", ".join(near or ["LD_SLSQP", "AUGLAG+LD_LBFGS", "GN_ISRES"])
+    suggestions = difflib.get_close_matches(name, [*ALGORITHMS, *OLDER], n=3, cutoff=0.5)
+    choice = ", ".join(suggestions or ["LD_SLSQP", "AUGLAG+LD_LBFGS", "GN_ISRES"])
     raise _refusal(f'there is no algorithm "{name}"', f"did you mean {choice}?")
 
 
@@ -163,7 +168,7 @@ def suit(text: str, problem: BoxProblem) -> str:
     """
     outer, inner = find(text)
     inequalities, equalities = bool(problem.constraint_names), bool(problem.equality_names)
-    free = int(np.count_nonzero(problem.upper > problem.lower))
+    count = int(np.count_nonzero(problem.upper > problem.lower))
     if (inequalities and not outer.inequalities) or (equalities and not outer.equalities):
         kind = "constraints" if not outer.inequalities else "equality constraints"
         remedy = "write LD_SLSQP or LN_COBYLA"
@@ -181,8 +186,8 @@ def suit(text: str, problem: BoxProblem) -> str:
             "write G_MLSL_LDS+LD_LBFGS",
         )
     for part in (outer, inner):
-        if part is not None and free > part.most_variables:
-            message = f"{part.name} supports at most {part.most_variables} variables, not {free}"
+        if part is not None and count > part.most_variables:
+            message = f"{part.name} supports at most {part.most_variables} variables, not {count}"
             raise _refusal(message, "fix some variables, or write LD_SLSQP or GN_ISRES")
     return outer.name if inner is None else f"{outer.name}+{inner.name}"
 
@@ -266,12 +271,12 @@ class _Guard:
 
     def _look_around(self, point: Point) -> None:
         """Stop near a known optimum, which the run would only reach again."""
-        reach, share, missed = ARRIVAL
-        if point.violation > missed:
+        distance, share, violation = ARRIVAL
+        if point.violation > violation:
             return
-        for index, known in enumerate(self.known):
-            near = abs(point.objective - known.objective) <= share * abs(known.objective)
-            if near and np.abs(point.z - known.z).max(initial=0.0) <= reach:
+        for index, optimum in enumerate(self.known):
+            similar = abs(point.objective - optimum.objective) <= share * abs(optimum.objective)
+            if similar and np.abs(point.z - optimum.z).max(initial=0.0) <= distance:
                 self.arrived = index
                 raise _Arrived
 
@@ -327,14 +332,14 @@ def run(
     *,
     linear: bool = False,
     tolerance: float = 1e-9,
-    most: int | None = None,
+    max_evaluations: int | None = None,
     seed: int = 0,
-    known: Sequence[Point] = (),
+    optima: Sequence[Point] = (),
     rank: Callable[[Point], Any] | None = None,
 ) -> NloptRun:
-    """Run one algorithm from one point, at most `most` evaluations (default: its own).
+    """Run one algorithm from one point, at most `max_evaluations` evaluations (default: its own).
 
-    A run that reaches one of the `known` optima (see `ARRIVAL`) stops there. Returns the best by
+    A run that reaches one of the `optima` optima (see `ARRIVAL`) stops there. Returns the best by
     `rank` (default: feasible by objective, else by violation) of NLopt's point, the best feasible
     iterate, the last iterate and the start. Exceptions of the model, interrupts included, are
     raised unchanged; reaching a limit ends the run quietly.
@@ -342,11 +347,11 @@ def run(
     if evaluator.space.size == 0:
         return NloptRun(start, 1, algorithm)
     outer, inner = find(algorithm)
-    size, most = evaluator.space.size, most or outer.most_evaluations
+    size, max_evaluations = evaluator.space.size, max_evaluations or outer.most_evaluations
     evaluator.eager = (inner or outer).uses_gradients
-    handle = _handle(outer, size, tolerance, most)
+    handle = _handle(outer, size, tolerance, max_evaluations)
     guard = _Guard(evaluator, start, linear=linear, handle=handle)
-    guard.known, guard.rank = known, rank or _rank
+    guard.known, guard.rank = optima, rank or _rank
     box = evaluator.space
     bounds = (np.zeros(size), np.ones(size)) if linear else (box.lower, box.upper)
     handle.set_lower_bounds(bounds[0])
@@ -360,35 +365,35 @@ def run(
     if e:
         handle.add_equality_mconstraint(guard.equalities, np.full(e, tolerance))
     if inner is not None:
-        local = _handle(inner, size, tolerance, max(20, most // 4))
+        local = _handle(inner, size, tolerance, max(20, max_evaluations // 4))
         handle.set_local_optimizer(local)
     nlopt.srand(seed + 1)
     try:
-        found = handle.optimize(guard.from_point(start))
+        end = handle.optimize(guard.from_point(start))
     except (RuntimeError, ValueError, SystemError, MemoryError) as error:  # NLopt's own errors
-        found = None
+        end = None
         guard.error = guard.error or error.__cause__  # Ctrl-C outside any guard
     code = int(handle.last_optimize_result())
     if guard.error is not None and not isinstance(guard.error, (LimitReached, _Arrived)):
         raise guard.error
-    return NloptRun(_pick(evaluator, guard, found, start), code, algorithm, guard.arrived)
+    return NloptRun(_pick(evaluator, guard, end, start), code, algorithm, guard.arrived)
 
 
-def _handle(algorithm: Algorithm, size: int, tolerance: float, most: int) -> Any:
+def _handle(algorithm: Algorithm, size: int, tolerance: float, max_evaluations: int) -> Any:
     handle = nlopt.opt(getattr(nlopt, algorithm.name), size)
     handle.set_exceptions_enabled(False)
     handle.set_ftol_rel(tolerance)
     handle.set_xtol_rel(tolerance)
-    handle.set_maxeval(most)
+    handle.set_maxeval(max_evaluations)
     return handle
 
 
-def _pick(evaluator: Evaluator, guard: _Guard, found: Vector | None, start: Point) -> Point:
+def _pick(evaluator: Evaluator, guard: _Guard, end: Vector | None, start: Point) -> Point:
     """Return the best of NLopt's point, the best feasible, the last iterate and the start."""
     candidates = [guard.best, guard.last, start]
-    if found is not None and guard.error is None and np.isfinite(found).all():
+    if end is not None and guard.error is None and np.isfinite(end).all():
         limited, evaluator.limited = evaluator.limited, False
-        candidates.insert(0, guard.point(np.asarray(found)))
+        candidates.insert(0, guard.point(np.asarray(end)))
         evaluator.limited = limited
     usable = [p for p in candidates if p is not None]
     return min(usable, key=guard.rank)

@@ -121,8 +121,8 @@ class ParetoFront(Displayed):
     @property
     def steps(self) -> tuple[float, ...]:
         """The gaps other than jumps."""
-        over = {gap.after for gap in self.jumps}
-        return tuple(gap for k, gap in enumerate(self.gaps) if k not in over)
+        jumps = {gap.after for gap in self.jumps}
+        return tuple(gap for k, gap in enumerate(self.gaps) if k not in jumps)
 
     @property
     def evenness(self) -> float | None:
@@ -137,20 +137,22 @@ class ParetoFront(Displayed):
                 f"no front: the search for the best of one objective alone failed, {self.unsolved}"
             )
         if self.infeasibility is not None or not self.points:
-            why = "" if self.infeasibility is None else f" {self.infeasibility.sentence}"
-            return f"no front: no design meets all requirements.{why}"
+            reason = "" if self.infeasibility is None else f" {self.infeasibility.sentence}"
+            return f"no front: no design meets all requirements.{reason}"
         if len(self.points) == 1:
             return "the objectives do not conflict: one design is best in every objective"
-        told = f"{len(self.points)} non-dominated designs; "
-        told += f"{self.checked} independent searches replaced {self.improved} merely local designs"
+        sentence = f"{len(self.points)} non-dominated designs; "
+        sentence += (
+            f"{self.checked} independent searches replaced {self.improved} merely local designs"
+        )
         if self.failed:
-            told += f"; no design at {self.failed} place" + "s" * (self.failed > 1)
-        return told
+            sentence += f"; no design at {self.failed} place" + "s" * (self.failed > 1)
+        return sentence
 
     def to_dict(self) -> dict[str, Any]:
         """The object of `pareto --json`: the evaluation's keys are those of the knee (SI)."""
         knee = self.knee
-        found = self.evaluation.to_dict() | {
+        result = self.evaluation.to_dict() | {
             "spec_hash": self.spec_hash,
             "status": self.status,
             "outcome": self.sentence,
@@ -178,36 +180,38 @@ class ParetoFront(Displayed):
             "seed": self.seed,
             "seconds": self.seconds,
         }
-        more = self.infeasibility
-        return found | ({} if more is None else {"infeasibility": asdict(more)})
+        infeasibility = self.infeasibility
+        return result | ({} if infeasibility is None else {"infeasibility": asdict(infeasibility)})
 
 
-def wishes(texts: Sequence[str], known: dict[str, Quantity]) -> tuple[Wish, ...]:
+def wishes(texts: Sequence[str], quantities: dict[str, Quantity]) -> tuple[Wish, ...]:
     """Parse objectives from ``METRIC:min`` or ``METRIC:max``.
 
     Raises
     ------
     UsageError : fewer than two or more than four, an unknown metric, or one metric twice
     """
-    found: list[Wish] = []
+    objectives: list[Wish] = []
     for text in texts:
         metric, colon, sense = (part.strip() for part in text.partition(":"))
         if not colon or sense not in ("min", "max"):
             message = f'objective "{text}" is not of the form METRIC:min or METRIC:max'
             raise UsageError(Diagnostic(message, 'write e.g. "mass:min"'))
-        if metric not in known:
+        if metric not in quantities:
             message = f'objective "{text}": there is no metric {metric}'
-            raise UsageError(Diagnostic(message, remedy(metric, known)))
-        before = next((one for one in found if one.metric == metric), None)
-        if before is not None:
-            both = before.sense != sense
-            message = f"objective {metric} is given twice" + (", min and max" if both else "")
+            raise UsageError(Diagnostic(message, remedy(metric, quantities)))
+        earlier = next((wish for wish in objectives if wish.metric == metric), None)
+        if earlier is not None:
+            contradictory = earlier.sense != sense
+            message = f"objective {metric} is given twice" + (
+                ", min and max" if contradictory else ""
+            )
             raise UsageError(Diagnostic(message, "keep one of them"))
-        found.append(Wish(metric, "min" if sense == "min" else "max", known[metric]))
-    if not 2 <= len(found) <= 4:
-        message = f"a front needs two to four objectives, not {len(found)}"
+        objectives.append(Wish(metric, "min" if sense == "min" else "max", quantities[metric]))
+    if not 2 <= len(objectives) <= 4:
+        message = f"a front needs two to four objectives, not {len(objectives)}"
         raise UsageError(Diagnostic(message, 'give e.g. "mass:min" and "stiffness_min:max"'))
-    return tuple(found)
+    return tuple(objectives)
 
 
 @dataclass(frozen=True)
@@ -223,9 +227,9 @@ class _Many:
     def evaluate(self, points: Array) -> PointValues:
         """Objectives, to be minimised, and margins."""
         cases = self.actuator.subject.cases
-        done: list[MetricArrays] = []
-        found = self.actuator.evaluate(points, seen=done)
-        return replace(found, objective=[goal.value(done[0], cases) for goal in self.goals])
+        outputs: list[MetricArrays] = []
+        values = self.actuator.evaluate(points, outputs=outputs)
+        return replace(values, objective=[goal.value(outputs[0], cases) for goal in self.goals])
 
 
 def pareto(
@@ -254,14 +258,14 @@ def pareto(
         message = f"-n {count}: a front has {FRONT.least} to {FRONT.most} designs"
         raise UsageError(Diagnostic(message, "choose a number between them"))
     many = _problem(subject, wished, fault)
-    names = [one.metric for one in wished]
-    found = front(
+    names = [wish.metric for wish in wished]
+    result = front(
         Objectives(names, many.actuator.problem, many.evaluate),
         FrontSettings(count=count, seed=seed, checks=checks),
     )
-    if isinstance(found, NoAnchor):
-        return _without(many, found, began)
-    return _result(many, found, seed, began)
+    if isinstance(result, NoAnchor):
+        return _without(many, result, began)
+    return _result(many, result, seed, began)
 
 
 def _problem(subject: PreparedDesign, wished: tuple[Wish, ...], fault: Fault | None) -> _Many:
@@ -274,37 +278,36 @@ def _problem(subject: PreparedDesign, wished: tuple[Wish, ...], fault: Fault | N
     present = compute(subject, subject.values()).computed
     for wish in wished:
         if not present.metrics.get(wish.metric):
-            why = present.why.get(wish.metric, "it does not apply to this design")
-            message = f"{wish.metric} cannot be an objective here: {why}"
+            reason = present.why.get(wish.metric, "it does not apply to this design")
+            message = f"{wish.metric} cannot be an objective here: {reason}"
             raise UsageError(
                 Diagnostic(message, "choose a metric that `evaluate` lists with a value")
             )
-    wish_all = Objective(minimise={one.metric: 1.0 for one in wished})
-    asked = replace(
+    wish_all = Objective(minimise={w.metric: 1.0 for w in wished})
+    weighted = replace(
         subject,
         design=subject.design.model_copy(update={"objective": wish_all}),
-        aims={one.metric: one.sense for one in wished},
+        aims={w.metric: w.sense for w in wished},
     )
-    actuator = build(asked, fault)
-    still = idle_metrics(actuator)
-    if still:
-        message = f"no variable affects {' and '.join(still)}: nothing to trade off"
+    actuator = build(weighted, fault)
+    idle = idle_metrics(actuator)
+    if idle:
+        message = f"no variable affects {' and '.join(idle)}: nothing to trade off"
         remedy_ = "choose another objective, or free a dimension that it depends on"
         raise InputError(Diagnostic(message, remedy_))
     goals = tuple(
-        Goal({one.metric: 1.0}, {one.metric: 1.0}, 1.0 if one.sense == "min" else -1.0)
-        for one in wished
+        Goal({w.metric: 1.0}, {w.metric: 1.0}, 1.0 if w.sense == "min" else -1.0) for w in wished
     )
     return _Many(actuator, goals, wished, subject)
 
 
-def _points(many: _Many, found: Front) -> tuple[FrontPoint, ...]:
+def _points(many: _Many, result: Front) -> tuple[FrontPoint, ...]:
     """Variables and metrics of every design: objectives, and those of the requirements."""
-    actuator, count = many.actuator, found.x.shape[1]
+    actuator, count = many.actuator, result.x.shape[1]
     subject = actuator.subject
-    numbers = subject.values(dict(zip(actuator.paths, found.x, strict=True)))
+    numbers = subject.values(dict(zip(actuator.paths, result.x, strict=True)))
     computed = compute(subject, numbers, actuator.wanted).computed
-    names = [one.metric for one in many.wished] + [
+    names = [wish.metric for wish in many.wished] + [
         row.limit_of.metric
         for row in (*actuator.rows, *actuator.fixed)
         if row.limit_of.origin in ("requirement", "case")
@@ -315,35 +318,35 @@ def _points(many: _Many, found: Front) -> tuple[FrontPoint, ...]:
     }
     return tuple(
         FrontPoint(
-            dict(zip(actuator.paths, found.x[:, k].tolist(), strict=True)),
+            dict(zip(actuator.paths, result.x[:, k].tolist(), strict=True)),
             {name: float(column[k]) for name, column in columns.items()},
-            float(found.residuals[k]),
+            float(result.residuals[k]),
         )
         for k in range(count)
     )
 
 
-def _result(many: _Many, found: Front, seed: int, began: float) -> ParetoFront:
+def _result(many: _Many, result: Front, seed: int, began: float) -> ParetoFront:
     """Assemble the result."""
-    knee = None if found.knee is None else Knee(*found.knee)
-    shown = 0 if knee is None else knee.index
-    design, evaluation = design_at(many.actuator, found.x[:, shown])
+    knee = None if result.knee is None else Knee(*result.knee)
+    index = 0 if knee is None else knee.index
+    design, evaluation = design_at(many.actuator, result.x[:, index])
     signs = np.array([goal.sign for goal in many.goals])
     return ParetoFront(
         subject=many.subject.design,
         spec_hash=spec_hash(many.subject),
         objectives=many.wished,
-        points=_points(many, found),
+        points=_points(many, result),
         knee=knee,
         design=design,
         evaluation=evaluation,
-        passed=tuple(map(tuple, _passed(found.passed, signs))),
-        gaps=tuple(found.gaps.tolist()),
-        wide=found.wide,
-        checked=found.checked,
-        improved=found.improved,
-        failed=found.failed,
-        warnings=(*found.warnings, *many.actuator.refusals.warnings(), *_held(many)),
+        passed=tuple(map(tuple, _passed(result.passed, signs))),
+        gaps=tuple(result.gaps.tolist()),
+        wide=result.wide,
+        checked=result.checked,
+        improved=result.improved,
+        failed=result.failed,
+        warnings=(*result.warnings, *many.actuator.refusals.warnings(), *_held(many)),
         seed=seed,
         seconds=time.perf_counter() - began,
     )
@@ -357,19 +360,19 @@ def _passed(values: Vector, signs: Vector) -> list[list[float]]:
 def _held(many: _Many) -> list[str]:
     """Parts of a design that a front ignores: its choices, and the sizes of its variables."""
     design = many.actuator.subject.design
-    said = []
+    notes = []
     if design.choices:
-        said.append(f"choices stay as stated in the design: {', '.join(design.choices)}")
+        notes.append(f"choices stay as stated in the design: {', '.join(design.choices)}")
     sized = [
         path
         for path, variable in design.variables.items()
         if variable.sizes is not None or variable.step is not None
     ]
     if sized:
-        said.append(
+        notes.append(
             f"listed sizes are ignored, as the front uses continuous dimensions: {', '.join(sized)}"
         )
-    return said
+    return notes
 
 
 def _said(wish: Wish) -> str:
@@ -381,7 +384,7 @@ def _without(many: _Many, no_anchor: NoAnchor, began: float) -> ParetoFront:
     subject = many.subject
     solution = no_anchor.solution
     feasible = solution.violation <= FEASIBLE
-    why = None if feasible else explained(many.actuator, solution)[0]
+    infeasibility = None if feasible else explained(many.actuator, solution)[0]
     return ParetoFront(
         subject=subject.design,
         spec_hash=spec_hash(subject),
@@ -390,7 +393,7 @@ def _without(many: _Many, no_anchor: NoAnchor, began: float) -> ParetoFront:
         knee=None,
         design=subject.design,
         evaluation=evaluate(replace(subject, aims=many.actuator.subject.aims)),
-        infeasibility=why,
+        infeasibility=infeasibility,
         unsolved=f"{_said(many.wished[no_anchor.objective])}: {solution.outcome.sentence}"
         if feasible
         else "",

@@ -113,11 +113,11 @@ class BoxProblem:
         count = points.shape[1]
         with np.errstate(all="ignore"):
             values = self.evaluate(points)
-        parts = []
-        wanted = (1, len(self.constraint_names), len(self.equality_names))
-        given = (values.objective, values.constraints, values.equalities)
-        for what, size, part in zip(
-            ("objective", "constraints", "equalities"), wanted, given, strict=True
+        arrays = []
+        sizes = (1, len(self.constraint_names), len(self.equality_names))
+        evaluated = (values.objective, values.constraints, values.equalities)
+        for kind, size, part in zip(
+            ("objective", "constraints", "equalities"), sizes, evaluated, strict=True
         ):
             if size == 0 and part is None:
                 continue
@@ -125,10 +125,10 @@ class BoxProblem:
             try:
                 array = np.broadcast_to(array.reshape(size, -1) if size else array, (size, count))
             except ValueError:
-                message = f"the {what} have shape {array.shape}, expected ({size}, {count})"
+                message = f"the {kind} have shape {array.shape}, expected ({size}, {count})"
                 raise InputError(message) from None
-            parts.append(array)
-        return np.concatenate(parts)
+            arrays.append(array)
+        return np.concatenate(arrays)
 
 
 @dataclass(frozen=True)
@@ -181,8 +181,8 @@ class Space:
     def __post_init__(self) -> None:
         low, high = self.problem.lower, self.problem.upper
         free = np.flatnonzero(high > low)
-        kept = np.array([name in self.problem.linear for name in self.problem.names], dtype=bool)
-        logarithmic = ((low > 0) & ~kept)[free]
+        linear = np.array([name in self.problem.linear for name in self.problem.names], dtype=bool)
+        logarithmic = ((low > 0) & ~linear)[free]
         low, high = low[free], high[free]
         scale = np.where(logarithmic, 1.0, (high - low) / 2)
         for name, value in (
@@ -281,8 +281,8 @@ class Robust:
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON form (SI)."""
-        found = asdict(self)
+        result = asdict(self)
         for key in ("rate", "lower", "upper"):
-            del found[key]
+            del result[key]
         bounds = {"value": self.rate, "lower": self.lower, "upper": self.upper}
-        return found | {"yield": bounds, "left_out": list(self.left_out)}
+        return result | {"yield": bounds, "left_out": list(self.left_out)}

@@ -105,7 +105,9 @@ def look_quickly(
     evaluator = Evaluator(look.actuator.problem, max_seconds=seconds)
 
     def down(start: Point) -> Point:
-        run = nlopt_wrapper.run(evaluator, start, "LD_SLSQP", most=EVALUATIONS, seed=seed)
+        run = nlopt_wrapper.run(
+            evaluator, start, "LD_SLSQP", max_evaluations=EVALUATIONS, seed=seed
+        )
         return _keep(look, evaluator, run.point)
 
     look.how = "quick"
@@ -130,16 +132,16 @@ def look_quickly(
 
 def _followed(look: Look, evaluator: Evaluator, starts: Sequence[LookStart]) -> bool:
     """Whether steps from a neighbour's optimum converge to the optimum of this combination."""
-    near = next((start for start in starts if start.hessian is not None), None)
-    if near is None or near.hessian is None or not evaluator.space.size:
+    neighbour = next((start for start in starts if start.hessian is not None), None)
+    if neighbour is None or neighbour.hessian is None or not evaluator.space.size:
         return False
     evaluator.eager = True
-    point = evaluator.point(evaluator.space.to_z(near.x))
-    found = stepped(evaluator, point, near.hessian, ROUGH) if point.valid else None
-    if found is not None:
-        _keep(look, evaluator, found)
-        look.hessian = near.hessian
-    return found is not None
+    point = evaluator.point(evaluator.space.to_z(neighbour.x))
+    optimum = stepped(evaluator, point, neighbour.hessian, ROUGH) if point.valid else None
+    if optimum is not None:
+        _keep(look, evaluator, optimum)
+        look.hessian = neighbour.hessian
+    return optimum is not None
 
 
 def hessian_of(look: Look) -> ScaledHessian | None:
@@ -150,26 +152,26 @@ def hessian_of(look: Look) -> ScaledHessian | None:
     point = evaluator.point(evaluator.space.to_z(look.x))
     if not point.valid or not evaluator.space.size:
         return None
-    settled = kkt.check(evaluator, point).residual <= SETTLED
-    return hessian_at(evaluator, point) if settled else None
+    converged = kkt.check(evaluator, point).residual <= SETTLED
+    return hessian_at(evaluator, point) if converged else None
 
 
 def _settle_quickly(look: Look, evaluator: Evaluator, x: Vector, seed: int) -> None:
     """Solve from a few starts if a descent stopped before an optimum."""
-    found = kkt.check(evaluator, evaluator.point(evaluator.space.to_z(x)))
-    if found.residual <= SETTLED or not evaluator.space.size:
+    quality = kkt.check(evaluator, evaluator.point(evaluator.space.to_z(x)))
+    if quality.residual <= SETTLED or not evaluator.space.size:
         return
-    left = None
+    seconds = None
     if evaluator.max_seconds is not None:
-        left = evaluator.began + evaluator.max_seconds - time.perf_counter()
-        if left <= 0:
+        seconds = evaluator.began + evaluator.max_seconds - time.perf_counter()
+        if seconds <= 0:
             return
     solution = solve(
         evaluator.problem,
         starts=STARTS,
         samples=SAMPLES,
         seed=seed,
-        max_seconds=left,
+        max_seconds=seconds,
         more_starts=[x],
     )
     _keep(look, evaluator, evaluator.point(evaluator.space.to_z(solution.x)))

@@ -84,12 +84,12 @@ def separate(problem: BoxProblem, groups: Sequence[Indices], room: Sequence[floa
 def _rows_once(problem: BoxProblem, points: Array) -> npt.NDArray[np.generic]:
     """Rows of points (n, k) of which many differ only in slacks; the model evaluates each once."""
     columns = np.ascontiguousarray(points.T)
-    first: dict[bytes, int] = {}
-    places = [first.setdefault(column.tobytes(), len(first)) for column in columns]
-    if len(first) == len(columns):
+    numbers: dict[bytes, int] = {}
+    places = [numbers.setdefault(column.tobytes(), len(numbers)) for column in columns]
+    if len(numbers) == len(columns):
         return problem.rows(points)
-    _, kept = np.unique(places, return_index=True)
-    return problem.rows(points[:, kept])[:, places]
+    _, indices = np.unique(places, return_index=True)
+    return problem.rows(points[:, indices])[:, places]
 
 
 def _extended(
@@ -119,8 +119,8 @@ def feasible_point(evaluator: Evaluator, point: Point) -> Point | None:
     """Return a feasible point near `point`, by minimising one common slack, or None."""
     if point.violation <= FEASIBLE:
         return point
-    found = least_missed(evaluator, point)
-    return found if found.violation <= FEASIBLE else None
+    end = least_missed(evaluator, point)
+    return end if end.violation <= FEASIBLE else None
 
 
 def least_missed(evaluator: Evaluator, point: Point, rough: float = np.inf) -> Point:
@@ -129,18 +129,20 @@ def least_missed(evaluator: Evaluator, point: Point, rough: float = np.inf) -> P
     A result that violates more than `rough` is not polished, which halves the effort.
     """
     inner = Evaluator(common(evaluator.problem, 2.0 * point.violation + 1.0))
-    start = found = inner.point(inner.space.to_z(np.append(point.x, point.violation)))
+    start = best = inner.point(inner.space.to_z(np.append(point.x, point.violation)))
     if not start.valid:
         return point
     inner.eager = True
     if rough < np.inf:
-        found = run(inner, start, "LD_SLSQP", tolerance=ROUGH, most=MOST, rank=_miss).point
-    if _miss(found) <= rough:
-        led = run(inner, found, "LD_SLSQP", tolerance=FINE, most=MOST, rank=_miss)
-        found = min((led.point, finish(inner, led.point)), key=_miss)
+        best = run(
+            inner, start, "LD_SLSQP", tolerance=ROUGH, max_evaluations=MOST, rank=_miss
+        ).point
+    if _miss(best) <= rough:
+        run_end = run(inner, best, "LD_SLSQP", tolerance=FINE, max_evaluations=MOST, rank=_miss)
+        best = min((run_end.point, finish(inner, run_end.point)), key=_miss)
     evaluator.evaluations += inner.evaluations
     evaluator.check_limits()
-    end = evaluator.point(evaluator.space.to_z(found.x[: len(point.x)]))
+    end = evaluator.point(evaluator.space.to_z(best.x[: len(point.x)]))
     return end if end.valid and end.violation < point.violation else point
 
 
@@ -150,20 +152,22 @@ def _miss(point: Point) -> float:
 
 
 def descend(
-    problem: BoxProblem, x: Vector, slack: Sequence[float], known: Sequence[Point] = ()
+    problem: BoxProblem, x: Vector, slack: Sequence[float], ends: Sequence[Point] = ()
 ) -> Point:
     """Solve an elastic problem from a point and slacks, unless it reaches a known result."""
     inner = Evaluator(problem)
     start = inner.point(inner.space.to_z(np.concatenate([x, np.asarray(slack, dtype=float)])))
     if not start.valid:
         return start
-    led = run(inner, start, "LD_SLSQP", tolerance=FINE, most=MOST, known=known)
-    return known[led.arrived] if led.arrived is not None else finish(inner, led.point)
+    run_end = run(inner, start, "LD_SLSQP", tolerance=FINE, max_evaluations=MOST, optima=ends)
+    return ends[run_end.arrived] if run_end.arrived is not None else finish(inner, run_end.point)
 
 
 def go(evaluator: Evaluator, start: Point) -> Point:
     """Run one descent and polish the result."""
-    return finish(evaluator, run(evaluator, start, "LD_SLSQP", tolerance=FINE, most=MOST).point)
+    return finish(
+        evaluator, run(evaluator, start, "LD_SLSQP", tolerance=FINE, max_evaluations=MOST).point
+    )
 
 
 def finish(evaluator: Evaluator, point: Point) -> Point:
@@ -247,8 +251,8 @@ def by_limits(
     points : where to start, the point of the smallest joint relaxation first
     """
     amounts: list[float | None] = []
-    reached = without_each(problem, groups, points[0])
-    for number, (group, x) in enumerate(zip(groups, reached, strict=True)):
+    points_without = without_each(problem, groups, points[0])
+    for number, (group, x) in enumerate(zip(groups, points_without, strict=True)):
         tell("infeasible: searching for a sufficient requirement", number / len(groups))
         if x is None:
             x = _without(problem, group, points if int(group[0]) in named else points[:1])
@@ -270,26 +274,32 @@ def _challenged(
 
     A descent may end on a kink or in a shallow valley; halving then finds a smaller amount.
     """
-    enough = {k: amount for k, amount in enumerate(amounts) if amount is not None}
-    tried = {k: CHALLENGE * amount for k, amount in enough.items() if amount > FAINT}
-    short = dict.fromkeys(enough, 0.0)
+    sufficient = {k: amount for k, amount in enumerate(amounts) if amount is not None}
+    trials = {k: CHALLENGE * amount for k, amount in sufficient.items() if amount > FAINT}
+    insufficient = dict.fromkeys(sufficient, 0.0)
     for _ in range(CHALLENGES):
-        if not tried:
+        if not trials:
             break
-        reached: dict[int, Vector | None] = dict.fromkeys(tried)
+        starts: dict[int, Vector | None] = dict.fromkeys(trials)
         for x in points:
-            left = [k for k in tried if reached[k] is None]
-            ends = without_each(problem, [groups[k] for k in left], x, [tried[k] for k in left])
-            reached |= dict(zip(left, ends, strict=True))
-        for k, amount in tried.items():
-            found = reached[k]
-            if found is None:
-                short[k] = amount
+            missing = [k for k in trials if starts[k] is None]
+            ends = without_each(
+                problem, [groups[k] for k in missing], x, [trials[k] for k in missing]
+            )
+            starts |= dict(zip(missing, ends, strict=True))
+        for k, amount in trials.items():
+            start = starts[k]
+            if start is None:
+                insufficient[k] = amount
                 continue
-            less, _ = _least(problem, groups[k], found)
-            enough[k] = amount if less is None else min(amount, less)
-        tried = {k: (short[k] + enough[k]) / 2 for k in tried if short[k] < CHALLENGE * enough[k]}
-    return [enough.get(k) for k in range(len(groups))]
+            smaller, _ = _least(problem, groups[k], start)
+            sufficient[k] = amount if smaller is None else min(amount, smaller)
+        trials = {
+            k: (insufficient[k] + sufficient[k]) / 2
+            for k in trials
+            if insufficient[k] < CHALLENGE * sufficient[k]
+        }
+    return [sufficient.get(k) for k in range(len(groups))]
 
 
 def without_each(
@@ -301,9 +311,9 @@ def without_each(
     """For each group a point that meets all else, with a margin granted to it (None: any)."""
     evaluator = Evaluator(problem)
     point = evaluator.point(evaluator.space.to_z(x))
-    freed = np.zeros((len(problem.constraint_names), len(groups)))
+    margins_granted = np.zeros((len(problem.constraint_names), len(groups)))
     for k, group in enumerate(groups):
-        freed[group, k] = _FREED if granted is None else granted[k]
+        margins_granted[group, k] = _FREED if granted is None else granted[k]
 
     def evaluate(points: Array, margins: Array) -> PointValues:
         rows = problem.rows(points)
@@ -315,8 +325,8 @@ def without_each(
     evaluator.check_gradients(point)
     if not groups or not applicable(parametric, evaluator):
         return [None] * len(groups)
-    found = ChangedProblems(parametric, evaluator, freed).restore(point.z)
-    return [None if z is None else evaluator.space.to_x(z[:, None])[:, 0] for z in found]
+    restored = ChangedProblems(parametric, evaluator, margins_granted).restore(point.z)
+    return [None if z is None else evaluator.space.to_x(z[:, None])[:, 0] for z in restored]
 
 
 def near(problem: BoxProblem, x: Vector) -> Vector | None:
@@ -327,13 +337,13 @@ def near(problem: BoxProblem, x: Vector) -> Vector | None:
 def _without(problem: BoxProblem, group: Indices, points: Sequence[Vector]) -> Vector | None:
     """A point that meets everything but one group, or None."""
     m = len(problem.constraint_names)
-    kept = np.setdiff1d(np.arange(m), group)
+    remaining = np.setdiff1d(np.arange(m), group)
 
-    def evaluate(at: Array) -> PointValues:
-        rows = problem.rows(at)
-        return PointValues(rows[0], rows[1 : 1 + m][kept], rows[1 + m :])
+    def evaluate(trial: Array) -> PointValues:
+        rows = problem.rows(trial)
+        return PointValues(rows[0], rows[1 : 1 + m][remaining], rows[1 + m :])
 
-    names = tuple(problem.constraint_names[i] for i in kept)
+    names = tuple(problem.constraint_names[i] for i in remaining)
     slim = replace(problem, evaluate=evaluate, constraint_names=names, relaxable=None, groups=None)
     evaluator = Evaluator(slim)
     for x in points:
@@ -345,17 +355,17 @@ def _without(problem: BoxProblem, group: Indices, points: Sequence[Vector]) -> V
 
 
 def _least_of_all(
-    problem: BoxProblem, group: Indices, x: Vector, others: Sequence[Vector]
+    problem: BoxProblem, group: Indices, x: Vector, points: Sequence[Vector]
 ) -> float | None:
     """The least relaxation of one group; also from other points if a descent stalled."""
-    amount, settled = _least(problem, group, x)
-    for other in others:
-        if settled:
+    amount, optimal = _least(problem, group, x)
+    for point in points:
+        if optimal:
             break
-        start = _without(problem, group, [other])
+        start = _without(problem, group, [point])
         if start is not None:
-            again, settled = _least(problem, group, start)
-            amount = again if amount is None else min(amount, again or amount)
+            retried, optimal = _least(problem, group, start)
+            amount = retried if amount is None else min(amount, retried or amount)
     return amount
 
 
@@ -368,38 +378,38 @@ def _least(problem: BoxProblem, group: Indices, x: Vector) -> tuple[float | None
     """As `least`, with whether the result is optimal."""
     lacks = missed(Evaluator(problem), x, [group])
     stretched = separate(problem, [group], [2.0 * max(*lacks, 0.5)])
-    found = descend(stretched, x, lacks)
-    if found.violation > NOTHING:
+    end = descend(stretched, x, lacks)
+    if end.violation > NOTHING:
         return None, False
-    residual = kkt.check(Evaluator(stretched), found, objective_scale=1.0).residual
-    return float(found.objective), residual <= SETTLED
+    residual = kkt.check(Evaluator(stretched), end, objective_scale=1.0).residual
+    return float(end.objective), residual <= SETTLED
 
 
 def by_bounds(problem: BoxProblem, bounds: Sequence[Opening], x: Vector) -> tuple[Opening, ...]:
     """The bounds, each with the value that is enough alone."""
-    found = []
+    result = []
     for number, bound in enumerate(bounds):
         tell("infeasible: searching for a sufficient bound", number / len(bounds))
-        found.append(replace(bound, needed=_opened(problem, bound, x)))
-    return tuple(found)
+        result.append(replace(bound, needed=_opened(problem, bound, x)))
+    return tuple(result)
 
 
 def _opened(problem: BoxProblem, bound: Opening, x: Vector) -> float | None:
     """The value nearest to a bound at which a variable beyond it meets all requirements."""
-    j, upper = bound.index, bound.side == "upper"
+    j, is_upper = bound.index, bound.side == "upper"
     if bound.value <= 0:
         return None
-    lower, above = problem.lower.copy(), problem.upper.copy()
-    lower[j], above[j] = (
-        (bound.value, bound.value * WIDEST) if upper else (bound.value / WIDEST, bound.value)
+    lower_bounds, upper_bounds = problem.lower.copy(), problem.upper.copy()
+    lower_bounds[j], upper_bounds[j] = (
+        (bound.value, bound.value * WIDEST) if is_upper else (bound.value / WIDEST, bound.value)
     )
 
     def evaluate(points: Array) -> PointValues:
         rows = problem.rows(points)
         m = len(problem.constraint_names)
-        return PointValues(points[j] if upper else -points[j], rows[1 : 1 + m], rows[1 + m :])
+        return PointValues(points[j] if is_upper else -points[j], rows[1 : 1 + m], rows[1 + m :])
 
-    opened = replace(problem, lower=lower, upper=above, evaluate=evaluate, start=None)
+    opened = replace(problem, lower=lower_bounds, upper=upper_bounds, evaluate=evaluate, start=None)
     start = near(opened, x)
     if start is None:
         return None

@@ -34,8 +34,8 @@ class VariableResult:
         """The same dimension at another value."""
         room = 1e-6 * max(abs(self.lower), abs(self.upper), self.upper - self.lower)
         bounds = {"lower": value - self.lower, "upper": self.upper - value}
-        near = next((name for name, distance in bounds.items() if distance <= room), None)
-        return replace(self, value=value, at_bound=near)
+        active_bound = next((name for name, distance in bounds.items() if distance <= room), None)
+        return replace(self, value=value, at_bound=active_bound)
 
 
 @dataclass(frozen=True, slots=True)
@@ -197,8 +197,8 @@ class Rounding:
 
     def to_dict(self) -> dict[str, Any]:
         """The "rounding" of `optimise --json` (SI)."""
-        kept = ("met", "remedy", "cost", "percent", "tried", "feasible", "solves")
-        return {name: getattr(self, name) for name in kept} | {
+        keys = ("met", "remedy", "cost", "percent", "tried", "feasible", "solves")
+        return {name: getattr(self, name) for name in keys} | {
             "sizes": self.name,
             "outcome": self.sentence,
             "complete": self.complete,
@@ -277,16 +277,16 @@ class Choices:
 
     def to_dict(self) -> dict[str, Any]:
         """The "choices" of `optimise --json` (SI)."""
-        first, *others = (combination.to_dict() for combination in self.combinations)
+        best, *runners_up = (combination.to_dict() for combination in self.combinations)
         return {
             "outcome": self.sentence,
             "combinations": len(self.combinations),
             "tried": self.tried,
             "feasible": self.feasible,
             "complete": self.count("not tried") == 0,
-            "best": first.pop("values"),
-            "found": first,
-            "runners_up": others,
+            "best": best.pop("values"),
+            "found": best,
+            "runners_up": runners_up,
             "notes": list(self.notes),
         }
 
@@ -338,8 +338,8 @@ class Optimisation(Displayed):
     @property
     def best_evaluation(self) -> Evaluation:
         """The evaluation of the design to build."""
-        found = None if self.made is None else self.made.evaluation
-        return self.evaluation if found is None else found
+        rounded = None if self.made is None else self.made.evaluation
+        return self.evaluation if rounded is None else rounded
 
     @property
     def tight(self) -> tuple[str, ...]:
@@ -349,14 +349,19 @@ class Optimisation(Displayed):
     @property
     def best_objective(self) -> float:
         """The objective of the design to build (SI)."""
-        found = None if self.made is None else self.made.objective_after
-        return self.objective_value if found is None else found
+        rounded = None if self.made is None else self.made.objective_after
+        return self.objective_value if rounded is None else rounded
 
     @property
     def best_variables(self) -> tuple[VariableResult, ...]:
         """The free dimensions of the design to build."""
-        known = {} if self.made is None else {row.path: row.value for row in self.made.variables}
-        return tuple(v.moved(known[v.path]) if v.path in known else v for v in self.variables)
+        rounded_values = (
+            {} if self.made is None else {row.path: row.value for row in self.made.variables}
+        )
+        return tuple(
+            v.moved(rounded_values[v.path]) if v.path in rounded_values else v
+            for v in self.variables
+        )
 
     @property
     def optimum(self) -> bool:
@@ -369,7 +374,9 @@ class Optimisation(Displayed):
         if self.rounding is None:
             return ""
         quantity, name = of_metric(self.objective_metric), self.rounding.name
-        before, after = (quantity.text(x, 5) for x in (self.objective_value, self.best_objective))
+        continuous_text, rounded_text = (
+            quantity.text(x, 5) for x in (self.objective_value, self.best_objective)
+        )
         if self.made is None:
             return (
                 "shows the continuous optimum, which is not the design to build: "
@@ -380,8 +387,8 @@ class Optimisation(Displayed):
             names = ", ".join(self.rounding.unmade)
             to_build = f"not to be built yet: {names} not in whole plies or allowed angles"
         return (
-            f"shows the design of {name} ({quantity.label} {after}), {to_build}; prices refer to "
-            f"the continuous optimum, with {before}"
+            f"shows the design of {name} ({quantity.label} {rounded_text}), {to_build}; prices refer to "
+            f"the continuous optimum, with {continuous_text}"
         )
 
     @property
@@ -406,9 +413,9 @@ class Optimisation(Displayed):
             quantity = INPUTS[v.quantity]
             numbers = [quantity.text(x, 6) for x in (v.value, v.lower, v.upper)]
             rows.append([v.path, *numbers, f"at {v.at_bound} bound" if v.at_bound else ""])
-        why = "" if self.infeasibility is None else self.infeasibility.sentence
-        said = [part for part in (self.sentence, why, self.shown) if part]
-        parts = [*said, "", aligned(rows, right=(1, 2, 3)), "", str(self.best_evaluation)]
+        reason = "" if self.infeasibility is None else self.infeasibility.sentence
+        sentences = [part for part in (self.sentence, reason, self.shown) if part]
+        parts = [*sentences, "", aligned(rows, right=(1, 2, 3)), "", str(self.best_evaluation)]
         return "\n".join(parts if self.rounding is None else [*parts, "", str(self.rounding)])
 
     def columns(self) -> dict[str, list[Any]]:
@@ -418,8 +425,8 @@ class Optimisation(Displayed):
             "predicted_10", "resolved_10", "predicted_minus10", "resolved_minus10",
             "holds_until", "next_active", "price_up", "price_down",
         )  # fmt: skip
-        found = {name: [getattr(row, name) for row in self.sensitivities] for name in names}
-        return found | {"limit": [row.limit / row.scale for row in self.sensitivities]}
+        table = {name: [getattr(row, name) for row in self.sensitivities] for name in names}
+        return table | {"limit": [row.limit / row.scale for row in self.sensitivities]}
 
     def to_dict(self) -> dict[str, Any]:
         """The `optimise --json` object (SI): the evaluation's keys and the optimiser's.
@@ -428,15 +435,19 @@ class Optimisation(Displayed):
         `evaluate` reproduces them from the saved file. Multipliers, prices and certificate are
         those of the continuous optimum.
         """
-        best, value, why = self.best_evaluation, self.best_objective, self.infeasibility
+        evaluation, value, infeasibility = (
+            self.best_evaluation,
+            self.best_objective,
+            self.infeasibility,
+        )
         return (
-            best.to_dict()
+            evaluation.to_dict()
             | {
                 "status": self.status,
                 "outcome": self.sentence,
                 "remedy": self.remedy,
                 "shown": self._shown(),
-                "warnings": [*best.warnings, *self.warnings],
+                "warnings": [*evaluation.warnings, *self.warnings],
                 "objective": {
                     "metric": self.objective_metric,
                     "value": value if isfinite(value) else None,
@@ -453,7 +464,7 @@ class Optimisation(Displayed):
                 "seed": self.seed,
                 "seconds": self.seconds,
             }
-            | ({} if why is None else {"infeasibility": asdict(why)})
+            | ({} if infeasibility is None else {"infeasibility": asdict(infeasibility)})
             | ({} if self.robust is None else {"robust": self.robust.to_dict()})
         )
 
@@ -467,8 +478,8 @@ class Optimisation(Displayed):
 
     def _variables(self) -> dict[str, Any]:
         """Value, bounds and active bound of every variable, by PATH."""
-        kept = ("value", "lower", "upper", "at_bound")
-        return {v.path: {name: getattr(v, name) for name in kept} for v in self.best_variables}
+        keys = ("value", "lower", "upper", "at_bound")
+        return {v.path: {name: getattr(v, name) for name in keys} for v in self.best_variables}
 
     def _rounding(self) -> dict[str, Any] | None:
         """The rounding with the evaluation of the continuous optimum."""

@@ -66,7 +66,7 @@ def size_remedies(
     solution: Solution,
     listed: Sequence[Listed],
     size_search: SizeSearch,
-    until: float | None = None,
+    deadline: float | None = None,
 ) -> tuple[tuple[SizeRemedy, ...], str]:
     """The changes of one number that allow better sizes, best design first; else a note.
 
@@ -74,22 +74,22 @@ def size_remedies(
     ----------
     actuator, solution : the problem and its continuous optimum
     listed, found : the sizes, and the result of their search
-    until : time of `time.perf_counter` to stop at
+    deadline : time of `time.perf_counter` to stop at
     """
-    below = math.inf if size_search.objective is None else size_search.objective
-    cheap = below - solution.objective <= COSTLY / 100 * abs(solution.objective)
+    objective = math.inf if size_search.objective is None else size_search.objective
+    cheap = objective - solution.objective <= COSTLY / 100 * abs(solution.objective)
     remedies: list[SizeRemedy] = []
-    smaller = [] if cheap else _smaller(listed, solution.x, size_search)
-    for assignment in smaller:
-        if until is not None and time.perf_counter() > until:
+    assignments = [] if cheap else _smaller(listed, solution.x, size_search)
+    for assignment in assignments:
+        if deadline is not None and time.perf_counter() > deadline:
             break
         tell("rounding costs much: searching for a limit that allows a smaller size")
-        held = _Held(actuator, listed, assignment, solution.x, below)
-        remedies += [*held.relaxed(_limits(actuator, solution, size_search)), *held.repressured()]
-    better = actuator.goal.sign
+        fixed = _Held(actuator, listed, assignment, solution.x, objective)
+        remedies += [*fixed.relaxed(_limits(actuator, solution, size_search)), *fixed.repressured()]
+    sign = actuator.goal.sign
     note = f"no change of one limit, load or the supply pressure by up to {100 * SMALL:g} % "
-    note = f"{note}allows better sizes" if smaller and not remedies else ""
-    return tuple(sorted(remedies, key=lambda remedy: better * remedy.objective)), note
+    note = f"{note}allows better sizes" if assignments and not remedies else ""
+    return tuple(sorted(remedies, key=lambda remedy: sign * remedy.objective)), note
 
 
 def _smaller(listed: Sequence[Listed], x: Vector, size_search: SizeSearch) -> list[Assignment]:
@@ -100,14 +100,14 @@ def _smaller(listed: Sequence[Listed], x: Vector, size_search: SizeSearch) -> li
     if size_search.assignment is None:
         return [] if size_search.nearest is None else [size_search.nearest]
     moves = []
-    for k, (one, row) in enumerate(zip(listed, size_search.assignment, strict=True)):
-        here = x[list(one.index)]
-        scale = np.where(here == 0, 1.0, np.abs(here))
-        moves.append((float(np.max(np.abs(one.rows[row] - here) / scale)), k))
+    for k, (group, row) in enumerate(zip(listed, size_search.assignment, strict=True)):
+        values = x[list(group.index)]
+        scale = np.where(values == 0, 1.0, np.abs(values))
+        moves.append((float(np.max(np.abs(group.rows[row] - values) / scale)), k))
     _, k = max(moves)
-    others = set(listed[k].around(x[list(listed[k].index)])) - {size_search.assignment[k]}
-    missed = (a for a, objective in size_search.tried.items() if not math.isfinite(objective))
-    return [a for a in missed if a[k] in others][:MOST_SIZES]
+    other_rows = set(listed[k].around(x[list(listed[k].index)])) - {size_search.assignment[k]}
+    infeasible = (a for a, objective in size_search.tried.items() if not math.isfinite(objective))
+    return [a for a in infeasible if a[k] in other_rows][:MOST_SIZES]
 
 
 def _limits(actuator: ActuatorProblem, solution: Solution, size_search: SizeSearch) -> list[int]:
@@ -115,13 +115,15 @@ def _limits(actuator: ActuatorProblem, solution: Solution, size_search: SizeSear
     margins = solution.constraints
     if size_search.missed is not None:
         margins = np.minimum(margins, size_search.missed.rows[1 : 1 + len(margins)])
-    least: dict[str, tuple[float, int]] = {}
+    smallest: dict[str, tuple[float, int]] = {}
     for index, (row, margin) in enumerate(zip(actuator.rows, margins.tolist(), strict=True)):
         limit = row.limit_of
-        own = limit.origin in ("requirement", "case") and not limit.metric.endswith("_factor")
-        if own and limit.path is not None:
-            least[limit.path] = min((margin, index), least.get(limit.path, (math.inf, index)))
-    return [index for _, index in sorted(least.values())[:MOST_LIMITS]]
+        negotiable = limit.origin in ("requirement", "case") and not limit.metric.endswith(
+            "_factor"
+        )
+        if negotiable and limit.path is not None:
+            smallest[limit.path] = min((margin, index), smallest.get(limit.path, (math.inf, index)))
+    return [index for _, index in sorted(smallest.values())[:MOST_LIMITS]]
 
 
 @dataclass(frozen=True)
@@ -139,7 +141,9 @@ class _Held:
         """The sizes by index of their variable."""
         pairs = zip(self.listed, self.assignment, strict=True)
         return {
-            i: float(v) for one, row in pairs for i, v in zip(one.index, one.rows[row], strict=True)
+            i: float(v)
+            for group, row in pairs
+            for i, v in zip(group.index, group.rows[row], strict=True)
         }
 
     def held(self, problem: BoxProblem) -> BoxProblem:
@@ -179,10 +183,10 @@ class _Held:
             return
         design = self.actuator.subject.design
         problem = self.held(opened(self.actuator, [PRESSURE]))
-        now = float(problem.lower[-1])
+        present = float(problem.lower[-1])
         for sign in (1.0, -1.0):
-            limit = {len(self.x): now * (1 + sign * SMALL)}
-            start = np.append(self.x, now)
+            limit = {len(self.x): present * (1 + sign * SMALL)}
+            start = np.append(self.x, present)
             for cure in freed(problem, start, limit, {len(self.x): PRESSURE}, design):
                 quantity = quantity_of(PRESSURE, design)
                 value = float(cure.needed)
@@ -190,29 +194,29 @@ class _Held:
                 lower[-1] = upper[-1] = value
                 entry = {
                     "parameter": PRESSURE,
-                    "limit": now,
+                    "limit": present,
                     "needed": value,
-                    "change": value / now - 1,
-                    "limit_text": quantity.text(now, 6),
+                    "change": value / present - 1,
+                    "limit_text": quantity.text(present, 6),
                     "needed_text": quantity.text(value, 6),
                 }
                 fixed = replace(problem, lower=lower, upper=upper)
                 yield from self.remedy(fixed, np.append(self.x, value), entry)
 
     def remedy(
-        self, eased: BoxProblem, near: Vector, entry: Mapping[str, Any]
+        self, eased: BoxProblem, x: Vector, entry: Mapping[str, Any]
     ) -> Iterator[SizeRemedy]:
         """The best design of the sizes at the changed number, if better than without."""
-        point = repairs.near(eased, near)
+        point = repairs.near(eased, x)
         if point is None:
             return
         evaluator = Evaluator(eased)
         end = repairs.go(evaluator, evaluator.point(evaluator.space.to_z(point)))
         if end.violation > repairs.NOTHING or not end.objective < self.below:
             return
-        kept = ("parameter", "limit", "needed", "change", "limit_text", "needed_text")
+        keys = ("parameter", "limit", "needed", "change", "limit_text", "needed_text")
         yield SizeRemedy(
-            change={name: entry[name] for name in kept},
+            change={name: entry[name] for name in keys},
             sentence=change_text(entry),
             objective=self.actuator.goal.shown(end.objective),
             values={self.actuator.paths[place]: value for place, value in self.sizes.items()},
@@ -272,42 +276,44 @@ def uncounted(design: Design, materials: Mapping[str, Material]) -> tuple[str, .
 
     These layers state no ply thickness, and no variable restricts them to sizes.
     """
-    found = []
+    paths = []
     for path, ply in layers(design):
-        free = design.variables.get(f"{path}.thickness")
-        own = free is not None and (free.sizes is not None or free.step is not None)
-        if ply.ply_thickness is None and not own and not materials[ply.material].isotropic:
-            found.append(f"{path}.thickness")
-    return tuple(found)
+        variable = design.variables.get(f"{path}.thickness")
+        has_sizes = variable is not None and (
+            variable.sizes is not None or variable.step is not None
+        )
+        if ply.ply_thickness is None and not has_sizes and not materials[ply.material].isotropic:
+            paths.append(f"{path}.thickness")
+    return tuple(paths)
 
 
 def misfits(design: Design) -> tuple[str, ...]:
     """PATHs of lay-up values that are not whole plies or not allowed angles."""
-    found = []
+    paths = []
     allowed = design.barrel.allowed_angles
     for path, ply in layers(design):
         if ply.ply_thickness is not None and plies(ply) is None:
-            found.append(f"{path}.thickness")
+            paths.append(f"{path}.thickness")
         concerned = ply.ply_thickness is not None or f"{path}.angle" in design.variables
         if allowed is None or not concerned:
             continue
         if all(abs(abs(ply.angle) - angle) > WHOLE for angle in allowed):
-            found.append(f"{path}.angle")
-    return tuple(found)
+            paths.append(f"{path}.angle")
+    return tuple(paths)
 
 
 def unrounded(optimisation: Optimisation) -> str:
     """A remark on an optimum without whole plies, if not requested; else empty."""
     design = optimisation.design
-    left = [path for path in misfits(design) if path in design.variables]
-    if optimisation.rounding is not None or not left or not optimisation.evaluation.met:
+    paths = [path for path in misfits(design) if path in design.variables]
+    if optimisation.rounding is not None or not paths or not optimisation.evaluation.met:
         return ""
-    return f"{', '.join(left)}: not whole plies or allowed angles yet; see --whole-plies"
+    return f"{', '.join(paths)}: not whole plies or allowed angles yet; see --whole-plies"
 
 
 def sizes_of(
     design: Design,
-    wanted: Wanted,
+    requested: Wanted,
     materials: Mapping[str, Material],
     fault: Fault | None = None,
 ) -> ListedSizes | None:
@@ -316,7 +322,7 @@ def sizes_of(
     Parameters
     ----------
     design : the design with its variables
-    wanted : sizes requested beside those of the file
+    requested : sizes requested beside those of the file
     materials : of the design, by name
     fault : locates a variable's fault in the file; default: by PATH only
 
@@ -326,51 +332,54 @@ def sizes_of(
         sizes are requested and no variable has any, or the bounds of one contain none; whole plies
         are requested and a layer has none
     """
-    if wanted.whole_plies or wanted.standard:
-        _require_plies(design, wanted, materials)
-    found, faults = groups(design, plies=wanted.whole_plies, standard=wanted.standard)
+    if requested.whole_plies or requested.standard:
+        _require_plies(design, requested, materials)
+    size_groups, faults = groups(design, plies=requested.whole_plies, standard=requested.standard)
     if faults:
         raise InputError(
             [
-                (fault(str(one.loc[1]), one.message, one.remedy) if fault else None)
-                or Diagnostic(one.message, one.remedy, path=f"variables.{one.loc[1]}")
-                for one in faults
+                (fault(str(conflict.loc[1]), conflict.message, conflict.remedy) if fault else None)
+                or Diagnostic(
+                    conflict.message, conflict.remedy, path=f"variables.{conflict.loc[1]}"
+                )
+                for conflict in faults
             ]
         )
-    if not found and (wanted.whole_plies or wanted.standard):
-        raise InputError(_nothing(wanted))
+    if not size_groups and (requested.whole_plies or requested.standard):
+        raise InputError(_nothing(requested))
     place = {path: index for index, path in enumerate(design.variables)}
     listed = tuple(
-        Listed(tuple(place[path] for path in group.paths), np.array(group.rows)) for group in found
+        Listed(tuple(place[path] for path in group.paths), np.array(group.rows))
+        for group in size_groups
     )
     labels = {
         path: label
-        for group in found
+        for group in size_groups
         for path, label in zip(group.paths, group.labels, strict=True)
     }
-    return ListedSizes(listed, labels) if found else None
+    return ListedSizes(listed, labels) if size_groups else None
 
 
-def _require_plies(design: Design, wanted: Wanted, materials: Mapping[str, Material]) -> None:
+def _require_plies(design: Design, requested: Wanted, materials: Mapping[str, Material]) -> None:
     """Check that every fibre layer has countable plies, and whole ones if it is fixed."""
-    known = dict(layers(design))
-    alone = "" if wanted.whole_plies else '; for bore and rod alone write "sizes: iso_3320"'
+    plies_by_path = dict(layers(design))
+    hint = "" if requested.whole_plies else '; for bore and rod alone write "sizes: iso_3320"'
     faults = [
         Diagnostic(
             "the layer states no ply_thickness, so its plies cannot be counted",
-            f'add e.g. "ply_thickness: 0.2 mm" to it{alone}',
+            f'add e.g. "ply_thickness: 0.2 mm" to it{hint}',
             path=path,
         )
         for path in uncounted(design, materials)
     ]
     for path in misfits(design):
-        ply = known.get(path.removesuffix(".thickness"))
+        ply = plies_by_path.get(path.removesuffix(".thickness"))
         if path not in design.variables and ply is not None and ply.ply_thickness is not None:
-            one = INPUTS["ply_thickness"].text(ply.ply_thickness)
+            thickness = INPUTS["ply_thickness"].text(ply.ply_thickness)
             pairs = "" if not ply.balanced or along(ply.angle) else "pairs of "
             faults.append(
                 Diagnostic(
-                    f"not a whole number of {pairs}plies of {one}, and not a variable",
+                    f"not a whole number of {pairs}plies of {thickness}, and not a variable",
                     "change it, or make it a variable",
                     path=path,
                 )
@@ -379,8 +388,8 @@ def _require_plies(design: Design, wanted: Wanted, materials: Mapping[str, Mater
         raise InputError(faults)
 
 
-def _nothing(wanted: Wanted) -> Diagnostic:
-    if wanted.standard:
+def _nothing(requested: Wanted) -> Diagnostic:
+    if requested.standard:
         message = "nothing to round: no variable has standard sizes"
         remedy = "make cylinder.bore or rod.outer_diameter a variable, or give a variable sizes"
     else:
@@ -397,15 +406,15 @@ def design_at(actuator: ActuatorProblem, x: Vector) -> tuple[Design, Evaluation]
     subject = actuator.subject
     values = dict(zip(actuator.paths, x.tolist(), strict=True))
     design = with_values(subject.design, values, metrics=subject.quantities, contradictions=False)
-    found = prepare(design, subject.materials, subject.plugins)
-    return design, evaluate(replace(found, lenient=True, aims=subject.aims))
+    prepared = prepare(design, subject.materials, subject.plugins)
+    return design, evaluate(replace(prepared, lenient=True, aims=subject.aims))
 
 
 def rounded(
     actuator: ActuatorProblem,
     solution: Solution,
     sizes: ListedSizes,
-    found: SizeSearch | None = None,
+    size_search: SizeSearch | None = None,
     *,
     until: float | None = None,
     seed: int = 0,
@@ -418,24 +427,24 @@ def rounded(
     ----------
     actuator, solution : the problem and a feasible point
     sizes : `sizes_of` the design
-    found : result of the search, if already made
+    size_search : result of the search, if already made
     until : time of `time.perf_counter` to stop at
     seed : of the sweeps
     """
     problem = actuator.problem
-    if found is None:
-        found = search(problem, sizes.listed, solution.x, until=until)
-    better = found.objective is not None and _cost(found.objective, solution) < 0
-    if better and found.x is not None:
-        again = solve(problem, starts=1, seed=seed, more_starts=[found.x])
-        if again.feasible and again.objective < solution.objective:
-            starts = (*solution.starts, *again.starts)
-            solution = replace(again, samples=solution.samples, starts=starts)
-            found = search(problem, sizes.listed, solution.x, until=until)
-    remedies, note = size_remedies(actuator, solution, sizes.listed, found, until)
-    made = _rounding(actuator, solution, sizes, found)
-    notes = (*made.notes, note) if note else made.notes
-    return replace(made, remedies=remedies, notes=notes), solution
+    if size_search is None:
+        size_search = search(problem, sizes.listed, solution.x, deadline=until)
+    improves = size_search.objective is not None and _cost(size_search.objective, solution) < 0
+    if improves and size_search.x is not None:
+        solution_again = solve(problem, starts=1, seed=seed, more_starts=[size_search.x])
+        if solution_again.feasible and solution_again.objective < solution.objective:
+            starts = (*solution.starts, *solution_again.starts)
+            solution = replace(solution_again, samples=solution.samples, starts=starts)
+            size_search = search(problem, sizes.listed, solution.x, deadline=until)
+    remedies, note = size_remedies(actuator, solution, sizes.listed, size_search, until)
+    rounding = _rounding(actuator, solution, sizes, size_search)
+    notes = (*rounding.notes, note) if note else rounding.notes
+    return replace(rounding, remedies=remedies, notes=notes), solution
 
 
 def _cost(objective: float, solution: Solution) -> float:
@@ -453,7 +462,7 @@ def _rounding(
 ) -> Rounding:
     shown = actuator.goal.shown
     feasible = sum(math.isfinite(objective) for objective in size_search.tried.values())
-    before = Rounding(
+    failure = Rounding(
         met=False,
         sentence=f"none of {len(size_search.tried)} designs of {sizes.name} meets all requirements"
         + ("" if size_search.complete else ", and the search stopped at its limit")
@@ -468,13 +477,13 @@ def _rounding(
         notes=_unmade(actuator, actuator.subject.design)[1],
     )
     if size_search.x is None or size_search.objective is None:
-        return before
+        return failure
     design, evaluation = design_at(actuator, size_search.x)
     cost = _cost(size_search.objective, solution)
     sentence, remedy = _sentence(sizes.name, evaluation.met, size_search.complete)
     unmade, notes = _unmade(actuator, design)
     return replace(
-        before,
+        failure,
         unmade=unmade,
         notes=notes,
         met=evaluation.met,
@@ -501,14 +510,14 @@ def _nearest(actuator: ActuatorProblem, sizes: ListedSizes, size_search: SizeSea
         return ""
     margins = size_search.missed.rows[1 : 1 + len(actuator.problem.constraint_names)]
     worst = actuator.problem.constraint_names[int(np.argmin(margins))]
-    said = [
+    texts = [
         f"{path} {quantity_of(path, actuator.subject.design).text(value)}"
         for path, value in _chosen(actuator, sizes.listed, size_search.nearest).items()
     ]
-    if len(said) > MOST_SAID:
-        said = [*said[:MOST_SAID], "…"]
+    if len(texts) > MOST_SAID:
+        texts = [*texts[:MOST_SAID], "…"]
     by = 100 * size_search.missed.violation
-    return f"; the nearest, {', '.join(said)}, misses {worst} by {by:.2g} %"
+    return f"; the nearest, {', '.join(texts)}, misses {worst} by {by:.2g} %"
 
 
 def _chosen(
@@ -517,8 +526,8 @@ def _chosen(
     """The listed variables of an assignment by PATH."""
     return {
         actuator.paths[index]: float(value)
-        for one, row in zip(listed, assignment, strict=True)
-        for index, value in zip(one.index, one.rows[row], strict=True)
+        for group, row in zip(listed, assignment, strict=True)
+        for index, value in zip(group.index, group.rows[row], strict=True)
     }
 
 
@@ -551,9 +560,11 @@ def _unmade(actuator: ActuatorProblem, design: Design) -> tuple[tuple[str, ...],
     Before rounding, only those that are not variables.
     """
     start = design is actuator.subject.design
-    moved = design.variables if start else {}
-    odd = [path for path in misfits(design) if path not in moved]
-    open_ = [path for path in uncounted(design, actuator.subject.materials) if path not in moved]
+    excluded = design.variables if start else {}
+    not_whole = [path for path in misfits(design) if path not in excluded]
+    uncountable = [
+        path for path in uncounted(design, actuator.subject.materials) if path not in excluded
+    ]
     notes = [
         (
             f"{path} is not a variable and not "
@@ -561,11 +572,11 @@ def _unmade(actuator: ActuatorProblem, design: Design) -> tuple[tuple[str, ...],
             else f"{path} is not "
         )
         + ("an allowed angle" if path.endswith("angle") else "a whole number of plies")
-        for path in odd
+        for path in not_whole
     ]
     notes += [f"{path}: the layer states no ply_thickness, so its plies cannot be counted"
-              for path in open_]  # fmt: skip
-    return (*odd, *open_), tuple(notes)
+              for path in uncountable]  # fmt: skip
+    return (*not_whole, *uncountable), tuple(notes)
 
 
 def _variables(
@@ -575,10 +586,10 @@ def _variables(
     x: Vector,
     design: Design,
 ) -> tuple[RoundedVariable, ...]:
-    known = dict(layers(design))
+    plies_by_path = dict(layers(design))
     rows = []
     for i, path in enumerate(actuator.paths):
-        ply = known.get(path.removesuffix(".thickness"))
+        ply = plies_by_path.get(path.removesuffix(".thickness"))
         rows.append(
             RoundedVariable(
                 path=path,
@@ -597,13 +608,13 @@ def _runners_up(
     actuator: ActuatorProblem, solution: Solution, listed: Sequence[Listed], size_search: SizeSearch
 ) -> tuple[RunnerUp, ...]:
     """The next best of the rounded designs."""
-    others = sorted(
+    candidates = sorted(
         (objective, assignment)
         for assignment, objective in size_search.tried.items()
         if assignment != size_search.assignment and math.isfinite(objective)
     )
     rows = []
-    for objective, assignment in others[:RUNNERS_UP]:
+    for objective, assignment in candidates[:RUNNERS_UP]:
         cost = _cost(objective, solution)
         values = _chosen(actuator, listed, assignment)
         shown = actuator.goal.shown(objective)

@@ -56,26 +56,26 @@ def certified(actuator: ActuatorProblem, solution: Solution) -> Certificate:
     from .certificate.relaxation import Unknown
 
     quantity = actuator.subject.quantities[actuator.goal.single or ""]
-    best = solution.objective
+    objective = solution.objective
 
     def told(value: float) -> None:
-        tell("proving the bound", math.exp(value) / best)
+        tell("proving the bound", math.exp(value) / objective)
 
     try:
-        relaxed, found = certify(actuator, solution.x, best, seconds=math.inf, report=told)
+        relaxed, proof = certify(actuator, solution.x, objective, seconds=math.inf, report=told)
     except Unknown as error:
         return Certificate(f"no proof: {error}", evidence)
-    bound = min(math.exp(found.bound), best)
-    gap = max(1 - bound / best, 0.0)
-    chosen = " with these choices" if actuator.subject.design.choices else ""
-    words = (
-        f"no design within the bounds{chosen} that meets the covered limits has a "
+    bound = min(math.exp(proof.bound), objective)
+    gap = max(1 - bound / objective, 0.0)
+    condition = " with these choices" if actuator.subject.design.choices else ""
+    sentence = (
+        f"no design within the bounds{condition} that meets the covered limits has a "
         f"{quantity.label} below {quantity.text(bound, 5)}: this design is within "
         f"{_percent(gap)} of the best possible"
     )
     covers = tuple(dict.fromkeys(claim.limit.name for claim in relaxed.covered))
     dropped = {name: why for name, why in relaxed.dropped.items() if name not in covers}
-    return Certificate(words, evidence, bound, gap, covers, dropped, found.boxes)
+    return Certificate(sentence, evidence, bound, gap, covers, dropped, proof.boxes)
 
 
 def enumerated(optimisation: Optimisation, goal: Goal) -> Certificate | None:
@@ -85,20 +85,20 @@ def enumerated(optimisation: Optimisation, goal: Goal) -> Certificate | None:
         return None
     if choices.count("not tried"):
         return Certificate("no proof: not every combination was evaluated", "")
-    words = f"all {len(choices.combinations)} combinations were evaluated: "
-    wish, value = goal.sign, optimisation.objective_value
-    met = [
+    sentence = f"all {len(choices.combinations)} combinations were evaluated: "
+    sign, value = goal.sign, optimisation.objective_value
+    objectives = [
         combination.objective
         for combination in choices.combinations
         if combination.feasible and combination.objective
     ]
-    best = min((wish * one for one in met), default=wish * value)
-    words += "none that meets all requirements is better"
-    if best < wish * value:  # a check that some combination meets outranks the objective
-        words += ", except those that miss more of the check list"
-    if goal.single is None or wish < 0 or not value > 0:
-        return Certificate(words, "")
-    return Certificate(words, "", best, 1 - best / value)
+    best = min((sign * objective for objective in objectives), default=sign * value)
+    sentence += "none that meets all requirements is better"
+    if best < sign * value:  # a check that some combination meets outranks the objective
+        sentence += ", except those that miss more of the check list"
+    if goal.single is None or sign < 0 or not value > 0:
+        return Certificate(sentence, "")
+    return Certificate(sentence, "", best, 1 - best / value)
 
 
 def _percent(share: float) -> str:
@@ -127,13 +127,13 @@ def _evidence(solution: Solution) -> str:
     if count == 0:
         return ""
     best = solution.objective
-    same = sum(
+    count_same = sum(
         start.feasible and abs(start.objective - best) <= SAME * abs(best)
         for start in solution.starts
     )
     missed = 1 - (1 - CHANCE) ** (1 / count)
     return (
-        f"{same} of {count} starts reached this optimum, none a better one. A better optimum "
+        f"{count_same} of {count} starts reached this optimum, none a better one. A better optimum "
         f"reached by more than {100 * missed:.0f} % of all starts would have been seen with "
         f"{100 * CHANCE:.0f} % probability (evidence, not proof)"
     )
@@ -177,22 +177,24 @@ def optimise(
     keep_interrupted : Ctrl-C keeps the best design so far (without choices)
     """
     began = time.perf_counter()
-    until = None if max_seconds is None else began + max_seconds
-    wanted = Wanted(whole_plies, standard_sizes)
-    sizes = sizes_of(subject.design, wanted, subject.materials, fault)
+    deadline = None if max_seconds is None else began + max_seconds
+    requested = Wanted(whole_plies, standard_sizes)
+    sizes = sizes_of(subject.design, requested, subject.materials, fault)
     sized: Sized | None = None
     choices: Choices | None = None
     if subject.design.choices:
-        settings = ChoiceSettings(algorithm, starts, SAMPLES, seed, until)
+        settings = ChoiceSettings(algorithm, starts, SAMPLES, seed, deadline)
         choice_search = search_choices(subject, settings, MOST_SOLVED if sizes is None else 1)
         if sizes is not None:
-            sized = best_of_sizes(choice_search, wanted, settings)
+            sized = best_of_sizes(choice_search, requested, settings)
         choices = record(choice_search, subject.design)
         best = choice_search.ranked()[0] if sized is None else sized.look
         if best.actuator is None or best.solution is None:
-            only = _enumerated(subject, choice_search, choices, seed, began)
+            optimisation = _enumerated(subject, choice_search, choices, seed, began)
             return (
-                replace(only, certificate=enumerated(only, choice_search.goal)) if certify else only
+                replace(optimisation, certificate=enumerated(optimisation, choice_search.goal))
+                if certify
+                else optimisation
             )
         actuator, solution = best.actuator, best.solution
     else:
@@ -210,16 +212,16 @@ def optimise(
     after = _After(solution)
     try:
         if sizes is not None and solution.feasible and not solution.interrupted:
-            kept = (sizes, None) if sized is None else (sized.sizes, sized.found)
+            search_args = (sizes, None) if sized is None else (sized.sizes, sized.found)
             after.rounding, after.solution = rounded(
-                actuator, solution, *kept, until=until, seed=seed
+                actuator, solution, *search_args, until=deadline, seed=seed
             )
         _follow(actuator, after, prices=prices, certify=certify, explain=explain)
     except KeyboardInterrupt:
         if not keep_interrupted:
             raise
-        ended = Outcome.INTERRUPTED if solution.feasible else Outcome.INTERRUPTED_INFEASIBLE
-        after = _After(replace(solution, outcome=ended))
+        outcome = Outcome.INTERRUPTED if solution.feasible else Outcome.INTERRUPTED_INFEASIBLE
+        after = _After(replace(solution, outcome=outcome))
     return _result(subject, actuator, after, choices, seed, began)
 
 
@@ -378,11 +380,11 @@ def _variables(actuator: ActuatorProblem, solution: Solution) -> tuple[VariableR
 
 
 def _kkt(solution: Solution) -> Kkt | None:
-    found = solution.kkt
-    if found is None:
+    quality = solution.kkt
+    if quality is None:
         return None
-    curvature = "" if found.curvature is None else found.curvature.value
-    return Kkt(float(found.residual), found.active, int(found.rank), curvature)
+    curvature = "" if quality.curvature is None else quality.curvature.value
+    return Kkt(float(quality.residual), quality.active, int(quality.rank), curvature)
 
 
 _DESIGN, _EVALUATION, _FRACTION, _NUMBER = "$design", "$evaluation", "$fraction", "$number"

@@ -78,8 +78,8 @@ class WarmStart:
         self.evaluator = evaluator = Evaluator(actuator.problem)
         self.point = point = evaluator.point(evaluator.space.to_z(solution.x))
         evaluator.check_gradients(point)
-        known = [point, *ladder.other_optima(evaluator, solution)]
-        self.valleys = [valley_at(evaluator, one) for one in known]
+        optima = [point, *ladder.other_optima(evaluator, solution)]
+        self.valleys = [valley_at(evaluator, optimum) for optimum in optima]
         self._optimum: prices.Optimum | None = None
         self._responses: dict[str, Responses] = {}
 
@@ -92,34 +92,34 @@ class WarmStart:
         stop : called between steps; once True, the unchanged optimum is returned with the outcome
             "interrupted"
         """
-        near = Evaluator(problem, stop=stop)
-        if near.space.size == 0:
+        evaluator = Evaluator(problem, stop=stop)
+        if evaluator.space.size == 0:
             return solve(problem)
         try:
-            self._take_gradients(near)
-            optimum, inside = self._stepped(near, self._valleys(near))
+            self._take_gradients(evaluator)
+            optimum, feasible = self._stepped(evaluator, self._valleys(evaluator))
         except LimitReached:
-            return self._interrupted(near)
+            return self._interrupted(evaluator)
         if optimum is not None:
-            return _solution(near, optimum, "full steps, or restoration and descent")
-        known = problem.inside(self.point.x)
-        more = [known if inside is None else near.space.to_x(inside[:, None])[:, 0]]
+            return _solution(evaluator, optimum, "full steps, or restoration and descent")
+        guess = problem.inside(self.point.x)
+        starts = [guess if feasible is None else evaluator.space.to_x(feasible[:, None])[:, 0]]
         seed = self.effort.seed
-        found = solve(
-            problem, starts=STARTS, samples=SAMPLES, more_starts=more, seed=seed, stop=stop
+        solution = solve(
+            problem, starts=STARTS, samples=SAMPLES, more_starts=starts, seed=seed, stop=stop
         )
-        if not found.feasible and found.outcome is not Outcome.LIMIT_INFEASIBLE:
-            found = solve(
+        if not solution.feasible and solution.outcome is not Outcome.LIMIT_INFEASIBLE:
+            solution = solve(
                 problem,
                 starts=self.effort.starts,
                 samples=self.effort.samples,
-                more_starts=[found.x],
+                more_starts=[solution.x],
                 seed=seed,
                 stop=stop,
             )
-        if found.outcome is Outcome.LIMIT_INFEASIBLE:
-            return self._interrupted(near)
-        return _stopped(found) if found.outcome is Outcome.LIMIT else found
+        if solution.outcome is Outcome.LIMIT_INFEASIBLE:
+            return self._interrupted(evaluator)
+        return _stopped(solution) if solution.outcome is Outcome.LIMIT else solution
 
     def solve_together(
         self, path: str, values: Sequence[float], rebuilt: Callable[[float], ActuatorProblem],
@@ -138,28 +138,28 @@ class WarmStart:
         """
         present = self.actuator.subject.numbers.get(path)
         optima: list[Point | None] = [None] * len(values)
-        left = list(range(len(values)))
+        missing = list(range(len(values)))
         if present is not None and self._follows(path, present, values, rebuilt):
             try:
                 optima = self._curve(path, values, stop)
             except LimitReached:
                 return optima
-            left = [k for k, one in enumerate(optima) if one is None]
-        here = present if present is not None else float(np.median(values))
+            missing = [k for k, optimum in enumerate(optima) if optimum is None]
+        middle = present if present is not None else float(np.median(values))
         for side in (-1, 1):
             outwards = sorted(
-                (k for k in left if (values[k] - here >= 0) == (side > 0)),
-                key=lambda k: abs(values[k] - here),
+                (k for k in missing if (values[k] - middle >= 0) == (side > 0)),
+                key=lambda k: abs(values[k] - middle),
             )
             for k in outwards:
                 if stop is not None and stop():
                     return optima
-                found = self.solve(rebuilt(values[k]).problem, stop)
-                if found.interrupted:
+                solution = self.solve(rebuilt(values[k]).problem, stop)
+                if solution.interrupted:
                     return optima
-                if not found.feasible:
+                if not solution.feasible:
                     break
-                optima[k] = ladder.point_of(self.evaluator, found)
+                optima[k] = ladder.point_of(self.evaluator, solution)
         return optima
 
     def line(self, changes: Mapping[str, float], size: float = 1.0) -> LinearPath:
@@ -171,16 +171,16 @@ class WarmStart:
         size : units that make a change of the numbers' own size
         """
         optimum = self.optimum
-        given = self._along(changes, size)
-        moves, shifts = prices.movement(optimum, given)
+        derivatives = self._along(changes, size)
+        moves, shifts = prices.movement(optimum, derivatives)
         active = np.flatnonzero(optimum.margins <= kkt.ACTIVE)
-        below, above = prices.one_sided(optimum, given, active)[:, 0]
-        moved = np.zeros(len(self.point.x))
+        below, above = prices.one_sided(optimum, derivatives, active)[:, 0]
+        x_moves = np.zeros(len(self.point.x))
         slope = self.evaluator.space.slope(self.point.x[:, None])[:, 0]
-        moved[self.evaluator.space.free] = slope * moves[:, 0]
-        low, high = prices.ends(optimum, given, moves, shifts)[0]
+        x_moves[self.evaluator.space.free] = slope * moves[:, 0]
+        low, high = prices.ends(optimum, derivatives, moves, shifts)[0]
         return LinearPath(
-            float(below), float(above), moved,
+            float(below), float(above), x_moves,
             None if low is None else (float(low.distance), low.text),
             None if high is None else (float(high.distance), high.text),
         )  # fmt: skip
@@ -190,7 +190,7 @@ class WarmStart:
         """The linear algebra of the optimum, computed once."""
         if self._optimum is None:
             quality = kkt.check(self.evaluator, self.point)
-            self._optimum = prices.optimum(self.evaluator, self.point, quality)
+            self._optimum = prices.optimum_at(self.evaluator, self.point, quality)
         return self._optimum
 
     def _along(self, changes: Mapping[str, float], size: float) -> Responses:
@@ -225,52 +225,58 @@ class WarmStart:
                     mixed=new.mixed[:, column], bounds=new.bounds[:, column],
                 )  # fmt: skip
 
-    def _take_gradients(self, near: Evaluator) -> None:
+    def _take_gradients(self, evaluator: Evaluator) -> None:
         """Reuse the gradient check for a changed problem, or run its own."""
-        own, problem = self.evaluator, near.problem
-        if tuple(problem.constraint_names) == tuple(own.problem.constraint_names):
-            near.complex_works, near.difference_rows = own.complex_works, own.difference_rows
+        solved, problem = self.evaluator, evaluator.problem
+        if tuple(problem.constraint_names) == tuple(solved.problem.constraint_names):
+            evaluator.complex_works, evaluator.difference_rows = (
+                solved.complex_works,
+                solved.difference_rows,
+            )
         else:
-            near.check_gradients(near.point(near.space.to_z(problem.inside(self.point.x))))
+            evaluator.check_gradients(
+                evaluator.point(evaluator.space.to_z(problem.inside(self.point.x)))
+            )
 
-    def _valleys(self, near: Evaluator) -> list[Valley]:
+    def _valleys(self, evaluator: Evaluator) -> list[Valley]:
         """The valleys as starts of descents of a changed problem."""
-        own, space = self.evaluator.space, near.space
-        same = np.array_equal(own.free, space.free) and all(
-            np.array_equal(getattr(own, name), getattr(space, name))
+        solved, space = self.evaluator.space, evaluator.space
+        same_coordinates = np.array_equal(solved.free, space.free) and all(
+            np.array_equal(getattr(solved, name), getattr(space, name))
             for name in ("logarithmic", "scale")
         )
-        box = same and all(
-            np.array_equal(getattr(own, name), getattr(space, name)) for name in ("lower", "upper")
+        same_box = same_coordinates and all(
+            np.array_equal(getattr(solved, name), getattr(space, name))
+            for name in ("lower", "upper")
         )
-        if box:
-            return [replace(valley, rows=near.constraint_count) for valley in self.valleys]
+        if same_box:
+            return [replace(valley, rows=evaluator.constraint_count) for valley in self.valleys]
         result = []
         for valley in self.valleys:
-            point = near.point(space.to_z(near.problem.inside(valley.point.x)))
-            if same:
-                result.append(replace(valley, rows=near.constraint_count, point=point))
+            point = evaluator.point(space.to_z(evaluator.problem.inside(valley.point.x)))
+            if same_coordinates:
+                result.append(replace(valley, rows=evaluator.constraint_count, point=point))
             elif point.valid:
-                result.append(valley_at(near, point))
+                result.append(valley_at(evaluator, point))
         return result
 
     def _stepped(
-        self, near: Evaluator, valleys: Sequence[Valley]
+        self, evaluator: Evaluator, valleys: Sequence[Valley]
     ) -> tuple[Point | None, Vector | None]:
         """The optimum that steps from the valleys reach, or a feasible point (nf,)."""
-        problem = near.problem
-        alone = ParametricProblem(problem, (), np.zeros(0), lambda x, _: problem.evaluate(x))
-        if not valleys or not applicable(alone, near):
+        problem = evaluator.problem
+        parametric = ParametricProblem(problem, (), np.zeros(0), lambda x, _: problem.evaluate(x))
+        if not valleys or not applicable(parametric, evaluator):
             return None, None
-        changed = ChangedProblems(alone, near, np.zeros((0, 1)))
-        optima, inside = ladder.resolve_batch(changed, valleys, valleys[0].point.z[:, None])
-        return optima[0], inside[0]
+        changed = ChangedProblems(parametric, evaluator, np.zeros((0, 1)))
+        optima, feasible = ladder.resolve_batch(changed, valleys, valleys[0].point.z[:, None])
+        return optima[0], feasible[0]
 
-    def _interrupted(self, near: Evaluator) -> Solution:
+    def _interrupted(self, evaluator: Evaluator) -> Solution:
         """The unchanged optimum as the result of a stopped search."""
-        near.limited = False
-        point = near.point(near.space.to_z(near.problem.inside(self.point.x)))
-        return _stopped(_solution(near, point, "interrupted"))
+        evaluator.limited = False
+        point = evaluator.point(evaluator.space.to_z(evaluator.problem.inside(self.point.x)))
+        return _stopped(_solution(evaluator, point, "interrupted"))
 
     def _follows(
         self,
@@ -287,37 +293,37 @@ class WarmStart:
         parametric = self.actuator.parametric((path,))
         if not applicable(parametric, self.evaluator):
             return False
-        own = self.actuator.problem
+        problem = self.actuator.problem
         for value in {min(values), max(values)} - {present}:
-            other = rebuilt(value).problem
-            same = tuple(other.constraint_names) == tuple(own.constraint_names)
-            boxed = np.array_equal(own.lower, other.lower) and np.array_equal(
-                own.upper, other.upper
+            changed = rebuilt(value).problem
+            same_rows = tuple(changed.constraint_names) == tuple(problem.constraint_names)
+            same_box = np.array_equal(problem.lower, changed.lower) and np.array_equal(
+                problem.upper, changed.upper
             )
-            if not (same and boxed):
+            if not (same_rows and same_box):
                 return False
             x = self.point.x[:, None]
-            ours, theirs = parametric.at(np.array([value])).rows(x), other.rows(x)
+            ours, theirs = parametric.at(np.array([value])).rows(x), changed.rows(x)
             if not np.allclose(ours, theirs, rtol=AGREES, atol=AGREES, equal_nan=True):
                 return False
         return True
 
     def _curve(self, path: str, values: Sequence[float], stop: Stop | None) -> list[Point | None]:
         """The optima at values of a number that shared steps reach."""
-        near = Evaluator(self.actuator.problem, stop=stop)
-        self._take_gradients(near)
-        changed = ChangedProblems(self.actuator.parametric((path,)), near, np.array([values]))
+        evaluator = Evaluator(self.actuator.problem, stop=stop)
+        self._take_gradients(evaluator)
+        changed = ChangedProblems(self.actuator.parametric((path,)), evaluator, np.array([values]))
         starts = np.repeat(self.point.z[:, None], len(values), axis=1)
         return ladder.resolve_batch(changed, self.valleys, starts)[0]
 
 
 def _solution(evaluator: Evaluator, point: Point, algorithm: str) -> Solution:
     """A point as a search result; an optimum if it is feasible and stationary."""
-    found = kkt.check(evaluator, point) if point.valid else None
-    if point.violation > ladder.FEASIBLE or found is None:
+    quality = kkt.check(evaluator, point) if point.valid else None
+    if point.violation > ladder.FEASIBLE or quality is None:
         outcome = Outcome.INFEASIBLE
     else:
-        stationary = found.residual <= ladder.RESIDUAL
+        stationary = quality.residual <= ladder.RESIDUAL
         outcome = Outcome.OPTIMUM if stationary else Outcome.NOT_STATIONARY
     m = evaluator.constraint_count
     return Solution(
@@ -328,7 +334,7 @@ def _solution(evaluator: Evaluator, point: Point, algorithm: str) -> Solution:
         constraints=point.rows[1 : 1 + m],
         equalities=point.rows[1 + m :],
         violation=point.violation,
-        kkt=found,
+        kkt=quality,
         evaluations=evaluator.evaluations,
         gradients=evaluator.gradients,
         algorithm=algorithm,

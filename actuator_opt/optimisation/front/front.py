@@ -268,7 +268,9 @@ def _overlooked_starts(
     """Starts for each level: the problem's start, and the best points of one shared sweep."""
     inner = Evaluator(tracer.objectives.single_problem(0))
     space, start = inner.space, tracer.objectives.problem.start
-    cube = Halton(space.size, effort.seed, most=max(2, effort.samples)).points(0, effort.samples)
+    cube = Halton(space.size, effort.seed, max_points=max(2, effort.samples)).points(
+        0, effort.samples
+    )
     z = space.lower[:, None] + (space.upper - space.lower)[:, None] * cube
     if start is not None:
         z = np.concatenate([space.to_z(start)[:, None], z], axis=1)

@@ -89,8 +89,8 @@ def resolve_boxes(tasks: Sequence[BoxTask]) -> list[Nearest]:
     The problems differ only in their bounds, so that one model call serves a step of all.
     """
 
-    def answer(wanted: Mapping[int, Vector]) -> list[Point]:
-        return points_together([(tasks[k].evaluator, z) for k, z in wanted.items()])
+    def answer(requests: Mapping[int, Vector]) -> list[Point]:
+        return points_together([(tasks[k].evaluator, z) for k, z in requests.items()])
 
     ends = run_batch([_approach(task) for task in tasks], answer)
     return [_finished(*pair) for pair in zip(tasks, ends, strict=True)]
@@ -100,7 +100,9 @@ def _finished(task: BoxTask, end: Nearest) -> Nearest:
     """Continue by SLSQP from a point that is only feasible."""
     if end.optimum is None or end.followed:
         return end
-    point = nlopt_wrapper.run(task.evaluator, end.optimum, "LD_SLSQP", most=MOST_STEPS).point
+    point = nlopt_wrapper.run(
+        task.evaluator, end.optimum, "LD_SLSQP", max_evaluations=MOST_STEPS
+    ).point
     point = kkt.polish(task.evaluator, point, iterations=8, tolerance=1e-10)
     return Nearest(point if _met(point) else end.optimum)
 
@@ -114,69 +116,75 @@ def _approach(task: BoxTask) -> Steps[Nearest]:
     if not start.valid:
         return Nearest(None)
     if task.hessian is not None and not task.hopeless:
-        found = yield from fixed_hessian_steps(
+        optimum = yield from fixed_hessian_steps(
             evaluator, start, task.hessian, task.criteria, task.above
         )
-        if found is not None:
-            return Nearest(found, followed=True)
+        if optimum is not None:
+            return Nearest(optimum, followed=True)
     return (yield from _restored(evaluator, start, 1 if task.hopeless else PATIENCE))
 
 
 def fixed_hessian_steps(
     evaluator: Evaluator,
     start: Point,
-    known: ScaledHessian,
+    scaled_hessian: ScaledHessian,
     criteria: Criteria,
-    above: float = np.inf,
+    cutoff: float = np.inf,
 ) -> Steps[Point | None]:
     """The optimum reached by steps with another problem's Hessian; None without convergence.
 
-    Steps stop early near an optimum clearly worse than `above`.
+    Steps stop early near an optimum clearly worse than `cutoff`.
     """
-    clearly = above + WORSE * abs(above) if above < np.inf else np.inf
+    clearly_worse = cutoff + WORSE * abs(cutoff) if cutoff < np.inf else np.inf
     space = evaluator.space
-    hessian = known.seen_by(evaluator, start.x)
+    hessian = scaled_hessian.seen_by(evaluator, start.x)
     if not (np.diag(hessian) > 0).all():  # free here, but fixed in the other problem
         return None
-    free = np.zeros(len(evaluator.problem.equality_names))
-    last, point, least = np.inf, start, np.inf
+    no_equalities = np.zeros(len(evaluator.problem.equality_names))
+    previous_length, point, reference = np.inf, start, np.inf
     for iteration in range(STEPS):
-        stuck = iteration > PATIENCE and point.violation > max(0.98 * least, FEASIBLE)
+        stuck = iteration > PATIENCE and point.violation > max(0.98 * reference, FEASIBLE)
         if not point.valid or stuck:
             return None
         if iteration % PATIENCE == 0:
-            least = point.violation
-        if last <= criteria.step and point.violation <= criteria.violation:
+            reference = point.violation
+        if previous_length <= criteria.step and point.violation <= criteria.violation:
             return point if kkt.check(evaluator, point).residual <= criteria.residual else None
-        if last <= NEAR.step and point.violation <= NEAR.violation and point.objective > clearly:
+        if (
+            previous_length <= NEAR.step
+            and point.violation <= NEAR.violation
+            and point.objective > clearly_worse
+        ):
             return point
-        step, _ = kkt.quadratic_step(evaluator, point, known.scale, hessian, free)
+        step, _ = kkt.quadratic_step(evaluator, point, scaled_hessian.scale, hessian, no_equalities)
         longest = float(np.abs(step).max(initial=0.0))
-        if not np.isfinite(longest) or longest > 4 * max(last, 1e-3):
+        if not np.isfinite(longest) or longest > 4 * max(previous_length, 1e-3):
             return None
-        last = longest
+        previous_length = longest
         share = min(1.0, kkt.RADIUS / max(longest, 1e-300))
         point = yield np.clip(point.z + share * step, space.lower, space.upper)
     return None
 
 
 def stepped(
-    evaluator: Evaluator, start: Point, known: ScaledHessian, criteria: Criteria
+    evaluator: Evaluator, start: Point, scaled_hessian: ScaledHessian, criteria: Criteria
 ) -> Point | None:
     """`fixed_hessian_steps` of a single problem."""
-    solver = fixed_hessian_steps(evaluator, start, known, criteria)
-    (found,) = run_batch([solver], lambda wanted: [evaluator.point(z) for z in wanted.values()])
-    return found
+    solver = fixed_hessian_steps(evaluator, start, scaled_hessian, criteria)
+    (optimum,) = run_batch(
+        [solver], lambda requests: [evaluator.point(z) for z in requests.values()]
+    )
+    return optimum
 
 
 def _restored(evaluator: Evaluator, start: Point, patience: int) -> Steps[Nearest]:
     """A feasible point near another; else None and the least infeasible point."""
     best = start
     if not evaluator.problem.equality_names:
-        feasible, least = yield from restoring_steps(evaluator, start, patience)
+        feasible, least_infeasible = yield from restoring_steps(evaluator, start, patience)
         if feasible is not None:
             return Nearest(feasible)
-        best = least or start
+        best = least_infeasible or start
     doubtful = best.violation <= DOUBTFUL or bool(evaluator.problem.equality_names)
     return Nearest(repairs.feasible_point(evaluator, best) if doubtful else None, best)
 

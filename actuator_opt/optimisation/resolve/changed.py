@@ -55,15 +55,15 @@ class ChangedProblems:
 
         Uses one complex evaluation. Raises `LimitReached` at the evaluator's limits.
         """
-        evaluator, own = self.evaluator, self.parameters
+        evaluator, parameters = self.evaluator, self.parameters
         evaluator.check_limits()
-        own = own if numbers is None else own[:, list(numbers)]
+        parameters = parameters if numbers is None else parameters[:, list(numbers)]
         space, (nf, count) = evaluator.space, z.shape
         x = space.to_x(z)
         batch = np.repeat(x.astype(complex), nf, axis=1)
         columns = np.arange(count * nf).reshape(count, nf)
         batch[space.free[None, :], columns] += 1j * STEP * space.slope(x).T
-        problem = self.parametric.with_columns(np.repeat(own, nf, axis=1))
+        problem = self.parametric.with_columns(np.repeat(parameters, nf, axis=1))
         rows = problem.rows(batch).reshape(-1, count, nf)
         values, slopes = rows.real[:, :, 0], np.asarray(rows.imag / STEP, dtype=float)
         values = Evaluator.screen(values)
@@ -77,8 +77,8 @@ class ChangedProblems:
     def run(self, solvers: Sequence[Steps[Result]]) -> list[Result]:
         """The result of a solver for each problem."""
 
-        def answer(wanted: Mapping[int, Vector]) -> list[Point]:
-            return self.points(np.stack(list(wanted.values()), axis=1), list(wanted))
+        def answer(requests: Mapping[int, Vector]) -> list[Point]:
+            return self.points(np.stack(list(requests.values()), axis=1), list(requests))
 
         return run_batch(solvers, answer)
 
@@ -89,12 +89,12 @@ class ChangedProblems:
         )
 
     def descend(
-        self, descents: Sequence[Descent], starts: Vector, most: int = LONGEST
+        self, descents: Sequence[Descent], starts: Vector, max_evaluations: int = LONGEST
     ) -> list[Point | None]:
         """The optimum of each problem by `trusted_steps` from starts (nf, K)."""
         return self.run(
             [
-                trusted_steps(self.evaluator, *pair, most)
+                trusted_steps(self.evaluator, *pair, max_evaluations)
                 for pair in zip(descents, starts.T, strict=True)
             ]
         )
@@ -102,8 +102,8 @@ class ChangedProblems:
     def restore(self, start: Vector) -> list[Vector | None]:
         """A feasible point (nf,) of each problem near one start (nf,), or None."""
         count = self.parameters.shape[1]
-        found = self.run([restoring_steps(self.evaluator, start) for _ in range(count)])
-        return [None if one.feasible is None else one.feasible.z for one in found]
+        results = self.run([restoring_steps(self.evaluator, start) for _ in range(count)])
+        return [None if result.feasible is None else result.feasible.z for result in results]
 
     def margins_at(self, points: Sequence[Point]) -> Vector:
         """Rows (rows, points, K) of points under each problem."""
@@ -127,19 +127,21 @@ class ChangedProblems:
         evaluator, point = self.evaluator, valley.point
         if (starts == point.z[:, None]).all():  # the unchanged optimum is evaluated once
             points = self.points(starts)
-            least = [p.objective if p.violation <= FEASIBLE else np.inf for p in points]
-            begun: Sequence[Point | Vector] = points
+            unmoved_objectives = [
+                p.objective if p.violation <= FEASIBLE else np.inf for p in points
+            ]
+            first_points: Sequence[Point | Vector] = points
         else:
-            begun = list(starts.T)
+            first_points = list(starts.T)
             margins = self.margins_at([point])[:, 0]
-            met = evaluator.violations(margins, "worst") <= FEASIBLE
-            least = np.where(met, margins[0], np.inf).tolist()
-        optima = self.run([full_steps(evaluator, valley.full(), start) for start in begun])
+            feasible = evaluator.violations(margins, "worst") <= FEASIBLE
+            unmoved_objectives = np.where(feasible, margins[0], np.inf).tolist()
+        optima = self.run([full_steps(evaluator, valley.full(), start) for start in first_points])
         return [
             None  # another valley, then
             if optimum is not None and unmoved < optimum.objective - 1e-9 * abs(optimum.objective)
             else optimum
-            for optimum, unmoved in zip(optima, least, strict=True)
+            for optimum, unmoved in zip(optima, unmoved_objectives, strict=True)
         ]
 
     def descend_from(

@@ -83,22 +83,26 @@ def resolve(solved: SolvedProblem, tasks: Sequence[ResolveTask]) -> list[Point |
     If no optimum is reached, the best feasible point.
     """
     optima: list[Point | None] = [None] * len(tasks)
-    inside: list[Vector | None] = [None] * len(tasks)
-    alone = list(range(len(tasks)))
-    together = [k for k, task in enumerate(tasks) if task.parameters is not None]
-    if together and applicable(solved.parametric, solved.evaluator):
-        starts = np.stack([tasks[k].guess for k in together], axis=1)
-        columns = [p for k in together if (p := tasks[k].parameters) is not None]
+    feasible_z: list[Vector | None] = [None] * len(tasks)
+    single = list(range(len(tasks)))
+    batched = [k for k, task in enumerate(tasks) if task.parameters is not None]
+    if batched and applicable(solved.parametric, solved.evaluator):
+        starts = np.stack([tasks[k].guess for k in batched], axis=1)
+        columns = [p for k in batched if (p := tasks[k].parameters) is not None]
         changed = ChangedProblems(solved.parametric, solved.evaluator, np.stack(columns, axis=1))
-        found = resolve_batch(changed, solved.valleys, starts)
-        for k, optimum, feasible in zip(together, *found, strict=True):
-            optima[k], inside[k] = optimum, feasible
-        lost = [k for k in together if optima[k] is None and inside[k] is None]
-        alone = [k for k in alone if optima[k] is None and k not in lost]
-    for k in alone:
+        results = resolve_batch(changed, solved.valleys, starts)
+        for k, optimum, feasible in zip(batched, *results, strict=True):
+            optima[k], feasible_z[k] = optimum, feasible
+        unreached = [k for k in batched if optima[k] is None and feasible_z[k] is None]
+        single = [k for k in single if optima[k] is None and k not in unreached]
+    for k in single:
         task = tasks[k]
         optima[k] = search_near(
-            task.problem, solved.evaluator, task.guess, solved.valleys[0].point, inside=inside[k]
+            task.problem,
+            solved.evaluator,
+            task.guess,
+            solved.valleys[0].point,
+            feasible_z=feasible_z[k],
         )
     return optima
 
@@ -117,20 +121,20 @@ def resolve_batch(
     first, space = valleys[0], changed.evaluator.space
     point = first.point
     optima = changed.near_optimum(first, starts)
-    left = [i for i, one in enumerate(optima) if one is None]
-    restored = changed.chosen(left).restore(point.z)
+    missing = [i for i, optimum in enumerate(optima) if optimum is None]
+    restored = changed.chosen(missing).restore(point.z)
     ends = _Ends(changed, optima, [None] * len(optima))
-    ends.descend(first, dict(zip(left, restored, strict=True)))
+    ends.descend(first, dict(zip(missing, restored, strict=True)))
     for valley in valleys[1:]:
-        there = valley.point.z
-        begin = np.clip(there + BEYOND * (there - point.z), space.lower, space.upper)
-        ends.descend(valley, dict(enumerate(changed.restore(begin))))
+        z = valley.point.z
+        start = np.clip(z + BEYOND * (z - point.z), space.lower, space.upper)
+        ends.descend(valley, dict(enumerate(changed.restore(start))))
     single = len(optima) == 1 and len(valleys) == 1  # nothing to exchange
     for _ in range(0 if single else ROUNDS):
-        better = ends.elsewhere([valley.point for valley in valleys])
-        if not better:
+        improved = ends.elsewhere([valley.point for valley in valleys])
+        if not improved:
             break
-        ends.descend(first, better)
+        ends.descend(first, improved)
     return ends.settled()
 
 
@@ -145,41 +149,41 @@ class _Ends:
 
     def descend(self, valley: Valley, starts: Mapping[int, Vector | None]) -> None:
         """Descend from a start of each of these problems, and keep improvements."""
-        begun = {i: z for i, z in starts.items() if z is not None}
-        chosen = list(begun)
-        if not chosen:
+        feasible_starts = {i: z for i, z in starts.items() if z is not None}
+        numbers = list(feasible_starts)
+        if not numbers:
             return
-        self.feasible = begun | self.feasible
-        z = np.stack(list(begun.values()), axis=1)
-        reached, stopped = self.changed.chosen(chosen).descend_from(valley, z)
-        for i, optimum, stop in zip(chosen, reached, stopped, strict=True):
+        self.feasible = feasible_starts | self.feasible
+        z = np.stack(list(feasible_starts.values()), axis=1)
+        optima, stopped = self.changed.chosen(numbers).descend_from(valley, z)
+        for i, optimum, stop in zip(numbers, optima, stopped, strict=True):
             self.optima[i] = _better(self.optima[i], optimum)
             self.known[i] = _better(self.known[i], stop)
 
     def elsewhere(self, valleys: Sequence[Point]) -> dict[int, Vector]:
         """For each problem the best design of the others, if better than its own."""
-        points = [*valleys, *(one for one in self.optima if one is not None)]
+        points = [*valleys, *(optimum for optimum in self.optima if optimum is not None)]
         rows = self.changed.margins_at(points)
         missed = self.changed.evaluator.violations(rows.reshape(len(rows), -1), "worst")
         missed = missed.reshape(rows.shape[1:])
         objectives = np.where(missed <= steps.FEASIBLE, rows[0], np.inf)
-        best = np.argmin(objectives, axis=0)
+        best_points = np.argmin(objectives, axis=0)
         better = {}
-        for i, one in enumerate(self.optima):
-            least = float(objectives[best[i], i])
-            if least < _beaten(one):
-                better[i] = points[int(best[i])].z
+        for i, optimum in enumerate(self.optima):
+            objective = float(objectives[best_points[i], i])
+            if objective < _beaten(optimum):
+                better[i] = points[int(best_points[i])].z
         return better
 
     def settled(self) -> tuple[list[Point | None], list[Vector | None]]:
         """The optima, None where a better design is known; and those designs."""
-        inside: list[Vector | None] = [None] * len(self.optima)
-        for i, at in enumerate(self.known):
-            if at is not None and at.objective < _beaten(self.optima[i]):
-                self.optima[i], inside[i] = None, at.z
+        feasible_z: list[Vector | None] = [None] * len(self.optima)
+        for i, point in enumerate(self.known):
+            if point is not None and point.objective < _beaten(self.optima[i]):
+                self.optima[i], feasible_z[i] = None, point.z
             elif self.optima[i] is None:
-                inside[i] = self.feasible.get(i)
-        return self.optima, inside
+                feasible_z[i] = self.feasible.get(i)
+        return self.optima, feasible_z
 
 
 def _beaten(point: Point | None) -> float:
@@ -195,14 +199,14 @@ def _better(point: Point | None, other: Point | None) -> Point | None:
 
 def other_optima(evaluator: Evaluator, solution: Solution) -> list[Point]:
     """Local optima of the search other than the best."""
-    good = [
-        one.x
-        for one in solution.optima
-        if one.violation <= FEASIBLE
-        and one.residual <= RESIDUAL
-        and not np.array_equal(one.x, solution.x)
+    points = [
+        optimum.x
+        for optimum in solution.optima
+        if optimum.violation <= FEASIBLE
+        and optimum.residual <= RESIDUAL
+        and not np.array_equal(optimum.x, solution.x)
     ]
-    return [evaluator.point(evaluator.space.to_z(x)) for x in good]
+    return [evaluator.point(evaluator.space.to_z(x)) for x in points]
 
 
 def point_of(evaluator: Evaluator, solution: Solution) -> Point:
@@ -217,7 +221,7 @@ def search_near(
     guess: Vector,
     point: Point,
     *,
-    inside: Vector | None = None,
+    feasible_z: Vector | None = None,
 ) -> Point | None:
     """The best point of a slightly changed problem, solved alone; None if infeasible.
 
@@ -228,39 +232,39 @@ def search_near(
     problem : the changed problem
     evaluator, point : of the unchanged problem, and its optimum
     guess : predicted optimum (nf,)
-    inside : coordinates of a known feasible point; if missing, and none lies near the unchanged
+    feasible_z : coordinates of a known feasible point; if missing, and none lies near the unchanged
         optimum, the problem counts as infeasible
     """
-    near = Evaluator(problem)
-    if near.space.size != len(guess):  # the changed bound fixes a variable
-        guess = near.space.to_z(near.space.to_x(near.space.lower[:, None])[:, 0])
-    near.complex_works = evaluator.complex_works
-    near.difference_rows = evaluator.difference_rows
-    here = near.point(near.space.to_z(np.clip(point.x, problem.lower, problem.upper)))
-    start = near.point(np.clip(guess, near.space.lower, near.space.upper))
-    tried = [p for p in (start, here) if p.valid]
-    if inside is None:
-        for one in tried:
-            found = polish(near, one, iterations=8, tolerance=1e-10)
-            uphill = _met(here) and here.objective < found.objective
-            if _optimal(near, found) and not uphill:
-                return found
-        restored = repairs.feasible_point(near, tried[0]) if tried else None
+    changed = Evaluator(problem)
+    if changed.space.size != len(guess):  # the changed bound fixes a variable
+        guess = changed.space.to_z(changed.space.to_x(changed.space.lower[:, None])[:, 0])
+    changed.complex_works = evaluator.complex_works
+    changed.difference_rows = evaluator.difference_rows
+    unmoved = changed.point(changed.space.to_z(np.clip(point.x, problem.lower, problem.upper)))
+    start = changed.point(np.clip(guess, changed.space.lower, changed.space.upper))
+    starts = [p for p in (start, unmoved) if p.valid]
+    if feasible_z is None:
+        for trial in starts:
+            polished = polish(changed, trial, iterations=8, tolerance=1e-10)
+            uphill = _met(unmoved) and unmoved.objective < polished.objective
+            if _optimal(changed, polished) and not uphill:
+                return polished
+        restored = repairs.feasible_point(changed, starts[0]) if starts else None
         if restored is None:
             return None
-        inside = restored.z
-    first = near.point(inside)
-    found = polish(near, first, iterations=8, tolerance=1e-10)
-    if _optimal(near, found) and found.objective <= first.objective:
-        return found
-    more = [p.x for p in (first, *tried)]
+        feasible_z = restored.z
+    feasible = changed.point(feasible_z)
+    polished = polish(changed, feasible, iterations=8, tolerance=1e-10)
+    if _optimal(changed, polished) and polished.objective <= feasible.objective:
+        return polished
+    further = [p.x for p in (feasible, *starts)]
     for samples in (0, SAMPLES):
-        best = solve(problem, starts=len(more), samples=samples, more_starts=more)
-        if best.feasible and best.kkt is not None and best.kkt.residual <= RESIDUAL:
-            return point_of(near, best)
-    if best.feasible and best.objective < first.objective:
-        return point_of(near, best)
-    return first
+        solution = solve(problem, starts=len(further), samples=samples, more_starts=further)
+        if solution.feasible and solution.kkt is not None and solution.kkt.residual <= RESIDUAL:
+            return point_of(changed, solution)
+    if solution.feasible and solution.objective < feasible.objective:
+        return point_of(changed, solution)
+    return feasible
 
 
 def _met(point: Point) -> bool:

@@ -100,70 +100,70 @@ class Descents:
         for optimum in self.optima:
             known = optimum.point
             size = max(abs(known.objective), 1e-3 * self.objective_scale, 1e-300)
-            near = abs(point.objective - known.objective) <= 1e-5 * size
-            if optimum.good and near and np.abs(point.z - known.z).max(initial=0.0) <= 1e-3:
+            similar = abs(point.objective - known.objective) <= 1e-5 * size
+            if optimum.good and similar and np.abs(point.z - known.z).max(initial=0.0) <= 1e-3:
                 return optimum
         return None
 
     def descend(
-        self, start: Point, algorithm: str, *, linear: bool, most: int | None = None
+        self, start: Point, algorithm: str, *, linear: bool, max_evaluations: int | None = None
     ) -> bool:
         """Run one local search and polish the result; True if it ended at an optimum."""
-        before = self.evaluator.evaluations
-        good = [o for o in self.optima if o.good]
+        evaluations_before = self.evaluator.evaluations
+        known_optima = [o for o in self.optima if o.good]
         run = nlopt_wrapper.run(
             self.evaluator,
             start,
             algorithm,
             linear=linear,
-            most=most,
+            max_evaluations=max_evaluations,
             seed=self.seed,
-            known=[o.point for o in good],
+            optima=[o.point for o in known_optima],
         )
         point, name = run.point, run.algorithm + (" (linear variables)" if linear else "")
-        found = self.same(point) if point.valid and point.violation <= FEASIBLE else None
+        optimum = self.same(point) if point.valid and point.violation <= FEASIBLE else None
         if run.arrived is not None:
-            found = good[run.arrived]
-        if found is not None:
-            found.hits += 1
-            point = found.point
+            optimum = known_optima[run.arrived]
+        if optimum is not None:
+            optimum.hits += 1
+            point = optimum.point
         else:
-            found = self.finish(point, name)
-        used = self.evaluator.evaluations - before
+            optimum = self.finish(point, name)
+        count = self.evaluator.evaluations - evaluations_before
         self.records.append(
-            StartRecord(start.x, found.point.objective, found.point.violation, name, used)
+            StartRecord(start.x, optimum.point.objective, optimum.point.violation, name, count)
         )
-        return found.good
+        return optimum.good
 
     def restore(self, point: Point, *, start: Point) -> None:
         """Minimise the worst violation, and descend from there if it vanishes."""
-        before = self.evaluator.evaluations
-        least = min((one.violation for one in self.least), default=np.inf)
-        found = repairs.least_missed(self.evaluator, point, least / 2)
-        if found.violation <= FEASIBLE:
-            self.descend(found, "LD_SLSQP", linear=False, most=LOCAL_EVALUATIONS)
+        evaluations_before = self.evaluator.evaluations
+        smallest = min((p.violation for p in self.least), default=np.inf)
+        end = repairs.least_missed(self.evaluator, point, smallest / 2)
+        if end.violation <= FEASIBLE:
+            self.descend(end, "LD_SLSQP", linear=False, max_evaluations=LOCAL_EVALUATIONS)
             return
-        if found.violation < least * (1 - NEARER):
-            self.optima.append(SearchResult(found, self.residual(found), RESTORATION))
-        self.least.append(found)
-        if found.violation > least * (1 + ELSEWHERE):
-            self.descend(found, "LD_SLSQP", linear=False, most=LOCAL_EVALUATIONS)
+        if end.violation < smallest * (1 - NEARER):
+            self.optima.append(SearchResult(end, self.residual(end), RESTORATION))
+        self.least.append(end)
+        if end.violation > smallest * (1 + ELSEWHERE):
+            self.descend(end, "LD_SLSQP", linear=False, max_evaluations=LOCAL_EVALUATIONS)
         elif point is start:
-            used = self.evaluator.evaluations - before
+            count = self.evaluator.evaluations - evaluations_before
             self.records.append(
-                StartRecord(start.x, found.objective, found.violation, RESTORATION, used)
+                StartRecord(start.x, end.objective, end.violation, RESTORATION, count)
             )
 
     def finish(self, point: Point, algorithm: str) -> SearchResult:
         """Polish a point and add it to the optima."""
-        better = polish(self.evaluator, point)
-        if better is not point:
+        polished = polish(self.evaluator, point)
+        if polished is not point:
             algorithm = f"{algorithm}, {FINISH}"
-        known = self.same(better) if better.valid else None
+        known = self.same(polished) if polished.valid else None
         if known is not None:
             known.hits += 1
             return known
-        optimum = SearchResult(better, self.residual(better), algorithm)
+        optimum = SearchResult(polished, self.residual(polished), algorithm)
         self.optima.append(optimum)
         return optimum
 
@@ -180,13 +180,15 @@ class Descents:
             missed = point.violation if point.violation > FEASIBLE else 0.0
             return (missed, point.objective)
 
-        found = [*self.optima, *others]
-        first = min(found, key=rank, default=None)
-        if first is None or first.good:
-            return first
-        room = 1e-7 * max(abs(first.point.objective), 1e-300)
-        proven = [o for o in found if o.good and o.point.objective <= first.point.objective + room]
-        return min(proven, key=rank, default=first)
+        candidates = [*self.optima, *others]
+        best = min(candidates, key=rank, default=None)
+        if best is None or best.good:
+            return best
+        room = 1e-7 * max(abs(best.point.objective), 1e-300)
+        proven = [
+            o for o in candidates if o.good and o.point.objective <= best.point.objective + room
+        ]
+        return min(proven, key=rank, default=best)
 
 
 ROUNDS = 60
@@ -208,7 +210,9 @@ Rows = Callable[[npt.NDArray[np.complex128], npt.NDArray[np.intp]], npt.NDArray[
 """Rows (rows, k) of points (n, k), each of the task with this index (k,)."""
 
 
-def precompute(evaluator: Evaluator, starts: Sequence[Point], *, seed: int, most: int) -> None:
+def precompute(
+    evaluator: Evaluator, starts: Sequence[Point], *, seed: int, max_evaluations: int
+) -> None:
     """Precompute the points SLSQP visits from the given starts.
 
     Stops early if the first run is infeasible, as the others are then skipped, and at the
@@ -218,13 +222,18 @@ def precompute(evaluator: Evaluator, starts: Sequence[Point], *, seed: int, most
     ----------
     evaluator : of the problem; without exact gradients, or with a limit of points, nothing is done
     starts : evaluated points
-    seed, most : of the runs
+    seed, max_evaluations : of the runs
     """
     if len(starts) < 2 or not evaluator.exact or evaluator.max_evaluations is not None:
         return
     evaluator.take_slopes(starts)
     task = DescentTask(evaluator, list(starts))
-    run_together([task], lambda batch, _: evaluator.problem.rows(batch), seed=seed, most=most)
+    run_together(
+        [task],
+        lambda batch, _: evaluator.problem.rows(batch),
+        seed=seed,
+        max_evaluations=max_evaluations,
+    )
 
 
 def run_together(
@@ -232,7 +241,7 @@ def run_together(
     rows: Rows,
     *,
     seed: int,
-    most: int,
+    max_evaluations: int,
     tolerance: float = 1e-9,
     rounds: int = ROUNDS,
 ) -> list[list[Point]]:
@@ -245,27 +254,27 @@ def run_together(
     ----------
     tasks : with exact gradients
     rows : of all tasks in one call
-    seed, most, tolerance : of the runs
+    seed, max_evaluations, tolerance : of the runs
     rounds : maximum points of a run
     """
     runs: list[SlsqpRun] = []
     for number, task in enumerate(tasks):
-        known: list[Point] = []
+        optima: list[Point] = []
         runs += [
-            SlsqpRun(number, start, task.evaluator, known, seed, most, tolerance)
+            SlsqpRun(number, start, task.evaluator, optima, seed, max_evaluations, tolerance)
             for start in task.starts
         ]
     firsts = {run.task: run for run in reversed(runs)}
 
-    def answer(wanted: Mapping[int, Vector]) -> list[Point]:
-        parts = [runs[k].evaluator.columns(z[:, None]) for k, z in wanted.items()]
+    def answer(requests: Mapping[int, Vector]) -> list[Point]:
+        parts = [runs[k].evaluator.columns(z[:, None]) for k, z in requests.items()]
         sizes = [part.shape[1] for part in parts]
-        owners = np.repeat([runs[k].task for k in wanted], sizes).astype(np.intp)
+        owners = np.repeat([runs[k].task for k in requests], sizes).astype(np.intp)
         values = rows(np.concatenate(parts, axis=1), owners)
         split = np.split(values, np.cumsum(sizes)[:-1], axis=1)
         return [
             runs[k].entered(*pair)
-            for k, pair in zip(wanted, zip(wanted.values(), split, strict=True), strict=True)
+            for k, pair in zip(requests, zip(requests.values(), split, strict=True), strict=True)
         ]
 
     solvers = [run.steps() for run in runs]
@@ -277,18 +286,18 @@ def run_together(
                 batch.drop(k)
             if not batch.wanted or tasks[0].evaluator.late:
                 break
-            ended = set(batch.results)
+            finished = set(batch.results)
             batch.step()
-            _share(runs, batch, ended)
+            _share(runs, batch, finished)
     finally:
         for solver in solvers:
             solver.close()
     return [[run.best for run in runs if run.task == k] for k in range(len(tasks))]
 
 
-def _share(runs: Sequence[SlsqpRun], batch: Batch[None], before: set[int]) -> None:
+def _share(runs: Sequence[SlsqpRun], batch: Batch[None], finished: set[int]) -> None:
     """Share new optima with the other runs of their task, in order."""
-    for number in sorted(set(batch.results) - before):
+    for number in sorted(set(batch.results) - finished):
         if runs[number].new:
             runs[number].known.append(runs[number].best)
 
@@ -344,8 +353,8 @@ class SlsqpRun:
     def _go(self) -> None:
         try:
             run = nlopt_wrapper.run(
-                self._own, self.start, "LD_SLSQP", most=self.most, seed=self.seed,
-                known=self.known, tolerance=self.tolerance,
+                self._own, self.start, "LD_SLSQP", max_evaluations=self.most, seed=self.seed,
+                optima=self.known, tolerance=self.tolerance,
             )  # fmt: skip
             self.best = run.point
             self.hopeless = run.point.violation > FEASIBLE
@@ -372,9 +381,9 @@ class _Asking(Evaluator):
 
     def point(self, z: Vector) -> Point:
         """The evaluated point at z (nf,), once the other runs have requested theirs."""
-        known = self._cache.get(z.tobytes())
-        if known is not None:
-            return known
+        cached = self._cache.get(z.tobytes())
+        if cached is not None:
+            return cached
         self._asked.put(z)
         point = self._answers.get()
         if point is None:
@@ -410,17 +419,22 @@ def descents_from(
 
     if not any(starts):
         return [[] for _ in evaluators]
-    places = [(k, z) for k, some in enumerate(starts) for z in some]
-    parts = [evaluators[k].columns(z[:, None]) for k, z in places]
-    owners = np.repeat([k for k, _ in places], parts[0].shape[1]).astype(np.intp)
+    run_starts = [(k, z) for k, points in enumerate(starts) for z in points]
+    parts = [evaluators[k].columns(z[:, None]) for k, z in run_starts]
+    owners = np.repeat([k for k, _ in run_starts], parts[0].shape[1]).astype(np.intp)
     values = np.split(rows(np.concatenate(parts, axis=1), owners), len(parts), axis=1)
     tasks = [DescentTask(evaluator, []) for evaluator in evaluators]
-    for (k, z), part in zip(places, values, strict=True):
+    for (k, z), part in zip(run_starts, values, strict=True):
         point = evaluators[k].entered(z, part)
         if point.valid:
             tasks[k].starts.append(point)
     return run_together(
-        tasks, rows, seed=seed, most=LOCAL_EVALUATIONS, tolerance=tolerance, rounds=rounds
+        tasks,
+        rows,
+        seed=seed,
+        max_evaluations=LOCAL_EVALUATIONS,
+        tolerance=tolerance,
+        rounds=rounds,
     )
 
 
@@ -428,39 +442,39 @@ def converged_from(
     parametric: ParametricProblem,
     evaluators: Sequence[Evaluator],
     parameters: Vector,
-    begun: Sequence[Sequence[Point]],
+    starts: Sequence[Sequence[Point]],
 ) -> list[list[Point | None]]:
     """The optimum that steps with the Hessian reach from each point, or None.
 
     Parameters
     ----------
     parametric, evaluators, parameters : as of `descents_from`
-    begun : points of each problem with their gradients
+    starts : points of each problem with their gradients
     """
     descents: list[Descent] = []
-    for evaluator, points in zip(evaluators, begun, strict=True):
-        first = [_descent(evaluator, point, np.eye(evaluator.space.size)) for point in points]
-        for descent, point in zip(first, points, strict=True):
+    for evaluator, points in zip(evaluators, starts, strict=True):
+        initial = [_descent(evaluator, point, np.eye(evaluator.space.size)) for point in points]
+        for descent, point in zip(initial, points, strict=True):
             descent.go_on(evaluator, point)
-        hessians = free_hessians(evaluator, first)
+        hessians = free_hessians(evaluator, initial)
         descents += [_descent(evaluator, *pair) for pair in zip(points, hessians, strict=True)]
     if not descents:
-        return [[] for _ in begun]
-    owners = np.repeat(np.arange(len(begun)), [len(points) for points in begun])
+        return [[] for _ in starts]
+    owners = np.repeat(np.arange(len(starts)), [len(points) for points in starts])
     changed = ChangedProblems(parametric, evaluators[0], parameters[:, owners])
-    z = np.stack([point.z for points in begun for point in points], axis=1)
+    z = np.stack([point.z for points in starts for point in points], axis=1)
     optima = changed.descend(descents, z, FIRST)
-    done = {owner for owner, point in zip(owners, optima, strict=True) if point is not None}
-    left = [
-        k for k, owner in enumerate(owners) if owner not in done and descents[k].point is not None
+    solved = {owner for owner, point in zip(owners, optima, strict=True) if point is not None}
+    unsolved = [
+        k for k, owner in enumerate(owners) if owner not in solved and descents[k].point is not None
     ]
-    if left:
-        z = np.stack([descents[k].known.z + descents[k].step for k in left], axis=1)
-        more = changed.chosen(left).descend([descents[k] for k in left], z)
-        for k, reached in zip(left, more, strict=True):
-            optima[k] = reached
-    every = iter(optima)
-    return [[next(every) for _ in points] for points in begun]
+    if unsolved:
+        z = np.stack([descents[k].known.z + descents[k].step for k in unsolved], axis=1)
+        continued = changed.chosen(unsolved).descend([descents[k] for k in unsolved], z)
+        for k, optimum in zip(unsolved, continued, strict=True):
+            optima[k] = optimum
+    iterator = iter(optima)
+    return [[next(iterator) for _ in points] for points in starts]
 
 
 def _descent(evaluator: Evaluator, point: Point, hessian: Vector) -> Descent:
@@ -471,15 +485,15 @@ def _descent(evaluator: Evaluator, point: Point, hessian: Vector) -> Descent:
 
 def distinct_ends(points: Sequence[Point]) -> list[Point]:
     """Distinct ends of runs, the best first."""
-    kept: list[Point] = []
+    distinct: list[Point] = []
     for point in sorted(points, key=lambda p: (p.violation > ARRIVAL[2], p.objective)):
-        if not any(_near(point, known) for known in kept):
-            kept.append(point)
-    return kept
+        if not any(_near(point, known) for known in distinct):
+            distinct.append(point)
+    return distinct
 
 
 def _near(point: Point, known: Point) -> bool:
     """Whether a run counts as arrived at a known point."""
-    reach, share, _ = ARRIVAL
-    alike = abs(point.objective - known.objective) <= share * abs(known.objective)
-    return alike and bool(np.abs(point.z - known.z).max(initial=0.0) <= reach)
+    distance, share, _ = ARRIVAL
+    similar = abs(point.objective - known.objective) <= share * abs(known.objective)
+    return similar and bool(np.abs(point.z - known.z).max(initial=0.0) <= distance)

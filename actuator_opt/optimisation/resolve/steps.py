@@ -60,8 +60,8 @@ class Batch(Generic[Result]):
 
     def step(self) -> None:
         """Answer every solver that is still running."""
-        wanted, self.wanted = self.wanted, {}
-        for number, point in zip(wanted, self._answer(wanted), strict=True):
+        requests, self.wanted = self.wanted, {}
+        for number, point in zip(requests, self._answer(requests), strict=True):
             self._advance(number, point)
 
     def drop(self, number: int) -> None:
@@ -184,8 +184,8 @@ class Descent:
         """
         space, point, unit = evaluator.space, self.known, np.eye(len(self.hessian))
         jacobian = evaluator.jacobian(point)
-        down = np.minimum(point.z - space.lower, self.radius)
-        up = np.minimum(space.upper - point.z, self.radius)
+        room_below = np.minimum(point.z - space.lower, self.radius)
+        room_above = np.minimum(space.upper - point.z, self.radius)
         constraints = slice(1, 1 + self.rows)
         margins, self.corrected = point.rows[constraints], trial is not None
         if trial is not None:
@@ -194,7 +194,7 @@ class Descent:
             self.hessian,
             jacobian[0] / self.scale,
             np.concatenate([jacobian[constraints], unit, -unit]),
-            np.concatenate([margins, down, up]),
+            np.concatenate([margins, room_below, room_above]),
             self.prices,
         )
         self.multipliers = self.prices[: self.rows]
@@ -207,21 +207,21 @@ class Descent:
 
     def _learn(self, step: Vector, change: Vector) -> None:
         """Damped update that keeps the Hessian positive [NocedalWright2006] procedure 18.2."""
-        turned = self.hessian @ step
-        bent, straight = float(step @ turned), float(step @ change)
-        if bent <= 1e-20:
+        product = self.hessian @ step
+        curvature, measured = float(step @ product), float(step @ change)
+        if curvature <= 1e-20:
             return
-        if straight < 0.2 * bent:
-            share = 0.8 * bent / (bent - straight)
-            change = share * change + (1 - share) * turned
-        learnt = (
+        if measured < 0.2 * curvature:
+            share = 0.8 * curvature / (curvature - measured)
+            change = share * change + (1 - share) * product
+        update = (
             self.hessian
-            - np.outer(turned, turned) / bent
+            - np.outer(product, product) / curvature
             + np.outer(change, change) / float(step @ change)
         )
-        curvatures = np.linalg.eigvalsh(learnt)
+        curvatures = np.linalg.eigvalsh(update)
         if curvatures[0] > LEAST_CURVATURE * curvatures[-1]:  # otherwise lost in rounding
-            self.hessian = learnt
+            self.hessian = update
 
 
 def margin_price(multipliers: Vector) -> float:
@@ -283,38 +283,38 @@ def full_steps(
     """
     space = evaluator.space
     z = np.clip(start.z if isinstance(start, Point) else start, space.lower, space.upper)
-    last, least = np.inf, np.inf
+    previous_length, reference = np.inf, np.inf
     for iteration in range(ITERATIONS):
         trial = start if isinstance(start, Point) and not iteration else (yield z)
         if not trial.valid:
             return None
-        if last <= SETTLED and is_optimum(evaluator, trial):
+        if previous_length <= SETTLED and is_optimum(evaluator, trial):
             return trial
-        if iteration > PATIENCE and trial.violation > max(0.98 * least, MET):
+        if iteration > PATIENCE and trial.violation > max(0.98 * reference, MET):
             return None
         if iteration % PATIENCE == 0:
-            least = trial.violation
+            reference = trial.violation
         descent.go_on(evaluator, trial)
-        if not np.isfinite(descent.length) or descent.length > 4 * max(last, 1e-3):
+        if not np.isfinite(descent.length) or descent.length > 4 * max(previous_length, 1e-3):
             return None
-        last = descent.length
+        previous_length = descent.length
         z = np.clip(z + descent.step, space.lower, space.upper)
     return None
 
 
 def trusted_steps(
-    evaluator: Evaluator, descent: Descent, start: Vector, most: int = LONGEST
+    evaluator: Evaluator, descent: Descent, start: Vector, max_evaluations: int = LONGEST
 ) -> Steps[Point | None]:
     """The optimum that a descent within a trust region reaches, or None.
 
     Parameters
     ----------
     evaluator, descent, start : as of `full_steps`
-    most : evaluations
+    max_evaluations : evaluations
     """
     space = evaluator.space
     z = np.clip(start, space.lower, space.upper)
-    for _ in range(most):
+    for _ in range(max_evaluations):
         trial = yield z
         if trial.valid and descent.accepts(trial):
             if descent.length <= SETTLED and is_optimum(evaluator, trial):
@@ -352,7 +352,7 @@ def restoring_steps(
     start : coordinates (nf,), or the evaluated point
     patience : steps within which the violation must fall by 2 %
     """
-    space, least, best = evaluator.space, np.inf, None
+    space, reference, best = evaluator.space, np.inf, None
     trial = start if isinstance(start, Point) else (yield start)
     for iteration in range(RESTORATIONS):
         if not trial.valid:
@@ -361,10 +361,10 @@ def restoring_steps(
             return RestorationResult(trial, trial)
         if best is None or trial.violation < best.violation:
             best = trial
-        if iteration > patience and trial.violation > 0.98 * least:
+        if iteration > patience and trial.violation > 0.98 * reference:
             break
         if iteration % patience == 0:
-            least = trial.violation
+            reference = trial.violation
         rows = kkt.active_set(evaluator, trial, width=1.0)
         step, _ = kkt.quadratic_programme(
             np.eye(space.size), np.zeros(space.size), rows.gradients, rows.margins - 1e-7
@@ -421,21 +421,25 @@ def free_hessians(evaluator: Evaluator, descents: Sequence[Descent]) -> list[Vec
     if not any(z.shape[1] for z in free):
         return [np.eye(evaluator.space.size) for _ in descents]
     moves = np.concatenate([HESSIAN_STEP * z for z in free], axis=1)
-    at = np.repeat(
+    points = np.repeat(
         np.stack([descent.known.z for descent in descents], axis=1),
         [z.shape[1] for z in free],
         axis=1,
     )
-    slopes = evaluator.jacobians(np.concatenate([at + moves, at - moves], axis=1), inside=False)
-    bends = np.nan_to_num(slopes[:, : at.shape[1]] - slopes[:, at.shape[1] :]) / (2 * HESSIAN_STEP)
-    result, first = [], 0
+    slopes = evaluator.jacobians(
+        np.concatenate([points + moves, points - moves], axis=1), inside=False
+    )
+    second_derivatives = np.nan_to_num(
+        slopes[:, : points.shape[1]] - slopes[:, points.shape[1] :]
+    ) / (2 * HESSIAN_STEP)
+    result, offset = [], 0
     for descent, z in zip(descents, free, strict=True):
-        part = bends[:, first : first + z.shape[1]]
-        first += z.shape[1]
+        part = second_derivatives[:, offset : offset + z.shape[1]]
+        offset += z.shape[1]
         weights = -descent.multipliers
-        along = np.tensordot(weights, part[1 : 1 + len(weights)], axes=1).T
-        along += part[0].T / descent.scale
-        result.append(_convex(z, along, float(np.abs(weights).max(initial=0.0))))
+        products = np.tensordot(weights, part[1 : 1 + len(weights)], axes=1).T
+        products += part[0].T / descent.scale
+        result.append(_convex(z, products, float(np.abs(weights).max(initial=0.0))))
     return result
 
 
@@ -449,18 +453,22 @@ def _free(evaluator: Evaluator, descent: Descent) -> Vector:
     return kkt.null_space(rows[weight > FIRM * weight.max(initial=0.0)], size)
 
 
-def _convex(z: Vector, along: Vector, largest: float) -> Vector:
+def _convex(z: Vector, products: Vector, largest: float) -> Vector:
     """A convex matrix (nf, nf) with known products (nf, d) along orthonormal directions (nf, d)."""
     size = len(z)
     if z.shape[1] == 0:
         return np.eye(size)
-    values, vectors = np.linalg.eigh(z.T @ along + along.T @ z)
+    values, vectors = np.linalg.eigh(z.T @ products + products.T @ z)
     values = np.maximum(np.abs(values) / 2, LEAST * max(largest, 1e-3))
     inner = (vectors * values) @ vectors.T
-    across = along - z @ (z.T @ along)
-    rest = np.eye(size) - z @ z.T
+    across = products - z @ (z.T @ products)
+    complement = np.eye(size) - z @ z.T
     crossed = across @ np.linalg.solve(inner, across.T)
-    firm = 1.0 + float(np.linalg.norm(crossed, 2))
-    whole = np.asarray(z @ inner @ z.T + across @ z.T + z @ across.T + firm * rest)
-    bends = np.linalg.eigvalsh(whole)
-    return whole if bends[0] > FLATTEST * bends[-1] else np.asarray(z @ inner @ z.T + rest)
+    stiffness = 1.0 + float(np.linalg.norm(crossed, 2))
+    matrix = np.asarray(z @ inner @ z.T + across @ z.T + z @ across.T + stiffness * complement)
+    curvatures = np.linalg.eigvalsh(matrix)
+    return (
+        matrix
+        if curvatures[0] > FLATTEST * curvatures[-1]
+        else np.asarray(z @ inner @ z.T + complement)
+    )
