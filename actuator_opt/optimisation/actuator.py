@@ -10,7 +10,7 @@ parameters.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 
@@ -140,7 +140,7 @@ class ActuatorProblem:
     fixed: tuple[LimitRow, ...]
     """Rows that no variable changes: always met, or always missed."""
     problem: BoxProblem
-    wanted: frozenset[str] | None
+    metrics: frozenset[str] | None
     """Metrics of objective and rows; None where a custom metric may read any of them."""
     refusals: Refusals = field(default_factory=Refusals)
     """Points where custom metrics had no value."""
@@ -155,6 +155,24 @@ class ActuatorProblem:
         present = np.array([self.subject.numbers[path] for path in parameters])
         return ParametricProblem(self.problem, parameters, present, evaluate)
 
+    def fixed_numbers(self, x: Vector) -> list[str]:
+        """PATHs of the positive numbers, other than variables, that the models read at x (n,)."""
+        values = self.subject.values(dict(zip(self.paths, x[:, None], strict=True)))
+        self.subject.touch(values)
+        return [
+            path
+            for path in sorted(values.read)
+            if path not in self.paths and self.subject.numbers.get(path, 0.0) > 0
+        ]
+
+    def number_steps(self, x: Vector, paths: Sequence[str]) -> PointValues:
+        """Values at x (n,) with a relative complex step in each of the numbers at `paths`."""
+        present = np.array([self.subject.numbers[path] for path in paths])
+        varied = np.repeat(present[:, None].astype(complex), len(paths), axis=1)
+        varied += np.diag(1j * STEP * present)
+        points = np.repeat(x[:, None], len(paths), axis=1)
+        return self.evaluate(points, dict(zip(paths, varied, strict=True)))
+
     def evaluate(
         self,
         points: Array,
@@ -168,7 +186,7 @@ class ActuatorProblem:
         varied = dict(parameters or {}) | dict(zip(self.paths, points, strict=True))
         numbers = self.subject.values(varied)
         count = points.shape[1]
-        run = compute(self.subject, numbers, self.wanted)
+        run = compute(self.subject, numbers, self.metrics)
         if outputs is not None:
             outputs.append(run.computed)
         if self.refusals.names and not any(np.iscomplexobj(v) for v in varied.values()):
@@ -478,9 +496,7 @@ def _mixed(
         return np.zeros((nf, count))
     slopes = []
     if evaluator.complex_works and not evaluator.difference_rows.any():
-        x = np.repeat(point.x[:, None].astype(complex), nf, axis=1)
-        seeds = evaluator.space.slope(point.x[:, None])[:, 0]
-        x[evaluator.space.free, np.arange(nf)] += 1j * STEP * seeds
+        x = evaluator.space.complex_steps(point.x[:, None])
         for sign in (1.0, -1.0):
             columns = parametric.parameters[:, None] + sign * np.diag(steps)
             rows = _rows(parametric, np.tile(x, count), np.repeat(columns, nf, axis=1))
@@ -493,8 +509,7 @@ def _mixed(
                 parameters = parametric.parameters.copy()
                 parameters[k] += sign * 100 * steps[k]
                 changed = Evaluator(parametric.at(parameters))
-                changed.complex_works = evaluator.complex_works
-                changed.difference_rows = evaluator.difference_rows
+                changed.adopt_check(evaluator)
                 side.append(weights @ changed.jacobians(point.z[:, None])[:, 0])
             slopes.append(np.array(side))
         steps = 100 * steps

@@ -20,11 +20,11 @@ from typing import TypeAlias
 import numpy as np
 
 from ..base.numeric import Array
+from .actuator import MET
 from .evaluator import Evaluator, Point
 from .problem import BoxProblem, ParametricProblem, PointValues, Vector
 from .resolve.boxes import EXACT, ROUGH, BoxTask, Criteria, Nearest, resolve_boxes
 from .resolve.changed import ChangedProblems, applicable
-from .resolve.parallel_descents import FEASIBLE
 from .resolve.steps import ScaledHessian, hessian_at, valley_at
 
 ON = 1e-7
@@ -188,22 +188,22 @@ def search(
     remembered = memory is not None and memory.hessian is not None
     run = _Run(problem, listed, x, most, deadline, cutoff, memory or Memory())
     if remembered:
-        run.look_ahead()
+        run.precompute()
     else:
-        run.neighbours()
+        run.try_neighbours()
     root = tuple(tuple(range(len(group.rows))) for group in listed)
     boxes = _Boxes()
-    if run.evaluates(root):
+    if run.can_evaluate(root):
         run.evaluate(root)
     elif remembered:
         boxes.add(run.start.objective, root, run.x)
     else:
         run.relax([root], run.x, boxes)
     while boxes and not run.exhausted:
-        bound, box, x = boxes.take(run.best)
+        bound, box, x = boxes.pop(run.best)
         if not run.beaten(bound):
             run.relax(run.parts(box, x, bound), x, boxes)
-    return run.found(complete=all(run.beaten(bound) for bound in boxes.bounds()))
+    return run.result(complete=all(run.beaten(bound) for bound in boxes.bounds()))
 
 
 class _Boxes:
@@ -227,7 +227,7 @@ class _Boxes:
         self._entries[number] = bound, box, x
         heapq.heappush(self._lowest, (bound, number))
 
-    def take(self, best: float) -> tuple[float, Box, Vector]:
+    def pop(self, best: float) -> tuple[float, Box, Vector]:
         """The newest of the most promising boxes."""
         while self._lowest[0][1] not in self._entries:
             heapq.heappop(self._lowest)
@@ -243,7 +243,7 @@ def at(
     problem: BoxProblem, listed: Sequence[Listed], assignment: Assignment, x: Vector, memory: Memory
 ) -> float | None:
     """The objective of one assignment, re-optimised; None where it is infeasible."""
-    objective = _Run(problem, listed, x, 1, None, np.inf, memory).assigned(assignment, x)
+    objective = _Run(problem, listed, x, 1, None, np.inf, memory).reoptimised(assignment, x)
     return objective if objective < np.inf else None
 
 
@@ -259,7 +259,7 @@ class Memory:
     visited: tuple[Box, ...] = ()
     """Boxes whose continuous optimum the last search needed."""
 
-    def near(self, box: Box) -> tuple[Vector, ScaledHessian | None] | None:
+    def warm_start(self, box: Box) -> tuple[Vector, ScaledHessian | None] | None:
         """The optimum in the same box of another problem, and its Hessian."""
         end = self.ends.get(box)
         if end is None:
@@ -284,17 +284,17 @@ class _Run:
     problem: BoxProblem
     listed: Sequence[Listed]
     x: Vector
-    most: int
-    until: float | None
-    below: float
+    max_solves: int
+    deadline: float | None
+    cutoff: float
     memory: Memory
     solves: int = 0
     tried: dict[Assignment, float] = field(default_factory=dict)
     points: dict[Assignment, Vector] = field(default_factory=dict)
-    near: dict[Assignment, Vector] = field(default_factory=dict)
+    starts: dict[Assignment, Vector] = field(default_factory=dict)
     ends: list[tuple[Evaluator, Point | None]] = field(default_factory=list)
     visited: list[Box] = field(default_factory=list)
-    ahead: dict[Box, tuple[BoxTask, Nearest]] = field(default_factory=dict)
+    precomputed: dict[Box, tuple[BoxTask, Nearest]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.index = np.concatenate([group.index for group in self.listed]).astype(np.intp)
@@ -303,7 +303,7 @@ class _Run:
         self.x = start.x
         unlisted = np.setdiff1d(np.arange(len(self.x)), self.index)
         self.only_listed = bool((self.problem.lower == self.problem.upper)[unlisted].all())
-        self.least = np.inf
+        self.lowest = np.inf
         if self.memory.hessian is None and start.valid and self.reference.space.size:
             self.reference.check_gradients(start)
             self.memory.hessian = hessian_at(self.reference, start)
@@ -311,19 +311,19 @@ class _Run:
     @property
     def exhausted(self) -> bool:
         """Whether a limit is reached."""
-        late = self.until is not None and time.perf_counter() > self.until
-        return late or self.solves >= self.most
+        late = self.deadline is not None and time.perf_counter() > self.deadline
+        return late or self.solves >= self.max_solves
 
     @property
     def best(self) -> float:
         """The objective to beat."""
-        return min(self.below, self.least)
+        return min(self.cutoff, self.lowest)
 
     def note(self, assignment: Assignment, objective: float) -> None:
         """Store the value of an assignment, or a more exact one."""
-        worse = self.tried.get(assignment, np.inf) <= self.least < objective
+        worse = self.tried.get(assignment, np.inf) <= self.lowest < objective
         self.tried[assignment] = objective
-        self.least = min(self.tried.values()) if worse else min(self.least, objective)
+        self.lowest = min(self.tried.values()) if worse else min(self.lowest, objective)
 
     def beaten(self, bound: float) -> bool:
         """Whether no design above a bound can improve on the best one."""
@@ -335,21 +335,23 @@ class _Run:
         pairs = zip(self.listed, assignment, strict=True)
         return np.concatenate([group.rows[row] for group, row in pairs])
 
-    def neighbours(self) -> None:
+    def try_neighbours(self) -> None:
         """Try every rounding up and down, all at once if the problem allows."""
         sides = [group.around(self.x[list(group.index)]) for group in self.listed]
         assignments = list(itertools.islice(itertools.product(*sides), MOST_NEIGHBOURS))
-        for assignment, start in self.together(assignments):
+        for assignment, start in self.reoptimised_together(assignments):
             if start is None:
                 self.note(assignment, np.inf)
             elif not self.exhausted:
-                self.assigned(assignment, start)
-        self.confirmed()
+                self.reoptimised(assignment, start)
+        self.confirmed_best()
 
-    def together(self, assignments: list[Assignment]) -> list[tuple[Assignment, Vector | None]]:
+    def reoptimised_together(
+        self, assignments: list[Assignment]
+    ) -> list[tuple[Assignment, Vector | None]]:
         """Re-optimise assignments at once; return the rest, each with a start or None."""
         present = self.x[self.index]
-        point, evaluator = self._near(present, present, self.x)
+        point, evaluator = self._nearest_point(present, present, self.x)
         names = [self.problem.names[i] for i in self.index]
 
         def evaluate(points: Array, values: Array) -> PointValues:
@@ -366,45 +368,47 @@ class _Run:
         changed = ChangedProblems(parametric, evaluator, values)
         optima = changed.near_optimum(valley_at(evaluator, point), starts)
         unsolved = [k for k, optimum in enumerate(optima) if optimum is None]
-        restored = changed.chosen(unsolved).restore(point.z)
+        restored = changed.subset(unsolved).restore(point.z)
         for assignment, optimum in zip(assignments, optima, strict=True):
             self.solves += 1
             if optimum is not None:
                 self.note(assignment, optimum.objective)
-                self.near[assignment] = optimum.x
+                self.starts[assignment] = optimum.x
         return [
             (assignments[k], None if z is None else evaluator.space.to_x(z[:, None])[:, 0])
             for k, z in zip(unsolved, restored, strict=True)
         ]
 
-    def assigned(self, assignment: Assignment, start: Vector) -> float:
+    def reoptimised(self, assignment: Assignment, start: Vector) -> float:
         """Re-optimise the other variables of an assignment; infinite where that is infeasible."""
         if assignment not in self.points:
             values = self.values(assignment)
             box = tuple((row,) for row in assignment)
-            (optimum,) = self._descended([(box, values, values)], start, EXACT)
+            (optimum,) = self._optima([(box, values, values)], start, EXACT)
             self.note(assignment, np.inf if optimum is None else optimum.objective)
             if optimum is not None:
                 self.points[assignment] = optimum.x
         return self.tried[assignment]
 
-    def confirmed(self) -> Assignment | None:
+    def confirmed_best(self) -> Assignment | None:
         """The best assignment, with its point verified; None without a feasible one."""
         while True:
             best = min(self.tried, key=lambda assignment: self.tried[assignment], default=None)
-            if best is None or not self.tried[best] < self.below:
+            if best is None or not self.tried[best] < self.cutoff:
                 return None
             if best in self.points:
                 return best
-            self.assigned(best, self.near.get(best, self.x))
+            self.reoptimised(best, self.starts.get(best, self.x))
 
-    def look_ahead(self) -> None:
+    def precompute(self) -> None:
         """Re-optimise the boxes of the last search at once, as most of them are needed again."""
         tasks = [self._task(box, *self._bounds(box), self.x, ROUGH) for box in self.memory.visited]
         ends = resolve_boxes(tasks)
-        self.ahead = dict(zip(self.memory.visited, zip(tasks, ends, strict=True), strict=True))
+        self.precomputed = dict(
+            zip(self.memory.visited, zip(tasks, ends, strict=True), strict=True)
+        )
 
-    def evaluates(self, box: Box) -> bool:
+    def can_evaluate(self, box: Box) -> bool:
         """Whether every assignment of a box can be evaluated at once."""
         return self.only_listed and math.prod(map(len, box)) <= MOST_LISTED
 
@@ -415,11 +419,11 @@ class _Run:
         for group, rows in zip(self.listed, np.array(assignments).T, strict=True):
             points[list(group.index)] = group.rows[rows].T
         values = Evaluator.screen(self.problem.rows(points))
-        feasible = self.reference.violations(values, "worst") <= FEASIBLE
+        feasible = self.reference.violations(values, "worst") <= MET
         objectives = np.where(feasible, values[0], np.inf).tolist()
         for assignment, objective in zip(assignments, objectives, strict=True):
             self.tried.setdefault(assignment, objective)
-        self.least = min(self.least, *objectives)
+        self.lowest = min(self.lowest, *objectives)
         self.solves += 1
         self.ends.append((self.reference, None))  # the box has no optimum to compare with
 
@@ -427,13 +431,13 @@ class _Run:
         """Add the boxes whose continuous optimum may improve on the best design."""
         large = []
         for box in parts:
-            if self.evaluates(box):
+            if self.can_evaluate(box):
                 self.evaluate(box)
             else:
                 large.append(box)
         self.visited += large
         bounds = [(box, *self._bounds(box)) for box in large]
-        for box, point in zip(large, self._descended(bounds, x, ROUGH), strict=True):
+        for box, point in zip(large, self._optima(bounds, x, ROUGH), strict=True):
             if point is not None and not self.beaten(point.objective):
                 boxes.add(point.objective, box, point.x)
 
@@ -474,7 +478,7 @@ class _Run:
             return [with_rows(box, k, part) for part in [*group.parts(rows, nearest), (nearest,)]]
         assignment = tuple(row for row in rows_at if row is not None)
         room = CLOSE * abs(objective)
-        if self.assigned(assignment, x) <= objective + room:
+        if self.reoptimised(assignment, x) <= objective + room:
             return []  # nothing else in the box can be better
         rest = []
         for k, row in enumerate(assignment):
@@ -482,14 +486,14 @@ class _Run:
             box = with_rows(box, k, (row,))
         return rest
 
-    def found(self, *, complete: bool) -> SizeSearch:
+    def result(self, *, complete: bool) -> SizeSearch:
         """The result of the search."""
         self.memory.visited = tuple(self.visited)
-        best = self.confirmed()
+        best = self.confirmed_best()
         x, objective, nearest, missed = None, None, None, None
         if best is not None:
             x, objective = self.points[best], self.tried[best]
-        elif not self.below < np.inf:
+        elif not self.cutoff < np.inf:
             nearest, missed = self.nearest()
         ends = tuple((evaluator, end) for evaluator, end in self.ends if end is not None)
         ends = ends if len(ends) == len(self.ends) else ()
@@ -502,11 +506,11 @@ class _Run:
         for assignment in list(self.tried)[:MOST_MISSED]:
             box = tuple((row,) for row in assignment)
             values = self.values(assignment)
-            point, _ = self._near(values, values, self.memory.missed.get(box, self.x))
+            point, _ = self._nearest_point(values, values, self.memory.missed.get(box, self.x))
             if box not in self.memory.missed and point.valid and not self.exhausted:
-                self.assigned(assignment, self.x)
+                self.reoptimised(assignment, self.x)
                 start = self.memory.missed.get(box, self.x)
-                point, _ = self._near(values, values, start)
+                point, _ = self._nearest_point(values, values, start)
             if point.valid:
                 candidates.append((point.violation, assignment, point))
         if not candidates:
@@ -514,38 +518,39 @@ class _Run:
         _, assignment, point = min(candidates, key=lambda candidate: candidate[0])
         return assignment, point
 
-    def _within(self, lower: Vector, upper: Vector) -> Evaluator:
+    def _restricted(self, lower: Vector, upper: Vector) -> Evaluator:
         """The problem with bounds on its listed variables."""
         lowest, highest = self.problem.lower.copy(), self.problem.upper.copy()
         lowest[self.index], highest[self.index] = lower, upper
         evaluator = Evaluator(replace(self.problem, lower=lowest, upper=highest, start=None))
-        evaluator.complex_works = self.reference.complex_works
-        evaluator.difference_rows = self.reference.difference_rows
+        evaluator.adopt_check(self.reference)
         evaluator.eager = True
         return evaluator
 
-    def _near(self, lower: Vector, upper: Vector, start: Vector) -> tuple[Point, Evaluator]:
+    def _nearest_point(
+        self, lower: Vector, upper: Vector, start: Vector
+    ) -> tuple[Point, Evaluator]:
         """The point nearest to another, within bounds of the listed variables."""
-        evaluator = self._within(lower, upper)
+        evaluator = self._restricted(lower, upper)
         return evaluator.point(evaluator.space.to_z(evaluator.problem.inside(start))), evaluator
 
     def _task(
         self, box: Box, lower: Vector, upper: Vector, start: Vector, criteria: Criteria
     ) -> BoxTask:
         """A box to re-optimise, from a nearby point or the result of a similar problem."""
-        warm_start = self.memory.near(box)
+        warm_start = self.memory.warm_start(box)
         hopeless = warm_start is None and box in self.memory.missed
         x, hessian = warm_start or (self.memory.missed.get(box, start), self.memory.hessian)
-        evaluator = self._within(lower, upper)
+        evaluator = self._restricted(lower, upper)
         cutoff = self.best if criteria is ROUGH else np.inf
         x = evaluator.problem.inside(x)
         return BoxTask(evaluator, x, hessian, criteria, hopeless, cutoff)
 
-    def _descended(
+    def _optima(
         self, bounds: Sequence[tuple[Box, Vector, Vector]], start: Vector, criteria: Criteria
     ) -> list[Point | None]:
         """The optimum in each box, from a nearby point or a similar problem; None without one."""
-        precomputed = self.ahead if criteria is ROUGH else {}
+        precomputed = self.precomputed if criteria is ROUGH else {}
         tasks = {
             box: self._task(box, lower, upper, start, criteria)
             for box, lower, upper in bounds

@@ -26,11 +26,10 @@ from ..design.materials import load_library
 from ..evaluation import PreparedDesign, compute, prepare
 from ..evaluation.build import names_of_materials
 from ..evaluation.limits import LimitRow, all_limits, rows_of
-from .actuator import ActuatorProblem, Goal, build, goal_of
+from .actuator import MET, ActuatorProblem, Goal, build, goal_of
 from .branch_and_bound import Memory, SizeSearch, at, search
 from .identical_problems import Evidence
 from .quick_look import DOUBTFUL, Look, LookStart, hessian_of, look_quickly
-from .resolve.parallel_descents import FEASIBLE
 from .result import Choices, Combination, How
 from .rounding import RUNNERS_UP, ListedSizes, Wanted, sizes_of
 from .solver import solve
@@ -205,7 +204,7 @@ def _missed_checks(rows: Sequence[LimitRow]) -> frozenset[str]:
     return frozenset(
         row.limit_of.name
         for row in rows
-        if row.limit_of.origin == "check" and not float(row.margin[0]) >= -FEASIBLE
+        if row.limit_of.origin == "check" and not float(row.margin[0]) >= -MET
     )
 
 
@@ -460,11 +459,13 @@ class Sized:
 
     look: Look
     sizes: ListedSizes
-    found: SizeSearch
+    size_search: SizeSearch
     memory: Memory
 
 
-def best_of_sizes(choices: ChoiceSearch, wanted: Wanted, settings: ChoiceSettings) -> Sized | None:
+def best_of_sizes(
+    choices: ChoiceSearch, requested: Wanted, settings: ChoiceSettings
+) -> Sized | None:
     """Find the combination with the best design of listed sizes, solved from many starts.
 
     If none fits, the combination with the best continuous optimum; None if no variable has sizes.
@@ -474,8 +475,8 @@ def best_of_sizes(choices: ChoiceSearch, wanted: Wanted, settings: ChoiceSetting
     InputError
         the requested sizes fit no combination
     """
-    searched = list(_searched(choices, wanted, settings))
-    improved = [sized for sized in searched if sized.found.objective is not None]
+    searched = list(_searched(choices, requested, settings))
+    improved = [sized for sized in searched if sized.size_search.objective is not None]
     winner = next(iter([*reversed(improved), *searched]), None)
     if winner is None:
         return None
@@ -486,7 +487,9 @@ def best_of_sizes(choices: ChoiceSearch, wanted: Wanted, settings: ChoiceSetting
     return winner
 
 
-def _searched(choices: ChoiceSearch, wanted: Wanted, settings: ChoiceSettings) -> Iterator[Sized]:
+def _searched(
+    choices: ChoiceSearch, requested: Wanted, settings: ChoiceSettings
+) -> Iterator[Sized]:
     """Search each promising combination for a better design than those before."""
     error: InputError | None = None
     memories: dict[object, Memory] = {}
@@ -502,7 +505,7 @@ def _searched(choices: ChoiceSearch, wanted: Wanted, settings: ChoiceSettings) -
             break
         try:
             subject = look.actuator.subject
-            sizes = sizes_of(subject.design, wanted, subject.materials)
+            sizes = sizes_of(subject.design, requested, subject.materials)
         except InputError as fault:
             error, look.sizing = error or fault, "no size fits"
             continue
@@ -536,13 +539,13 @@ def _searched(choices: ChoiceSearch, wanted: Wanted, settings: ChoiceSettings) -
 
 def _runners_up(winner: Sized, searched: Sequence[Sized]) -> None:
     """Add the cost of the best sizes in the next best combinations."""
-    assert winner.found.assignment is not None
+    assert winner.size_search.assignment is not None
     candidates = [sized for sized in searched if sized.look.sizing == "none better"]
     for sized in candidates[:RUNNERS_UP]:
         look = sized.look
         if sized.memory is not winner.memory or look.actuator is None or look.x is None:
             continue
         problem, listed = look.actuator.problem, sized.sizes.listed
-        objective = at(problem, listed, winner.found.assignment, look.x, sized.memory)
+        objective = at(problem, listed, winner.size_search.assignment, look.x, sized.memory)
         if objective is not None:
             look.rounded, look.sizing = objective, "sizes of the best"

@@ -119,25 +119,14 @@ def cures(actuator: ActuatorProblem, conflict: Conflict) -> Cures:
 
 def _gains(actuator: ActuatorProblem, conflict: Conflict) -> dict[str, float]:
     """Fall of the missed margins per relative growth of every number, by PATH."""
-    subject = actuator.subject
-    values = subject.values(
-        {path: np.array([x]) for path, x in zip(actuator.paths, conflict.x, strict=True)}
-    )
-    subject.touch(values)
     paths = [
         path
-        for path in sorted(values.read)
-        if path not in actuator.paths
-        and subject.numbers.get(path, 0.0) > 0
-        and (PARTS.match(path) or path.startswith("materials."))
+        for path in actuator.fixed_numbers(conflict.x)
+        if PARTS.match(path) or path.startswith("materials.")
     ]
     if not paths:
         return {}
-    present = np.array([subject.numbers[path] for path in paths])
-    varied = np.repeat(present[:, None].astype(complex), len(paths), axis=1)
-    varied += np.diag(1j * STEP * present)
-    points = np.repeat(conflict.x[:, None], len(paths), axis=1)
-    margins = actuator.evaluate(points, dict(zip(paths, varied, strict=True))).constraints
+    margins = actuator.number_steps(conflict.x, paths).constraints
     slopes = np.nan_to_num(np.imag(margins) / STEP, posinf=0.0, neginf=0.0)
     return dict(zip(paths, (conflict.multipliers @ slopes).tolist(), strict=True))
 
@@ -158,7 +147,7 @@ def _dimensions(
     tried = candidates[:MOST_DIMENSIONS]
     if not tried:
         return (), (), []
-    problem = opened(actuator, tried)
+    problem = with_variables(actuator, tried)
     start = np.concatenate([x, problem.lower[len(x) :]])
     limits = {
         len(x) + k: _limit(quantity_of(path, design), start[len(x) + k], gains[path])
@@ -169,10 +158,12 @@ def _dimensions(
         if len(sufficient) == ENOUGH:
             return _least_first(sufficient), (), candidates[number:]
         tell("infeasible: searching for a sufficient fixed dimension", number / len(tried))
-        sufficient += freed(problem, start, {place: limits[place]}, {place: path}, design)
+        sufficient += least_changes(problem, start, {place: limits[place]}, {place: path}, design)
     together: list[Cure] = []
     if not sufficient and len(tried) > 1:
-        together = freed(problem, start, limits, dict(zip(limits, tried, strict=True)), design)
+        together = least_changes(
+            problem, start, limits, dict(zip(limits, tried, strict=True)), design
+        )
     return _least_first(sufficient), tuple(together), candidates[len(tried) :]
 
 
@@ -183,7 +174,7 @@ def _limit(quantity: Quantity, now: float, gain: float) -> float:
     return float(limit if quantity.upper is None else min(limit, quantity.upper))
 
 
-def freed(
+def least_changes(
     problem: BoxProblem,
     start: Vector,
     limits: Mapping[int, float],
@@ -245,7 +236,7 @@ def _least_first(enough: Sequence[Cure]) -> tuple[Cure, ...]:
     )
 
 
-def opened(actuator: ActuatorProblem, paths: Sequence[str]) -> BoxProblem:
+def with_variables(actuator: ActuatorProblem, paths: Sequence[str]) -> BoxProblem:
     """The problem with more variables, each starting at its value.
 
     Rows that only these variables affect count too, except for checks that cannot be met anyway.
@@ -257,10 +248,10 @@ def opened(actuator: ActuatorProblem, paths: Sequence[str]) -> BoxProblem:
     extended = build(
         replace(subject, design=subject.design.model_copy(update={"variables": variables}))
     )
-    return _kept(extended, _lost(actuator))
+    return _without_rows(extended, _unfixable_checks(actuator))
 
 
-def _kept(actuator: ActuatorProblem, lost: frozenset[str]) -> BoxProblem:
+def _without_rows(actuator: ActuatorProblem, lost: frozenset[str]) -> BoxProblem:
     """The problem without the rows of some checks."""
     rows = np.array([row.label not in lost for row in actuator.rows], dtype=bool)
 
@@ -275,7 +266,7 @@ def _kept(actuator: ActuatorProblem, lost: frozenset[str]) -> BoxProblem:
     )  # fmt: skip
 
 
-def _lost(actuator: ActuatorProblem) -> frozenset[str]:
+def _unfixable_checks(actuator: ActuatorProblem) -> frozenset[str]:
     """Checks that no variable can fix, by their rows."""
     return frozenset(
         row.label
@@ -309,9 +300,9 @@ def _choices(
     margins = np.ravel(actuator.evaluate(conflict.x[:, None]).constraints)
     rows = zip(actuator.rows, margins.tolist(), strict=True)
     places = {row.place for row, margin in rows if not margin >= -repairs.NOTHING}
-    for path, word, beside in _vocabulary(subject, library, gains, places):
-        now = _word(subject.design, path)
-        problem = None if word == now else _chosen(actuator, {path: word, **beside}, library)
+    for path, word, beside in _candidate_choices(subject, library, gains, places):
+        now = _word_at(subject.design, path)
+        problem = None if word == now else _with_choice(actuator, {path: word, **beside}, library)
         missed = math.inf if problem is None else _missed(problem, conflict.x)
         if problem is not None and missed < present - repairs.NOTHING:
             offered.append((missed, Cure(path, now, word, beside), problem))
@@ -335,7 +326,7 @@ def _missed(problem: BoxProblem, x: Vector) -> float:
     return float(np.maximum(-rows, 0.0).sum()) if np.isfinite(rows).all() else math.inf
 
 
-def _vocabulary(
+def _candidate_choices(
     subject: PreparedDesign, library: Library, gains: Mapping[str, float], places: set[str]
 ) -> Iterator[tuple[str, str, dict[str, str]]]:
     """Yield choices that may resolve the conflict: PATH, alternative, required further entries.
@@ -364,7 +355,7 @@ def _vocabulary(
     parts += [f"barrel.layup[{i}]" for i in range(len(design.barrel.layup))]
     parts += [f"rod.layup[{i}]" for i in range(len(design.rod.layup))]
     for part in parts:
-        material = _word(design, f"{part}.material")
+        material = _word_at(design, f"{part}.material")
         if material and matters(f"materials.{material}."):
             for other in SUBSTITUTES.get(library.kind(material) or "", ()):
                 yield f"{part}.material", other, {}
@@ -383,7 +374,7 @@ def _rings(seal: Seal, section: str, count: int) -> dict[str, str] | None:
     return {f"{section}.back_up_material": BACK_UP, f"{section}.back_up_thickness": thickness}
 
 
-def _word(design: Design, path: str) -> str:
+def _word_at(design: Design, path: str) -> str:
     """The word or material at a PATH; "" if the design states none."""
     value: object = design
     for step in re.split(r"\.|(?=\[)", path):
@@ -395,7 +386,7 @@ def _word(design: Design, path: str) -> str:
     return value if isinstance(value, str) else ""
 
 
-def _chosen(
+def _with_choice(
     actuator: ActuatorProblem, values: Mapping[str, str], library: Library
 ) -> BoxProblem | None:
     """The problem with another choice; None if it contradicts the design or fails a check."""
@@ -412,5 +403,5 @@ def _chosen(
         other = build(replace(made, reserves=subject.reserves))
     except InputError:
         return None
-    lost = _lost(actuator)
-    return _kept(other, lost) if _lost(other) <= lost else None
+    lost = _unfixable_checks(actuator)
+    return _without_rows(other, lost) if _unfixable_checks(other) <= lost else None

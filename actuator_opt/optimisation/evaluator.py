@@ -89,7 +89,7 @@ class Evaluator:
         self.influence = np.zeros((2, self.space.size))
         self.trace: list[tuple[int, float, float]] = []
         self.best: Point | None = None
-        self.foreseen: dict[bytes, npt.NDArray[np.generic]] = {}
+        self.precomputed: dict[bytes, npt.NDArray[np.generic]] = {}
         """Precomputed rows of the `columns` of points, by coordinates."""
         self._cache: dict[bytes, Point] = {}
 
@@ -114,23 +114,28 @@ class Evaluator:
         point = self._cache.get(z.tobytes())
         if point is not None:
             return point
-        foreseen = self.foreseen.pop(z.tobytes(), None)
-        if foreseen is not None:
-            return self.entered(z, foreseen)
+        precomputed = self.precomputed.pop(z.tobytes(), None)
+        if precomputed is not None:
+            return self.enter(z, precomputed)
         self.check_limits()
         slopes = None
         if self.eager and self.exact:
             rows, slopes = self.values_and_slopes(self.problem.rows(self.columns(z[:, None])))
         else:
             rows = self.screen(self.problem.rows(self.space.to_x(z[:, None])))
-        return self._enter(z, rows, slopes)
+        return self._store(z, rows, slopes)
+
+    def adopt_check(self, checked: Evaluator) -> None:
+        """Reuse the gradient check of an evaluator whose problem has the same rows."""
+        self.complex_works = checked.complex_works
+        self.difference_rows = checked.difference_rows
 
     @property
     def exact(self) -> bool:
         """Whether every gradient comes from the complex step."""
         return self.complex_works and not self.difference_rows.any() and self.space.size > 0
 
-    def _enter(self, z: Vector, rows: Vector, slopes: Vector | None) -> Point:
+    def _store(self, z: Vector, rows: Vector, slopes: Vector | None) -> Point:
         """Store a point with its rows."""
         valid = bool(np.isfinite(rows).all())
         self.evaluations += 1
@@ -139,25 +144,25 @@ class Evaluator:
         point = Point(z.copy(), x, rows[:, 0], valid, float(self.violations(rows, "worst")[0]))
         if slopes is not None and valid:
             self.gradients += 1
-            self._keep(point, slopes)
+            self._store_jacobian(point, slopes)
         if len(self._cache) >= 256:
             self._cache.clear()
         self._cache[z.tobytes()] = point
         if valid:
-            self._note(point)
+            self._record(point)
         return point
 
-    def entered(self, z: Vector, rows: npt.NDArray[np.generic]) -> Point:
+    def enter(self, z: Vector, rows: npt.NDArray[np.generic]) -> Point:
         """The point at z (nf,) whose `columns` have these rows."""
-        return self._enter(z, *self.values_and_slopes(rows))
+        return self._store(z, *self.values_and_slopes(rows))
 
-    def enter_foreseen(self) -> None:
+    def enter_precomputed(self) -> None:
         """Count the precomputed points as visited."""
-        for z, rows in self.foreseen.items():
-            self.entered(np.frombuffer(z), rows)
-        self.foreseen.clear()
+        for z, rows in self.precomputed.items():
+            self.enter(np.frombuffer(z), rows)
+        self.precomputed.clear()
 
-    def _note(self, point: Point) -> None:
+    def _record(self, point: Point) -> None:
         """Store a point, and add it to the trace if it improves on the last entry."""
         excess = point.violation if point.violation > 1e-6 else 0.0
         if self.trace:
@@ -197,16 +202,16 @@ class Evaluator:
     def jacobian(self, point: Point) -> Vector:
         """Gradients (rows, nf) at a point, in solver coordinates; a missing slope counts as 0."""
         if point.jacobian is None:
-            return self._keep(point, self.jacobians(point.z[:, None])[:, 0])
+            return self._store_jacobian(point, self.jacobians(point.z[:, None])[:, 0])
         return point.jacobian
 
     def take_slopes(self, points: Sequence[Point]) -> None:
         """Compute the gradients at some points, in one model call."""
         slopes = self.jacobians(np.stack([point.z for point in points], axis=1))
         for k, point in enumerate(points):
-            self._keep(point, slopes[:, k])
+            self._store_jacobian(point, slopes[:, k])
 
-    def _keep(self, point: Point, slopes: Vector) -> Vector:
+    def _store_jacobian(self, point: Point, slopes: Vector) -> Vector:
         broken = ~np.isfinite(slopes)
         if broken.any():
             self.bad_slopes += 1
@@ -219,11 +224,7 @@ class Evaluator:
 
     def columns(self, z: Vector) -> npt.NDArray[np.complex128]:
         """Complex points (n, nf) whose rows contain value and gradient at coordinates (nf, 1)."""
-        x = self.space.to_x(z)
-        batch = np.repeat(x.astype(complex), z.shape[0], axis=1)
-        columns = np.arange(z.shape[0])
-        batch[self.space.free, columns] += 1j * STEP * self.space.slope(x)[:, 0]
-        return batch
+        return self.space.complex_steps(self.space.to_x(z))
 
     def values_and_slopes(self, rows: npt.NDArray[np.generic]) -> tuple[Vector, Vector]:
         """Rows (rows, 1) and gradients (rows, nf) of one point from the rows of its `columns`.
@@ -256,12 +257,7 @@ class Evaluator:
 
     def _complex_step(self, z: Vector, *, inside: bool) -> Vector:
         n, count = z.shape
-        x = self.space.to_x(z, inside=inside)
-        seeds = self.space.slope(x)
-        batch = np.repeat(x.astype(complex), n, axis=1)
-        columns = np.arange(count * n).reshape(count, n)
-        batch[self.space.free[None, :], columns] += 1j * STEP * seeds.T
-        rows = self.problem.rows(batch)
+        rows = self.problem.rows(self.space.complex_steps(self.space.to_x(z, inside=inside)))
         return np.asarray(rows.imag / STEP, dtype=float).reshape(len(rows), count, n)
 
     def _differences(self, z: Vector) -> Vector:
@@ -364,6 +360,6 @@ def points_together(requests: Sequence[tuple[Evaluator, Vector]]) -> list[Point]
     rows = requests[0][0].problem.rows(np.concatenate(parts, axis=1))
     ends = np.cumsum([part.shape[1] for part in parts])[:-1]
     return [
-        evaluator.entered(z, part)
+        evaluator.enter(z, part)
         for (evaluator, z), part in zip(requests, np.split(rows, ends, axis=1), strict=True)
     ]

@@ -35,18 +35,10 @@ class Evidence:
         problem = self.problem
         if not self.ends or abs(optimum - self.optimum) > SAME_OPTIMUM * abs(self.optimum):
             return False
-        same_names = (
-            problem.names == other.names and problem.constraint_names == other.constraint_names
-        )
-        same_box = np.array_equal(problem.lower, other.lower) and np.array_equal(
-            problem.upper, other.upper
-        )
+        if problem.names != other.names or not problem.same_rows_and_box(other):
+            return False
         exact = all(evaluator.exact for evaluator, _ in self.ends)
-        if (
-            not (same_names and same_box and exact)
-            or problem.equality_names
-            or other.equality_names
-        ):
+        if not exact or problem.equality_names or other.equality_names:
             return False
         parts = [evaluator.columns(end.z[:, None]) for evaluator, end in self.ends]
         rows = np.split(

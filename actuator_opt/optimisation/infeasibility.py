@@ -82,11 +82,11 @@ def explain(problem: BoxProblem, points: Sequence[Vector]) -> Conflict:
     sole: tuple[RelaxedConstraint, ...] = ()
     x = point.x[: len(problem.names)]
     if joint and not laws:
-        part = _taking_part(evaluator, point, quality)
+        part = _conflicting(evaluator, point, quality)
         named = {row.index for row in joint}
         candidates = [group for group in groups if part[group].any() or group[0] in named]
         sole = repairs.by_limits(problem, candidates, named, [x, *points[:STARTS]])
-        smaller = _less(problem, evaluator, groups, candidates, sole, point)
+        smaller = _smaller_relaxation(problem, evaluator, groups, candidates, sole, point)
         if smaller is not None:
             point, quality = smaller, kkt.check(evaluator, smaller, objective_scale=1.0)
             joint, x = _joint(problem, groups, mask, point), point.x[: len(problem.names)]
@@ -115,7 +115,7 @@ def _joint(
     return tuple(sorted(joint, key=lambda r: -(r.amount or 0.0)))
 
 
-def _less(
+def _smaller_relaxation(
     problem: BoxProblem,
     evaluator: Evaluator,
     groups: list[repairs.Indices],
@@ -138,7 +138,7 @@ def _less(
     return end if improved else None
 
 
-def _taking_part(
+def _conflicting(
     evaluator: Evaluator, point: Point, quality: kkt.KktResidual
 ) -> npt.NDArray[np.bool_]:
     """Constraints that take part in the conflict; dropping the others does not resolve it.

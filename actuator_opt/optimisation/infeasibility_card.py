@@ -58,13 +58,13 @@ def _card(
         or r.index in named
         or actuator.rows[r.index].limit_of.origin != "check"
     )
-    bounds = tuple(_bound(actuator, bound) for bound in explanation.bounds)
+    bounds = tuple(_bound_entry(actuator, bound) for bound in explanation.bounds)
     sufficient = [
-        *(_cure(actuator, "dimension", cure) for cure in remedies.dimensions),
-        *([_together(actuator, remedies.together)] if remedies.together else []),
-        *(_cure(actuator, "choice", cure) for cure in remedies.choices),
-        *(_listed(bound, "bound") for bound in bounds if bound["needed"] is not None),
-        *(_listed(entry, _kind(entry)) for entry in single if entry["needed"] is not None),
+        *(_cure_entry(actuator, "dimension", cure) for cure in remedies.dimensions),
+        *([_joint_entry(actuator, remedies.together)] if remedies.together else []),
+        *(_cure_entry(actuator, "choice", cure) for cure in remedies.choices),
+        *(_limit_entry(bound, "bound") for bound in bounds if bound["needed"] is not None),
+        *(_limit_entry(entry, _kind(entry)) for entry in single if entry["needed"] is not None),
     ]
     sufficient.sort(key=lambda cure: KINDS.index(cure["kind"]))
     return Infeasibility(
@@ -85,7 +85,7 @@ def _kind(entry: Mapping[str, Any]) -> str:
     return "safety factor" if entry["safety_factor"] else "requirement"
 
 
-def _listed(entry: Mapping[str, Any], kind: str) -> dict[str, Any]:
+def _limit_entry(entry: Mapping[str, Any], kind: str) -> dict[str, Any]:
     """A sufficient limit or bound, as an entry of the list of cures."""
     return {
         "kind": kind,
@@ -95,9 +95,9 @@ def _listed(entry: Mapping[str, Any], kind: str) -> dict[str, Any]:
     } | {name: entry[name] for name in ("needed", "change", "limit_text", "needed_text")}
 
 
-def _together(actuator: ActuatorProblem, dimensions: Sequence[Cure]) -> dict[str, Any]:
+def _joint_entry(actuator: ActuatorProblem, dimensions: Sequence[Cure]) -> dict[str, Any]:
     """Dimensions that are enough together, as an entry."""
-    parts = [_cure(actuator, "dimension", cure) for cure in dimensions]
+    parts = [_cure_entry(actuator, "dimension", cure) for cure in dimensions]
     texts = ("parameter", "limit_text", "needed_text")
     entry: dict[str, Any] = {
         "kind": "dimension",
@@ -111,7 +111,7 @@ def _together(actuator: ActuatorProblem, dimensions: Sequence[Cure]) -> dict[str
     }  # fmt: skip
 
 
-def _cure(actuator: ActuatorProblem, kind: str, cure: Cure) -> dict[str, Any]:
+def _cure_entry(actuator: ActuatorProblem, kind: str, cure: Cure) -> dict[str, Any]:
     """A sufficient dimension or choice, as an entry."""
     entry: dict[str, Any] = {"kind": kind, "parameter": cure.path, "advised": True, "now": cure.now}
     if isinstance(cure.now, str) or isinstance(cure.needed, str):
@@ -148,7 +148,7 @@ def entry_of(actuator: ActuatorProblem, relaxed: RelaxedConstraint) -> dict[str,
         "requirement": row.limit_of.name,
         "parameter": path,
         "origin": _ORIGINS.get(row.limit_of.origin, row.limit_of.origin),
-        "safety_factor": _guards(row),
+        "safety_factor": _protects_safety(row),
         "metric": row.limit_of.metric,
         "sense": sense,
         "limit": limit,
@@ -159,7 +159,7 @@ def entry_of(actuator: ActuatorProblem, relaxed: RelaxedConstraint) -> dict[str,
     return entry | _texts(display, limit, needed, upwards=sense == "max")
 
 
-def _guards(row: LimitRow) -> bool:
+def _protects_safety(row: LimitRow) -> bool:
     """Whether a limit protects safety: the check list, and every factor."""
     return row.limit_of.origin == "check" or row.limit_of.metric.endswith("_factor")
 
@@ -170,7 +170,7 @@ def _relaxed(row: LimitRow, limit: float, amount: float) -> float:
     return limit - step if row.limit_of.sense == "min" else limit + step
 
 
-def _bound(actuator: ActuatorProblem, bound: Opening) -> dict[str, Any]:
+def _bound_entry(actuator: ActuatorProblem, bound: Opening) -> dict[str, Any]:
     quantity = quantity_of(bound.variable, actuator.subject.design)
     upper = bound.side == "upper"
     return {

@@ -340,7 +340,7 @@ class NewtonState:
     """A point with the data for the next step."""
 
     point: Point
-    near: Active
+    active: Active
     multipliers: Vector
     equality_multipliers: Vector
     measure: float
@@ -394,7 +394,7 @@ def _acceptable(evaluator: Evaluator, initial: NewtonState, newton_state: Newton
     """Whether a point is no less feasible, and not costlier than start plus priced violation."""
     if newton_state.point.violation > max(FEASIBLE, initial.point.violation):
         return False
-    allowance = float(initial.multipliers @ np.maximum(-initial.near.margins, 0.0))
+    allowance = float(initial.multipliers @ np.maximum(-initial.active.margins, 0.0))
     m = evaluator.constraint_count
     allowance += float(np.abs(initial.equality_multipliers) @ np.abs(initial.point.rows[1 + m :]))
     room = 1e-9 * max(abs(initial.point.objective), initial.scale)
@@ -477,7 +477,7 @@ def convex_hessian(evaluator: Evaluator, state: NewtonState) -> Vector:
     Adding multiples of the active rows' outer products leaves the solution on those rows unchanged.
     If that is not enough, negative curvatures count by their magnitude.
     """
-    m, active = evaluator.constraint_count, state.near
+    m, active = evaluator.constraint_count, state.active
     constraint_multipliers = np.zeros(m)
     constraint_multipliers[active.constraint] = state.multipliers[: len(active.constraint)]
     significant = state.multipliers > 1e-6 * state.scale

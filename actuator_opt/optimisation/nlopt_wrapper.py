@@ -222,7 +222,7 @@ class _Guard:
         self.width = problem.upper[space.free] - self.low
         self.scale = abs(start.objective) if start.valid and start.objective != 0 else 1.0
         self.worst = 1.0
-        self.known: Sequence[Point] = ()
+        self.optima: Sequence[Point] = ()
         self.rank: Callable[[Point], Any] = _rank
         self.arrived: int | None = None
         self.error: BaseException | None = None
@@ -257,7 +257,7 @@ class _Guard:
         """Return the point, or None where the run must stop."""
         if self.error is not None:
             return None
-        with self._held():
+        with self._deferred():
             self.last = point = self.point(np.array(u, dtype=float))
             if point.valid:
                 self.worst = max(self.worst, abs(point.objective) / self.scale)
@@ -274,14 +274,14 @@ class _Guard:
         distance, share, violation = ARRIVAL
         if point.violation > violation:
             return
-        for index, optimum in enumerate(self.known):
+        for index, optimum in enumerate(self.optima):
             similar = abs(point.objective - optimum.objective) <= share * abs(optimum.objective)
             if similar and np.abs(point.z - optimum.z).max(initial=0.0) <= distance:
                 self.arrived = index
                 raise _Arrived
 
     @contextmanager
-    def _held(self) -> Iterator[None]:
+    def _deferred(self) -> Iterator[None]:
         """Hold exceptions of the model and Ctrl-C until NLopt has returned."""
         try:
             yield
@@ -296,7 +296,7 @@ class _Guard:
         if point is None or not point.valid:
             return 10.0 * self.worst
         if slope.size:
-            with self._held():
+            with self._deferred():
                 slope[:] = self._slopes(point)[0] / self.scale
         return point.objective / self.scale
 
@@ -309,7 +309,7 @@ class _Guard:
             return
         result[:] = -point.rows[rows]
         if slopes.size:
-            with self._held():
+            with self._deferred():
                 slopes[:] = -self._slopes(point)[rows]
 
     def inequalities(self, result: Vector, u: Vector, slopes: Vector) -> None:
@@ -351,7 +351,7 @@ def run(
     evaluator.eager = (inner or outer).uses_gradients
     handle = _handle(outer, size, tolerance, max_evaluations)
     guard = _Guard(evaluator, start, linear=linear, handle=handle)
-    guard.known, guard.rank = optima, rank or _rank
+    guard.optima, guard.rank = optima, rank or _rank
     box = evaluator.space
     bounds = (np.zeros(size), np.ones(size)) if linear else (box.lower, box.upper)
     handle.set_lower_bounds(bounds[0])

@@ -21,13 +21,12 @@ from ..evaluation import Evaluation, PreparedDesign, compute, evaluate
 from ..evaluation.build import spec_hash
 from ..evaluation.kernel import governing
 from ..evaluation.limits import MetricArrays
-from .actuator import ActuatorProblem, Fault, Goal, build, idle_metrics
+from .actuator import MET, ActuatorProblem, Fault, Goal, build, idle_metrics
 from .front.front import Front, FrontSettings, NoAnchor, front
 from .front.objectives import Objectives
 from .front.plane import FrontGap
 from .infeasibility_card import explained
 from .problem import PointValues, Vector
-from .resolve.parallel_descents import FEASIBLE
 from .result import Infeasibility
 from .rounding import design_at
 
@@ -215,7 +214,7 @@ def wishes(texts: Sequence[str], quantities: dict[str, Quantity]) -> tuple[Wish,
 
 
 @dataclass(frozen=True)
-class _Many:
+class _ManyObjectives:
     """The problem of an actuator with several objectives."""
 
     actuator: ActuatorProblem
@@ -268,7 +267,9 @@ def pareto(
     return _result(many, result, seed, began)
 
 
-def _problem(subject: PreparedDesign, wished: tuple[Wish, ...], fault: Fault | None) -> _Many:
+def _problem(
+    subject: PreparedDesign, wished: tuple[Wish, ...], fault: Fault | None
+) -> _ManyObjectives:
     """The problem, with every objective defined and variable.
 
     Raises
@@ -298,15 +299,15 @@ def _problem(subject: PreparedDesign, wished: tuple[Wish, ...], fault: Fault | N
     goals = tuple(
         Goal({w.metric: 1.0}, {w.metric: 1.0}, 1.0 if w.sense == "min" else -1.0) for w in wished
     )
-    return _Many(actuator, goals, wished, subject)
+    return _ManyObjectives(actuator, goals, wished, subject)
 
 
-def _points(many: _Many, result: Front) -> tuple[FrontPoint, ...]:
+def _points(many: _ManyObjectives, result: Front) -> tuple[FrontPoint, ...]:
     """Variables and metrics of every design: objectives, and those of the requirements."""
     actuator, count = many.actuator, result.x.shape[1]
     subject = actuator.subject
     numbers = subject.values(dict(zip(actuator.paths, result.x, strict=True)))
-    computed = compute(subject, numbers, actuator.wanted).computed
+    computed = compute(subject, numbers, actuator.metrics).computed
     names = [wish.metric for wish in many.wished] + [
         row.limit_of.metric
         for row in (*actuator.rows, *actuator.fixed)
@@ -326,7 +327,7 @@ def _points(many: _Many, result: Front) -> tuple[FrontPoint, ...]:
     )
 
 
-def _result(many: _Many, result: Front, seed: int, began: float) -> ParetoFront:
+def _result(many: _ManyObjectives, result: Front, seed: int, began: float) -> ParetoFront:
     """Assemble the result."""
     knee = None if result.knee is None else Knee(*result.knee)
     index = 0 if knee is None else knee.index
@@ -346,7 +347,7 @@ def _result(many: _Many, result: Front, seed: int, began: float) -> ParetoFront:
         checked=result.checked,
         improved=result.improved,
         failed=result.failed,
-        warnings=(*result.warnings, *many.actuator.refusals.warnings(), *_held(many)),
+        warnings=(*result.warnings, *many.actuator.refusals.warnings(), *_notes(many)),
         seed=seed,
         seconds=time.perf_counter() - began,
     )
@@ -357,7 +358,7 @@ def _passed(values: Vector, signs: Vector) -> list[list[float]]:
     return rows
 
 
-def _held(many: _Many) -> list[str]:
+def _notes(many: _ManyObjectives) -> list[str]:
     """Parts of a design that a front ignores: its choices, and the sizes of its variables."""
     design = many.actuator.subject.design
     notes = []
@@ -375,15 +376,15 @@ def _held(many: _Many) -> list[str]:
     return notes
 
 
-def _said(wish: Wish) -> str:
+def _text(wish: Wish) -> str:
     return f"{wish.metric}:{wish.sense}"
 
 
-def _without(many: _Many, no_anchor: NoAnchor, began: float) -> ParetoFront:
+def _without(many: _ManyObjectives, no_anchor: NoAnchor, began: float) -> ParetoFront:
     """The result without a front: nothing is feasible, or an end is missing."""
     subject = many.subject
     solution = no_anchor.solution
-    feasible = solution.violation <= FEASIBLE
+    feasible = solution.violation <= MET
     infeasibility = None if feasible else explained(many.actuator, solution)[0]
     return ParetoFront(
         subject=subject.design,
@@ -394,7 +395,7 @@ def _without(many: _Many, no_anchor: NoAnchor, began: float) -> ParetoFront:
         design=subject.design,
         evaluation=evaluate(replace(subject, aims=many.actuator.subject.aims)),
         infeasibility=infeasibility,
-        unsolved=f"{_said(many.wished[no_anchor.objective])}: {solution.outcome.sentence}"
+        unsolved=f"{_text(many.wished[no_anchor.objective])}: {solution.outcome.sentence}"
         if feasible
         else "",
         seconds=time.perf_counter() - began,

@@ -68,7 +68,7 @@ class Optimum:
     weights: Vector
 
     @property
-    def held(self) -> npt.NDArray[np.intp]:
+    def active(self) -> npt.NDArray[np.intp]:
         """Margins with a positive multiplier."""
         size = self.multipliers * np.sqrt((self.gradients**2).sum(axis=1))
         return np.flatnonzero(size > 1e-10 * max(float(np.linalg.norm(self.slope)), 1e-300))
@@ -122,7 +122,7 @@ def movement(optimum: Optimum, derivatives: Responses) -> tuple[Vector, Vector]:
 
     Directions that change nothing to second order do not move.
     """
-    active, nf = optimum.held, len(optimum.slope)
+    active, nf = optimum.active, len(optimum.slope)
     rows = np.concatenate([optimum.gradients[active], optimum.equalities])
     explicit = np.concatenate(
         [
@@ -196,7 +196,7 @@ def _changes(
 ) -> Iterator[list[ActiveSetChange]]:
     """For each parameter the points where margins or multipliers vanish on their straight lines."""
     rates = margin_slopes(optimum, derivatives) + optimum.gradients @ moves
-    active = optimum.held
+    active = optimum.active
     for k, value in enumerate(derivatives.values):
         changes: list[ActiveSetChange] = []
         reference = abs(value) if value else 1.0
@@ -691,16 +691,12 @@ def sensitivities(actuator: ActuatorProblem, solution: Solution) -> tuple[Sensit
                 holds_until=price.holds_until,
                 next_active=price.change,
                 active=price.parameter in active,
-                price_up=_finite_price(shown(price.price_up)),
-                price_down=_finite_price(shown(price.price_down)),
+                price_up=_finite(shown(price.price_up)),
+                price_down=_finite(shown(price.price_down)),
                 movement=dict(zip(actuator.paths, price.movement.tolist(), strict=True)),
             )
         )
     return ranked(rows, shown(solution.objective))
-
-
-def _finite_price(value: float) -> float | None:
-    return value if np.isfinite(value) else None
 
 
 def _shown(shown: Callable[[float], float], value: float | None) -> float | None:
@@ -730,26 +726,16 @@ def _strongest(
     """The parameters with the largest elasticity of the objective, by the Lagrangian."""
     if solution.kkt is None:
         return ()
-    numbers = actuator.subject.values(
-        {path: np.array([x]) for path, x in zip(actuator.paths, solution.x, strict=True)}
-    )
-    actuator.subject.touch(numbers)
     candidates = [
         path
-        for path in sorted(numbers.read)
+        for path in actuator.fixed_numbers(solution.x)
         if path not in excluded
-        and path not in actuator.paths
-        and actuator.subject.numbers.get(path, 0.0) > 0
         and not path.startswith("requirements.")
         and _quantity(actuator, path).dimension not in _NO_PERCENT
     ]
     if not candidates:
         return ()
-    present = np.array([actuator.subject.numbers[path] for path in candidates])
-    varied = np.repeat(present[:, None].astype(complex), len(candidates), axis=1)
-    varied += np.diag(1j * STEP * present)
-    points = np.repeat(solution.x[:, None], len(candidates), axis=1)
-    values = actuator.evaluate(points, dict(zip(candidates, varied, strict=True)))
+    values = actuator.number_steps(solution.x, candidates)
     slope = np.imag(values.objective) - solution.kkt.multipliers @ np.imag(values.constraints)
     elasticity = np.nan_to_num(slope / STEP / abs(solution.objective or 1.0))
     order = np.argsort(-np.abs(elasticity), kind="stable")

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..base.errors import InputError
-from ..base.numeric import Array
+from ..base.numeric import STEP, Array
 
 Vector: TypeAlias = npt.NDArray[np.float64]
 
@@ -98,6 +98,14 @@ class BoxProblem:
                 f"{self.lower[j]:g} to {self.upper[j]:g}"
             )
         object.__setattr__(self, "start", np.clip(start, self.lower, self.upper))
+
+    def same_rows_and_box(self, other: BoxProblem) -> bool:
+        """Whether another problem has the same constraints and bounds."""
+        return (
+            tuple(self.constraint_names) == tuple(other.constraint_names)
+            and np.array_equal(self.lower, other.lower)
+            and np.array_equal(self.upper, other.upper)
+        )
 
     def inside(self, x: Vector) -> Vector:
         """The point of the box nearest to another (n,)."""
@@ -234,6 +242,20 @@ class Space:
     def slope(self, x: Vector) -> Vector:
         """dx/dz of the free variables (nf, k) at points (n, k)."""
         return np.where(self.logarithmic[:, None], x[self.free], self.scale[:, None])
+
+    def complex_steps(self, x: Vector) -> npt.NDArray[np.complex128]:
+        """Points x (n, k) with a complex step in each coordinate in turn (n, k nf)."""
+        count = x.shape[1]
+        batch = np.repeat(x.astype(complex), self.size, axis=1)
+        columns = np.arange(count * self.size).reshape(count, self.size)
+        batch[self.free[None, :], columns] += 1j * STEP * self.slope(x).T
+        return batch
+
+    @property
+    def reference(self) -> Vector:
+        """Coordinates of the start, else of the middle of the box."""
+        start = self.problem.start
+        return (self.lower + self.upper) / 2 if start is None else self.to_z(start)
 
 
 @dataclass(frozen=True, slots=True)

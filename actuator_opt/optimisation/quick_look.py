@@ -16,11 +16,10 @@ import numpy as np
 from ..design.choice_list import Value
 from ..evaluation import PreparedDesign
 from . import kkt, nlopt_wrapper, repairs
-from .actuator import ActuatorProblem, Solution
+from .actuator import MET, ActuatorProblem, Solution
 from .evaluator import Evaluator, LimitReached, Point
 from .problem import Vector
 from .resolve.boxes import ROUGH, stepped
-from .resolve.parallel_descents import FEASIBLE
 from .resolve.steps import ScaledHessian, hessian_at
 from .result import How
 from .solver import solve, sweep
@@ -74,7 +73,7 @@ class Look:
     @property
     def feasible(self) -> bool:
         """Whether all requirements are met."""
-        return self.violation <= FEASIBLE
+        return self.violation <= MET
 
 
 class LookStart(NamedTuple):
@@ -108,19 +107,19 @@ def look_quickly(
         run = nlopt_wrapper.run(
             evaluator, start, "LD_SLSQP", max_evaluations=EVALUATIONS, seed=seed
         )
-        return _keep(look, evaluator, run.point)
+        return _store_best(look, evaluator, run.point)
 
     look.how = "quick"
     try:
-        if _followed(look, evaluator, starts):
+        if _follow_neighbour(look, evaluator, starts):
             return
         for z, descend in _coordinates(evaluator, starts, seed):
-            point = _keep(look, evaluator, evaluator.point(z))
-            if point.valid and (descend or point.violation <= FEASIBLE):
+            point = _store_best(look, evaluator, evaluator.point(z))
+            if point.valid and (descend or point.violation <= MET):
                 point = down(point)
-            if point.valid and point.violation > FEASIBLE and evaluator.space.size:
-                point = _keep(look, evaluator, repairs.least_missed(evaluator, point))
-                if point.violation <= FEASIBLE:
+            if point.valid and point.violation > MET and evaluator.space.size:
+                point = _store_best(look, evaluator, repairs.least_missed(evaluator, point))
+                if point.violation <= MET:
                     down(point)
             if look.feasible or DOUBTFUL < look.violation <= STUCK:
                 break
@@ -130,7 +129,7 @@ def look_quickly(
         look.how = "not tried" if look.x is None else "quick"
 
 
-def _followed(look: Look, evaluator: Evaluator, starts: Sequence[LookStart]) -> bool:
+def _follow_neighbour(look: Look, evaluator: Evaluator, starts: Sequence[LookStart]) -> bool:
     """Whether steps from a neighbour's optimum converge to the optimum of this combination."""
     neighbour = next((start for start in starts if start.hessian is not None), None)
     if neighbour is None or neighbour.hessian is None or not evaluator.space.size:
@@ -139,7 +138,7 @@ def _followed(look: Look, evaluator: Evaluator, starts: Sequence[LookStart]) -> 
     point = evaluator.point(evaluator.space.to_z(neighbour.x))
     optimum = stepped(evaluator, point, neighbour.hessian, ROUGH) if point.valid else None
     if optimum is not None:
-        _keep(look, evaluator, optimum)
+        _store_best(look, evaluator, optimum)
         look.hessian = neighbour.hessian
     return optimum is not None
 
@@ -174,7 +173,7 @@ def _settle_quickly(look: Look, evaluator: Evaluator, x: Vector, seed: int) -> N
         max_seconds=seconds,
         more_starts=[x],
     )
-    _keep(look, evaluator, evaluator.point(evaluator.space.to_z(solution.x)))
+    _store_best(look, evaluator, evaluator.point(evaluator.space.to_z(solution.x)))
 
 
 def _coordinates(
@@ -189,10 +188,10 @@ def _coordinates(
             yield swept.z[:, 0].copy(), not starts
 
 
-def _keep(look: Look, evaluator: Evaluator, point: Point) -> Point:
+def _store_best(look: Look, evaluator: Evaluator, point: Point) -> Point:
     """Store a point if it is better than the known ones; returns the point."""
-    better = (max(point.violation, FEASIBLE), point.objective)
-    if not point.valid or better >= (max(look.violation, FEASIBLE), look.objective):
+    better = (max(point.violation, MET), point.objective)
+    if not point.valid or better >= (max(look.violation, MET), look.objective):
         return point
     look.x, look.objective, look.violation = point.x, point.objective, point.violation
     margins = point.rows[1 : 1 + evaluator.constraint_count]

@@ -27,10 +27,6 @@ from .resolve.changed import ChangedProblems, applicable
 Indices: TypeAlias = npt.NDArray[np.intp]
 
 
-FEASIBLE = 1e-6
-"""Slack that counts as zero."""
-
-
 MOST = 200
 """Maximum evaluations of one descent; 10 to 50 usually suffice."""
 
@@ -117,10 +113,10 @@ def _extended(
 
 def feasible_point(evaluator: Evaluator, point: Point) -> Point | None:
     """Return a feasible point near `point`, by minimising one common slack, or None."""
-    if point.violation <= FEASIBLE:
+    if point.violation <= NOTHING:
         return point
     end = least_missed(evaluator, point)
-    return end if end.violation <= FEASIBLE else None
+    return end if end.violation <= NOTHING else None
 
 
 def least_missed(evaluator: Evaluator, point: Point, rough: float = np.inf) -> Point:
@@ -176,7 +172,7 @@ def finish(evaluator: Evaluator, point: Point) -> Point:
 
 
 NOTHING = 1e-6
-"""A relaxation below this counts as zero."""
+"""Relaxation or violation below which it counts as zero."""
 
 SETTLED = 1e-6
 """Residual of the optimality conditions up to which a result counts as an optimum."""

@@ -34,7 +34,7 @@ from ..evaluation import Evaluation, evaluate, prepare
 from . import repairs
 from .actuator import ActuatorProblem, Fault, Solution
 from .branch_and_bound import SAME, Assignment, Listed, SizeSearch, search
-from .cures import freed, opened
+from .cures import least_changes, with_variables
 from .evaluator import Evaluator
 from .infeasibility_card import change_text, entry_of
 from .problem import BoxProblem, PointValues, Vector
@@ -79,20 +79,23 @@ def size_remedies(
     objective = math.inf if size_search.objective is None else size_search.objective
     cheap = objective - solution.objective <= COSTLY / 100 * abs(solution.objective)
     remedies: list[SizeRemedy] = []
-    assignments = [] if cheap else _smaller(listed, solution.x, size_search)
+    assignments = [] if cheap else _other_sizes(listed, solution.x, size_search)
     for assignment in assignments:
         if deadline is not None and time.perf_counter() > deadline:
             break
         tell("rounding costs much: searching for a limit that allows a smaller size")
-        fixed = _Held(actuator, listed, assignment, solution.x, objective)
-        remedies += [*fixed.relaxed(_limits(actuator, solution, size_search)), *fixed.repressured()]
+        fixed = _FixedSizes(actuator, listed, assignment, solution.x, objective)
+        remedies += [
+            *fixed.relaxed(_limits(actuator, solution, size_search)),
+            *fixed.with_other_pressure(),
+        ]
     sign = actuator.goal.sign
     note = f"no change of one limit, load or the supply pressure by up to {100 * SMALL:g} % "
     note = f"{note}allows better sizes" if assignments and not remedies else ""
     return tuple(sorted(remedies, key=lambda remedy: sign * remedy.objective)), note
 
 
-def _smaller(listed: Sequence[Listed], x: Vector, size_search: SizeSearch) -> list[Assignment]:
+def _other_sizes(listed: Sequence[Listed], x: Vector, size_search: SizeSearch) -> list[Assignment]:
     """Combinations of sizes with the most rounded size at its other neighbour.
 
     The least infeasible sizes if no sized design is feasible.
@@ -127,14 +130,14 @@ def _limits(actuator: ActuatorProblem, solution: Solution, size_search: SizeSear
 
 
 @dataclass(frozen=True)
-class _Held:
+class _FixedSizes:
     """The problem with every size of an assignment fixed."""
 
     actuator: ActuatorProblem
     listed: Sequence[Listed]
     assignment: Assignment
     x: Vector
-    below: float
+    objective: float
 
     @property
     def sizes(self) -> dict[int, float]:
@@ -146,7 +149,7 @@ class _Held:
             for i, v in zip(group.index, group.rows[row], strict=True)
         }
 
-    def held(self, problem: BoxProblem) -> BoxProblem:
+    def with_sizes(self, problem: BoxProblem) -> BoxProblem:
         """A problem with the sizes fixed."""
         lower, upper = problem.lower.copy(), problem.upper.copy()
         for place, value in self.sizes.items():
@@ -155,7 +158,7 @@ class _Held:
 
     def relaxed(self, indices: Sequence[int]) -> Iterator[SizeRemedy]:
         """The least relaxation of each limit that makes the sizes feasible."""
-        problem = self.held(self.actuator.problem)
+        problem = self.with_sizes(self.actuator.problem)
         assert problem.groups is not None
         numbers = np.asarray(problem.groups)
         groups = [np.flatnonzero(numbers == numbers[index]) for index in indices]
@@ -177,17 +180,17 @@ class _Held:
 
             yield from self.remedy(replace(problem, evaluate=evaluate), start, entry)
 
-    def repressured(self) -> Iterator[SizeRemedy]:
+    def with_other_pressure(self) -> Iterator[SizeRemedy]:
         """The least change of the supply pressure that makes the sizes feasible."""
         if PRESSURE in self.actuator.paths:
             return
         design = self.actuator.subject.design
-        problem = self.held(opened(self.actuator, [PRESSURE]))
+        problem = self.with_sizes(with_variables(self.actuator, [PRESSURE]))
         present = float(problem.lower[-1])
         for sign in (1.0, -1.0):
             limit = {len(self.x): present * (1 + sign * SMALL)}
             start = np.append(self.x, present)
-            for cure in freed(problem, start, limit, {len(self.x): PRESSURE}, design):
+            for cure in least_changes(problem, start, limit, {len(self.x): PRESSURE}, design):
                 quantity = quantity_of(PRESSURE, design)
                 value = float(cure.needed)
                 lower, upper = problem.lower.copy(), problem.upper.copy()
@@ -212,7 +215,7 @@ class _Held:
             return
         evaluator = Evaluator(eased)
         end = repairs.go(evaluator, evaluator.point(evaluator.space.to_z(point)))
-        if end.violation > repairs.NOTHING or not end.objective < self.below:
+        if end.violation > repairs.NOTHING or not end.objective < self.objective:
             return
         keys = ("parameter", "limit", "needed", "change", "limit_text", "needed_text")
         yield SizeRemedy(
@@ -346,7 +349,7 @@ def sizes_of(
             ]
         )
     if not size_groups and (requested.whole_plies or requested.standard):
-        raise InputError(_nothing(requested))
+        raise InputError(_nothing_to_round(requested))
     place = {path: index for index, path in enumerate(design.variables)}
     listed = tuple(
         Listed(tuple(place[path] for path in group.paths), np.array(group.rows))
@@ -388,7 +391,7 @@ def _require_plies(design: Design, requested: Wanted, materials: Mapping[str, Ma
         raise InputError(faults)
 
 
-def _nothing(requested: Wanted) -> Diagnostic:
+def _nothing_to_round(requested: Wanted) -> Diagnostic:
     if requested.standard:
         message = "nothing to round: no variable has standard sizes"
         remedy = "make cylinder.bore or rod.outer_diameter a variable, or give a variable sizes"
@@ -474,14 +477,14 @@ def _rounding(
         feasible=feasible,
         solves=size_search.solves,
         complete=size_search.complete,
-        notes=_unmade(actuator, actuator.subject.design)[1],
+        notes=_unbuildable(actuator, actuator.subject.design)[1],
     )
     if size_search.x is None or size_search.objective is None:
         return failure
     design, evaluation = design_at(actuator, size_search.x)
     cost = _cost(size_search.objective, solution)
     sentence, remedy = _sentence(sizes.name, evaluation.met, size_search.complete)
-    unmade, notes = _unmade(actuator, design)
+    unmade, notes = _unbuildable(actuator, design)
     return replace(
         failure,
         unmade=unmade,
@@ -512,7 +515,7 @@ def _nearest(actuator: ActuatorProblem, sizes: ListedSizes, size_search: SizeSea
     worst = actuator.problem.constraint_names[int(np.argmin(margins))]
     texts = [
         f"{path} {quantity_of(path, actuator.subject.design).text(value)}"
-        for path, value in _chosen(actuator, sizes.listed, size_search.nearest).items()
+        for path, value in _values_of(actuator, sizes.listed, size_search.nearest).items()
     ]
     if len(texts) > MOST_SAID:
         texts = [*texts[:MOST_SAID], "…"]
@@ -520,7 +523,7 @@ def _nearest(actuator: ActuatorProblem, sizes: ListedSizes, size_search: SizeSea
     return f"; the nearest, {', '.join(texts)}, misses {worst} by {by:.2g} %"
 
 
-def _chosen(
+def _values_of(
     actuator: ActuatorProblem, listed: Sequence[Listed], assignment: Assignment
 ) -> dict[str, float]:
     """The listed variables of an assignment by PATH."""
@@ -554,7 +557,9 @@ def _sentence(name: str, met: bool, complete: bool) -> tuple[str, str]:
     )
 
 
-def _unmade(actuator: ActuatorProblem, design: Design) -> tuple[tuple[str, ...], tuple[str, ...]]:
+def _unbuildable(
+    actuator: ActuatorProblem, design: Design
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """PATHs without whole plies, allowed angles or `ply_thickness`, and a sentence on each.
 
     Before rounding, only those that are not variables.
@@ -616,7 +621,7 @@ def _runners_up(
     rows = []
     for objective, assignment in candidates[:RUNNERS_UP]:
         cost = _cost(objective, solution)
-        values = _chosen(actuator, listed, assignment)
+        values = _values_of(actuator, listed, assignment)
         shown = actuator.goal.shown(objective)
         rows.append(RunnerUp(shown, cost, _percent(cost, solution), values))
     return tuple(rows)

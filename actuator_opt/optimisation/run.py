@@ -190,12 +190,7 @@ def optimise(
         choices = record(choice_search, subject.design)
         best = choice_search.ranked()[0] if sized is None else sized.look
         if best.actuator is None or best.solution is None:
-            optimisation = _enumerated(subject, choice_search, choices, seed, began)
-            return (
-                replace(optimisation, certificate=enumerated(optimisation, choice_search.goal))
-                if certify
-                else optimisation
-            )
+            return _enumerated(subject, choice_search, choices, seed, began, certify=certify)
         actuator, solution = best.actuator, best.solution
     else:
         actuator = build(subject, fault)
@@ -209,20 +204,20 @@ def optimise(
             max_seconds=max_seconds,
             keep_interrupted=keep_interrupted,
         )
-    after = _After(solution)
+    follow_up = _FollowUp(solution)
     try:
         if sizes is not None and solution.feasible and not solution.interrupted:
-            search_args = (sizes, None) if sized is None else (sized.sizes, sized.found)
-            after.rounding, after.solution = rounded(
+            search_args = (sizes, None) if sized is None else (sized.sizes, sized.size_search)
+            follow_up.rounding, follow_up.solution = rounded(
                 actuator, solution, *search_args, until=deadline, seed=seed
             )
-        _follow(actuator, after, prices=prices, certify=certify, explain=explain)
+        _complete(actuator, follow_up, prices=prices, certify=certify, explain=explain)
     except KeyboardInterrupt:
         if not keep_interrupted:
             raise
         outcome = Outcome.INTERRUPTED if solution.feasible else Outcome.INTERRUPTED_INFEASIBLE
-        after = _After(replace(solution, outcome=outcome))
-    return _result(subject, actuator, after, choices, seed, began)
+        follow_up = _FollowUp(replace(solution, outcome=outcome))
+    return _result(subject, actuator, follow_up, choices, seed, began)
 
 
 def result_of(
@@ -245,47 +240,47 @@ def result_of(
     began : time of `time.perf_counter` when it began
     start : start of the search; default: the design as stated
     """
-    after = _After(solution)
-    _follow(actuator, after, prices=prices, certify=False, explain=False)
-    return _result(subject, actuator, after, None, seed, began, start)
+    follow_up = _FollowUp(solution)
+    _complete(actuator, follow_up, prices=prices, certify=False, explain=False)
+    return _result(subject, actuator, follow_up, None, seed, began, start)
 
 
 @dataclass
-class _After:
+class _FollowUp:
     """The solution and its follow-up results."""
 
     solution: Solution
     rounding: Rounding | None = None
-    why: Infeasibility | None = None
+    infeasibility: Infeasibility | None = None
     rows: tuple[Sensitivity, ...] = ()
     certificate: Certificate | None = None
 
 
-def _follow(
-    actuator: ActuatorProblem, after: _After, *, prices: bool, certify: bool, explain: bool
+def _complete(
+    actuator: ActuatorProblem, follow_up: _FollowUp, *, prices: bool, certify: bool, explain: bool
 ) -> None:
     """Explain, certify and price a solution."""
-    if after.solution.interrupted:
+    if follow_up.solution.interrupted:
         return
     if explain:
-        after.why, after.solution = explained(actuator, after.solution)
-    if certify and after.solution.feasible:
-        after.certificate = certified(actuator, after.solution)
-    if prices and after.solution.outcome is Outcome.OPTIMUM:
-        after.rows = sensitivities(actuator, after.solution)
+        follow_up.infeasibility, follow_up.solution = explained(actuator, follow_up.solution)
+    if certify and follow_up.solution.feasible:
+        follow_up.certificate = certified(actuator, follow_up.solution)
+    if prices and follow_up.solution.outcome is Outcome.OPTIMUM:
+        follow_up.rows = sensitivities(actuator, follow_up.solution)
 
 
 def _result(
     subject: PreparedDesign,
     actuator: ActuatorProblem,
-    after: _After,
+    follow_up: _FollowUp,
     choices: Choices | None,
     seed: int,
     began: float,
     start: Evaluation | None = None,
 ) -> Optimisation:
     """Assemble the result."""
-    solution = after.solution
+    solution = follow_up.solution
     design, evaluation = design_at(actuator, solution.x)
     return Optimisation(
         status=solution.outcome.status,
@@ -298,8 +293,8 @@ def _result(
         start=evaluate(subject) if start is None else start,
         variables=_variables(actuator, solution),
         kkt=_kkt(solution),
-        sensitivities=after.rows,
-        infeasibility=after.why,
+        sensitivities=follow_up.rows,
+        infeasibility=follow_up.infeasibility,
         evaluations=solution.evaluations,
         samples=solution.samples,
         starts=tuple(
@@ -316,8 +311,8 @@ def _result(
         ),
         seed=seed,
         seconds=time.perf_counter() - began,
-        certificate=after.certificate,
-        rounding=after.rounding,
+        certificate=follow_up.certificate,
+        rounding=follow_up.rounding,
         choices=choices,
     )
 
@@ -330,7 +325,13 @@ def _idle(actuator: ActuatorProblem) -> tuple[str, ...]:
 
 
 def _enumerated(
-    subject: PreparedDesign, choice_search: ChoiceSearch, choices: Choices, seed: int, began: float
+    subject: PreparedDesign,
+    choice_search: ChoiceSearch,
+    choices: Choices,
+    seed: int,
+    began: float,
+    *,
+    certify: bool,
 ) -> Optimisation:
     """The best combination of the choices, if nothing else is free."""
     best = choice_search.ranked()[0]
@@ -338,7 +339,7 @@ def _enumerated(
     status, remedy = "optimal", ""
     if not best.feasible:
         status, remedy = "infeasible", "relax the requirement it misses, or add values to choices"
-    return Optimisation(
+    optimisation = Optimisation(
         status=status,
         sentence=choices.sentence,
         remedy=remedy,
@@ -361,6 +362,9 @@ def _enumerated(
         seconds=time.perf_counter() - began,
         choices=choices,
     )
+    if not certify:
+        return optimisation
+    return replace(optimisation, certificate=enumerated(optimisation, choice_search.goal))
 
 
 def _variables(actuator: ActuatorProblem, solution: Solution) -> tuple[VariableResult, ...]:

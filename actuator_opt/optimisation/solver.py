@@ -22,17 +22,16 @@ import numpy as np
 
 from ..base.progress import tell
 from . import kkt, nlopt_wrapper
-from .actuator import LocalOptimum, Outcome, Solution
+from .actuator import MET, LocalOptimum, Outcome, Solution
 from .evaluator import CHUNK, Evaluator, LimitReached, Point
 from .problem import BoxProblem, Vector
 from .resolve.parallel_descents import (
-    FEASIBLE,
     LOCAL_EVALUATIONS,
-    RESIDUAL,
     Descents,
     SearchResult,
     precompute,
 )
+from .resolve.steps import RESIDUAL
 
 KEEP = 256
 """Number of best points kept as candidate starts."""
@@ -246,16 +245,16 @@ def _default_path(search: Descents, points: list[Point]) -> None:
     precompute(search.evaluator, points, seed=search.seed, max_evaluations=LOCAL_EVALUATIONS)
     for number, point in enumerate(points):
         tell("searching for a design", number / len(points))
-        if search.least and not search.feasible:
+        if search.least_infeasible and not search.feasible:
             search.restore(point, start=point)
         elif not search.descend(point, "LD_SLSQP", linear=False, max_evaluations=LOCAL_EVALUATIONS):
             failed.append(point)
             if not search.feasible:
                 search.restore(search.optima[-1].point, start=point)
-    if search.least and not search.feasible:
+    if search.least_infeasible and not search.feasible:
         return
     best = search.best()
-    if best is not None and best.point.violation <= FEASIBLE and not search.succeeded:
+    if best is not None and best.point.violation <= MET and not search.succeeded:
         search.descend(best.point, "LD_SLSQP", linear=False, max_evaluations=LOCAL_EVALUATIONS)
     failed = [
         point
@@ -348,11 +347,9 @@ def _conclude(search: Descents, swept: Sweep) -> Solution:
 def _best_seen(search: Descents, swept: Sweep) -> SearchResult:
     """The best of all points: of the runs, the sweep, the start or the middle."""
     evaluator = search.evaluator
-    space, start = evaluator.space, evaluator.problem.start
-    reference = (space.lower + space.upper) / 2 if start is None else space.to_z(start)
     if search.interrupted or evaluator.exhausted:
-        evaluator.enter_foreseen()
-    points = [evaluator.point(z) for z in (*swept.z[:, :1].T.copy(), reference)]
+        evaluator.enter_precomputed()
+    points = [evaluator.point(z) for z in (*swept.z[:, :1].T.copy(), evaluator.space.reference)]
     if evaluator.best is not None:
         points.insert(0, evaluator.best)
     best = search.best([SearchResult(p, search.residual(p), "best point seen") for p in points])
@@ -370,11 +367,8 @@ def _settle(search: Descents, best: SearchResult) -> tuple[Point, tuple[str, ...
     idle = np.flatnonzero(evaluator.influence[1] == 0.0)
     if len(idle) == 0:
         return best.point, ()
-    reference = (space.lower + space.upper) / 2
-    if problem.start is not None:
-        reference = space.to_z(problem.start)
     z = best.point.z.copy()
-    z[idle] = reference[idle]
+    z[idle] = space.reference[idle]
     restored = evaluator.point(z)
     names = tuple(problem.names[space.free[j]] for j in idle)
     unchanged = restored.valid and np.array_equal(restored.rows, best.point.rows)
@@ -385,7 +379,7 @@ def _outcome(
     search: Descents, swept: Sweep, point: Point, kkt_residual: kkt.KktResidual | None
 ) -> Outcome:
     evaluator = search.evaluator
-    feasible = point.valid and point.violation <= FEASIBLE
+    feasible = point.valid and point.violation <= MET
     if search.interrupted:
         return Outcome.INTERRUPTED if feasible else Outcome.INTERRUPTED_INFEASIBLE
     if not point.valid:
@@ -407,7 +401,7 @@ def _outcome(
 
 def _local_optima(search: Descents) -> tuple[LocalOptimum, ...]:
     valid = [o for o in search.optima if o.point.valid]
-    valid.sort(key=lambda o: (not o.good, max(o.point.violation, FEASIBLE), o.point.objective))
+    valid.sort(key=lambda o: (not o.good, max(o.point.violation, MET), o.point.objective))
     return tuple(
         LocalOptimum(o.point.x, o.point.objective, o.point.violation, o.residual, o.hits)
         for o in valid

@@ -15,12 +15,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from . import kkt, prices
-from .actuator import ActuatorProblem, Outcome, Responses, Solution, responses
+from .actuator import MET, ActuatorProblem, Outcome, Responses, Solution, responses
 from .evaluator import Evaluator, LimitReached, Point
 from .problem import BoxProblem, ParametricProblem, Vector
 from .resolve import ladder
 from .resolve.changed import ChangedProblems, applicable
-from .resolve.steps import Valley, valley_at
+from .resolve.steps import RESIDUAL, Valley, valley_at
 from .solver import solve
 
 Stop = Callable[[], bool]
@@ -229,10 +229,7 @@ class WarmStart:
         """Reuse the gradient check for a changed problem, or run its own."""
         solved, problem = self.evaluator, evaluator.problem
         if tuple(problem.constraint_names) == tuple(solved.problem.constraint_names):
-            evaluator.complex_works, evaluator.difference_rows = (
-                solved.complex_works,
-                solved.difference_rows,
-            )
+            evaluator.adopt_check(solved)
         else:
             evaluator.check_gradients(
                 evaluator.point(evaluator.space.to_z(problem.inside(self.point.x)))
@@ -296,11 +293,7 @@ class WarmStart:
         problem = self.actuator.problem
         for value in {min(values), max(values)} - {present}:
             changed = rebuilt(value).problem
-            same_rows = tuple(changed.constraint_names) == tuple(problem.constraint_names)
-            same_box = np.array_equal(problem.lower, changed.lower) and np.array_equal(
-                problem.upper, changed.upper
-            )
-            if not (same_rows and same_box):
+            if not problem.same_rows_and_box(changed):
                 return False
             x = self.point.x[:, None]
             ours, theirs = parametric.at(np.array([value])).rows(x), changed.rows(x)
@@ -320,10 +313,10 @@ class WarmStart:
 def _solution(evaluator: Evaluator, point: Point, algorithm: str) -> Solution:
     """A point as a search result; an optimum if it is feasible and stationary."""
     quality = kkt.check(evaluator, point) if point.valid else None
-    if point.violation > ladder.FEASIBLE or quality is None:
+    if point.violation > MET or quality is None:
         outcome = Outcome.INFEASIBLE
     else:
-        stationary = quality.residual <= ladder.RESIDUAL
+        stationary = quality.residual <= RESIDUAL
         outcome = Outcome.OPTIMUM if stationary else Outcome.NOT_STATIONARY
     m = evaluator.constraint_count
     return Solution(
@@ -343,6 +336,6 @@ def _solution(evaluator: Evaluator, point: Point, algorithm: str) -> Solution:
 
 
 def _stopped(solution: Solution) -> Solution:
-    feasible = solution.violation <= ladder.FEASIBLE
+    feasible = solution.violation <= MET
     outcome = Outcome.INTERRUPTED if feasible else Outcome.INTERRUPTED_INFEASIBLE
     return replace(solution, outcome=outcome)

@@ -20,16 +20,15 @@ import numpy as np
 
 from ...base.numeric import Array
 from ...base.progress import tell
-from ..actuator import Solution
+from ..actuator import MET, Solution
 from ..evaluator import Evaluator, Point
 from ..problem import PointValues, Vector
 from ..resolve.parallel_descents import (
-    FEASIBLE,
-    RESIDUAL,
     converged_from,
     descents_from,
     distinct_ends,
 )
+from ..resolve.steps import RESIDUAL
 from ..solver import KEEP, Halton, Sweep, distinct, solve, sweep
 from . import tracer
 from .objectives import Conditions, Objectives
@@ -100,14 +99,10 @@ def find_anchors(
             objectives.single_problem(index),
             starts=effort.starts, samples=effort.samples, seed=effort.seed, more_starts=known_x,
         )  # fmt: skip
-        if (
-            solution.violation > FEASIBLE
-            or solution.kkt is None
-            or solution.kkt.residual > RESIDUAL
-        ):
+        if solution.violation > MET or solution.kkt is None or solution.kkt.residual > RESIDUAL:
             return NoAnchor(index, solution)
         best.append(solution.x)
-        known_x += [optimum.x for optimum in solution.optima if optimum.violation <= FEASIBLE]
+        known_x += [optimum.x for optimum in solution.optima if optimum.violation <= MET]
     return Anchors(np.stack(best, axis=1), np.stack(known_x, axis=1))
 
 
@@ -158,7 +153,7 @@ def _optima(run_ends: Sequence[Point], converged: Sequence[Point | None]) -> lis
     )
     unfinished = [
         p.objective for p, point in zip(run_ends, converged, strict=True)
-        if point is None and p.violation <= FEASIBLE
+        if point is None and p.violation <= MET
     ]  # fmt: skip
     if not optima or min(unfinished, default=np.inf) < optima[0].objective:
         return []
@@ -230,7 +225,7 @@ def overlooked(tracer: Tracer, designs: Sequence[FrontDesign], effort: FrontEffo
                 tracer.at(design.level, design.direction),
                 starts=effort.starts, samples=effort.samples, seed=effort.seed + number,
             )  # fmt: skip
-            ends = [(solution.objective, solution.x)] if solution.violation <= FEASIBLE else []
+            ends = [(solution.objective, solution.x)] if solution.violation <= MET else []
         level, x = min(ends, key=lambda end: end[0], default=(np.inf, design.point.x))
         if level < design.point.objective - OVERLOOKED:
             result.append(x[:-1])
@@ -250,7 +245,7 @@ def _feasible_ends(
     problems = tracer.parametric, evaluators, parameters
     starts = _overlooked_starts(tracer, designs, effort)
     run_ends = descents_from(*problems, starts, effort.seed, tolerance=TOLERANCE, rounds=ROUNDS)
-    feasible = [[point for point in points if point.violation <= FEASIBLE] for points in run_ends]
+    feasible = [[point for point in points if point.violation <= MET] for points in run_ends]
     unfinished = [
         [] if feasible_points else distinct_ends(points)
         for feasible_points, points in zip(feasible, run_ends, strict=True)

@@ -18,7 +18,7 @@ from ...base.numeric import Array
 from ..evaluator import Evaluator, Point
 from ..kkt import residual
 from ..problem import BoxProblem, ParametricProblem, PointValues, Vector
-from ..resolve.parallel_descents import RESIDUAL
+from ..resolve.steps import RESIDUAL
 
 LEVEL = "level of the objectives"
 """Name of the variable t."""

@@ -21,7 +21,7 @@ import numpy.typing as npt
 
 from ...base.progress import tell
 from ..problem import Vector
-from ..resolve.parallel_descents import RESIDUAL
+from ..resolve.steps import RESIDUAL
 from .tracer import (
     BETTER,
     HELD,

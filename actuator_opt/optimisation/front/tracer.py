@@ -13,11 +13,11 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import kkt
+from ..actuator import MET
 from ..evaluator import Evaluator, Point
 from ..problem import BoxProblem, Vector
 from ..resolve.changed import ChangedProblems, applicable
-from ..resolve.parallel_descents import FEASIBLE, RESIDUAL
-from ..resolve.steps import RADIUS, Descent, free_hessians
+from ..resolve.steps import RADIUS, RESIDUAL, Descent, free_hessians
 from ..solver import solve
 from .objectives import Conditions, Objectives
 
@@ -392,7 +392,7 @@ class Tracer:
                 break
             hessians = free_hessians(self.evaluator, [descents[i] for i in unfinished])
             current = [
-                replace(current[i], z=descents[i].known.z, hessian=hessian)
+                replace(current[i], z=descents[i].current.z, hessian=hessian)
                 for i, hessian in zip(unfinished, hessians, strict=True)
             ]
             indices = [indices[i] for i in unfinished]
@@ -426,11 +426,7 @@ class Tracer:
         problem = replace(self.at(start.level, start.direction), start=None)
         x = self.evaluator.space.to_x(start.z[:, None])[:, 0]
         solution = solve(problem, starts=1, samples=0, more_starts=[x])
-        if (
-            solution.violation > FEASIBLE
-            or solution.kkt is None
-            or solution.kkt.residual > FEASIBLE
-        ):
+        if solution.violation > MET or solution.kkt is None or solution.kkt.residual > MET:
             return None
         return self.design_at(start, solution.x)
 
@@ -461,8 +457,7 @@ class Tracer:
     def evaluator_of(self, problem: BoxProblem) -> Evaluator:
         """An evaluator of a problem that reuses the gradient check."""
         evaluator = Evaluator(problem)
-        evaluator.complex_works = self._checked.complex_works
-        evaluator.difference_rows = self._checked.difference_rows
+        evaluator.adopt_check(self._checked)
         return evaluator
 
 

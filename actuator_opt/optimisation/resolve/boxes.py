@@ -14,10 +14,19 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import kkt, nlopt_wrapper, repairs
+from ..actuator import MET
 from ..evaluator import Evaluator, Point, points_together
 from ..problem import Vector
-from .parallel_descents import FEASIBLE, RESIDUAL
-from .steps import PATIENCE, SETTLED, ScaledHessian, Steps, restoring_steps, run_batch
+from .steps import (
+    PATIENCE,
+    RESIDUAL,
+    SETTLED,
+    ScaledHessian,
+    Steps,
+    is_met,
+    restoring_steps,
+    run_batch,
+)
 
 STEPS = 14
 """Maximum steps with the Hessian of the other optimum."""
@@ -89,10 +98,10 @@ def resolve_boxes(tasks: Sequence[BoxTask]) -> list[Nearest]:
     The problems differ only in their bounds, so that one model call serves a step of all.
     """
 
-    def answer(requests: Mapping[int, Vector]) -> list[Point]:
+    def evaluate(requests: Mapping[int, Vector]) -> list[Point]:
         return points_together([(tasks[k].evaluator, z) for k, z in requests.items()])
 
-    ends = run_batch([_approach(task) for task in tasks], answer)
+    ends = run_batch([_approach(task) for task in tasks], evaluate)
     return [_finished(*pair) for pair in zip(tasks, ends, strict=True)]
 
 
@@ -104,7 +113,7 @@ def _finished(task: BoxTask, end: Nearest) -> Nearest:
         task.evaluator, end.optimum, "LD_SLSQP", max_evaluations=MOST_STEPS
     ).point
     point = kkt.polish(task.evaluator, point, iterations=8, tolerance=1e-10)
-    return Nearest(point if _met(point) else end.optimum)
+    return Nearest(point if is_met(point) else end.optimum)
 
 
 def _approach(task: BoxTask) -> Steps[Nearest]:
@@ -112,7 +121,7 @@ def _approach(task: BoxTask) -> Steps[Nearest]:
     evaluator = task.evaluator
     start = yield evaluator.space.to_z(task.x)
     if evaluator.space.size == 0:
-        return Nearest(start, followed=True) if _met(start) else Nearest(None, start)
+        return Nearest(start, followed=True) if is_met(start) else Nearest(None, start)
     if not start.valid:
         return Nearest(None)
     if task.hessian is not None and not task.hopeless:
@@ -137,13 +146,13 @@ def fixed_hessian_steps(
     """
     clearly_worse = cutoff + WORSE * abs(cutoff) if cutoff < np.inf else np.inf
     space = evaluator.space
-    hessian = scaled_hessian.seen_by(evaluator, start.x)
+    hessian = scaled_hessian.in_coordinates(evaluator, start.x)
     if not (np.diag(hessian) > 0).all():  # free here, but fixed in the other problem
         return None
     no_equalities = np.zeros(len(evaluator.problem.equality_names))
     previous_length, point, reference = np.inf, start, np.inf
     for iteration in range(STEPS):
-        stuck = iteration > PATIENCE and point.violation > max(0.98 * reference, FEASIBLE)
+        stuck = iteration > PATIENCE and point.violation > max(0.98 * reference, MET)
         if not point.valid or stuck:
             return None
         if iteration % PATIENCE == 0:
@@ -187,7 +196,3 @@ def _restored(evaluator: Evaluator, start: Point, patience: int) -> Steps[Neares
         best = least_infeasible or start
     doubtful = best.violation <= DOUBTFUL or bool(evaluator.problem.equality_names)
     return Nearest(repairs.feasible_point(evaluator, best) if doubtful else None, best)
-
-
-def _met(point: Point) -> bool:
-    return point.valid and point.violation <= FEASIBLE

@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...base.numeric import STEP
+from ..actuator import MET
 from ..evaluator import Evaluator, Point
 from ..problem import ParametricProblem, Vector
 from .steps import (
     FEASIBLE,
     LONGEST,
-    MET,
     Descent,
     Result,
     Steps,
@@ -46,7 +46,7 @@ class ChangedProblems:
     evaluator: Evaluator
     parameters: Vector
 
-    def chosen(self, numbers: Sequence[int]) -> ChangedProblems:
+    def subset(self, numbers: Sequence[int]) -> ChangedProblems:
         """The problems with these numbers only."""
         return replace(self, parameters=self.parameters[:, list(numbers)])
 
@@ -60,11 +60,8 @@ class ChangedProblems:
         parameters = parameters if numbers is None else parameters[:, list(numbers)]
         space, (nf, count) = evaluator.space, z.shape
         x = space.to_x(z)
-        batch = np.repeat(x.astype(complex), nf, axis=1)
-        columns = np.arange(count * nf).reshape(count, nf)
-        batch[space.free[None, :], columns] += 1j * STEP * space.slope(x).T
         problem = self.parametric.with_columns(np.repeat(parameters, nf, axis=1))
-        rows = problem.rows(batch).reshape(-1, count, nf)
+        rows = problem.rows(space.complex_steps(x)).reshape(-1, count, nf)
         values, slopes = rows.real[:, :, 0], np.asarray(rows.imag / STEP, dtype=float)
         values = Evaluator.screen(values)
         violation = evaluator.violations(values, "worst")
@@ -77,10 +74,10 @@ class ChangedProblems:
     def run(self, solvers: Sequence[Steps[Result]]) -> list[Result]:
         """The result of a solver for each problem."""
 
-        def answer(requests: Mapping[int, Vector]) -> list[Point]:
+        def evaluate(requests: Mapping[int, Vector]) -> list[Point]:
             return self.points(np.stack(list(requests.values()), axis=1), list(requests))
 
-        return run_batch(solvers, answer)
+        return run_batch(solvers, evaluate)
 
     def step_fully(self, descents: Sequence[Descent], starts: Vector) -> list[Point | None]:
         """The optimum of each problem by `full_steps` from starts (nf, K)."""

@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .. import kkt, repairs
-from ..actuator import Solution
+from ..actuator import MET, Solution
 from ..evaluator import Evaluator, Point
 from ..kkt import polish
 from ..problem import BoxProblem, ParametricProblem, Vector
@@ -24,12 +24,6 @@ from ..solver import solve
 from . import steps
 from .changed import ChangedProblems, applicable
 from .steps import Valley
-
-FEASIBLE = 1e-6
-"""Worst missed margin that still counts as met."""
-
-RESIDUAL = 1e-6
-"""Residual of the optimality conditions that a re-solved optimum must reach."""
 
 BETTER = 1e-8
 """Relative improvement of the objective that indicates another valley."""
@@ -122,7 +116,7 @@ def resolve_batch(
     point = first.point
     optima = changed.near_optimum(first, starts)
     missing = [i for i, optimum in enumerate(optima) if optimum is None]
-    restored = changed.chosen(missing).restore(point.z)
+    restored = changed.subset(missing).restore(point.z)
     ends = _Ends(changed, optima, [None] * len(optima))
     ends.descend(first, dict(zip(missing, restored, strict=True)))
     for valley in valleys[1:]:
@@ -131,11 +125,11 @@ def resolve_batch(
         ends.descend(valley, dict(enumerate(changed.restore(start))))
     single = len(optima) == 1 and len(valleys) == 1  # nothing to exchange
     for _ in range(0 if single else ROUNDS):
-        improved = ends.elsewhere([valley.point for valley in valleys])
+        improved = ends.better_designs([valley.point for valley in valleys])
         if not improved:
             break
         ends.descend(first, improved)
-    return ends.settled()
+    return ends.results()
 
 
 @dataclass
@@ -144,7 +138,7 @@ class _Ends:
 
     changed: ChangedProblems
     optima: list[Point | None]
-    known: list[Point | None]
+    best_feasible: list[Point | None]
     feasible: dict[int, Vector] = field(default_factory=dict)
 
     def descend(self, valley: Valley, starts: Mapping[int, Vector | None]) -> None:
@@ -155,12 +149,12 @@ class _Ends:
             return
         self.feasible = feasible_starts | self.feasible
         z = np.stack(list(feasible_starts.values()), axis=1)
-        optima, stopped = self.changed.chosen(numbers).descend_from(valley, z)
+        optima, stopped = self.changed.subset(numbers).descend_from(valley, z)
         for i, optimum, stop in zip(numbers, optima, stopped, strict=True):
             self.optima[i] = _better(self.optima[i], optimum)
-            self.known[i] = _better(self.known[i], stop)
+            self.best_feasible[i] = _better(self.best_feasible[i], stop)
 
-    def elsewhere(self, valleys: Sequence[Point]) -> dict[int, Vector]:
+    def better_designs(self, valleys: Sequence[Point]) -> dict[int, Vector]:
         """For each problem the best design of the others, if better than its own."""
         points = [*valleys, *(optimum for optimum in self.optima if optimum is not None)]
         rows = self.changed.margins_at(points)
@@ -175,10 +169,10 @@ class _Ends:
                 better[i] = points[int(best_points[i])].z
         return better
 
-    def settled(self) -> tuple[list[Point | None], list[Vector | None]]:
+    def results(self) -> tuple[list[Point | None], list[Vector | None]]:
         """The optima, None where a better design is known; and those designs."""
         feasible_z: list[Vector | None] = [None] * len(self.optima)
-        for i, point in enumerate(self.known):
+        for i, point in enumerate(self.best_feasible):
             if point is not None and point.objective < _beaten(self.optima[i]):
                 self.optima[i], feasible_z[i] = None, point.z
             elif self.optima[i] is None:
@@ -202,8 +196,8 @@ def other_optima(evaluator: Evaluator, solution: Solution) -> list[Point]:
     points = [
         optimum.x
         for optimum in solution.optima
-        if optimum.violation <= FEASIBLE
-        and optimum.residual <= RESIDUAL
+        if optimum.violation <= MET
+        and optimum.residual <= steps.RESIDUAL
         and not np.array_equal(optimum.x, solution.x)
     ]
     return [evaluator.point(evaluator.space.to_z(x)) for x in points]
@@ -238,15 +232,14 @@ def search_near(
     changed = Evaluator(problem)
     if changed.space.size != len(guess):  # the changed bound fixes a variable
         guess = changed.space.to_z(changed.space.to_x(changed.space.lower[:, None])[:, 0])
-    changed.complex_works = evaluator.complex_works
-    changed.difference_rows = evaluator.difference_rows
+    changed.adopt_check(evaluator)
     unmoved = changed.point(changed.space.to_z(np.clip(point.x, problem.lower, problem.upper)))
     start = changed.point(np.clip(guess, changed.space.lower, changed.space.upper))
     starts = [p for p in (start, unmoved) if p.valid]
     if feasible_z is None:
         for trial in starts:
             polished = polish(changed, trial, iterations=8, tolerance=1e-10)
-            uphill = _met(unmoved) and unmoved.objective < polished.objective
+            uphill = steps.is_met(unmoved) and unmoved.objective < polished.objective
             if _optimal(changed, polished) and not uphill:
                 return polished
         restored = repairs.feasible_point(changed, starts[0]) if starts else None
@@ -260,16 +253,16 @@ def search_near(
     further = [p.x for p in (feasible, *starts)]
     for samples in (0, SAMPLES):
         solution = solve(problem, starts=len(further), samples=samples, more_starts=further)
-        if solution.feasible and solution.kkt is not None and solution.kkt.residual <= RESIDUAL:
+        if (
+            solution.feasible
+            and solution.kkt is not None
+            and solution.kkt.residual <= steps.RESIDUAL
+        ):
             return point_of(changed, solution)
     if solution.feasible and solution.objective < feasible.objective:
         return point_of(changed, solution)
     return feasible
 
 
-def _met(point: Point) -> bool:
-    return point.valid and point.violation <= FEASIBLE
-
-
 def _optimal(near: Evaluator, point: Point) -> bool:
-    return _met(point) and kkt.check(near, point).residual <= RESIDUAL
+    return steps.is_met(point) and kkt.check(near, point).residual <= steps.RESIDUAL

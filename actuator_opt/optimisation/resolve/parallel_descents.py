@@ -16,21 +16,13 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import kkt, nlopt_wrapper, repairs
-from ..actuator import StartRecord
+from ..actuator import MET, StartRecord
 from ..evaluator import Evaluator, LimitReached, Point
 from ..kkt import polish
 from ..nlopt_wrapper import ARRIVAL
 from ..problem import ParametricProblem, Vector
 from .changed import ChangedProblems
-from .steps import Batch, Descent, Steps, free_hessians
-
-FEASIBLE = 1e-6
-"""Worst missed margin that still counts as met (contract)."""
-
-
-RESIDUAL = 1e-6
-"""Largest residual of the optimality conditions that counts as an optimum."""
-
+from .steps import RESIDUAL, Batch, Descent, Steps, free_hessians
 
 FINISH = "active-set Newton"
 
@@ -62,7 +54,7 @@ class SearchResult:
     @property
     def good(self) -> bool:
         """Whether it is feasible and satisfies the optimality conditions."""
-        return self.point.violation <= FEASIBLE and self.residual <= RESIDUAL
+        return self.point.violation <= MET and self.residual <= RESIDUAL
 
 
 class Descents:
@@ -74,7 +66,7 @@ class Descents:
         self.optima: list[SearchResult] = []
         self.records: list[StartRecord] = []
         self.warnings: list[str] = []
-        self.least: list[Point] = []
+        self.least_infeasible: list[Point] = []
         """The infeasible point with the least worst violation."""
         self.objective_scale = 0.0
         self.interrupted = False
@@ -87,7 +79,7 @@ class Descents:
     @property
     def feasible(self) -> bool:
         """Whether a feasible point was reached."""
-        return any(optimum.point.violation <= FEASIBLE for optimum in self.optima)
+        return any(optimum.point.violation <= MET for optimum in self.optima)
 
     def residual(self, point: Point) -> float:
         """Residual of the optimality conditions; infinite where the model is undefined."""
@@ -121,7 +113,7 @@ class Descents:
             optima=[o.point for o in known_optima],
         )
         point, name = run.point, run.algorithm + (" (linear variables)" if linear else "")
-        optimum = self.same(point) if point.valid and point.violation <= FEASIBLE else None
+        optimum = self.same(point) if point.valid and point.violation <= MET else None
         if run.arrived is not None:
             optimum = known_optima[run.arrived]
         if optimum is not None:
@@ -138,14 +130,14 @@ class Descents:
     def restore(self, point: Point, *, start: Point) -> None:
         """Minimise the worst violation, and descend from there if it vanishes."""
         evaluations_before = self.evaluator.evaluations
-        smallest = min((p.violation for p in self.least), default=np.inf)
+        smallest = min((p.violation for p in self.least_infeasible), default=np.inf)
         end = repairs.least_missed(self.evaluator, point, smallest / 2)
-        if end.violation <= FEASIBLE:
+        if end.violation <= MET:
             self.descend(end, "LD_SLSQP", linear=False, max_evaluations=LOCAL_EVALUATIONS)
             return
         if end.violation < smallest * (1 - NEARER):
             self.optima.append(SearchResult(end, self.residual(end), RESTORATION))
-        self.least.append(end)
+        self.least_infeasible.append(end)
         if end.violation > smallest * (1 + ELSEWHERE):
             self.descend(end, "LD_SLSQP", linear=False, max_evaluations=LOCAL_EVALUATIONS)
         elif point is start:
@@ -177,7 +169,7 @@ class Descents:
             point = optimum.point
             if not point.valid:
                 return (np.inf, np.inf)
-            missed = point.violation if point.violation > FEASIBLE else 0.0
+            missed = point.violation if point.violation > MET else 0.0
             return (missed, point.objective)
 
         candidates = [*self.optima, *others]
@@ -266,25 +258,25 @@ def run_together(
         ]
     firsts = {run.task: run for run in reversed(runs)}
 
-    def answer(requests: Mapping[int, Vector]) -> list[Point]:
+    def evaluate(requests: Mapping[int, Vector]) -> list[Point]:
         parts = [runs[k].evaluator.columns(z[:, None]) for k, z in requests.items()]
         sizes = [part.shape[1] for part in parts]
         owners = np.repeat([runs[k].task for k in requests], sizes).astype(np.intp)
         values = rows(np.concatenate(parts, axis=1), owners)
         split = np.split(values, np.cumsum(sizes)[:-1], axis=1)
         return [
-            runs[k].entered(*pair)
+            runs[k].enter(*pair)
             for k, pair in zip(requests, zip(requests.values(), split, strict=True), strict=True)
         ]
 
     solvers = [run.steps() for run in runs]
     try:
-        batch = Batch(solvers, answer)
+        batch = Batch(solvers, evaluate)
         _share(runs, batch, set())
         for _ in range(rounds):
-            for k in [k for k in batch.wanted if firsts[runs[k].task].hopeless]:
+            for k in [k for k in batch.requests if firsts[runs[k].task].hopeless]:
                 batch.drop(k)
-            if not batch.wanted or tasks[0].evaluator.late:
+            if not batch.requests or tasks[0].evaluator.late:
                 break
             finished = set(batch.results)
             batch.step()
@@ -330,53 +322,54 @@ class SlsqpRun:
 
     def __post_init__(self) -> None:
         self.best = self.start
-        self._asked: SimpleQueue[Vector | None] = SimpleQueue()
-        self._answers: SimpleQueue[Point | None] = SimpleQueue()
-        self._own = _Asking(self.evaluator, self.start, self._asked, self._answers)
+        self._requests: SimpleQueue[Vector | None] = SimpleQueue()
+        self._replies: SimpleQueue[Point | None] = SimpleQueue()
+        self._evaluator = _QueuedEvaluator(
+            self.evaluator, self.start, self._requests, self._replies
+        )
 
     def steps(self) -> Steps[None]:
         """The run as a solver; closing it early stops it with the best point so far."""
-        thread = Thread(target=self._go, daemon=True)
+        thread = Thread(target=self._run, daemon=True)
         thread.start()
         try:
-            while (z := self._asked.get()) is not None:
-                self._answers.put((yield z))
+            while (z := self._requests.get()) is not None:
+                self._replies.put((yield z))
         finally:
-            self._answers.put(None)
+            self._replies.put(None)
             thread.join()
 
-    def entered(self, z: Vector, rows: npt.NDArray[np.generic]) -> Point:
+    def enter(self, z: Vector, rows: npt.NDArray[np.generic]) -> Point:
         """The point at z (nf,) from the rows of its columns; stored in the task's evaluator."""
-        self.evaluator.foreseen[z.tobytes()] = rows
-        return self._own.entered(z, rows)
+        self.evaluator.precomputed[z.tobytes()] = rows
+        return self._evaluator.enter(z, rows)
 
-    def _go(self) -> None:
+    def _run(self) -> None:
         try:
             run = nlopt_wrapper.run(
-                self._own, self.start, "LD_SLSQP", max_evaluations=self.most, seed=self.seed,
+                self._evaluator, self.start, "LD_SLSQP", max_evaluations=self.most, seed=self.seed,
                 optima=self.known, tolerance=self.tolerance,
             )  # fmt: skip
             self.best = run.point
-            self.hopeless = run.point.violation > FEASIBLE
+            self.hopeless = run.point.violation > MET
             self.new = not self.hopeless and run.arrived is None
         finally:
-            self._asked.put(None)
+            self._requests.put(None)
 
 
-class _Asking(Evaluator):
+class _QueuedEvaluator(Evaluator):
     """An evaluator whose points the batch evaluates."""
 
     def __init__(
         self,
         evaluator: Evaluator,
         start: Point,
-        asked: SimpleQueue[Vector | None],
-        answers: SimpleQueue[Point | None],
+        requests: SimpleQueue[Vector | None],
+        replies: SimpleQueue[Point | None],
     ) -> None:
         super().__init__(evaluator.problem)
-        self.complex_works = evaluator.complex_works
-        self.difference_rows = evaluator.difference_rows
-        self._asked, self._answers = asked, answers
+        self.adopt_check(evaluator)
+        self._requests, self._replies = requests, replies
         self._cache[start.z.tobytes()] = start
 
     def point(self, z: Vector) -> Point:
@@ -384,8 +377,8 @@ class _Asking(Evaluator):
         cached = self._cache.get(z.tobytes())
         if cached is not None:
             return cached
-        self._asked.put(z)
-        point = self._answers.get()
+        self._requests.put(z)
+        point = self._replies.get()
         if point is None:
             raise LimitReached
         return point
@@ -425,7 +418,7 @@ def descents_from(
     values = np.split(rows(np.concatenate(parts, axis=1), owners), len(parts), axis=1)
     tasks = [DescentTask(evaluator, []) for evaluator in evaluators]
     for (k, z), part in zip(run_starts, values, strict=True):
-        point = evaluators[k].entered(z, part)
+        point = evaluators[k].enter(z, part)
         if point.valid:
             tasks[k].starts.append(point)
     return run_together(
@@ -455,7 +448,7 @@ def converged_from(
     for evaluator, points in zip(evaluators, starts, strict=True):
         initial = [_descent(evaluator, point, np.eye(evaluator.space.size)) for point in points]
         for descent, point in zip(initial, points, strict=True):
-            descent.go_on(evaluator, point)
+            descent.advance(evaluator, point)
         hessians = free_hessians(evaluator, initial)
         descents += [_descent(evaluator, *pair) for pair in zip(points, hessians, strict=True)]
     if not descents:
@@ -469,8 +462,8 @@ def converged_from(
         k for k, owner in enumerate(owners) if owner not in solved and descents[k].point is not None
     ]
     if unsolved:
-        z = np.stack([descents[k].known.z + descents[k].step for k in unsolved], axis=1)
-        continued = changed.chosen(unsolved).descend([descents[k] for k in unsolved], z)
+        z = np.stack([descents[k].current.z + descents[k].step for k in unsolved], axis=1)
+        continued = changed.subset(unsolved).descend([descents[k] for k in unsolved], z)
         for k, optimum in zip(unsolved, continued, strict=True):
             optima[k] = optimum
     iterator = iter(optima)

@@ -23,6 +23,7 @@ from typing import Generic, NamedTuple, TypeAlias, TypeVar
 import numpy as np
 
 from .. import kkt
+from ..actuator import MET
 from ..evaluator import HESSIAN_STEP, Evaluator, Point
 from ..problem import Vector
 
@@ -33,7 +34,7 @@ Steps: TypeAlias = Generator[Vector, Point, Result]
 """A solver: yields coordinates (nf,), receives the evaluated point, returns its result."""
 
 
-Answer: TypeAlias = Callable[[Mapping[int, Vector]], Sequence[Point]]
+BatchEvaluator: TypeAlias = Callable[[Mapping[int, Vector]], Sequence[Point]]
 """Evaluates the point requested by each solver, by number."""
 
 
@@ -43,44 +44,44 @@ class Batch(Generic[Result]):
     Parameters
     ----------
     solvers : all of them
-    answer : evaluates a point for each solver that asks, in one model call
+    evaluate : evaluates a point for each solver that asks, in one model call
 
     Attributes
     ----------
-    wanted : the coordinates that the solvers still running ask for, by number
+    requests : the coordinates that the solvers still running ask for, by number
     results : of the solvers that have ended, by number
     """
 
-    def __init__(self, solvers: Sequence[Steps[Result]], answer: Answer) -> None:
-        self.wanted: dict[int, Vector] = {}
+    def __init__(self, solvers: Sequence[Steps[Result]], evaluate: BatchEvaluator) -> None:
+        self.requests: dict[int, Vector] = {}
         self.results: dict[int, Result] = {}
-        self._solvers, self._answer = solvers, answer
+        self._solvers, self._evaluate = solvers, evaluate
         for number in range(len(solvers)):
             self._advance(number, None)
 
     def step(self) -> None:
-        """Answer every solver that is still running."""
-        requests, self.wanted = self.wanted, {}
-        for number, point in zip(requests, self._answer(requests), strict=True):
+        """BatchEvaluator every solver that is still running."""
+        requests, self.requests = self.requests, {}
+        for number, point in zip(requests, self._evaluate(requests), strict=True):
             self._advance(number, point)
 
     def drop(self, number: int) -> None:
         """End a solver without a result."""
-        del self.wanted[number]
+        del self.requests[number]
         self._solvers[number].close()
 
     def _advance(self, number: int, point: Point | None) -> None:
         solver = self._solvers[number]
         try:
-            self.wanted[number] = next(solver) if point is None else solver.send(point)
+            self.requests[number] = next(solver) if point is None else solver.send(point)
         except StopIteration as end:
             self.results[number] = end.value
 
 
-def run_batch(solvers: Sequence[Steps[Result]], answer: Answer) -> list[Result]:
+def run_batch(solvers: Sequence[Steps[Result]], evaluate: BatchEvaluator) -> list[Result]:
     """The result of every solver, in order."""
-    batch = Batch(solvers, answer)
-    while batch.wanted:
+    batch = Batch(solvers, evaluate)
+    while batch.requests:
         batch.step()
     return [batch.results[number] for number in range(len(solvers))]
 
@@ -112,9 +113,6 @@ SETTLED = 1e-6
 FEASIBLE = 1e-11
 """Allowed violation: the objective is first order in it."""
 
-MET = 1e-6
-"""Violation of a design that still counts as feasible."""
-
 RESIDUAL = 1e-6
 """Allowed residual of the optimality conditions: the objective is second order in it."""
 
@@ -142,10 +140,10 @@ class Descent:
     multipliers: Vector = field(default_factory=lambda: np.zeros(0))
     corrected: bool = False
     """Whether the trial step includes a correction for the curvature of constraints."""
-    past: list[tuple[float, float]] = field(default_factory=list)
+    measures: list[tuple[float, float]] = field(default_factory=list)
 
     @property
-    def known(self) -> Point:
+    def current(self) -> Point:
         """The last accepted point, which must exist."""
         assert self.point is not None
         return self.point
@@ -160,10 +158,10 @@ class Descent:
         if self.point is None or self.length <= SETTLED:
             return True
         value, missed = self._measures(trial)
-        merits = [v + self.price * m for v, m in self.past[-MEMORY:]]
+        merits = [v + self.price * m for v, m in self.measures[-MEMORY:]]
         return value + self.price * missed < max(merits)
 
-    def go_on(self, evaluator: Evaluator, trial: Point) -> None:
+    def advance(self, evaluator: Evaluator, trial: Point) -> None:
         """Update the Hessian from an accepted trial and choose the next step."""
         jacobian = evaluator.jacobian(trial)
         if self.point is not None:
@@ -173,16 +171,16 @@ class Descent:
         if self.point is not None and self.length > 0.9 * self.radius:
             self.radius = min(2 * self.radius, kkt.RADIUS)
         self.point = trial
-        self.past.append(self._measures(trial))
-        self.choose(evaluator)
+        self.measures.append(self._measures(trial))
+        self.choose_step(evaluator)
 
-    def choose(self, evaluator: Evaluator, trial: Point | None = None) -> None:
+    def choose_step(self, evaluator: Evaluator, trial: Point | None = None) -> None:
         """Choose the step from the accepted point, within the trust radius.
 
         After a trial that curved constraints spoilt, the step is corrected for that curvature
         [NocedalWright2006] section 18.3.
         """
-        space, point, unit = evaluator.space, self.known, np.eye(len(self.hessian))
+        space, point, unit = evaluator.space, self.current, np.eye(len(self.hessian))
         jacobian = evaluator.jacobian(point)
         room_below = np.minimum(point.z - space.lower, self.radius)
         room_above = np.minimum(space.upper - point.z, self.radius)
@@ -260,7 +258,7 @@ class Valley:
 def valley_at(evaluator: Evaluator, point: Point) -> Valley:
     """The valley of a local optimum."""
     state = kkt.state_at(evaluator, point)
-    price = margin_price(state.multipliers[: len(state.near.constraint)] / state.scale)
+    price = margin_price(state.multipliers[: len(state.active.constraint)] / state.scale)
     hessian = kkt.convex_hessian(evaluator, state)
     return Valley(point, hessian, state.scale, evaluator.constraint_count, price)
 
@@ -268,6 +266,11 @@ def valley_at(evaluator: Evaluator, point: Point) -> Valley:
 def is_optimum(evaluator: Evaluator, point: Point) -> bool:
     """Whether the point is feasible to rounding and meets the optimality conditions."""
     return point.violation <= FEASIBLE and kkt.residual(evaluator, point) <= RESIDUAL
+
+
+def is_met(point: Point) -> bool:
+    """Whether the point has finite values and meets every limit."""
+    return point.valid and point.violation <= MET
 
 
 def full_steps(
@@ -294,7 +297,7 @@ def full_steps(
             return None
         if iteration % PATIENCE == 0:
             reference = trial.violation
-        descent.go_on(evaluator, trial)
+        descent.advance(evaluator, trial)
         if not np.isfinite(descent.length) or descent.length > 4 * max(previous_length, 1e-3):
             return None
         previous_length = descent.length
@@ -319,15 +322,15 @@ def trusted_steps(
         if trial.valid and descent.accepts(trial):
             if descent.length <= SETTLED and is_optimum(evaluator, trial):
                 return trial
-            descent.go_on(evaluator, trial)
+            descent.advance(evaluator, trial)
         elif descent.point is None or descent.length <= LEAST_RADIUS:
             return None
         elif trial.valid and not descent.corrected:
-            descent.choose(evaluator, trial)
+            descent.choose_step(evaluator, trial)
         else:
             descent.radius = descent.length / 2
-            descent.choose(evaluator)
-        z = np.clip(descent.known.z + descent.step, space.lower, space.upper)
+            descent.choose_step(evaluator)
+        z = np.clip(descent.current.z + descent.step, space.lower, space.upper)
     return None
 
 
@@ -389,7 +392,7 @@ class ScaledHessian:
     hessian: Vector
     scale: float
 
-    def seen_by(self, evaluator: Evaluator, x: Vector) -> Vector:
+    def in_coordinates(self, evaluator: Evaluator, x: Vector) -> Vector:
         """The Hessian in the free coordinates of a problem, at one of its points (n,)."""
         space = evaluator.space
         slope = space.slope(x[:, None])[:, 0]
@@ -422,7 +425,7 @@ def free_hessians(evaluator: Evaluator, descents: Sequence[Descent]) -> list[Vec
         return [np.eye(evaluator.space.size) for _ in descents]
     moves = np.concatenate([HESSIAN_STEP * z for z in free], axis=1)
     points = np.repeat(
-        np.stack([descent.known.z for descent in descents], axis=1),
+        np.stack([descent.current.z for descent in descents], axis=1),
         [z.shape[1] for z in free],
         axis=1,
     )
@@ -447,7 +450,7 @@ def _free(evaluator: Evaluator, descent: Descent) -> Vector:
     """Orthonormal directions (nf, d) that leave the active rows unchanged."""
     size, prices = evaluator.space.size, descent.prices
     unit = np.eye(size)
-    rows = np.concatenate([evaluator.jacobian(descent.known)[1 : 1 + descent.rows], unit, -unit])
+    rows = np.concatenate([evaluator.jacobian(descent.current)[1 : 1 + descent.rows], unit, -unit])
     assert prices is not None
     weight = prices * np.sqrt((rows**2).sum(axis=1))
     return kkt.null_space(rows[weight > FIRM * weight.max(initial=0.0)], size)
