@@ -1,11 +1,9 @@
-"""The actuator as an optimisation problem: variables by PATH, one margin per limit, case, place.
+"""The actuator as an optimisation problem, and the derivatives of its results by parameters.
 
-Response of an evaluated point to parameters, exact where the model allows, always checked.
-
-Derivatives of values use the complex step in the parameter; derivatives of gradients use central
-differences of complex-step gradients. A parameter whose complex step disagrees with a finite
-difference (a look-up table, say) falls back to differences. Bounds of variables count as
-parameters.
+The variables are numbers of the design by PATH. Each limit gives one margin per load case and
+place. Derivatives of values by a parameter use the complex step; derivatives of gradients use
+central differences of complex-step gradients. A parameter whose complex step disagrees with a
+finite difference, as in a look-up table, uses differences. Bounds of variables count as parameters.
 """
 
 from __future__ import annotations
@@ -13,13 +11,18 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
+from typing import Any
 
 import numpy as np
 
 from ..base.errors import Diagnostic, InputError
 from ..base.numeric import STEP, Array, real, where
 from ..base.quantities import Sense
-from ..evaluation import PreparedDesign, compute
+from ..design import with_values
+from ..design.material import Material
+from ..design.materials import Library
+from ..evaluation import PreparedDesign, compute, prepare
+from ..evaluation.build import names_of_materials
 from ..evaluation.kernel import extreme, worst_of
 from ..evaluation.limits import UNLIMITED, LimitRow, MetricArrays, all_limits, margin, rows_of
 from ..evaluation.values import Values as Numbers
@@ -28,7 +31,25 @@ from .kkt import KktResidual
 from .problem import BoxProblem, ParametricProblem, PointValues, Vector
 
 Fault = Callable[[str, str, str], Diagnostic]
-"""Builds the Diagnostic of a variable at its place in the file, from path, message and remedy."""
+"""Builds the Diagnostic of a variable with its place in the file: path, message, remedy."""
+
+
+def variant(subject: PreparedDesign, values: Mapping[str, Any], library: Library) -> PreparedDesign:
+    """The prepared design with other values by PATH, with new materials from the library.
+
+    Raises
+    ------
+    InputError
+        the values contradict the design or each other
+    """
+    design = with_values(
+        subject.design, dict(values), materials=library, metrics=subject.quantities
+    )
+    names = names_of_materials(design)
+    materials: dict[str, Material] = {
+        name: subject.materials.get(name) or library.get(name) for name in names
+    }
+    return prepare(design, materials, subject.plugins)
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +67,7 @@ class Goal:
 
     @property
     def single(self) -> str | None:
-        """The metric of an objective with only one, else None."""
+        """The metric of an objective with a single metric, else None."""
         return next(iter(self.weights)) if len(self.weights) == 1 else None
 
     def value(self, computed: MetricArrays, cases: tuple[str, ...]) -> Array:
@@ -84,7 +105,7 @@ def worst_value(computed: MetricArrays, metric: str, cases: tuple[str, ...], aim
 
 
 def goal_of(subject: PreparedDesign) -> Goal:
-    """The objective of a design; weighted metrics are divided by their present value."""
+    """The objective of a design; each weighted metric is divided by its present value."""
     objective = subject.design.objective
     sign = 1.0 if objective.aim == "min" else -1.0
     weights = objective.minimise if objective.minimise is not None else objective.maximise
@@ -101,7 +122,7 @@ def goal_of(subject: PreparedDesign) -> Goal:
 
 @dataclass
 class Refusals:
-    """Counts points where the user's own metrics gave no value although the mass models did."""
+    """Counts points where metrics of the user have no value although the mass has one."""
 
     names: frozenset[str] = frozenset()
     points: int = 0
@@ -109,7 +130,7 @@ class Refusals:
     raised: dict[str, str] = field(default_factory=dict)
 
     def add(self, computed: MetricArrays, count: int) -> None:
-        """Count one evaluation."""
+        """Count the points of one evaluation."""
         self.points += count
         sound = np.isfinite(np.broadcast_to(computed.metrics["mass"][""], (count,)))
         for name in self.names:
@@ -120,7 +141,7 @@ class Refusals:
                 self.raised.setdefault(name, computed.why[name])
 
     def warnings(self) -> tuple[str, ...]:
-        """The warnings, one line for each metric that was missing somewhere."""
+        """One warning for each metric without a value at some point."""
         return tuple(
             f"{name} gave no value at {100 * lost / self.points:.3g} % of the points tried, "
             "which count as infeasible" + (f": {self.raised[name]}" if name in self.raised else "")
@@ -131,22 +152,22 @@ class Refusals:
 
 @dataclass(frozen=True)
 class ActuatorProblem:
-    """A design with variables as a problem of the generic solver, and the way back."""
+    """A design with variables as a problem of the generic solver."""
 
     subject: PreparedDesign
     goal: Goal
     paths: tuple[str, ...]
     rows: tuple[LimitRow, ...]
     fixed: tuple[LimitRow, ...]
-    """Rows that no variable changes: always met, or always missed."""
+    """Rows that no variable affects: always met, or always missed."""
     problem: BoxProblem
     metrics: frozenset[str] | None
-    """Metrics of objective and rows; None where a custom metric may read any of them."""
+    """Metrics of objective and rows; None if a custom metric may read any metric."""
     refusals: Refusals = field(default_factory=Refusals)
-    """Points where custom metrics had no value."""
+    """Count of points without a value of a custom metric."""
 
     def parametric(self, parameters: tuple[str, ...]) -> ParametricProblem:
-        """The same problem, with the numbers at `parameters` to be priced."""
+        """The problem with the numbers at the PATHs `parameters` as parameters."""
 
         def evaluate(points: Array, values: Array) -> PointValues:
             varied = dict(zip(parameters, values, strict=True))
@@ -198,9 +219,9 @@ class ActuatorProblem:
 
 
 def _bounded(margin: Array) -> Array:
-    """A margin scaled for the solver: m below 0, m/(1 + m) above, so that infinity is 1.
+    """A margin scaled for the solver: m below 0, m/(1 + m) above, 1 for infinity.
 
-    Keeps the sign, and both value and slope where the limit is just met.
+    The scaling changes neither the sign nor, at a margin of 0, value and slope.
     """
     large = real(margin) > 1e9
     finite = where(large, 0.0, margin)
@@ -215,7 +236,7 @@ def _margins(
     count: int,
     reserves: Mapping[str, float],
 ) -> Array:
-    """Margins of the wanted rows less their reserves (rows, designs), all in one pass."""
+    """Margins (rows, designs) of the rows less their reserves, in one vectorised operation."""
     if not rows:
         return np.empty((0, count))
     complex_ = any(np.iscomplexobj(value) for value in numbers.varied.values())
@@ -280,7 +301,8 @@ def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProble
     _check_read(numbers, paths, fault)
     rows = tuple(row for row in all_rows if np.size(row.margin) > 1)
     fixed = tuple(row for row in all_rows if np.size(row.margin) == 1)
-    missed = [  # a check that no variable can fix is reported, but does not constrain the search
+    # a missed check that no variable affects is reported, but does not constrain the search
+    missed = [
         row
         for row in fixed
         if row.limit_of.origin != "check"
@@ -307,7 +329,7 @@ def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProble
 
 
 def idle_metrics(actuator: ActuatorProblem) -> tuple[str, ...]:
-    """Metrics of the objective that no variable affects at all."""
+    """Metrics of the objective that no variable affects."""
     start = actuator.problem.start
     assert start is not None
     points = {path: np.array([x, x]) for path, x in zip(actuator.paths, start, strict=True)}
@@ -357,7 +379,7 @@ RELATIVE_STEP = 1e-5
 
 @dataclass(frozen=True)
 class Responses:
-    """Derivatives by each parameter (q of them, bounds included) at one point.
+    """Derivatives by each of q parameters, bounds included, at one point.
 
     Parameters
     ----------
@@ -365,7 +387,7 @@ class Responses:
     rows : (rows, q), derivative of objective, constraints and equalities
     mixed : (nf, q), derivative of the gradient of the Lagrangian
     bounds : (2 nf, q), derivative of the distance to lower, then upper bounds
-    differences : labels of parameters that fell back to finite differences
+    differences : labels of parameters with finite differences
     """
 
     names: tuple[str, ...]
@@ -383,7 +405,7 @@ class Responses:
 def responses(
     parametric: ParametricProblem, evaluator: Evaluator, point: Point, weights: Vector
 ) -> Responses:
-    """Return derivatives by the parameters; `weights` (rows,) make the Lagrangian of the rows."""
+    """Derivatives by the parameters; `weights` (rows,) form the Lagrangian from the rows."""
     count, nf = len(parametric.parameters), evaluator.space.size
     steps = RELATIVE_STEP * np.where(parametric.parameters == 0, 1.0, parametric.parameters)
     rows, fallen = _row_slopes(parametric, point, steps)
@@ -399,9 +421,9 @@ def responses(
 
 
 def with_bounds(derivatives: Responses, evaluator: Evaluator, multipliers: Vector) -> Responses:
-    """Return the same with a parameter "NAME lower" or "NAME upper" for each bound that costs.
+    """Add a parameter "NAME lower" or "NAME upper" for each bound with a positive multiplier.
 
-    `multipliers` (2 nf,) are those of the lower, then the upper bounds.
+    `multipliers` (2 nf,) are those of the lower, then of the upper bounds.
     """
     space, problem = evaluator.space, evaluator.problem
     nf = space.size
@@ -426,9 +448,9 @@ def with_bounds(derivatives: Responses, evaluator: Evaluator, multipliers: Vecto
 
 
 def perturbed(parametric: ParametricProblem, name: str, k: int, value: float) -> BoxProblem | None:
-    """Return the problem with parameter k (a bound beyond the parameters) at `value`.
+    """The problem with parameter k at `value`; None if the bounds would cross.
 
-    None where the bounds would cross.
+    Beyond the parameters, k is a bound with the label `name`.
     """
     if k < len(parametric.parameters):
         parameters = parametric.parameters.copy()
@@ -455,7 +477,7 @@ def _rows(parametric: ParametricProblem, points: Vector, parameters: Vector) -> 
 def _row_slopes(
     parametric: ParametricProblem, point: Point, steps: Vector
 ) -> tuple[Vector, tuple[str, ...]]:
-    """Return derivative of the rows (rows, q), and the parameters that fell back to differences."""
+    """Derivative of the rows (rows, q), and the labels of parameters with finite differences."""
     count = len(steps)
     if count == 0:
         return np.zeros((len(point.rows), 0)), ()
@@ -490,7 +512,7 @@ def _mixed(
     weights: Vector,
     steps: Vector,
 ) -> Vector:
-    """Return the derivative of the Lagrangian's gradient (nf, q), in one call where exact."""
+    """Derivative of the Lagrangian's gradient (nf, q); one model call per side where exact."""
     count, nf = len(steps), evaluator.space.size
     if count == 0 or nf == 0:
         return np.zeros((nf, count))
@@ -517,7 +539,7 @@ def _mixed(
 
 
 MET = 1e-6
-"""Worst violation that counts as met (contract)."""
+"""Largest violation that counts as met (contract)."""
 
 
 class Outcome(Enum):
@@ -597,7 +619,7 @@ class Outcome(Enum):
 
     @property
     def feasible(self) -> bool:
-        """Whether the point meets every constraint (if the outcome determines that)."""
+        """Whether the outcome implies that the point meets every constraint."""
         return self in (
             Outcome.OPTIMUM,
             Outcome.NOT_STATIONARY,
@@ -610,7 +632,7 @@ class Outcome(Enum):
 
 @dataclass(frozen=True, slots=True)
 class LocalOptimum:
-    """A distinct end point of local runs, and the number of starts that reached it."""
+    """An end point of local runs, and the number of starts that reached it."""
 
     x: Vector
     objective: float
@@ -621,7 +643,7 @@ class LocalOptimum:
 
 @dataclass(frozen=True, slots=True)
 class StartRecord:
-    """One start and its result: the last algorithm and the final values."""
+    """One start and its result."""
 
     x: Vector
     objective: float
@@ -631,7 +653,7 @@ class StartRecord:
 
     @property
     def feasible(self) -> bool:
-        """Whether it reached a point that meets every limit."""
+        """Whether the start led to a point that meets every limit."""
         return self.violation <= MET
 
 
@@ -645,8 +667,8 @@ class Solution:
     outcome : how the run ended
     x : variables (n,)
     objective, constraints, equalities : values at x
-    violation : worst missed margin, 0 if all are met
-    kkt : optimality conditions at x; None if the model is undefined there
+    violation : largest missed margin, 0 if all are met
+    kkt : optimality conditions at x; None if the model is undefined at x
     evaluations, gradients : points evaluated and gradients computed in the local phase
     samples, feasible_samples : points of the global sweep, and how many were feasible
     undefined : share of the sweep where the model has no finite values
@@ -654,7 +676,7 @@ class Solution:
     optima : distinct local optima, the best first
     trace : (evaluation, objective, violation) of each improvement
     algorithm : the algorithm that reached x
-    without_effect : labels of variables that changed no value at any point tried
+    without_effect : labels of variables that affected no value at any point
     warnings : messages for the user
     seed, seconds : of the run
     """

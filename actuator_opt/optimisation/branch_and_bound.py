@@ -1,10 +1,10 @@
-"""The best point of a problem with variables that only take listed values, singly or in groups.
+"""Branch and bound for variables that only take listed values, singly or in groups.
 
-Branch and bound from the continuous optimum. The most promising box comes first; among nearly equal
-boxes the newest, which is the deepest. The bound of a box is its continuous optimum, re-optimised
-from that of the enclosing box. As this optimum is local, the result is the best point reached,
-without proof. All roundings up and down are tried first, together. A small box with no other free
-variables is evaluated whole, in one model call.
+The search first tries all roundings of the continuous optimum, together. Then the most promising
+box comes first; among nearly equal boxes the newest, which is the deepest. The bound of a box is
+its continuous optimum, re-optimised from that of the enclosing box. This optimum is local, so the
+result is the best point reached, without proof. A small box without other free variables is
+evaluated completely, in one model call.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ from .resolve.changed import ChangedProblems, applicable
 from .resolve.steps import ScaledHessian, hessian_at, valley_at
 
 ON = 1e-7
-"""Distance from a listed value, relative to the spacing, that counts as none."""
+"""Distance from a listed value, relative to the spacing, that counts as zero."""
 
 
 SAME = 1e-9
-"""Relative difference of objectives that counts as none."""
+"""Relative difference of objectives that counts as zero."""
 
 
 Rows: TypeAlias = tuple[int, ...]
@@ -65,7 +65,7 @@ class Listed:
         return np.unique(self.rows[list(rows), column])
 
     def parts(self, rows: Rows, row: int) -> list[Rows]:
-        """The other rows, split into parts that a bound of one variable separates from this row."""
+        """The other rows, split by bounds of single variables that exclude this row."""
         parts: list[Rows] = []
         for column, value in enumerate(self.rows[row]):
             of = self.rows[:, column]
@@ -77,14 +77,14 @@ class Listed:
         return [part for part in parts if part]
 
     def at(self, x: Vector, rows: Rows) -> int | None:
-        """The row at a point (k,), or None."""
+        """The row among `rows` at a point (k,), or None."""
         span = np.ptp(self.rows, axis=0)
         matches = np.abs(self.rows[list(rows)] - x) <= ON * span + SAME * np.abs(x)
         positions = np.flatnonzero(matches.all(axis=1))
         return rows[int(positions[0])] if len(positions) else None
 
     def around(self, x: Vector) -> list[int]:
-        """The nearest rows of a point (k,), for all roundings; only itself if it is a row."""
+        """The nearest row to a point (k,) for each rounding; only its own row if it is listed."""
         all_rows = tuple(range(len(self.rows)))
         own_row = self.at(x, all_rows)
         if own_row is not None:
@@ -107,7 +107,7 @@ def with_rows(box: Box, k: int, rows: Rows) -> Box:
 
 
 def between(values: Vector, value: float) -> tuple[float, float, float]:
-    """The neighbouring values and the relative distance to the nearest (0 to 0.5)."""
+    """The neighbouring values, and the relative distance to the nearest (0 to 0.5)."""
     if len(values) == 1:
         return float(values[0]), float(values[0]), 0.0
     k = int(np.clip(np.searchsorted(values, value), 1, len(values) - 1))
@@ -120,36 +120,35 @@ MOST_SOLVES = 400
 """Maximum re-optimisations of one search."""
 
 MOST_NEIGHBOURS = 256
-"""Maximum roundings up and down tried at once: all of them up to eight listed variables."""
+"""Maximum number of roundings tried at once: all roundings of eight listed variables."""
 
 MOST_MISSED = 4
-"""Maximum assignments examined to explain what the nearest one misses."""
+"""Maximum assignments examined for the least infeasible assignment."""
 
 MOST_LISTED = 1024
-"""Maximum assignments of a box that are evaluated together, if no other variable is free."""
+"""Maximum assignments of a box for a joint evaluation, if no other variable is free."""
 
 TIE = 0.01
-"""Bounds this close count as equally promising. The difference is relative to the distance from the
-least bound to the best design, so it suits any scale of the objective. A choice."""
+"""Difference of equally promising bounds, relative to the distance from the lowest bound to the
+best design. A choice."""
 
 CLOSE = 1e-7
-"""Relative difference between bounds that counts as none: the accuracy of the bounds."""
+"""Relative difference of bounds that counts as zero: the accuracy of the bounds."""
 
 
 @dataclass
 class SizeSearch:
-    """The best point, every assignment tried with its objective, and the extent of the search.
+    """Result of a search: the best point, and the objective of every assignment tried.
 
     Parameters
     ----------
-    x, objective, assignment : of the best; None without a feasible one
+    x, objective, assignment : of the best point; None without a feasible point
     tried : objective of each assignment, infinite if infeasible
-    solves : re-optimisations, of boxes and of assignments
+    solves : number of re-optimisations, of boxes and of assignments
     complete : whether the search finished before reaching a limit
-    nearest, missed : without a feasible one, the least infeasible of the assignments examined, and
-        its point
-    ends : result of every box, its optimum or least infeasible point, with its evaluator; empty
-        where a box has neither
+    nearest, missed : the least infeasible assignment and its point, if no point is feasible
+    ends : evaluator and optimum, or least infeasible point, of every box; empty if a box has
+        neither
     """
 
     x: Vector | None
@@ -180,9 +179,9 @@ def search(
     problem : the continuous problem
     listed : the groups of its listed variables
     x : the continuous optimum (n,)
-    most : limit of re-optimisations
-    deadline : time of `time.perf_counter` to stop at
-    cutoff : ignore objectives that are not better than this
+    most : maximum number of re-optimisations
+    deadline : time of `time.perf_counter` at which the search stops
+    cutoff : objectives that are not better than this are ignored
     memory : results of searches of similar problems with the same rows; extended by this search
     """
     remembered = memory is not None and memory.hessian is not None
@@ -207,7 +206,7 @@ def search(
 
 
 class _Boxes:
-    """Boxes left to search, by bound and by age."""
+    """Boxes that wait for the search, by bound and by age."""
 
     def __init__(self) -> None:
         self._entries: dict[int, tuple[float, Box, Vector]] = {}
@@ -218,17 +217,17 @@ class _Boxes:
         return bool(self._entries)
 
     def bounds(self) -> list[float]:
-        """The bound of every box left."""
+        """The bound of every waiting box."""
         return [bound for bound, *_ in self._entries.values()]
 
     def add(self, bound: float, box: Box, x: Vector) -> None:
-        """Keep a box with its bound and its continuous optimum."""
+        """Add a box with its bound and its continuous optimum."""
         number = next(self._count)
         self._entries[number] = bound, box, x
         heapq.heappush(self._lowest, (bound, number))
 
     def pop(self, best: float) -> tuple[float, Box, Vector]:
-        """The newest of the most promising boxes."""
+        """Remove and return the newest of the most promising boxes."""
         while self._lowest[0][1] not in self._entries:
             heapq.heappop(self._lowest)
         lowest_bound, number = self._lowest[0]
@@ -242,22 +241,22 @@ class _Boxes:
 def at(
     problem: BoxProblem, listed: Sequence[Listed], assignment: Assignment, x: Vector, memory: Memory
 ) -> float | None:
-    """The objective of one assignment, re-optimised; None where it is infeasible."""
+    """The re-optimised objective of one assignment; None if it is infeasible."""
     objective = _Run(problem, listed, x, 1, None, np.inf, memory).reoptimised(assignment, x)
     return objective if objective < np.inf else None
 
 
 @dataclass
 class Memory:
-    """Results of the boxes of a search, as starting points for similar problems."""
+    """Results of the boxes of a search: starts for similar problems."""
 
     hessian: ScaledHessian | None = None
     ends: dict[Box, tuple[Evaluator, Point]] = field(default_factory=dict)
     hessians: dict[Box, ScaledHessian | None] = field(default_factory=dict)
     missed: dict[Box, Vector] = field(default_factory=dict)
-    """The least infeasible points of boxes without a feasible one."""
+    """The least infeasible points of boxes without a feasible point."""
     visited: tuple[Box, ...] = ()
-    """Boxes whose continuous optimum the last search needed."""
+    """Boxes that the last search re-optimised."""
 
     def warm_start(self, box: Box) -> tuple[Vector, ScaledHessian | None] | None:
         """The optimum in the same box of another problem, and its Hessian."""
@@ -269,7 +268,7 @@ class Memory:
         return end[1].x, self.hessians[box]
 
     def note(self, box: Box, evaluator: Evaluator, end: Nearest) -> None:
-        """Store the result of a box, unless steps from known results reach it easily."""
+        """Store the result of a box, unless steps from a stored result reach it easily."""
         if end.optimum is not None and not (end.followed and box in self.ends):
             self.ends[box] = evaluator, end.optimum
             self.hessians.pop(box, None)
@@ -320,18 +319,18 @@ class _Run:
         return min(self.cutoff, self.lowest)
 
     def note(self, assignment: Assignment, objective: float) -> None:
-        """Store the value of an assignment, or a more exact one."""
+        """Store the objective of an assignment, or replace it by a more exact value."""
         worse = self.tried.get(assignment, np.inf) <= self.lowest < objective
         self.tried[assignment] = objective
         self.lowest = min(self.tried.values()) if worse else min(self.lowest, objective)
 
     def beaten(self, bound: float) -> bool:
-        """Whether no design above a bound can improve on the best one."""
+        """Whether no design above a bound can improve on the best design."""
         best = self.best
         return best < np.inf and bound >= best - CLOSE * abs(best)
 
     def values(self, assignment: Assignment) -> Vector:
-        """Values of the listed variables (d,)."""
+        """Values of the listed variables (d,) in an assignment."""
         pairs = zip(self.listed, assignment, strict=True)
         return np.concatenate([group.rows[row] for group, row in pairs])
 
@@ -349,7 +348,7 @@ class _Run:
     def reoptimised_together(
         self, assignments: list[Assignment]
     ) -> list[tuple[Assignment, Vector | None]]:
-        """Re-optimise assignments at once; return the rest, each with a start or None."""
+        """Re-optimise assignments at once; returns those not solved, with a start or None."""
         present = self.x[self.index]
         point, evaluator = self._nearest_point(present, present, self.x)
         names = [self.problem.names[i] for i in self.index]
@@ -380,7 +379,7 @@ class _Run:
         ]
 
     def reoptimised(self, assignment: Assignment, start: Vector) -> float:
-        """Re-optimise the other variables of an assignment; infinite where that is infeasible."""
+        """Re-optimised objective of an assignment; infinite if it is infeasible."""
         if assignment not in self.points:
             values = self.values(assignment)
             box = tuple((row,) for row in assignment)
@@ -401,7 +400,7 @@ class _Run:
             self.reoptimised(best, self.starts.get(best, self.x))
 
     def precompute(self) -> None:
-        """Re-optimise the boxes of the last search at once, as most of them are needed again."""
+        """Re-optimise the boxes of the last search at once, as most are needed again."""
         tasks = [self._task(box, *self._bounds(box), self.x, ROUGH) for box in self.memory.visited]
         ends = resolve_boxes(tasks)
         self.precomputed = dict(
@@ -448,7 +447,7 @@ class _Run:
         return lower, np.concatenate([rows.max(axis=0) for rows in values])
 
     def parts(self, box: Box, x: Vector, objective: float) -> list[Box]:
-        """The parts of a box left to search, given its continuous optimum."""
+        """The parts of a box that may contain a better point, given its continuous optimum."""
         widest: float = ON
         halves: tuple[int, list[list[int]]] | None = None
         for k, (group, rows) in enumerate(zip(self.listed, box, strict=True)):
@@ -469,7 +468,7 @@ class _Run:
             group.at(x[list(group.index)], rows)
             for group, rows in zip(self.listed, box, strict=True)
         ]
-        if None in rows_at:  # each value is listed, but not this combination
+        if None in rows_at:  # each value is listed, but their combination is not
             k = rows_at.index(None)
             group, rows = self.listed[k], box[k]
             nearest = min(
@@ -549,7 +548,7 @@ class _Run:
     def _optima(
         self, bounds: Sequence[tuple[Box, Vector, Vector]], start: Vector, criteria: Criteria
     ) -> list[Point | None]:
-        """The optimum in each box, from a nearby point or a similar problem; None without one."""
+        """The optimum of each box, from a nearby point or a similar problem, or None."""
         precomputed = self.precomputed if criteria is ROUGH else {}
         tasks = {
             box: self._task(box, lower, upper, start, criteria)

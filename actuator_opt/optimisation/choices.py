@@ -1,12 +1,13 @@
 """The best combination of the design's choices: quick look at each, full solution of the best.
 
 A quick look descends from the nearest known design. It usually finds the optimum of a combination
-but proves nothing. Combinations close to the best are then solved from many starts, the winner
-always. The record of each combination shows how it was searched.
+but proves nothing. The best combination, and combinations close to it, are then solved from many
+starts. The record of each combination states how it was searched.
 
-When variables take listed sizes, combinations are searched best first, each from its continuous
-optimum, which bounds its result with sizes. Those whose bound does not beat the best sized design
-are skipped. The bounds are local optima, mostly of a quick look, so nothing is proved.
+If variables take listed sizes, the sizes of each combination are searched, best combination first.
+The continuous optimum bounds the result with sizes. Combinations whose bound does not beat the best
+sized design are skipped. The bounds are local optima, mostly of a quick look, so they prove
+nothing.
 """
 
 from __future__ import annotations
@@ -19,14 +20,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..base.errors import Diagnostic, InputError
-from ..design import Design, with_values
+from ..design import Design
 from ..design.choice_list import combinations, left_out
-from ..design.material import Material
 from ..design.materials import load_library
-from ..evaluation import PreparedDesign, compute, prepare
-from ..evaluation.build import names_of_materials
+from ..evaluation import PreparedDesign, compute
 from ..evaluation.limits import LimitRow, all_limits, rows_of
-from .actuator import MET, ActuatorProblem, Goal, build, goal_of
+from .actuator import MET, ActuatorProblem, Goal, build, goal_of, variant
 from .branch_and_bound import Memory, SizeSearch, at, search
 from .identical_problems import Evidence
 from .quick_look import DOUBTFUL, Look, LookStart, hessian_of, look_quickly
@@ -35,10 +34,10 @@ from .rounding import RUNNERS_UP, ListedSizes, Wanted, sizes_of
 from .solver import solve
 
 NEAR = 0.05
-"""Relative distance from the best within which a combination is solved from many starts."""
+"""Relative loss to the best up to which a combination is solved from many starts."""
 
 MOST_DOUBTFUL = 2
-"""Maximum combinations solved from many starts without success, as such searches take long."""
+"""Maximum combinations solved from many starts without success; these searches take long."""
 
 MOST_SOLVED = 6
 """Maximum combinations solved from many starts."""
@@ -50,12 +49,12 @@ LEAST_SECONDS = 0.1
 """Least time for the first look and the winner, whatever the limit."""
 
 EQUAL = 1e-6
-"""Relative difference of objectives that counts as none: the first in the file wins."""
+"""Relative difference of equal objectives, of which the first in the file wins."""
 
 
 @dataclass(frozen=True, slots=True)
 class ChoiceSettings:
-    """Settings for solving the best combinations; `until` is a time of `time.perf_counter`."""
+    """Settings of the full search; `until` is a time of `time.perf_counter`."""
 
     algorithm: str
     starts: int
@@ -64,7 +63,7 @@ class ChoiceSettings:
     until: float | None
 
     def left(self, share: float = 1.0, began: float = 0.0) -> float | None:
-        """Seconds left of a share of the time since `began`."""
+        """Seconds that remain of a share of the time since `began`; None without a limit."""
         if self.until is None:
             return None
         return began + share * (self.until - began) - time.perf_counter()
@@ -78,14 +77,14 @@ class ChoiceSearch:
     looks: list[Look] = field(default_factory=list)
 
     def mendable(self) -> frozenset[str]:
-        """Missed checks that some combination meets, so that a choice can fix them."""
+        """Missed checks that another combination meets."""
         lists = [
             look.checks for look in self.looks if look.how not in ("not tried", "not possible")
         ]
         return frozenset().union(*lists) - frozenset.intersection(*lists) if lists else frozenset()
 
     def ranked(self) -> list[Look]:
-        """Best first: requirements, then checks, then the objective; ties in file order."""
+        """The looks by requirements, then checks, then objective; ties in file order."""
         mendable = self.mendable()
 
         def rank(look: Look) -> tuple[bool, float, int, float, int]:
@@ -125,14 +124,7 @@ def possible(subject: PreparedDesign) -> list[Look]:
     for order, values in enumerate(combinations(subject.design)):
         look = Look(order, values)
         try:
-            design = with_values(
-                subject.design, values, materials=library, metrics=subject.quantities
-            )
-            names = names_of_materials(design)
-            materials: dict[str, Material] = {
-                name: subject.materials.get(name) or library.get(name) for name in names
-            }
-            look.subject = prepare(design, materials, subject.plugins)
+            look.subject = variant(subject, values, library)
         except InputError as error:
             _give_up(look, error)
         looks.append(look)
@@ -141,23 +133,25 @@ def possible(subject: PreparedDesign) -> list[Look]:
 
 
 def _give_up(look: Look, error: InputError) -> None:
-    first = error.diagnostics[0]
-    look.fault = f"{first.path}: {first.message}" if first.path else first.message
+    diagnostic = error.diagnostics[0]
+    look.fault = (
+        f"{diagnostic.path}: {diagnostic.message}" if diagnostic.path else diagnostic.message
+    )
     look.how = "not possible"
 
 
 def _require_one(looks: Sequence[Look]) -> None:
     if all(look.fault for look in looks):
         faults = dict.fromkeys(look.fault for look in looks)
-        some = "; ".join(list(faults)[:3])
+        texts = "; ".join(list(faults)[:3])
         count = (
             "the only combination is" if len(looks) == 1 else f"all {len(looks)} combinations are"
         )
-        message = f"{count} impossible: {some}"
+        message = f"{count} impossible: {texts}"
         raise InputError(Diagnostic(message, "change the values listed there", path="choices"))
 
 
-@np.errstate(all="ignore")  # a design without finite values is never the best
+@np.errstate(all="ignore")  # designs without finite values rank last
 def search_choices(
     subject: PreparedDesign, settings: ChoiceSettings, max_solved: int = MOST_SOLVED
 ) -> ChoiceSearch:
@@ -166,8 +160,8 @@ def search_choices(
     Parameters
     ----------
     subject : the design with its choices
-    settings : settings for solving the best
-    max_solved : maximum number solved
+    settings : of the full searches
+    max_solved : maximum number of combinations solved from many starts
 
     Raises
     ------
@@ -195,7 +189,7 @@ def search_choices(
 
 
 def _with_goal(actuator: ActuatorProblem, goal: Goal) -> ActuatorProblem:
-    """The problem with the common objective, so that all combinations weigh metrics alike."""
+    """The problem with the common objective, so that all combinations have the same weights."""
     shared = replace(actuator, goal=goal)
     return replace(shared, problem=replace(actuator.problem, evaluate=shared.evaluate))
 
@@ -254,9 +248,9 @@ def _any(choice_search: ChoiceSearch) -> bool:
 def _starts(choice_search: ChoiceSearch, look: Look) -> list[LookStart]:
     """Starts from the combinations that differ in the fewest values.
 
-    A feasible neighbour is a start for a descent. An infeasible one shows best how close this
-    combination comes to feasibility. The last neighbour, which changes least, may be followed step
-    by step.
+    A feasible neighbour is a start for a descent. An infeasible neighbour is the start for a
+    reduction of the violation. The latest neighbour with a Hessian differs least; steps may follow
+    its optimum.
     """
     solved = [other for other in choice_search.looks if other.x is not None and other is not look]
 
@@ -286,7 +280,7 @@ def _starts(choice_search: ChoiceSearch, look: Look) -> list[LookStart]:
 
 
 def _solve_best(choice_search: ChoiceSearch, settings: ChoiceSettings, max_solved: int) -> None:
-    """Solve the winner and combinations close to it from many starts, best first."""
+    """Solve the best combination, and those close to it, from many starts."""
     first_gain = True
     for _ in range(max_solved):
         look = _promising(choice_search)
@@ -309,7 +303,7 @@ def _solve_best(choice_search: ChoiceSearch, settings: ChoiceSettings, max_solve
 
 
 def _promising(choice_search: ChoiceSearch) -> Look | None:
-    """The next combination worth many starts; None if the rest is clearly worse."""
+    """The next combination to solve from many starts; None if all others are clearly worse."""
     ranked, mendable = choice_search.ranked(), choice_search.mendable()
     best = ranked[0]
     if best.solution is None:
@@ -330,7 +324,7 @@ def _promising(choice_search: ChoiceSearch) -> Look | None:
 
 
 def many_starts(look: Look, settings: ChoiceSettings) -> None:
-    """Solve a combination from many starts, including its best known point."""
+    """Solve a combination from many starts and its best known point."""
     assert look.actuator is not None
     seconds = settings.left()
     starts = [] if look.x is None else [look.x]
@@ -386,7 +380,7 @@ def record(choice_search: ChoiceSearch, design: Design) -> Choices:
 
 
 def _status(look: Look, mendable: frozenset[str], sized: bool) -> str:
-    """Return the search of a combination and its outcome, in words."""
+    """The search of a combination and its outcome, in words."""
     if look.fault:
         return f"not possible: {look.fault}"
     if look.how == "not tried":
@@ -426,7 +420,7 @@ _WAYS: dict[How, str] = {"multistart": "many starts: ", "quick": "quick look: ",
 
 
 def _sentence(choices: Choices) -> str:
-    """Count the combinations, the feasible ones, and those of each search, in words."""
+    """The numbers of combinations, feasible combinations, and combinations of each search."""
     total, feasible = len(choices.combinations), choices.feasible
     result = f"none of {total} combinations meets all requirements; the nearest one is shown"
     if feasible:
@@ -437,25 +431,25 @@ def _sentence(choices: Choices) -> str:
 
 
 def _counts(choices: Choices) -> Iterator[str]:
-    words: dict[How, str] = {
+    texts: dict[How, str] = {
         "evaluated": "evaluated",
         "multistart": "solved from many starts",
         "quick": "quick look only",
         "not possible": "not possible",
         "not tried": "not tried within the time limit",
     }
-    for how, text in words.items():
-        if count := choices.count(how):
+    for kind, text in texts.items():
+        if count := choices.count(kind):
             yield f"{count} {text}"
 
 
 _NOTHING_BETTER = SizeSearch(None, None, None, {}, 0, complete=True)
-"""Same result as another combination."""
+"""Result of a combination that cannot improve on the best design."""
 
 
 @dataclass(frozen=True)
 class Sized:
-    """A combination with its sizes and their search result."""
+    """A combination with its sizes and the result of their search."""
 
     look: Look
     sizes: ListedSizes
@@ -468,7 +462,8 @@ def best_of_sizes(
 ) -> Sized | None:
     """Find the combination with the best design of listed sizes, solved from many starts.
 
-    If none fits, the combination with the best continuous optimum; None if no variable has sizes.
+    If no size fits, the combination with the best continuous optimum. None if no variable has
+    sizes.
 
     Raises
     ------
@@ -490,7 +485,7 @@ def best_of_sizes(
 def _searched(
     choices: ChoiceSearch, requested: Wanted, settings: ChoiceSettings
 ) -> Iterator[Sized]:
-    """Search each promising combination for a better design than those before."""
+    """Search the sizes of each promising combination for a better design."""
     error: InputError | None = None
     memories: dict[object, Memory] = {}
     evidence_by_sizes: dict[object, list[Evidence]] = {}
@@ -538,7 +533,7 @@ def _searched(
 
 
 def _runners_up(winner: Sized, searched: Sequence[Sized]) -> None:
-    """Add the cost of the best sizes in the next best combinations."""
+    """Evaluate the best sizes in the next best combinations."""
     assert winner.size_search.assignment is not None
     candidates = [sized for sized in searched if sized.look.sizing == "none better"]
     for sized in candidates[:RUNNERS_UP]:

@@ -1,9 +1,9 @@
-"""Remedies for an infeasible actuator: a fixed dimension or a choice whose change is enough.
+"""Remedies for an infeasible actuator: a sufficient change of a fixed dimension or of a choice.
 
-A dimension becomes a variable and may move in the direction that helps, from the design with the
-smallest joint relaxation. A choice replaces the value of the file. Each remedy is confirmed by a
-design that meets all limits and checks. Counts limit the effort, so the same input gives the same
-remedies; what was not tried is listed.
+A dimension becomes a variable that may move in the helpful direction, from the design of the
+smallest joint relaxation. A choice replaces the value of the file. A design that meets all limits
+and checks confirms each remedy. Counts, not time, limit the effort, so the same input gives the
+same remedies. Candidates that were not tried are listed.
 """
 
 from __future__ import annotations
@@ -20,16 +20,14 @@ from ..base.numeric import STEP, Array
 from ..base.progress import tell
 from ..base.quantities import INPUTS, Quantity
 from ..base.units import unit
-from ..design import quantity_of, standard_sizes as standards, with_values
-from ..design.material import Material
+from ..design import quantity_of, standard_sizes as standards
 from ..design.materials import Library, load_library
 from ..design.model import Design, Variable
 from ..design.seals import BACK_UPS, Seal
-from ..evaluation import PreparedDesign, prepare
-from ..evaluation.build import names_of_materials
+from ..evaluation import PreparedDesign
 from ..joints.kinds import JOINTS
 from . import repairs
-from .actuator import ActuatorProblem, build
+from .actuator import ActuatorProblem, build, variant
 from .evaluator import Evaluator
 from .infeasibility import Conflict
 from .problem import BoxProblem, PointValues, Vector
@@ -38,27 +36,26 @@ DIMENSIONS = (
     "bore", "wall_thickness", "winding_angle", "rod_diameter", "rod_inner_diameter", "part_length",
     "radial_clearance", "thread_diameter", "squeeze", "diameter",
 )  # fmt: skip
-"""Quantities of dimensions that may be freed; stroke and duty are excluded. A choice."""
+"""Quantities of dimensions that may change; stroke and duty are excluded. A choice."""
 
 PARTS = re.compile(r"(cylinder|barrel|rod|piston|head|caps|retention|clevis|seals|lines)\b")
-"""Parts that these dimensions belong to."""
+"""Parts to which these dimensions belong."""
 
 MOST_DIMENSIONS = 8
-"""Maximum dimensions freed, most helpful first: a choice, to limit the time."""
+"""Maximum dimensions tried, most helpful first: a choice, to limit the time."""
 
 MOST_CHOICES = 4
 """Maximum choices solved, least infeasible first: a choice, to limit the time."""
 
 ENOUGH = 3
-"""Remedies of one kind after which the search for that kind stops: a choice."""
+"""Number of remedies of one kind after which the search for this kind stops: a choice."""
 
 WORTH = 0.1
-"""Share of the missed margins that a number at twice, or half, its value must close by its slope. A
-number that closes less cannot be enough alone and is not tried. A choice."""
+"""Share of the missed margins that a factor of two on a number must close, by its slope. Numbers
+that close less are not tried. A choice."""
 
 DIGITS = 4
-"""Digits of a dimension, which is solved again as rounded, so that the printed value is
-feasible."""
+"""Digits of a dimension; a design with the rounded value confirms that it is feasible."""
 
 SUBSTITUTES = {
     "metal": ("al_7075_t6", "ti_6al4v", "steel_42crmo4", "steel_17_4ph_h1025"),
@@ -66,17 +63,17 @@ SUBSTITUTES = {
     "seal": ("nbr_70", "nbr_90", "hnbr_75", "fkm_90"),
     "adhesive": ("epoxy_structural",),
 }
-"""Library materials tried in place of one of the same kind: a choice, few and common."""
+"""Common library materials, tried in place of a material of the same kind. A choice."""
 
 BACK_UP = "back_up_ptfe"
-"""Material of a back-up ring if the design has none: the common one, a choice."""
+"""Material of a back-up ring if the design has none: a common material. A choice."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cure:
     """A sufficient change: a fixed dimension at another value (SI), or another choice.
 
-    `beside` lists further entries that a choice needs, by PATH, as in a file.
+    `beside` lists further entries that a choice needs, by PATH.
     """
 
     path: str
@@ -89,7 +86,7 @@ class Cure:
 class Cures:
     """Dimensions and choices that are enough alone, and the PATHs not tried.
 
-    `together` lists dimensions that are enough only together.
+    `together` lists dimensions that are only enough together.
     """
 
     dimensions: tuple[Cure, ...] = ()
@@ -134,7 +131,7 @@ def _gains(actuator: ActuatorProblem, conflict: Conflict) -> dict[str, float]:
 def _dimensions(
     actuator: ActuatorProblem, x: Vector, gains: Mapping[str, float]
 ) -> tuple[tuple[Cure, ...], tuple[Cure, ...], list[str]]:
-    """Dimensions enough alone, least change first; else together; and those not tried."""
+    """Dimensions enough alone, smallest change first; else enough together; and those not tried."""
     design = actuator.subject.design
     candidates = sorted(
         (
@@ -183,13 +180,13 @@ def least_changes(
 ) -> list[Cure]:
     """The least change of some fixed variables that meets all limits; empty if there is none.
 
-    Values are rounded outwards, and a design is confirmed at the rounded values.
+    Values are rounded outwards, and a design confirms the rounded values.
 
     Parameters
     ----------
     problem, start : the problem with these variables fixed, and one of its points
-    limits, paths : limit of each change and its PATH, by index
-    design : gives the quantities of PATHs
+    limits, paths : limit of the change and PATH of each variable, by index
+    design : defines the quantities of the PATHs
     """
     places = [place for place, limit in limits.items() if limit != start[place]]
     if not places:
@@ -237,9 +234,9 @@ def _least_first(enough: Sequence[Cure]) -> tuple[Cure, ...]:
 
 
 def with_variables(actuator: ActuatorProblem, paths: Sequence[str]) -> BoxProblem:
-    """The problem with more variables, each starting at its value.
+    """The problem with the numbers at `paths` as additional variables, fixed at their values.
 
-    Rows that only these variables affect count too, except for checks that cannot be met anyway.
+    It includes rows that only these variables affect, except for checks that no variable can fix.
     """
     subject, numbers = actuator.subject, actuator.subject.numbers
     values = {path: numbers[path] for path in paths}
@@ -267,7 +264,7 @@ def _without_rows(actuator: ActuatorProblem, lost: frozenset[str]) -> BoxProblem
 
 
 def _unfixable_checks(actuator: ActuatorProblem) -> frozenset[str]:
-    """Checks that no variable can fix, by their rows."""
+    """Labels of the missed checks that no variable can fix."""
     return frozenset(
         row.label
         for row in actuator.fixed
@@ -276,7 +273,7 @@ def _unfixable_checks(actuator: ActuatorProblem) -> frozenset[str]:
 
 
 def outward(value: float, digits: int, upwards: bool) -> float:
-    """A number rounded to some digits, upwards or downwards (beyond floating-point noise).
+    """A number rounded to some digits, upwards or downwards; floating-point noise is ignored.
 
     >>> outward(283.0994, 4, True), outward(9.98645, 4, False), outward(400.00000001, 4, True)
     (283.1, 9.986, 400.0)
@@ -293,7 +290,7 @@ def outward(value: float, digits: int, upwards: bool) -> float:
 def _choices(
     actuator: ActuatorProblem, conflict: Conflict, gains: Mapping[str, float]
 ) -> tuple[tuple[Cure, ...], list[str]]:
-    """Choices enough alone, least infeasible first; and those not tried."""
+    """Choices that are enough alone, least infeasible first; and those not tried."""
     subject, library = actuator.subject, load_library()
     present = _missed(actuator.problem, conflict.x)
     offered: list[tuple[float, Cure, BoxProblem]] = []
@@ -329,9 +326,10 @@ def _missed(problem: BoxProblem, x: Vector) -> float:
 def _candidate_choices(
     subject: PreparedDesign, library: Library, gains: Mapping[str, float], places: set[str]
 ) -> Iterator[tuple[str, str, dict[str, str]]]:
-    """Yield choices that may resolve the conflict: PATH, alternative, required further entries.
+    """Choices that may resolve the conflict: PATH, alternative, further entries it needs.
 
-    A part is included if its numbers matter (`gains`), a seal also if it misses a limit (`places`).
+    A part is included if its numbers have an effect (`gains`), a seal also if it misses a limit
+    (`places`).
     """
     design = subject.design
 
@@ -362,7 +360,7 @@ def _candidate_choices(
 
 
 def _rings(seal: Seal, section: str, count: int) -> dict[str, str] | None:
-    """Further entries that more back-up rings need; None if no standard has their width."""
+    """Further entries for more back-up rings; None if no standard defines their gland width."""
     if seal.back_up_material is not None and seal.back_up_thickness is not None:
         return {}
     try:
@@ -389,18 +387,10 @@ def _word_at(design: Design, path: str) -> str:
 def _with_choice(
     actuator: ActuatorProblem, values: Mapping[str, str], library: Library
 ) -> BoxProblem | None:
-    """The problem with another choice; None if it contradicts the design or fails a check."""
+    """The problem with another choice; None if the choice is invalid or misses another check."""
     subject = actuator.subject
     try:
-        design = with_values(
-            subject.design, dict(values), materials=library, metrics=subject.quantities
-        )
-        known: dict[str, Material] = {
-            name: subject.materials.get(name) or library.get(name)
-            for name in names_of_materials(design)
-        }
-        made = prepare(design, known, subject.plugins)
-        other = build(replace(made, reserves=subject.reserves))
+        other = build(replace(variant(subject, values, library), reserves=subject.reserves))
     except InputError:
         return None
     lost = _unfixable_checks(actuator)

@@ -1,8 +1,8 @@
-"""The solver's view of a problem: one evaluation per point, exact gradients, NaN screened.
+"""Evaluates a problem for the solvers: values and exact gradients of each point, once.
 
-Values come from real evaluations, so that a domain error (the root of a negative number) shows as
-NaN. Gradients come from one batched complex step [Squire1998]. Rows that fail a single
-finite-difference check fall back to central differences.
+Real evaluations give the values, so that a domain error (the root of a negative number) becomes
+NaN. One batched complex step gives the gradients [Squire1998]. They are compared with finite
+differences once; rows that differ use central differences.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ CHUNK = 4096
 """Maximum columns in one model call."""
 
 DIFFERENCE_STEP = 6e-6
-"""Step of central differences of values in solver coordinates, near the cube root of rounding."""
+"""Step of central differences of values, in solver coordinates: near the cube root of rounding."""
 
 HESSIAN_STEP = 1e-5
 """Step of central differences of exact gradients."""
 
 CEILING = 1e9
-"""Substitute for an infinite margin (an unloaded part), with zero slope."""
+"""Substitute for an infinite margin of an unloaded part; its slope is zero."""
 
 
 class LimitReached(Exception):
@@ -84,7 +84,7 @@ class Evaluator:
         self.bad_slopes = 0
         self.complex_works = problem.has_complex_step
         self.eager = False
-        """Compute the gradient with every value: cheaper for solvers that need both."""
+        """Whether to compute the gradient with every value, for solvers that need both."""
         self.difference_rows = np.zeros(problem.row_count, dtype=bool)
         self.influence = np.zeros((2, self.space.size))
         self.trace: list[tuple[int, float, float]] = []
@@ -101,7 +101,7 @@ class Evaluator:
         return timed_out or (self.stop is not None and self.stop())
 
     def check_limits(self) -> None:
-        """Raise `LimitReached` if the run has used up its evaluations or its time."""
+        """Raise `LimitReached` at the limit of evaluations or time."""
         if not self.limited:
             return
         counted_out = self.max_evaluations is not None and self.evaluations >= self.max_evaluations
@@ -110,7 +110,7 @@ class Evaluator:
             raise LimitReached
 
     def point(self, z: Vector) -> Point:
-        """Return the evaluated point at z (nf,); evaluated once."""
+        """The evaluated point at z (nf,), from the cache if known."""
         point = self._cache.get(z.tobytes())
         if point is not None:
             return point
@@ -136,7 +136,7 @@ class Evaluator:
         return self.complex_works and not self.difference_rows.any() and self.space.size > 0
 
     def _store(self, z: Vector, rows: Vector, slopes: Vector | None) -> Point:
-        """Store a point with its rows."""
+        """Count and cache a point with its rows."""
         valid = bool(np.isfinite(rows).all())
         self.evaluations += 1
         self.invalid += not valid
@@ -163,7 +163,7 @@ class Evaluator:
         self.precomputed.clear()
 
     def _record(self, point: Point) -> None:
-        """Store a point, and add it to the trace if it improves on the last entry."""
+        """Add a point to the trace if it improves on the last entry."""
         excess = point.violation if point.violation > 1e-6 else 0.0
         if self.trace:
             _, objective, violation = self.trace[-1]
@@ -178,7 +178,7 @@ class Evaluator:
 
     @staticmethod
     def screen(rows: npt.NDArray[np.generic]) -> Vector:
-        """Screen rows: infinite margins become their ceiling, other infinities NaN."""
+        """Replace infinite margins by their ceiling, and other infinities by NaN."""
         values = np.array(rows.real, dtype=float)
         margins = values[1:]
         margins[margins == np.inf] = CEILING
@@ -186,9 +186,9 @@ class Evaluator:
         return values
 
     def violations(self, rows: Vector, kind: str) -> Vector:
-        """Infeasibility (k,) of rows (rows, k): the "worst" missed margin, or the bounded "sum".
+        """Infeasibility (k,) of rows (rows, k): the "worst" violation, or the bounded "sum".
 
-        The sum uses v/(1 + v) of each violation v, so that no single row dominates. NaN rows are
+        The sum is that of v/(1 + v) over the violations v, so that no row dominates. NaN counts as
         infinitely infeasible.
         """
         margins = rows[1 : 1 + self.constraint_count]
@@ -200,7 +200,7 @@ class Evaluator:
         return np.where(np.isfinite(rows).all(axis=0), result, np.inf)
 
     def jacobian(self, point: Point) -> Vector:
-        """Gradients (rows, nf) at a point, in solver coordinates; a missing slope counts as 0."""
+        """Gradients (rows, nf) at a point in solver coordinates; an undefined slope is 0."""
         if point.jacobian is None:
             return self._store_jacobian(point, self.jacobians(point.z[:, None])[:, 0])
         return point.jacobian
@@ -229,8 +229,8 @@ class Evaluator:
     def values_and_slopes(self, rows: npt.NDArray[np.generic]) -> tuple[Vector, Vector]:
         """Rows (rows, 1) and gradients (rows, nf) of one point from the rows of its `columns`.
 
-        A large imaginary part reveals a root or logarithm outside its domain, which complex
-        arithmetic would hide. Such rows become NaN.
+        Outside its domain, a complex root or logarithm has a large imaginary part instead of NaN.
+        These rows become NaN.
         """
         hidden = (np.abs(rows.imag) > 1e-9 * (1.0 + np.abs(rows.real))).any(axis=1)
         values = self.screen(np.where(hidden, np.nan, rows.real[:, 0])[:, None])
@@ -280,7 +280,7 @@ class Evaluator:
         return np.where(np.isnan(above), (middle - below) / DIFFERENCE_STEP, forward)
 
     def hessian(self, point: Point, weights: Vector, columns: npt.NDArray[np.intp]) -> Vector:
-        """Hessian (nf, nf) of weights @ rows; only the rows and columns named, zero elsewhere."""
+        """Hessian (nf, nf) of weights @ rows in the given columns and rows; zero elsewhere."""
         n = self.space.size
         result = np.zeros((n, n))
         if len(columns) == 0:
@@ -293,7 +293,7 @@ class Evaluator:
         slopes = self.jacobians(np.concatenate([z + moves, z - moves], axis=1), inside=False)
         slopes = np.tensordot(weights[active], slopes[active], axes=1)
         above, below = slopes[: len(columns)], slopes[len(columns) :]
-        if not np.isfinite(slopes).all():  # outside the domain on one side: one-sided, or none
+        if not np.isfinite(slopes).all():  # undefined on one side: one-sided difference, or 0
             middle = weights @ self.jacobian(point)
             above = np.where(np.isfinite(above), above, 2 * middle - below)
             below = np.where(np.isfinite(below), below, 2 * middle - above)
@@ -303,9 +303,9 @@ class Evaluator:
         return result
 
     def check_gradients(self, point: Point) -> tuple[str, ...]:
-        """Compare the complex step with finite differences once; rows that differ fall back.
+        """Compare the complex step with finite differences; returns warnings.
 
-        Returns the warnings to show.
+        Rows that differ use finite differences from then on.
         """
         if not self.problem.has_complex_step:
             return (
@@ -332,7 +332,7 @@ class Evaluator:
     def _disagreement(self, point: Point, exact: Vector) -> npt.NDArray[np.bool_]:
         n = self.space.size
         wrong = np.ones(len(exact), dtype=bool)
-        for step in (1e-5, 1e-4, 1e-6):  # a kink or rounding affects one step size, not all three
+        for step in (1e-5, 1e-4, 1e-6):  # a kink or rounding does not affect all three
             moves = step * np.eye(n)
             z = point.z[:, None]
             sides = np.concatenate([z + moves, z - moves], axis=1)
@@ -350,9 +350,9 @@ class Evaluator:
 
 
 def points_together(requests: Sequence[tuple[Evaluator, Vector]]) -> list[Point]:
-    """Evaluate z (nf,) of each evaluator with its gradients, in one model call.
+    """Evaluate a point z (nf,) of each evaluator with gradients, in one model call.
 
-    The problems may differ only in their bounds.
+    The problems differ at most in their bounds.
     """
     if len(requests) == 1 or not all(evaluator.exact for evaluator, _ in requests):
         return [evaluator.point(z) for evaluator, z in requests]

@@ -1,10 +1,10 @@
-"""Problems that share the result of a search, as they differ only in irrelevant values.
+"""Detects problems with the same result of a search of sizes.
 
 Combinations of choices often differ in numbers that only enter inactive limits, such as the
-viscosity of oils with one bulk modulus. The search of listed sizes depends on the result of each
-box: its optimum or least infeasible point. Two problems have the same results if values and slopes
-agree there. Rows may differ if their limits are farther away than any optimum is from the result of
-its box.
+viscosity of oils with the same bulk modulus. The search of listed sizes depends on the result of
+each box: its optimum or least infeasible point. Two problems have the same results if values and
+slopes agree at these points. Rows may differ if their limits are farther away than the accuracy of
+these points.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from .problem import BoxProblem, Vector
 from .resolve.boxes import NEAR
 
 SAME_OPTIMUM = 1e-6
-"""Relative difference of continuous optima that counts as none: the accuracy of quick looks."""
+"""Relative difference of continuous optima that counts as zero: the accuracy of quick looks."""
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """Results of the boxes of a search; `optimum` is the problem's continuous objective."""
+    """Results of the boxes of a search; `optimum` is the continuous optimum's objective."""
 
     problem: BoxProblem
     optimum: float

@@ -1,9 +1,9 @@
-"""Why a problem is infeasible: joint relaxation, sufficient single changes, binding bounds.
+"""Explains why a problem is infeasible: joint relaxation, sufficient changes, binding bounds.
 
-All amounts are margins, that is fractions of the limits. The smallest joint relaxation minimises
-the sum of the margins given up (an elastic programme [Chinneck2008]). It names few requirements
-rather than a little of each; physical laws (geometry) are never relaxed. Every search is local,
-from the given points: a remedy it finds is valid, but it may miss others.
+All amounts are margins, as fractions of the limits. The smallest joint relaxation minimises the sum
+of the margins given up (an elastic programme [Chinneck2008]). The sum favours a large relaxation of
+few requirements over a small relaxation of many. Physical laws (geometry) are never relaxed. All
+searches are local, from the given points: their remedies are valid, but others may exist.
 """
 
 from __future__ import annotations
@@ -21,25 +21,25 @@ from .problem import BoxProblem, Vector
 from .repairs import NOTHING, Opening, RelaxedConstraint
 
 STARTS = 2
-"""Maximum points from which the joint relaxation is sought."""
+"""Maximum starts of the search for the joint relaxation."""
 
 ROOM = 1.001
-"""Relaxation granted to a limit, relative to the least sufficient one, to approach that design."""
+"""Relaxation granted to a limit, relative to the least sufficient relaxation."""
 
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
-    """Which requirements conflict, and by how much.
+    """The conflicting requirements, and the size of the conflict.
 
     Parameters
     ----------
     joint : the smallest joint relaxation, the largest first; empty if only laws conflict
     sole : sufficient relaxation of each conflicting requirement alone
-    bounds : variable bounds that bind there, the most helpful first
+    bounds : binding bounds of variables at the joint relaxation, the most helpful first
     laws : constraints that cannot be relaxed and conflict among themselves
     x : the point of the joint relaxation
     total : sum of the joint relaxation
-    residual : optimality of the joint relaxation (small: it is the smallest near x)
+    residual : of the optimality conditions of the joint relaxation
     multipliers : fall of the total per unit of margin granted to each constraint (m,)
     """
 
@@ -59,7 +59,7 @@ def explain(problem: BoxProblem, points: Sequence[Vector]) -> Conflict:
     Parameters
     ----------
     problem : the problem; `relaxable` separates requirements from laws (None: all relaxable)
-    points : where to start, such as the least infeasible points found (n,)
+    points : starts (n,), such as the least infeasible points of a search
     """
     tell("infeasible: searching for the smallest relaxation")
     m = len(problem.constraint_names)
@@ -123,7 +123,10 @@ def _smaller_relaxation(
     sole: Sequence[RelaxedConstraint],
     point: Point,
 ) -> Point | None:
-    """A smaller joint relaxation, if one limit alone gives up less because the descent stalled."""
+    """A smaller joint relaxation, if a single limit needs less; None otherwise.
+
+    A single limit needs less than the joint relaxation if the descent stalled.
+    """
     single = [(r.amount, group) for r, group in zip(sole, candidates, strict=True) if r.amount]
     amount, group = min(single, key=lambda entry: entry[0], default=(np.inf, groups[0]))
     if amount >= point.objective - NOTHING:
@@ -141,10 +144,10 @@ def _smaller_relaxation(
 def _conflicting(
     evaluator: Evaluator, point: Point, quality: kkt.KktResidual
 ) -> npt.NDArray[np.bool_]:
-    """Constraints that take part in the conflict; dropping the others does not resolve it.
+    """Mask of the constraints that cause the conflict; without the others, it persists.
 
-    The multipliers of the relaxation prove this (for a convex problem, else locally). Without
-    optimality every binding constraint may take part.
+    The multipliers of the relaxation prove this locally, or globally for a convex problem. Without
+    optimality, every binding constraint may be a cause.
     """
     if quality.residual <= NOTHING:
         return np.asarray(quality.multipliers > 1e-7)
@@ -152,7 +155,7 @@ def _conflicting(
 
 
 def _groups(problem: BoxProblem) -> list[repairs.Indices]:
-    """Rows of the constraints that are relaxed together."""
+    """Rows of the constraints, grouped by limit."""
     m = len(problem.constraint_names)
     numbers = np.arange(m) if problem.groups is None else np.asarray(problem.groups)
     return [np.flatnonzero(numbers == number) for number in dict.fromkeys(numbers.tolist())]
@@ -161,7 +164,7 @@ def _groups(problem: BoxProblem) -> list[repairs.Indices]:
 def _smallest(
     problem: BoxProblem, groups: list[repairs.Indices], points: Sequence[Vector]
 ) -> tuple[Point, Evaluator]:
-    """Return the smallest sum of slacks of the groups, from the best of several points."""
+    """The smallest sum of the groups' slacks over several starts, and its elastic problem."""
     judge = Evaluator(problem)
     room, starts = 1.0, []
     for x in list(points)[:STARTS] or [(problem.lower + problem.upper) / 2]:

@@ -1,4 +1,4 @@
-"""The infeasibility card of an actuator: limits by PATH, in display units."""
+"""The explanation of an infeasible actuator: limits by PATH, in display units."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ _ORIGINS = {"requirement": "requirement", "case": "load case", "check": "check l
 def explained(
     actuator: ActuatorProblem, solution: Solution
 ) -> tuple[Infeasibility | None, Solution]:
-    """Explain an infeasible result; returns the card and the design of the joint relaxation.
+    """Explain an infeasible result; returns the explanation and the joint relaxation's solution.
 
-    Both are missing if a limit stopped the search.
+    A feasible result, or a search that stopped at a limit, has no explanation.
     """
     limited = solution.outcome is Outcome.LIMIT_INFEASIBLE
     if solution.feasible or solution.kkt is None or limited:
@@ -81,12 +81,12 @@ def _card(
 
 
 def _kind(entry: Mapping[str, Any]) -> str:
-    """Whether a limit is a requirement or a safety factor."""
+    """The kind of a limit: requirement or safety factor."""
     return "safety factor" if entry["safety_factor"] else "requirement"
 
 
 def _limit_entry(entry: Mapping[str, Any], kind: str) -> dict[str, Any]:
-    """A sufficient limit or bound, as an entry of the list of cures."""
+    """A sufficient change of a limit or bound, as an entry of the cures."""
     return {
         "kind": kind,
         "parameter": entry["parameter"] or entry["requirement"],
@@ -96,7 +96,7 @@ def _limit_entry(entry: Mapping[str, Any], kind: str) -> dict[str, Any]:
 
 
 def _joint_entry(actuator: ActuatorProblem, dimensions: Sequence[Cure]) -> dict[str, Any]:
-    """Dimensions that are enough together, as an entry."""
+    """Dimensions that are enough together, as an entry of the cures."""
     parts = [_cure_entry(actuator, "dimension", cure) for cure in dimensions]
     texts = ("parameter", "limit_text", "needed_text")
     entry: dict[str, Any] = {
@@ -112,7 +112,7 @@ def _joint_entry(actuator: ActuatorProblem, dimensions: Sequence[Cure]) -> dict[
 
 
 def _cure_entry(actuator: ActuatorProblem, kind: str, cure: Cure) -> dict[str, Any]:
-    """A sufficient dimension or choice, as an entry."""
+    """A sufficient dimension or choice, as an entry of the cures."""
     entry: dict[str, Any] = {"kind": kind, "parameter": cure.path, "advised": True, "now": cure.now}
     if isinstance(cure.now, str) or isinstance(cure.needed, str):
         further = ", ".join(
@@ -131,7 +131,7 @@ def _cure_entry(actuator: ActuatorProblem, kind: str, cure: Cure) -> dict[str, A
 
 
 def entry_of(actuator: ActuatorProblem, relaxed: RelaxedConstraint) -> dict[str, Any]:
-    """A requirement as an entry: its limit as stated, and the sufficient one."""
+    """A requirement as an entry: its stated limit and the sufficient limit."""
     row, amount = actuator.rows[relaxed.index], relaxed.amount
     limit = float(np.ravel(row.limit)[0])
     path, sense = row.limit_of.path, row.limit_of.sense
@@ -160,12 +160,12 @@ def entry_of(actuator: ActuatorProblem, relaxed: RelaxedConstraint) -> dict[str,
 
 
 def _protects_safety(row: LimitRow) -> bool:
-    """Whether a limit protects safety: the check list, and every factor."""
+    """Whether a limit protects safety: a limit of the check list, or of a safety factor."""
     return row.limit_of.origin == "check" or row.limit_of.metric.endswith("_factor")
 
 
 def _relaxed(row: LimitRow, limit: float, amount: float) -> float:
-    """The limit after giving up a margin `amount`."""
+    """The limit that gives up a margin `amount`."""
     step = amount * (abs(limit) or 1.0)
     return limit - step if row.limit_of.sense == "min" else limit + step
 
@@ -188,7 +188,7 @@ def _bound_entry(actuator: ActuatorProblem, bound: Opening) -> dict[str, Any]:
 def _texts(
     quantity: Quantity, limit: float, needed: float | None, *, upwards: bool
 ) -> dict[str, str]:
-    """Both values in the display unit; the needed one rounded to be sufficient as printed."""
+    """Both values in the display unit; the rounded needed value is sufficient as printed."""
     texts = {"limit_text": quantity.text(limit, MORE_DIGITS), "needed_text": ""}
     if needed is not None:
         fine = abs(needed - limit) < 0.01 * abs(limit)
@@ -201,7 +201,7 @@ def _texts(
 
 
 def change_text(entry: Any) -> str:
-    """``PATH 250 N -> 283.1 N (+13.2 %)``; joint changes one after the other."""
+    """``PATH 250 N -> 283.1 N (+13.2 %)``; joint changes are joined with "and"."""
     if "together" in entry:
         return " and ".join(change_text(part) for part in entry["together"])
     name = entry.get("parameter") or entry["requirement"]
@@ -222,7 +222,7 @@ def percent(share: float) -> str:
 
 
 _ACTS = {"dimension": "free {}", "choice": "change {}", "bound": "open {}"}
-"""Action for each kind of cure other than a limit."""
+"""Action for each kind of cure, except for limits."""
 
 
 def _sentence(
@@ -236,10 +236,10 @@ def _sentence(
         )
     if not joint:
         return "infeasible, and the search gave no sufficient relaxation"
-    first = sufficient[0] if sufficient else None
-    if first is not None and first["kind"] in _ACTS:
-        enough_text = "together are enough" if "together" in first else "alone is enough"
-        return f"infeasible: {_ACTS[first['kind']].format(change_text(first))} {enough_text}"
+    cure = sufficient[0] if sufficient else None
+    if cure is not None and cure["kind"] in _ACTS:
+        enough_text = "together are enough" if "together" in cure else "alone is enough"
+        return f"infeasible: {_ACTS[cure['kind']].format(change_text(cure))} {enough_text}"
     changes = "; ".join(change_text(entry) for entry in joint)
     unsafe = any(entry["safety_factor"] for entry in joint)
     if len(joint) == 1:
@@ -248,13 +248,13 @@ def _sentence(
         sentence = f"infeasible: the smallest joint change, of {len(joint)} limits, is {changes}"
     if unsafe:
         sentence += " (weakens a safety factor: not advised)"
-    if first is not None and (unsafe or len(joint) > 1) and first["advised"]:
-        sentence += f". One change alone is also enough: {change_text(first)}"
+    if cure is not None and (unsafe or len(joint) > 1) and cure["advised"]:
+        sentence += f". One change alone is also enough: {change_text(cure)}"
     return sentence
 
 
 def _evidence(explanation: Explanation, solution: Solution) -> str:
-    """The status of the advice: confirmed by a design, or only not found."""
+    """The evidence for the advice."""
     count = len(solution.starts)
     starts = f"{count} start{'' if count == 1 else 's'}"
     statement = (
@@ -263,8 +263,8 @@ def _evidence(explanation: Explanation, solution: Solution) -> str:
     if explanation.laws:
         return f"{statement}: this is evidence, not proof"
     return (
-        f"{statement}: this is evidence, not proof. Each change listed as enough was confirmed by a "
-        "feasible design. Smaller changes, or single changes not listed, were only not found to "
-        f"be enough. Bounds and fixed dimensions were varied up to {WIDEST:g} times or down to "
-        f"1/{WIDEST:g} of their value"
+        f"{statement}: this is evidence, not proof. Each change listed as enough was confirmed by "
+        "a feasible design. No feasible design was found for smaller changes, or for single "
+        "changes not listed. Bounds and fixed dimensions were varied up to "
+        f"{WIDEST:g} times or down to 1/{WIDEST:g} of their value"
     )

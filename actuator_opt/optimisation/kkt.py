@@ -1,16 +1,14 @@
-"""First- and second-order optimality of a point: multipliers, residual, rank, curvature.
+"""Optimality of a point (multipliers, residual, rank, curvature), and Newton steps towards it.
 
-The residual is the contract's: the norm of grad f - sum(multiplier * grad g) over that of
-grad f, in solver coordinates, multipliers at least 0, over the constraints and bounds active
-within 1e-6. Multipliers are non-negative least squares [LawsonHanson1974].
+The residual is the norm of grad f - sum(multiplier * grad g) over the norm of grad f, in solver
+coordinates. The sum includes constraints and bounds that are active within 1e-6. The multipliers
+follow from non-negative least squares [LawsonHanson1974].
 
-Active-set Newton steps: the exact-Hessian polish that first-order solvers lack.
-
-Sequential quadratic programming with the Hessian of the Lagrangian from exact gradients
-[NocedalWright2006] ch. 18. Each quadratic programme is a least-distance problem, solved by
-non-negative least squares [LawsonHanson1974] ch. 23. This identifies the active set and copes with
-dependent rows and overdetermined vertices. Converges quadratically near the optimum; also re-solves
-a slightly changed problem.
+The Newton steps are sequential quadratic programming with the Hessian of the Lagrangian from exact
+gradients [NocedalWright2006] ch. 18. Each quadratic programme is a least-distance problem, solved
+by non-negative least squares [LawsonHanson1974] ch. 23. This identifies the active set and permits
+dependent rows and overdetermined vertices. The steps converge quadratically near the optimum, also
+near that of a slightly changed problem.
 """
 
 from __future__ import annotations
@@ -25,11 +23,11 @@ from .evaluator import Evaluator, LimitReached, Point
 from .problem import Vector
 
 ACTIVE = 1e-6
-"""A margin, or a distance to a bound in solver coordinates, below this is active."""
+"""Margin, or distance to a bound in solver coordinates, below which a limit is active."""
 
 
 class Curvature(Enum):
-    """Sign of the Hessian of the Lagrangian along the directions the active set leaves free."""
+    """Sign of the Lagrangian's Hessian along the directions that the active set leaves free."""
 
     VERTEX = "vertex: the active set leaves no direction free"
     POSITIVE = "positive definite: a strict local minimum"
@@ -39,12 +37,12 @@ class Curvature(Enum):
 
 @dataclass(frozen=True)
 class Active:
-    """The active set at a point: rows of gradients of margins, bounds included.
+    """The active set at a point: margins of constraints and bounds, with gradients.
 
     Parameters
     ----------
-    gradients : (a, nf), each of a margin that is at least 0
-    margins : (a,)
+    gradients : of the margins (a, nf)
+    margins : (a,), at least 0 where met
     constraint, lower, upper : index of the constraint or variable of each row, in this order
     """
 
@@ -68,8 +66,7 @@ class KktResidual:
     ----------
     residual : relative norm of the gradient of the Lagrangian
     active : labels of active constraints, equalities and bounds ("NAME lower", "NAME upper")
-    count, rank : number of active gradients, and of independent ones; the multipliers are unique
-        when they are equal
+    count, rank : number of active gradients, and of independent gradients among them
     multipliers : (m,) of the constraints: change of the objective per unit of required margin
     equality_multipliers : (e,)
     lower_multipliers, upper_multipliers : (n,) of the bounds, per unit of solver coordinate
@@ -88,16 +85,16 @@ class KktResidual:
 
     @property
     def unique(self) -> bool:
-        """Whether the multipliers are unique (independent active gradients)."""
+        """Whether the multipliers are unique: the active gradients are independent."""
         return self.rank == self.count
 
 
 def nnls(matrix: Vector, vector: Vector, previous: Vector | None = None) -> Vector:
     """Non-negative least squares: min |matrix @ result - vector|, result >= 0.
 
-    First all columns unconstrained (enough at a regular optimum), else the active-set method of
-    Lawson and Hanson, which ends on independent columns. `previous` is the result of a similar
-    problem: the search starts from its positive columns.
+    An unconstrained solution over all columns comes first; it suffices at a regular optimum. Else
+    follows the active-set method of Lawson and Hanson, which ends on independent columns. It starts
+    from the positive columns of `previous`, the result of a similar problem.
     """
     size = np.sqrt((matrix**2).sum(axis=0))
     used = np.flatnonzero(size > 1e-14 * size.max(initial=0.0))
@@ -117,7 +114,7 @@ def nnls(matrix: Vector, vector: Vector, previous: Vector | None = None) -> Vect
 
 def _lawson_hanson(matrix: Vector, vector: Vector, passive: npt.NDArray[np.bool_]) -> Vector:
     count = matrix.shape[1]
-    result, passive = _begun(matrix, vector, passive)
+    result, passive = _initial_result(matrix, vector, passive)
     refused = np.zeros(count, dtype=bool)
     tolerance = 1e-13 * (1e-300 + float(np.linalg.norm(vector)))
     for _ in range(5 * count):
@@ -147,10 +144,10 @@ def _lawson_hanson(matrix: Vector, vector: Vector, passive: npt.NDArray[np.bool_
     return result
 
 
-def _begun(
+def _initial_result(
     matrix: Vector, vector: Vector, passive: npt.NDArray[np.bool_]
 ) -> tuple[Vector, npt.NDArray[np.bool_]]:
-    """A first result with some positive columns; none if there are none."""
+    """A first result on the largest subset of the columns that is positive and independent."""
     nothing = np.zeros(matrix.shape[1])
     while passive.any():
         trial, rank = _restricted(matrix, vector, passive)
@@ -171,7 +168,7 @@ def _restricted(
 
 
 def active_set(evaluator: Evaluator, point: Point, width: float = ACTIVE) -> Active:
-    """Constraints and bounds within `width` of their limit at a point, with gradients."""
+    """The constraints and bounds with a margin up to `width` at a point."""
     space, m = evaluator.space, evaluator.constraint_count
     jacobian = evaluator.jacobian(point)
     margins = point.rows[1 : 1 + m]
@@ -193,10 +190,10 @@ def active_set(evaluator: Evaluator, point: Point, width: float = ACTIVE) -> Act
 def multipliers(
     slope: Vector, active: Active, equalities: Vector, damping: float = 0.0
 ) -> tuple[Vector, Vector]:
-    """Multipliers (a,) >= 0 of an active set and (e,) free of the equalities.
+    """Multipliers (a,) >= 0 of an active set, and multipliers (e,) of the equalities.
 
-    `damping` > 0 discourages multipliers on rows with a margin left, which identifies the active
-    set from a point that is only near the optimum.
+    `damping` > 0 penalises multipliers of rows with a positive margin. This identifies the active
+    set from a point near the optimum.
     """
     matrix, vector = active.gradients.T, slope
     if len(equalities):
@@ -219,10 +216,10 @@ def multipliers(
 
 
 def slope_scale(evaluator: Evaluator, point: Point, objective_scale: float = 0.0) -> float:
-    """Return the divisor of the residual, |grad f|.
+    """The divisor of the residual, |grad f|.
 
-    At a stationary objective without active constraints |grad f| vanishes. A thousandth of the
-    objective's magnitude then replaces it.
+    At a stationary objective, |grad f| vanishes. A thousandth of the objective's magnitude then
+    replaces it.
     """
     slope = float(np.linalg.norm(evaluator.jacobian(point)[0]))
     floor = max(1e-3 * abs(point.objective), 1e-6 * objective_scale)
@@ -243,7 +240,7 @@ def _priced(
 
 
 def residual(evaluator: Evaluator, point: Point) -> float:
-    """The relative norm of the Lagrangian's gradient at a point, as in `check`."""
+    """Relative norm of the Lagrangian's gradient at a point, as in `check`."""
     return _priced(evaluator, point, 0.0)[-1]
 
 
@@ -330,7 +327,7 @@ def _curvature(
 DAMPING = 1e3
 """Weight of complementarity when multipliers are estimated away from the optimum."""
 FEASIBLE = 1e-9
-"""Violation below which a polished point counts as exactly feasible."""
+"""Violation up to which a polished point counts as exactly feasible."""
 RADIUS = 0.5
 """Longest step in any solver coordinate (a factor of 1.65 in a logarithmic variable)."""
 
@@ -364,9 +361,9 @@ def state_at(evaluator: Evaluator, point: Point) -> NewtonState:
 def polish(
     evaluator: Evaluator, start: Point, *, iterations: int = 12, tolerance: float = 1e-13
 ) -> Point:
-    """Improve a point towards the optimality conditions; never worse than the start.
+    """Improve a point by Newton steps; returns the start itself without a better point.
 
-    Returns the start itself without a better point.
+    The steps end once the measure of optimality is below `tolerance`.
     """
     if not start.valid or evaluator.space.size == 0:
         return start
@@ -391,7 +388,10 @@ def polish(
 
 
 def _acceptable(evaluator: Evaluator, initial: NewtonState, newton_state: NewtonState) -> bool:
-    """Whether a point is no less feasible, and not costlier than start plus priced violation."""
+    """Whether a point is no less feasible, and its objective at most that of the start.
+
+    The objective may rise by twice the price of the start's violation.
+    """
     if newton_state.point.violation > max(FEASIBLE, initial.point.violation):
         return False
     allowance = float(initial.multipliers @ np.maximum(-initial.active.margins, 0.0))
@@ -423,16 +423,16 @@ def _advance(evaluator: Evaluator, state: NewtonState) -> NewtonState | None:
         trial = evaluator.point(z)
         if not trial.valid:
             continue
-        better = _merit(evaluator, trial, state.scale, price) < merit - 1e-9 * (1 + abs(merit))
-        if better or share == 1.0:
+        improves = _merit(evaluator, trial, state.scale, price) < merit - 1e-9 * (1 + abs(merit))
+        if improves or share == 1.0:
             following = state_at(evaluator, trial)
-            if better or following.measure < 0.9 * state.measure:
+            if improves or following.measure < 0.9 * state.measure:
                 return following
     return None
 
 
 def _merit(evaluator: Evaluator, point: Point, scale: float, price: float) -> float:
-    """Return the l1 merit: objective plus violations at more than their price."""
+    """The l1 merit: the objective plus the violations, weighted above their price."""
     m = evaluator.constraint_count
     missed = np.maximum(-point.rows[1 : 1 + m], 0.0).sum() + np.abs(point.rows[1 + m :]).sum()
     return point.objective / scale + price * float(missed)
@@ -472,10 +472,10 @@ def quadratic_step(
 
 
 def convex_hessian(evaluator: Evaluator, state: NewtonState) -> Vector:
-    """Scaled Hessian of the Lagrangian, made positive definite without changing the step.
+    """Scaled Hessian of the Lagrangian, made positive definite without a change of the step.
 
-    Adding multiples of the active rows' outer products leaves the solution on those rows unchanged.
-    If that is not enough, negative curvatures count by their magnitude.
+    Multiples of the active rows' outer products do not change the solution on these rows. If they
+    are not enough, the magnitude replaces a negative curvature.
     """
     m, active = evaluator.constraint_count, state.active
     constraint_multipliers = np.zeros(m)
@@ -507,8 +507,8 @@ def quadratic_programme(
 ) -> tuple[Vector, Vector]:
     """Minimise d'Hd/2 + slope'd subject to margins + rows d >= 0, with multipliers (a,) >= 0.
 
-    Inconsistent rows give the step of least violation instead. `previous` are multipliers of a similar
-    programme, which only save time.
+    Inconsistent rows give the step of least violation instead. `previous` are multipliers of a
+    similar programme and only save time.
     """
     factor = np.linalg.cholesky(hessian)
     scaled_slope = np.linalg.solve(factor, slope)

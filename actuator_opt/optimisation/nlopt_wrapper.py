@@ -1,9 +1,9 @@
-"""NLopt behind a guard: named algorithms, screened callbacks, verified results.
+"""Guarded calls of NLopt: algorithms by name, screened callbacks, verified results.
 
-NLopt reports success on infeasible points (MMA, CCSAQ, COBYLA), crashes on NaN (AGS), replaces
-exceptions of callbacks and hides good results behind RoundoffLimited [NLopt]. Here its return code
-is only recorded. Callbacks never raise and never return NaN, the best feasible iterate is kept, and
-the caller judges the point itself.
+NLopt reports success at infeasible points (MMA, CCSAQ, COBYLA), crashes on NaN (AGS), replaces
+exceptions of callbacks, and discards good results with RoundoffLimited [NLopt]. The wrapper
+therefore only records the return code. Callbacks never raise and never return NaN, the best
+feasible iterate is stored, and the caller verifies the result.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Algorithm:
     scope : "local", "global", or "wrapper" for one that needs an inner algorithm
     inequalities, equalities : whether it supports them
     most_variables : maximum number of free variables
-    most_evaluations : of one run (the original DIRECT slows down with their cube)
+    most_evaluations : maximum of one run; the time of the original DIRECT grows with their cube
     about : description
     """
 
@@ -108,21 +108,21 @@ OLDER = {
     "GN_MLSL_LDS": "G_MLSL_LDS+LN_BOBYQA",
     "G_MLSL": "G_MLSL_LDS+LD_LBFGS",
 }
-"""NLopt names of combinations that are written here as a sum."""
+"""NLopt names of combinations, and their notation as a sum."""
 
 INSIDE = {"AUGLAG": "LD_LBFGS", "AUGLAG_EQ": "LD_MMA", "G_MLSL_LDS": "LD_LBFGS"}
 """Default inner algorithm of a wrapper."""
 
 
 def find(text: str) -> tuple[Algorithm, Algorithm | None]:
-    """Return the algorithm named `text`, and its inner one ("AUGLAG+LD_LBFGS").
+    """The algorithm named `text` and its inner algorithm, as in "AUGLAG+LD_LBFGS".
 
-    Case does not matter, and a prefix may be omitted if the rest is unique ("slsqp").
+    Case does not matter. A prefix may be omitted if the name remains unique ("slsqp").
 
     Raises
     ------
     UsageError
-        no such algorithm; suggests the nearest names
+        the algorithm does not exist; suggests the nearest names
     """
     name = OLDER.get(text.strip().upper(), text.strip().upper())
     outer, _, inner = name.partition("+")
@@ -159,7 +159,7 @@ def _refusal(message: str, remedy: str) -> UsageError:
 
 
 def suit(text: str, problem: BoxProblem) -> str:
-    """Return the full name of an algorithm that can solve the problem.
+    """The full name of an algorithm, if it can solve the problem.
 
     Raises
     ------
@@ -193,8 +193,8 @@ def suit(text: str, problem: BoxProblem) -> str:
 
 
 ARRIVAL = (0.1, 1e-3, 1e-3)
-"""A run has reached a known optimum within this distance in solver coordinates, relative difference
-of the objective and violation; only its slow convergence is left."""
+"""Distance in solver coordinates, relative difference of the objective, and violation within which
+a run has reached a known optimum. Only its slow convergence would follow."""
 
 
 @dataclass(frozen=True)
@@ -213,7 +213,7 @@ class _Arrived(Exception):
 
 
 class _Guard:
-    """Callbacks that never raise and never return NaN, in logarithmic or linear coordinates."""
+    """Callbacks in logarithmic or linear coordinates that never raise and never return NaN."""
 
     def __init__(self, evaluator: Evaluator, start: Point, *, linear: bool, handle: Any) -> None:
         self.evaluator, self.handle, self.linear = evaluator, handle, linear
@@ -254,7 +254,7 @@ class _Guard:
         return np.asarray(jacobian * (self.width / slope))
 
     def _visit(self, u: Vector) -> Point | None:
-        """Return the point, or None where the run must stop."""
+        """The point at u, or None if the run must stop."""
         if self.error is not None:
             return None
         with self._deferred():
@@ -270,7 +270,7 @@ class _Guard:
         return None
 
     def _look_around(self, point: Point) -> None:
-        """Stop near a known optimum, which the run would only reach again."""
+        """Stop the run near a known optimum."""
         distance, share, violation = ARRIVAL
         if point.violation > violation:
             return
@@ -282,7 +282,7 @@ class _Guard:
 
     @contextmanager
     def _deferred(self) -> Iterator[None]:
-        """Hold exceptions of the model and Ctrl-C until NLopt has returned."""
+        """Defer exceptions of the model and Ctrl-C until NLopt has returned."""
         try:
             yield
         except BaseException as error:  # every exception, as NLopt turns them into SystemError
@@ -316,7 +316,7 @@ class _Guard:
         self._rows(result, u, slopes, slice(1, 1 + self.evaluator.constraint_count), 1.0)
 
     def worst_margin(self, u: Vector, slope: Vector) -> float:
-        """Return the worst-violated constraint as one number (for AGS)."""
+        """The worst-violated constraint as one number, for AGS."""
         result = np.zeros(self.evaluator.constraint_count)
         self.inequalities(result, u, slope)
         return float(result.max())
@@ -337,12 +337,12 @@ def run(
     optima: Sequence[Point] = (),
     rank: Callable[[Point], Any] | None = None,
 ) -> NloptRun:
-    """Run one algorithm from one point, at most `max_evaluations` evaluations (default: its own).
+    """Run one algorithm from one point, for at most `max_evaluations` (default: the algorithm's).
 
-    A run that reaches one of the `optima` optima (see `ARRIVAL`) stops there. Returns the best by
+    A run that reaches one of the known `optima` (see `ARRIVAL`) stops there. Returns the best by
     `rank` (default: feasible by objective, else by violation) of NLopt's point, the best feasible
     iterate, the last iterate and the start. Exceptions of the model, interrupts included, are
-    raised unchanged; reaching a limit ends the run quietly.
+    raised unchanged. A limit ends the run without an exception.
     """
     if evaluator.space.size == 0:
         return NloptRun(start, 1, algorithm)
@@ -370,9 +370,9 @@ def run(
     nlopt.srand(seed + 1)
     try:
         end = handle.optimize(guard.from_point(start))
-    except (RuntimeError, ValueError, SystemError, MemoryError) as error:  # NLopt's own errors
+    except (RuntimeError, ValueError, SystemError, MemoryError) as error:  # raised by NLopt
         end = None
-        guard.error = guard.error or error.__cause__  # Ctrl-C outside any guard
+        guard.error = guard.error or error.__cause__  # Ctrl-C outside a callback
     code = int(handle.last_optimize_result())
     if guard.error is not None and not isinstance(guard.error, (LimitReached, _Arrived)):
         raise guard.error
@@ -389,7 +389,7 @@ def _handle(algorithm: Algorithm, size: int, tolerance: float, max_evaluations: 
 
 
 def _pick(evaluator: Evaluator, guard: _Guard, end: Vector | None, start: Point) -> Point:
-    """Return the best of NLopt's point, the best feasible, the last iterate and the start."""
+    """The best of NLopt's point, the best feasible iterate, the last iterate and the start."""
     candidates = [guard.best, guard.last, start]
     if end is not None and guard.error is None and np.isfinite(end).all():
         limited, evaluator.limited = evaluator.limited, False

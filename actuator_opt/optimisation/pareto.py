@@ -1,4 +1,4 @@
-"""The Pareto front of an actuator for objectives by metric: designs, knee, spacing, checks."""
+"""The Pareto front of an actuator for several metrics: designs, knee, spacing, checks."""
 
 from __future__ import annotations
 
@@ -72,18 +72,18 @@ class ParetoFront(Displayed):
     Parameters
     ----------
     subject : the design studied
-    spec_hash : of it
+    spec_hash : hash of this design
     objectives : metrics with their direction
     points : designs, the best in the first objective first
-    knee : where the front bends most towards the ideal; None if it does not
-    design, evaluation : of the knee, else of the first point; as stated without a front
-    passed : objectives of dominated designs met during the search
+    knee : the design where the front bends most towards the ideal; None without a bend
+    design, evaluation : of the knee, else of the first point; without a front, of the file
+    passed : objectives of the dominated designs of the search
     gaps : normalised distances between neighbours (to the nearest for three or more objectives)
     wide : gaps of two objectives above three times the median, and the reason
     checked, improved : independent searches between designs, and how many improved the front
-    failed : number of places without a design at or near them
-    infeasibility : reason for a missing front
-    unsolved : objective whose best design was not found, and the outcome of its search
+    failed : number of levels without a design nearby
+    infeasibility : explanation of a missing front
+    unsolved : objective without a best design, and the outcome of its search
     """
 
     subject: Design
@@ -125,7 +125,7 @@ class ParetoFront(Displayed):
 
     @property
     def evenness(self) -> float | None:
-        """The largest gap over the median one, without jumps; None if there are no gaps."""
+        """Ratio of the largest gap to the median gap, without jumps; None without gaps."""
         return max(self.steps) / median(self.steps) if self.steps else None
 
     @property
@@ -246,9 +246,9 @@ def pareto(
     ----------
     subject : the prepared design
     objectives : two to four of ``METRIC:min`` or ``METRIC:max``
-    count : designs requested
+    count : requested number of designs
     seed : of the searches; the same seed gives the same front
-    checks : independent searches between designs, which reveal merely local ones
+    checks : number of independent searches between designs, which detect merely local designs
     fault : locates faults of variables in the file
     """
     began = time.perf_counter()
@@ -270,7 +270,7 @@ def pareto(
 def _problem(
     subject: PreparedDesign, wished: tuple[Wish, ...], fault: Fault | None
 ) -> _ManyObjectives:
-    """The problem, with every objective defined and variable.
+    """Build the problem; every objective must be defined and variable.
 
     Raises
     ------
@@ -303,7 +303,7 @@ def _problem(
 
 
 def _points(many: _ManyObjectives, result: Front) -> tuple[FrontPoint, ...]:
-    """Variables and metrics of every design: objectives, and those of the requirements."""
+    """Variables of every design, and its metrics of the objectives and requirements."""
     actuator, count = many.actuator, result.x.shape[1]
     subject = actuator.subject
     numbers = subject.values(dict(zip(actuator.paths, result.x, strict=True)))
@@ -359,7 +359,7 @@ def _passed(values: Vector, signs: Vector) -> list[list[float]]:
 
 
 def _notes(many: _ManyObjectives) -> list[str]:
-    """Parts of a design that a front ignores: its choices, and the sizes of its variables."""
+    """Warnings on parts of a design that a front ignores: choices, and sizes of variables."""
     design = many.actuator.subject.design
     notes = []
     if design.choices:
@@ -381,7 +381,7 @@ def _text(wish: Wish) -> str:
 
 
 def _without(many: _ManyObjectives, no_anchor: NoAnchor, began: float) -> ParetoFront:
-    """The result without a front: nothing is feasible, or an end is missing."""
+    """The result without a front: no design is feasible, or an anchor is missing."""
     subject = many.subject
     solution = no_anchor.solution
     feasible = solution.violation <= MET

@@ -1,15 +1,12 @@
-"""Prices of the parameters of an optimum: value, range, and the check by re-solving.
+"""Prices of the parameters of an optimum: value, range of validity, and check by re-solving.
 
-The price of a parameter is the derivative of the Lagrangian [Fiacco1983]: exact for limits,
-material data, pressures and bounds, whatever algebraic form the constraints take. Its range of
-validity follows from the derivative of the optimum. Re-solving at plus and minus 10 % shows the
-error of the straight line.
+The price of a parameter is the derivative of the Lagrangian [Fiacco1983]. It is exact for limits,
+material data, pressures and bounds, for any algebraic form of the constraints. The derivative of
+the optimum solves the linearised optimality conditions [Fiacco1983]; the range of validity of the
+price follows from it. Re-solving at plus and minus 10 % shows the error of the straight line.
 
-Movement of an optimum with a parameter, validity of its active set, and one-sided prices.
-
-The derivative of the optimum solves the linearised optimality conditions [Fiacco1983]. At a
-degenerate vertex the multipliers form a polytope; the prices upwards and downwards are the
-largest and smallest over it [Gauvin1982].
+At a degenerate vertex the multipliers form a polytope. The prices upwards and downwards are then
+the largest and smallest over the polytope [Gauvin1982].
 """
 
 from __future__ import annotations
@@ -38,7 +35,7 @@ from .resolve.steps import valley_at
 INSTANT = 1e-7
 """Change of an active margin per relative parameter change that counts as zero."""
 BASES = 1000
-"""Maximum vertices of the multiplier polytope to enumerate; beyond, linear programming."""
+"""Maximum bases of the multiplier polytope for enumeration; beyond, linear programming."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +45,7 @@ class Optimum:
     Parameters
     ----------
     margins, multipliers : (M,)
-    gradients : (M, nf)
+    gradients : of the margins (M, nf)
     equalities : gradients (e, nf)
     equality_multipliers : (e,)
     slope : gradient of the objective (nf,)
@@ -118,9 +115,9 @@ def lagrangian_slopes(optimum: Optimum, derivatives: Responses) -> Vector:
 
 
 def movement(optimum: Optimum, derivatives: Responses) -> tuple[Vector, Vector]:
-    """Return derivatives by the parameters of the optimum (nf, q) and its multipliers (M, q).
+    """Derivatives of the optimum (nf, q) and of its multipliers (M, q) by the parameters.
 
-    Directions that change nothing to second order do not move.
+    Directions without effect to second order do not move.
     """
     active, nf = optimum.active, len(optimum.slope)
     rows = np.concatenate([optimum.gradients[active], optimum.equalities])
@@ -130,7 +127,7 @@ def movement(optimum: Optimum, derivatives: Responses) -> tuple[Vector, Vector]:
             derivatives.rows[len(derivatives.rows) - len(optimum.equalities) :],
         ]
     )
-    # solves d gradient of the Lagrangian = 0 and d margin = 0 along the active rows, scaled
+    # scaled system: d(gradient of the Lagrangian) = 0 and d(margin) = 0 on the active rows
     size = np.sqrt((rows**2).sum(axis=1))
     size = np.where(size > 0, size, 1.0)
     scale = max(float(np.linalg.norm(optimum.slope)), 1e-300)
@@ -146,9 +143,9 @@ def movement(optimum: Optimum, derivatives: Responses) -> tuple[Vector, Vector]:
 def reach(
     optimum: Optimum, derivatives: Responses, moves: Vector, shifts: Vector
 ) -> list[tuple[float | None, str | None]]:
-    """For each parameter the nearest value at which the active set changes, and the change.
+    """For each parameter, the nearest value at which the active set changes, and the change.
 
-    None if beyond -100 % and +100 % of the parameter.
+    None beyond -100 % and +100 % of the parameter.
     """
     result: list[tuple[float | None, str | None]] = []
     for value, changes in zip(
@@ -165,8 +162,8 @@ def reach(
 class ActiveSetChange(NamedTuple):
     """A change of the active set: distance and direction of the parameter, and the change.
 
-    The direction matters at distance 0: a margin already used up without a multiplier becomes
-    active on one side only.
+    The direction matters at distance 0: a zero margin without a multiplier becomes active on one
+    side only.
     """
 
     distance: float
@@ -177,7 +174,7 @@ class ActiveSetChange(NamedTuple):
 def ends(
     optimum: Optimum, derivatives: Responses, moves: Vector, shifts: Vector
 ) -> list[tuple[ActiveSetChange | None, ActiveSetChange | None]]:
-    """For each parameter the nearest change of the active set below and above its value."""
+    """For each parameter, the nearest change of the active set below and above its value."""
     return [
         (
             min((change for change in changes if change.direction < 0), key=_size, default=None),
@@ -194,7 +191,7 @@ def _size(change: ActiveSetChange) -> float:
 def _changes(
     optimum: Optimum, derivatives: Responses, moves: Vector, shifts: Vector
 ) -> Iterator[list[ActiveSetChange]]:
-    """For each parameter the points where margins or multipliers vanish on their straight lines."""
+    """For each parameter, the values at which linear margins or multipliers vanish."""
     rates = margin_slopes(optimum, derivatives) + optimum.gradients @ moves
     active = optimum.active
     for k, value in enumerate(derivatives.values):
@@ -246,9 +243,9 @@ def one_sided(optimum: Optimum, derivatives: Responses, active: npt.NDArray[np.i
 def _without_copies(
     optimum: Optimum, derivatives: Responses, active: npt.NDArray[np.intp]
 ) -> npt.NDArray[np.intp]:
-    """Active margins without exact copies (the same limit in two load cases); sums are kept.
+    """Active margins without exact copies, such as the same limit in two load cases.
 
-    Only copies without a multiplier are dropped; least squares leaves at most one with it.
+    Only copies without a multiplier are dropped; least squares gives at most one copy a multiplier.
     """
     slopes = np.concatenate([optimum.gradients, margin_slopes(optimum, derivatives)], axis=1)
     indices: list[int] = []
@@ -263,7 +260,7 @@ def _without_copies(
 
 
 def _vertices(rows: Vector, target: Vector, rank: int, free_count: int) -> Vector:
-    """Vertices (v, a) of {multipliers : rows.T @ multipliers = target}, the last `free_count` free."""
+    """Vertices (v, a) of {m : rows.T @ m = target, m >= 0}; the last `free_count` of m are free."""
     count = len(rows)
     vertices = []
     for combination in itertools.combinations(range(count - free_count), rank - free_count):
@@ -284,49 +281,49 @@ def _vertices(rows: Vector, target: Vector, rank: int, free_count: int) -> Vecto
 def _by_linear_programming(
     rows: Vector, target: Vector, slopes: Vector, objective: Vector, free_count: int
 ) -> Vector:
-    from scipy.optimize import linprog  # slow import, rarely used
+    from scipy.optimize import linprog  # slow import for a rare case
 
     limits = [(0, None)] * (len(rows) - free_count) + [(None, None)] * free_count
     result = np.empty((2, slopes.shape[1]))
     for k in range(slopes.shape[1]):
         for side, sign in ((0, 1.0), (1, -1.0)):
             solution = linprog(-sign * slopes[:, k], A_eq=rows.T, b_eq=target, bounds=limits)
-            # an unbounded price means that this direction has no feasible point
+            # an unbounded price: no feasible point in this direction
             value = -np.inf if solution.fun is None else float(solution.fun)
             result[side, k] = objective[k] + sign * value
     return result
 
 
 CHANGE = 0.1
-"""Relative change at which every row is predicted and re-solved (contract)."""
+"""Relative change for prediction and re-solving (contract)."""
 STRAIGHT = 0.25
-"""Largest error of the straight line, as a share of the re-solved change, to call it straight."""
+"""Largest error of a straight response, as a share of the re-solved change."""
 Kind: TypeAlias = Literal["requirement", "parameter", "material"]
 """A limit to negotiate, a fixed number of the design, or a material property."""
 
 
 @dataclass(frozen=True, slots=True)
 class Sensitivity:
-    """The price of one requirement limit or one parameter, in SI of the objective per SI of it.
+    """The price of one limit or parameter, in SI units of objective and parameter.
 
     Parameters
     ----------
-    parameter : its PATH
+    parameter : PATH
     label : of its quantity
     unit : display unit
     scale : display value = SI value / scale
     limit : present value
-    price : change of the objective per unit of it
-    percent_per_percent : relative change of the objective per relative change of it; None if one of
-        the two is 0
-    predicted_10, resolved_10, predicted_minus10, resolved_minus10 : the objective at ±10 % by the
-        price, and re-optimised; None without a design
-    holds_until : where the active set changes; None beyond ±100 %
-    next_active : what changes there
+    price : change of the objective per unit of the parameter
+    percent_per_percent : relative change of the objective per relative change of the parameter;
+        None if one of both is 0
+    predicted_10, resolved_10, predicted_minus10, resolved_minus10 : the objective at ±10 %,
+        predicted by the price and re-optimised; None without a design
+    holds_until : value at which the active set changes; None beyond ±100 %
+    next_active : the change of the active set
     active : whether the limit is active at the optimum
-    price_up, price_down : prices of raising and of lowering it, which differ only at a degenerate
-        vertex; None if the next step that way leaves no design
-    movement : change of each variable of the optimum per unit of it, by PATH
+    price_up, price_down : prices of an increase and of a decrease, which differ only at a
+        degenerate vertex; None if no design exists in this direction
+    movement : change of each variable of the optimum per unit of the parameter, by PATH
     """
 
     parameter: str
@@ -349,7 +346,7 @@ class Sensitivity:
 
     @property
     def kind(self) -> Kind:
-        """Whether it is a limit to negotiate, a number of the design, or a material property."""
+        """Whether the parameter is a limit, a number of the design, or a material property."""
         root = self.parameter.partition(".")[0].partition("[")[0]
         if root in ("requirements", "load_cases"):
             return "requirement"
@@ -357,7 +354,7 @@ class Sensitivity:
 
     @property
     def ends(self) -> tuple[tuple[int, float | None, float | None], ...]:
-        """Sign, predicted and re-solved objective of both ends; none for a limit of 0."""
+        """Sign, predicted and re-solved objective at +10 % and -10 %; empty for a limit of 0."""
         if self.limit == 0:
             return ()
         return (
@@ -367,7 +364,7 @@ class Sensitivity:
 
     @property
     def one_sided(self) -> bool:
-        """Whether raising and lowering it have different prices."""
+        """Whether an increase and a decrease have different prices."""
         up, down = self.price_up, self.price_down
         if up is None or down is None:
             return up is not down
@@ -379,7 +376,7 @@ class Sensitivity:
         return max(changes, default=0.0)
 
     def straight(self, objective: float) -> bool:
-        """Whether the price predicts both ends to a quarter of their change."""
+        """Whether the price predicts the changes at ±10 % to a quarter."""
         for _, predicted, solved in self.ends:
             if predicted is None or solved is None:
                 if predicted is not solved:
@@ -407,7 +404,7 @@ def ranked(rows: Sequence[Sensitivity], objective: float) -> tuple[Sensitivity, 
 
 @dataclass(frozen=True, slots=True)
 class Offer:
-    """The better end of a row: gain of a ±10 % change (SI, `gain` > 0 is better)."""
+    """The better of both ±10 % changes of a row (SI); `gain` > 0 is better."""
 
     row: Sensitivity
     change: float
@@ -425,8 +422,8 @@ class Offer:
 class Offers:
     """The most valuable changes: the best offer of each kind, None without one.
 
-    `no_design` are the requirements that cannot be tightened by 10 %: rows with the sign of the
-    infeasible change.
+    `no_design` lists the requirements that cannot change by 10 %, with the sign of the infeasible
+    change.
     """
 
     requirement: Offer | None
@@ -455,7 +452,7 @@ class Offers:
 
 
 def offers(rows: Sequence[Sensitivity], objective: float, *, maximised: bool) -> Offers:
-    """The best re-solved end of each kind of row, if better than the optimum."""
+    """The best re-solved change of each kind of row, if better than the optimum."""
     direction = 1.0 if maximised else -1.0
     best: dict[Kind, Offer] = {}
     infeasible = []
@@ -483,15 +480,15 @@ class ParameterPrice:
     ----------
     parameter, value : the parameter and its present value
     price : change of the objective per unit of the parameter
-    price_up, price_down : one-sided prices; they differ only at a degenerate vertex, and are
-        infinite where the next step that way leaves no feasible point
+    price_up, price_down : one-sided prices, which differ only at a degenerate vertex; infinite if
+        no feasible point exists in this direction
     percent_per_percent : relative change of the objective per relative change of the parameter;
         None where the objective or the parameter is 0
     predicted_up, predicted_down : objective at +10 % and -10 % by the price; None where infinite
-    resolved_up, resolved_down : the same re-optimised; None if infeasible or not requested
-    holds_until : the nearest value of the parameter at which the active set changes; None where
-        that is beyond -100 % and +100 %
-    change : what changes there, "LABEL becomes active" or "LABEL stops being active"
+    resolved_up, resolved_down : re-optimised objective; None if infeasible or not requested
+    holds_until : the nearest value of the parameter at which the active set changes; None beyond
+        -100 % and +100 %
+    change : of the active set, "LABEL becomes active" or "LABEL stops being active"
     movement : change of each variable (n,) per unit of the parameter
     """
 
@@ -518,15 +515,15 @@ def prices(
     resolve: bool = True,
     bounds: bool = True,
 ) -> tuple[ParameterPrice, ...]:
-    """Price every parameter, and every bound that costs, at the optimum.
+    """Price every parameter, and every bound with a multiplier, at the optimum.
 
     Parameters
     ----------
     parametric : the problem with its parameters
-    solution : its optimum; an infeasible or undefined one has no prices
-    change : relative change at which to predict and to re-solve
+    solution : its optimum; an infeasible or undefined solution has no prices
+    change : relative change for prediction and re-solving
     resolve : whether to re-solve
-    bounds : whether to price bounds too, as "NAME lower" and "NAME upper"
+    bounds : whether to price bounds, as "NAME lower" and "NAME upper"
     """
     if solution.kkt is None or not solution.feasible:
         return ()
@@ -570,8 +567,8 @@ def _ends(
     ----------
     solved : the unchanged problem
     derivatives : the parameters, bounds of variables included
-    moves : derivative of the optimum by them (nf, q)
-    change : relative
+    moves : derivative of the optimum by the parameters (nf, q)
+    change : relative change
     """
     parametric, point = solved.parametric, solved.valleys[0].point
     objectives: dict[tuple[int, int], float | None] = {}
@@ -648,16 +645,16 @@ def _finite(value: float) -> float | None:
 
 
 MOST_PARAMETERS = 10
-"""Parameters (not limits) priced in the sensitivity table, by importance."""
+"""Maximum parameters (not limits) in the sensitivity table, by importance."""
 LEAST_EFFECT = 1e-3
-"""Smallest elasticity (% per %) for a row in the table."""
+"""Least elasticity (% per %) of a parameter in the table."""
 FREE = 1e-9
-"""Price of a limit of 0, relative to the objective, below which it gets no row."""
+"""Price of a limit of 0, relative to the objective, up to which the limit has no row."""
 _NO_PERCENT = ("temperature", "temperature_difference", "angle", "count")
 
 
 def sensitivities(actuator: ActuatorProblem, solution: Solution) -> tuple[Sensitivity, ...]:
-    """Price every limit that could bind and the parameters that matter most."""
+    """Price the limits and the parameters with the largest effect."""
     active = _active_limits(actuator, solution)
     limits = dict.fromkeys(
         row.limit_of.path
@@ -699,8 +696,8 @@ def sensitivities(actuator: ActuatorProblem, solution: Solution) -> tuple[Sensit
     return ranked(rows, shown(solution.objective))
 
 
-def _shown(shown: Callable[[float], float], value: float | None) -> float | None:
-    return None if value is None else shown(value)
+def _shown(display: Callable[[float], float], value: float | None) -> float | None:
+    return None if value is None else display(value)
 
 
 def _active_limits(actuator: ActuatorProblem, solution: Solution) -> set[str]:
@@ -748,7 +745,7 @@ PER_CENT = round(100 * CHANGE)
 
 
 def display_of(row: Sensitivity, value: float | None) -> float | None:
-    """A value of the parameter in its display unit; temperatures have an offset."""
+    """A value of the parameter in its display unit."""
     if value is None:
         return None
     offset = 273.15 if row.unit in ("degC", "°C") else 0.0
@@ -781,8 +778,8 @@ def buys_most(
     Parameters
     ----------
     best_offers : the best offer of each kind
-    quantity, objective : of the objective, and its value at the optimum, SI
-    maximised : whether more of it is better
+    quantity, objective : quantity of the objective, and its value at the optimum (SI)
+    maximised : whether a larger objective is better
     """
 
     def gain(offer: Offer) -> str:

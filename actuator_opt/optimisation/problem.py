@@ -1,8 +1,8 @@
-"""The problem given to the optimiser: a vector function in a box, without physical meaning.
+"""The optimisation problem: a vector function in a box, without physical meaning.
 
 Constraints are relative margins, at least zero if met. An evaluation is a pure function of a batch
-of points (one column per point), real or complex. Solver coordinates are logarithms for variables
-with a positive lower bound, and multiples of half the box width otherwise.
+of real or complex points, one per column. Solver coordinates are logarithms for variables with a
+positive lower bound; for others, multiples of half the box width.
 """
 
 from __future__ import annotations
@@ -47,12 +47,11 @@ class BoxProblem:
     evaluate : maps points (n, k), real or complex, to `PointValues`
     constraint_names, equality_names : label of each row of the values
     start : a first guess inside the box, or None
-    relaxable : for each constraint, whether it is a requirement (True) or a law such as geometry
-        (False)
-    groups : for each constraint, a number shared by the rows of one limit, which are relaxed
-        together; None gives each its own
-    has_complex_step : False if `evaluate` cannot take complex points; finite differences then
-    linear : labels of variables to keep linear although their lower bound is positive
+    relaxable : for each constraint, True for a requirement, False for a law such as geometry
+    groups : for each constraint, the number of its limit; the rows of one limit are relaxed
+        together. None: each constraint is a group
+    has_complex_step : False if `evaluate` takes only real points; gradients are differences then
+    linear : labels of variables that stay linear although their lower bound is positive
     """
 
     names: Sequence[str]
@@ -145,7 +144,7 @@ class ParametricProblem:
 
     Parameters
     ----------
-    problem : the problem at the present parameter values (its own `evaluate` may be faster)
+    problem : the problem at the present parameter values; its `evaluate` may be faster
     parameter_names : label of each parameter (q,)
     parameters : present values (q,)
     evaluate : maps points (n, k) and parameters (q, k) or (q, 1), real or complex, to `PointValues`
@@ -163,16 +162,16 @@ class ParametricProblem:
         object.__setattr__(self, "parameters", values)
 
     def at(self, parameters: Array) -> BoxProblem:
-        """Return the problem at other parameter values (q,)."""
+        """The problem at other parameter values (q,)."""
         return self.with_columns(np.asarray(parameters)[:, None])
 
     def with_columns(self, parameters: Array) -> BoxProblem:
-        """The problem with parameter values (q, k) of their own for each of k points."""
+        """The problem with separate parameter values (q, k) for each of k points."""
         return replace(self.problem, evaluate=lambda x: self.evaluate(x, parameters))
 
 
 ON_BOUND = 1e-12
-"""Share of a range within which a coordinate snaps to its bound: zero is 0, not 1e-23."""
+"""Share of a range within which a coordinate becomes its bound, so that 1e-23 becomes 0."""
 
 
 @dataclass(frozen=True)
@@ -218,9 +217,9 @@ class Space:
         return np.asarray(np.clip(z, self.lower, self.upper))
 
     def to_x(self, z: Vector, *, inside: bool = True) -> Vector:
-        """Points (n, k) of coordinates (nf, k); exactly on a bound where z is, within rounding.
+        """Points (n, k) of coordinates (nf, k); exactly on a bound where z is at the bound.
 
-        `inside=False` lets a finite-difference step leave the box by its own width.
+        `inside=False` permits points outside the box, for finite-difference steps.
         """
         log, low, high = (
             a[:, None]
@@ -273,12 +272,13 @@ class Robust:
     Parameters
     ----------
     target : requested probability
-    rate, lower, upper : of meeting all covered limits, in an independent sample; 95 % bounds
-    samples : draws of that sample
+    rate, lower, upper : share of an independent sample that meets all covered limits, with 95 %
+        bounds
+    samples : number of draws of that sample
     converged : whether the reserves converged
     nominal_objective, nominal_rate : of the optimum without reserves
-    reserves : extra margin a robust search requires, by limit
-    rounds : the sequence of optima, the one without reserves first
+    reserves : extra margin that the robust search requires, by limit
+    rounds : the sequence of optima, first the optimum without reserves
     left_out : limits not covered: checks that the optimum misses anyway
     sentence : the result in words
     """

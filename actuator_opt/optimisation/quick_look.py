@@ -1,6 +1,6 @@
-"""A quick look at one combination of the choices: a descent from its solved neighbours.
+"""A quick look at one combination of the choices: descents from its solved neighbours.
 
-It usually finds the optimum of the combination, or that it is infeasible, but proves neither.
+It usually finds the optimum of the combination, or shows that it is infeasible, but proves neither.
 """
 
 from __future__ import annotations
@@ -25,23 +25,23 @@ from .result import How
 from .solver import solve, sweep
 
 EVALUATIONS = 40
-"""Maximum evaluations of one descent; from a nearby design 10 to 30 suffice."""
+"""Maximum evaluations of one descent; 10 to 30 suffice from a nearby design."""
 
 SAMPLES = 256
-"""Points of the sweep that suggests another start if the neighbours fail."""
+"""Number of points of the sweep for another start if the neighbours fail."""
 
 DOUBTFUL = 0.02
 """Least violation up to which a look may have overlooked a feasible design."""
 
 STUCK = 0.3
-"""Least violation above which its search may be stuck. Between the two, every start led to the same
-value on the shipped designs, so one start is enough."""
+"""Least violation above which a search may be stuck. Between both limits, all starts of the shipped
+designs led to the same value, so one start is enough."""
+
 SETTLED = 1e-2
 """Residual of the optimality conditions up to which a descent counts as converged."""
 
 STARTS = 3
-"""Starts if a descent did not converge: the point reached, the design's own, the best of a
-sweep."""
+"""Starts if a descent did not converge: its end point, the design's start, the best of a sweep."""
 
 
 @dataclass
@@ -59,14 +59,14 @@ class Look:
     objective: float = math.inf
     violation: float = math.inf
     missed: str = ""
-    """The limit missed most."""
+    """The limit with the largest violation."""
     checks: frozenset[str] = frozenset()
     """Missed checks that no variable can fix."""
     solution: Solution | None = None
     hessian: ScaledHessian | None = None
-    """Hessian at its optimum, or at the neighbour's it was followed from."""
+    """Hessian at its optimum, or at the optimum of the neighbour whose steps led to it."""
     sizing: str = ""
-    """Result of the search for listed sizes, if made."""
+    """Result of the search for listed sizes, if any."""
     rounded: float | None = None
     """Objective of the best design of listed sizes."""
 
@@ -77,12 +77,12 @@ class Look:
 
 
 class LookStart(NamedTuple):
-    """A starting point: `descend` directly, or first reduce the worst violation."""
+    """A start: `descend` directly, or reduce the worst violation first."""
 
     x: Vector
     descend: bool
     hessian: ScaledHessian | None = None
-    """Hessian at the optimum that the point is; it usually suits its neighbours too."""
+    """Hessian at the start, if it is an optimum of a neighbour."""
 
 
 def look_quickly(
@@ -95,8 +95,8 @@ def look_quickly(
 
     Parameters
     ----------
-    look : the combination; receives the best point found
-    starts : most reliable first
+    look : the combination; stores the best point
+    starts : the most reliable first
     seed : of the sweep
     seconds : time limit
     """
@@ -130,7 +130,7 @@ def look_quickly(
 
 
 def _follow_neighbour(look: Look, evaluator: Evaluator, starts: Sequence[LookStart]) -> bool:
-    """Whether steps from a neighbour's optimum converge to the optimum of this combination."""
+    """Step from a neighbour's optimum to that of the combination; returns whether it succeeds."""
     neighbour = next((start for start in starts if start.hessian is not None), None)
     if neighbour is None or neighbour.hessian is None or not evaluator.space.size:
         return False
@@ -156,7 +156,7 @@ def hessian_of(look: Look) -> ScaledHessian | None:
 
 
 def _settle_quickly(look: Look, evaluator: Evaluator, x: Vector, seed: int) -> None:
-    """Solve from a few starts if a descent stopped before an optimum."""
+    """Solve from a few starts if the descent ended before an optimum."""
     quality = kkt.check(evaluator, evaluator.point(evaluator.space.to_z(x)))
     if quality.residual <= SETTLED or not evaluator.space.size:
         return
@@ -179,7 +179,7 @@ def _settle_quickly(look: Look, evaluator: Evaluator, x: Vector, seed: int) -> N
 def _coordinates(
     evaluator: Evaluator, starts: Sequence[LookStart], seed: int
 ) -> Iterator[tuple[Vector, bool]]:
-    """The starts given, then the best of a small sweep."""
+    """The given starts, then the best point of a small sweep."""
     for x, descend, _ in starts:
         yield evaluator.space.to_z(x), descend
     if evaluator.space.size:
@@ -189,7 +189,7 @@ def _coordinates(
 
 
 def _store_best(look: Look, evaluator: Evaluator, point: Point) -> Point:
-    """Store a point if it is better than the known ones; returns the point."""
+    """Store a point if it is better than the stored point; returns the point."""
     better = (max(point.violation, MET), point.objective)
     if not point.valid or better >= (max(look.violation, MET), look.objective):
         return point

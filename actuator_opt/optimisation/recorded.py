@@ -1,8 +1,8 @@
-"""An optimisation or a front as plain data, for storing and restoring a run record.
+"""Stores and restores an optimisation or a front as plain data of a run record.
 
-Designs are stored as trees of SI numbers, which rebuild exactly the same design. Evaluations are
-stored as their designs, with the estimated yield, and repeated on reading. Everything else is
-dataclasses, read by their annotations.
+Designs are stored as trees of SI numbers, which rebuild exactly the same design. An evaluation is
+stored as its design and estimated yield, and repeated on reading. All other data are dataclasses,
+restored by their annotations.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _PLAIN: dict[Any, Any] = {float: (int, float), int: int, str: str, bool: bool}
 
 
 def to_plain(result: Optimisation | ParetoFront) -> dict[str, Any]:
-    """A result as data for JSON: its `designs`, and the `result` that refers to them."""
+    """A result as JSON data: the `designs`, and the `result` with references to them."""
     designs: list[dict[str, Any]] = []
 
     def place(design: Design) -> int:
@@ -76,7 +76,7 @@ def from_plain(
     Parameters
     ----------
     kind : type of the result
-    data : as read from JSON
+    data : JSON data
     plugins : the user's own metrics, if the design needs them
 
     Raises
@@ -97,7 +97,7 @@ def from_plain(
     def evaluation(entry: Any) -> Evaluation:
         index, estimate = (
             entry if isinstance(entry, list) else (entry, None)
-        )  # before 0.7: no yield
+        )  # format before 0.7, without yield
         if index not in evaluated:
             subject = prepare(design(index), None, plugins)
             evaluated[index] = evaluate(replace(subject, lenient=True, aims=aims))
@@ -162,9 +162,9 @@ def _typed(kind: Any, value: Any) -> Any:
     origin, inner = get_origin(kind), get_args(kind)
     if origin is tuple:
         inner = (inner[0],) * len(value) if inner[-1] is ... else inner
-        return tuple(_typed(one, item) for one, item in zip(inner, value, strict=True))
+        return tuple(_typed(option, item) for option, item in zip(inner, value, strict=True))
     if origin in (Union, types.UnionType):
-        options = [one for one in inner if one is not type(None)]
+        options = [option for option in inner if option is not type(None)]
         return _typed(options[0], value) if len(options) == 1 else value
     if isinstance(origin, type) and issubclass(origin, Mapping):
         return {key: _typed(inner[1], item) for key, item in value.items()}

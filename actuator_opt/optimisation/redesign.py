@@ -1,4 +1,4 @@
-"""Effect of measured values on a design: its requirements, and its optimum."""
+"""Effect of measured values on a design: on its requirements and its optimum."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .run import optimise
 
 @dataclass(frozen=True, slots=True)
 class Shift:
-    """A requirement before and after, with the range due to the measured bounds.
+    """A requirement with the old and the new values, and its range over the measured bounds.
 
     `lower` and `upper` bound the value after (SI); None without a bound.
     """
@@ -31,7 +31,7 @@ class Shift:
 
     @property
     def move(self) -> float:
-        """Change of the margin as a share of the limit; negative is worse."""
+        """Change of the margin as a share of the limit; negative if it decreases."""
         if self.before.margin is None or self.after.margin is None:
             return 0.0
         return self.after.margin - self.before.margin
@@ -61,7 +61,7 @@ class Shift:
 
 
 class ObjectiveChange(NamedTuple):
-    """An objective metric at both optima [SI]; None without one."""
+    """An objective metric at both optima (SI); None without an optimum."""
 
     metric: str
     quantity: Quantity
@@ -71,13 +71,13 @@ class ObjectiveChange(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Redesign:
-    """A design before and after new values: as stated, and at its optimum.
+    """A design with the old and the new values: with the values of its file, and optimised.
 
     Parameters
     ----------
     evaluation : with the new values
     shifts : every requirement before and after
-    best_before, best_after : None for a design without variables and choices
+    best_before, best_after : the optima; None for a design without variables and choices
     """
 
     evaluation: Evaluation
@@ -106,8 +106,8 @@ class Redesign:
     def goals(self) -> tuple[ObjectiveChange, ...]:
         """The metrics of the objective at both optima, weighted terms separately.
 
-        A weighted sum divides each term by its value in the file's design, which new values change.
-        The sums before and after are therefore not comparable.
+        A weighted sum divides each term by its value in the design of the file, which the new
+        values change. The sums before and after are therefore not comparable.
         """
         before, after = self.best_before, self.best_after
         if before is None or after is None:
@@ -176,7 +176,7 @@ def _values(name: str, *optima: Optimisation) -> list[float | None]:
 
 
 def active(optimisation: Optimisation) -> list[str]:
-    """The active limits of an optimum."""
+    """Labels of the active limits of an optimum."""
     return [] if optimisation.kkt is None else list(optimisation.kkt.active)
 
 
@@ -190,13 +190,13 @@ def redesign(
 ) -> Redesign:
     """Evaluate both designs and, if they have variables, optimise them.
 
-    Each group of measured values is set to its bounds with all others unchanged. The changes up and
-    down add as squares to the range of a requirement.
+    Each group of measured values takes its bounds, with all other values unchanged. The range of a
+    requirement is the root of the sum of the squared changes, upwards and downwards.
 
     Parameters
     ----------
     before, after : the design with the old and the new values
-    learned : lower and upper bounds by PATH, of groups of values that move together
+    learned : groups of measured values that vary together: lower and upper bounds by PATH
     seed : of the searches
     search : whether to optimise
     """
@@ -232,14 +232,14 @@ def _bounds(
             except InputError:
                 return {}
             ends.append(evaluate(prepare(design, plugins=subject.plugins)).requirements)
-        for lower, upper in zip(*ends, strict=True):
-            middle_value = values[lower.name]
-            if lower.value is None or upper.value is None or middle_value is None:
+        for at_lower, at_upper in zip(*ends, strict=True):
+            middle_value = values[at_lower.name]
+            if at_lower.value is None or at_upper.value is None or middle_value is None:
                 continue
-            down, up = reach[lower.name]
-            reach[lower.name] = (
-                hypot(down, max(middle_value - min(lower.value, upper.value), 0.0)),
-                hypot(up, max(max(lower.value, upper.value) - middle_value, 0.0)),
+            down, up = reach[at_lower.name]
+            reach[at_lower.name] = (
+                hypot(down, max(middle_value - min(at_lower.value, at_upper.value), 0.0)),
+                hypot(up, max(max(at_lower.value, at_upper.value) - middle_value, 0.0)),
             )
     return {
         name: (None, None) if value is None else (value - reach[name][0], value + reach[name][1])

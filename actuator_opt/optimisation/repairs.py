@@ -1,9 +1,9 @@
-"""Single changes that make an infeasible problem feasible: one requirement, or one bound.
+"""Single changes that make an infeasible problem feasible: of one requirement, or of one bound.
 
-First, shortest steps to the linearised rows look for a point that meets everything but this
-requirement (or lies beyond this bound), for all candidates at once. If they fail, the worst
-violation is minimised from several points, in an elastic problem: its constraints may be violated
-at a price. From there the least sufficient change follows.
+First, shortest steps to the linearised rows search for a point that meets everything except this
+requirement, or that lies beyond this bound, for all candidates at once. If the steps fail, an
+elastic problem with slacks on the constraints minimises the worst violation from several points.
+The least sufficient change follows from the feasible point.
 """
 
 from __future__ import annotations
@@ -36,15 +36,15 @@ FINE = 1e-7
 
 
 EXACT = 1e-9
-"""Optimality at which further polishing does not pay."""
+"""Measure of optimality at which polishing ends."""
 
 
 ROUGH = 1e-5
-"""Relative tolerance of a descent that only tests whether a start is promising."""
+"""Relative tolerance of a descent that only tests a start."""
 
 
 def common(problem: BoxProblem, room: float) -> BoxProblem:
-    """Minimise one slack shared by every constraint and equality."""
+    """The elastic problem with one slack for all constraints and equalities."""
     m, e = len(problem.constraint_names), len(problem.equality_names)
     n = len(problem.names)
 
@@ -61,7 +61,7 @@ def common(problem: BoxProblem, room: float) -> BoxProblem:
 
 
 def separate(problem: BoxProblem, groups: Sequence[Indices], room: Sequence[float]) -> BoxProblem:
-    """Minimise the sum of one slack per group of constraints; all others must be met."""
+    """The elastic problem with one slack per group of constraints; all others must be met."""
     n, m = len(problem.names), len(problem.constraint_names)
 
     def evaluate(x: Array) -> PointValues:
@@ -78,7 +78,7 @@ def separate(problem: BoxProblem, groups: Sequence[Indices], room: Sequence[floa
 
 
 def _rows_once(problem: BoxProblem, points: Array) -> npt.NDArray[np.generic]:
-    """Rows of points (n, k) of which many differ only in slacks; the model evaluates each once."""
+    """Rows of points (n, k); repeated points, which differ only in slacks, are evaluated once."""
     columns = np.ascontiguousarray(points.T)
     numbers: dict[bytes, int] = {}
     places = [numbers.setdefault(column.tobytes(), len(numbers)) for column in columns]
@@ -112,7 +112,7 @@ def _extended(
 
 
 def feasible_point(evaluator: Evaluator, point: Point) -> Point | None:
-    """Return a feasible point near `point`, by minimising one common slack, or None."""
+    """A feasible point near `point`, or None; minimises one common slack."""
     if point.violation <= NOTHING:
         return point
     end = least_missed(evaluator, point)
@@ -122,7 +122,7 @@ def feasible_point(evaluator: Evaluator, point: Point) -> Point | None:
 def least_missed(evaluator: Evaluator, point: Point, rough: float = np.inf) -> Point:
     """Minimise the worst violation near a point; a feasible point is returned unchanged.
 
-    A result that violates more than `rough` is not polished, which halves the effort.
+    A result with a violation above `rough` is not polished, which halves the effort.
     """
     inner = Evaluator(common(evaluator.problem, 2.0 * point.violation + 1.0))
     start = best = inner.point(inner.space.to_z(np.append(point.x, point.violation)))
@@ -143,14 +143,14 @@ def least_missed(evaluator: Evaluator, point: Point, rough: float = np.inf) -> P
 
 
 def _miss(point: Point) -> float:
-    """The worst violation at a point of a common slack; the slack covers what is violated."""
+    """The worst violation at a point of the problem with a common slack."""
     return point.objective + point.violation if point.valid else np.inf
 
 
 def descend(
     problem: BoxProblem, x: Vector, slack: Sequence[float], ends: Sequence[Point] = ()
 ) -> Point:
-    """Solve an elastic problem from a point and slacks, unless it reaches a known result."""
+    """Solve an elastic problem from a point and slacks; a known end point stops the run."""
     inner = Evaluator(problem)
     start = inner.point(inner.space.to_z(np.concatenate([x, np.asarray(slack, dtype=float)])))
     if not start.valid:
@@ -178,16 +178,16 @@ SETTLED = 1e-6
 """Residual of the optimality conditions up to which a result counts as an optimum."""
 
 CHALLENGE = 0.99
-"""Share of an amount that must not be enough, or the amount is too large."""
+"""Share of an amount; if it is also enough, the amount is too large."""
 
 FAINT = 1e-3
-"""Amounts below are not checked, as a hundredth of them is near the feasibility tolerance."""
+"""Least amount for this check; a hundredth of it must exceed the feasibility tolerance."""
 
 CHALLENGES = 8
-"""Maximum rounds of this check; halving comes within a per cent in seven."""
+"""Maximum rounds of this check; seven halvings reach one per cent."""
 
 WIDEST = 2.0
-"""A bound may change to twice, or half, its value at most: beyond, it is another actuator."""
+"""Largest factor on a bound or dimension; larger changes give another actuator."""
 
 _FREED = 1e9
 """Margin granted to an excluded requirement, larger than any violation."""
@@ -197,7 +197,7 @@ _FREED = 1e9
 class RelaxedConstraint:
     """A constraint and the margin (fraction of its limit) to give up.
 
-    `amount` is None if giving up this constraint entirely would not be enough.
+    `amount` is None if the problem is infeasible even without this constraint.
     """
 
     constraint: str
@@ -243,8 +243,8 @@ def by_limits(
     ----------
     problem : the infeasible problem
     groups : rows of the candidates
-    named : first rows of the groups to search from every point
-    points : where to start, the point of the smallest joint relaxation first
+    named : first rows of the groups that are searched from every point
+    points : starts, the point of the smallest joint relaxation first
     """
     amounts: list[float | None] = []
     points_without = without_each(problem, groups, points[0])
@@ -268,7 +268,7 @@ def _challenged(
 ) -> list[float | None]:
     """The amounts, reduced where a share `CHALLENGE` is enough as well.
 
-    A descent may end on a kink or in a shallow valley; halving then finds a smaller amount.
+    A descent may end at a kink or in a shallow valley; halving then finds a smaller amount.
     """
     sufficient = {k: amount for k, amount in enumerate(amounts) if amount is not None}
     trials = {k: CHALLENGE * amount for k, amount in sufficient.items() if amount > FAINT}
@@ -304,7 +304,10 @@ def without_each(
     x: Vector,
     granted: Sequence[float] | None = None,
 ) -> list[Vector | None]:
-    """For each group a point that meets all else, with a margin granted to it (None: any)."""
+    """For each group, a point that meets all other rows, with a margin granted to the group.
+
+    `granted` is None for any margin. The result is None where no point is found.
+    """
     evaluator = Evaluator(problem)
     point = evaluator.point(evaluator.space.to_z(x))
     margins_granted = np.zeros((len(problem.constraint_names), len(groups)))
@@ -326,12 +329,12 @@ def without_each(
 
 
 def near(problem: BoxProblem, x: Vector) -> Vector | None:
-    """A feasible point near another, or None."""
+    """A feasible point near x, or None."""
     return without_each(problem, [np.empty(0, dtype=np.intp)], x)[0]
 
 
 def _without(problem: BoxProblem, group: Indices, points: Sequence[Vector]) -> Vector | None:
-    """A point that meets everything but one group, or None."""
+    """A point that meets all rows except one group, or None."""
     m = len(problem.constraint_names)
     remaining = np.setdiff1d(np.arange(m), group)
 
@@ -371,7 +374,7 @@ def least(problem: BoxProblem, group: Indices, x: Vector) -> float | None:
 
 
 def _least(problem: BoxProblem, group: Indices, x: Vector) -> tuple[float | None, bool]:
-    """As `least`, with whether the result is optimal."""
+    """As `least`, and whether the result is optimal."""
     lacks = missed(Evaluator(problem), x, [group])
     stretched = separate(problem, [group], [2.0 * max(*lacks, 0.5)])
     end = descend(stretched, x, lacks)
@@ -382,7 +385,7 @@ def _least(problem: BoxProblem, group: Indices, x: Vector) -> tuple[float | None
 
 
 def by_bounds(problem: BoxProblem, bounds: Sequence[Opening], x: Vector) -> tuple[Opening, ...]:
-    """The bounds, each with the value that is enough alone."""
+    """The bounds, with the value of each that is enough alone."""
     result = []
     for number, bound in enumerate(bounds):
         tell("infeasible: searching for a sufficient bound", number / len(bounds))
@@ -391,7 +394,7 @@ def by_bounds(problem: BoxProblem, bounds: Sequence[Opening], x: Vector) -> tupl
 
 
 def _opened(problem: BoxProblem, bound: Opening, x: Vector) -> float | None:
-    """The value nearest to a bound at which a variable beyond it meets all requirements."""
+    """The value of a variable nearest to its bound, beyond it, that meets all requirements."""
     j, is_upper = bound.index, bound.side == "upper"
     if bound.value <= 0:
         return None

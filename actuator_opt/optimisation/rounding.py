@@ -1,14 +1,14 @@
-"""Rounding of the continuous optimum to manufacturable sizes, its cost, and remedies.
+"""Rounds the continuous optimum to manufacturable sizes, with its cost and remedies.
 
-Variables take the sizes stated in their file (a list, a step, a standard series), whole plies and
-allowed angles, or all standard sizes, as requested: `design.sizes` lists them. All other variables
-stay continuous and are optimised again. The search proves nothing: see `branch_and_bound`.
+Variables take the sizes stated in the file (a list, a step, a standard series) and, on request,
+whole plies, allowed angles or all standard sizes; see `design.sizes`. All other variables remain
+continuous and are optimised again. The search proves nothing; see `branch_and_bound`.
 
 Remedies are small changes of a limit, a load or the supply pressure that allow better sizes. If
-rounding costs much, the size that moved most is fixed at its other neighbour, which some limit
-forbids. If no sized design is feasible, the least infeasible sizes are fixed. With all sizes fixed,
-the least relaxation of each limit is computed, and the best design with it. Each remedy was
-confirmed by a design of these sizes.
+rounding costs much, the size with the largest change takes its other neighbour, which some limit
+forbids. If no sized design is feasible, the least infeasible sizes are used. For these sizes, the
+least relaxation of each limit is computed, and the best design with this relaxation, which confirms
+the remedy.
 """
 
 from __future__ import annotations
@@ -43,11 +43,11 @@ from .result import Optimisation, RoundedVariable, Rounding, RunnerUp, SizeRemed
 from .solver import solve
 
 COSTLY = 10.0
-"""Cost of rounding (%) above which remedies are sought: a choice."""
+"""Cost of rounding (%) above which remedies are searched for: a choice."""
 
 
 SMALL = 0.25
-"""Largest relative change of a limit that is offered: a choice."""
+"""Largest relative change of a number in a remedy: a choice."""
 
 
 MOST_LIMITS = 6
@@ -68,13 +68,13 @@ def size_remedies(
     size_search: SizeSearch,
     deadline: float | None = None,
 ) -> tuple[tuple[SizeRemedy, ...], str]:
-    """The changes of one number that allow better sizes, best design first; else a note.
+    """The changes of one number that allow better sizes, best design first, and a note without any.
 
     Parameters
     ----------
     actuator, solution : the problem and its continuous optimum
-    listed, found : the sizes, and the result of their search
-    deadline : time of `time.perf_counter` to stop at
+    listed, size_search : the sizes, and the result of their search
+    deadline : time of `time.perf_counter` at which the search stops
     """
     objective = math.inf if size_search.objective is None else size_search.objective
     cheap = objective - solution.objective <= COSTLY / 100 * abs(solution.objective)
@@ -96,9 +96,9 @@ def size_remedies(
 
 
 def _other_sizes(listed: Sequence[Listed], x: Vector, size_search: SizeSearch) -> list[Assignment]:
-    """Combinations of sizes with the most rounded size at its other neighbour.
+    """Assignments with the most rounded size at its other neighbour.
 
-    The least infeasible sizes if no sized design is feasible.
+    If no sized design is feasible, the least infeasible assignment.
     """
     if size_search.assignment is None:
         return [] if size_search.nearest is None else [size_search.nearest]
@@ -114,7 +114,7 @@ def _other_sizes(listed: Sequence[Listed], x: Vector, size_search: SizeSearch) -
 
 
 def _limits(actuator: ActuatorProblem, solution: Solution, size_search: SizeSearch) -> list[int]:
-    """Rows of the tightest requirements and loads, at the optimum or the sizes."""
+    """Rows of the requirements and loads with the least margins, at the optimum or the sizes."""
     margins = solution.constraints
     if size_search.missed is not None:
         margins = np.minimum(margins, size_search.missed.rows[1 : 1 + len(margins)])
@@ -172,7 +172,7 @@ class _FixedSizes:
             if entry["change"] is None or abs(entry["change"]) > SMALL:
                 continue
             granted = np.zeros((len(problem.constraint_names), 1))
-            granted[group] = amount  # the printed value is rounded outwards: more, not less
+            granted[group] = amount  # the printed value is rounded outwards, so it grants more
 
             def evaluate(points: Array, granted: Array = granted) -> PointValues:
                 values = problem.evaluate(points)
@@ -209,7 +209,7 @@ class _FixedSizes:
     def remedy(
         self, eased: BoxProblem, x: Vector, entry: Mapping[str, Any]
     ) -> Iterator[SizeRemedy]:
-        """The best design of the sizes at the changed number, if better than without."""
+        """The best design of the sizes at the changed number, if better than without the change."""
         point = repairs.near(eased, x)
         if point is None:
             return
@@ -227,7 +227,7 @@ class _FixedSizes:
 
 
 RUNNERS_UP = 3
-"""Next best designs reported."""
+"""Number of next best designs in the result."""
 
 MOST_SAID = 4
 """Maximum sizes named in a sentence."""
@@ -237,7 +237,7 @@ _OF_PLIES = ("whole plies", "allowed angles")
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """Sizes that a design must take, beside those stated in its file."""
+    """Requested sizes, in addition to those of the file."""
 
     whole_plies: bool = False
     standard: bool = False
@@ -245,7 +245,7 @@ class Wanted:
 
 @dataclass(frozen=True)
 class ListedSizes:
-    """The listed variables of a design: groups for the search, and the series of each."""
+    """The listed variables of a design: groups for the search, and the series of each variable."""
 
     listed: tuple[Listed, ...]
     labels: dict[str, str]
@@ -253,20 +253,20 @@ class ListedSizes:
 
     @property
     def name(self) -> str:
-        """Name of the rounding, in two words."""
+        """Name of the rounding: "whole plies" or "standard sizes"."""
         plies = set(self.labels.values()) <= set(_OF_PLIES)
         return "whole plies" if plies else "standard sizes"
 
 
 def layers(design: Design) -> Iterator[tuple[str, Ply]]:
-    """Every layer of barrel and rod with its PATH."""
+    """The layers of barrel and rod with their PATHs."""
     for part, wall in (("barrel", design.barrel.layup), ("rod", design.rod.layup)):
         for i, ply in enumerate(wall):
             yield f"{part}.layup[{i}]", ply
 
 
 def plies(ply: Ply) -> int | None:
-    """Number of plies of a layer; None if not whole, or without a ply thickness."""
+    """Number of plies of a layer; None if it is not whole, or without a ply thickness."""
     if ply.ply_thickness is None:
         return None
     step = 2 if ply.balanced and not along(ply.angle) else 1
@@ -277,7 +277,7 @@ def plies(ply: Ply) -> int | None:
 def uncounted(design: Design, materials: Mapping[str, Material]) -> tuple[str, ...]:
     """PATHs of fibre layer thicknesses whose plies cannot be counted.
 
-    These layers state no ply thickness, and no variable restricts them to sizes.
+    These layers state no ply thickness, and their thickness is no variable with sizes.
     """
     paths = []
     for path, ply in layers(design):
@@ -306,7 +306,7 @@ def misfits(design: Design) -> tuple[str, ...]:
 
 
 def unrounded(optimisation: Optimisation) -> str:
-    """A remark on an optimum without whole plies, if not requested; else empty."""
+    """A note on an optimum without whole plies, if not requested; else empty."""
     design = optimisation.design
     paths = [path for path in misfits(design) if path in design.variables]
     if optimisation.rounding is not None or not paths or not optimisation.evaluation.met:
@@ -320,20 +320,20 @@ def sizes_of(
     materials: Mapping[str, Material],
     fault: Fault | None = None,
 ) -> ListedSizes | None:
-    """The variables that only take listed values; None if there are none and none are requested.
+    """The variables that only take listed values; None if no variable does.
 
     Parameters
     ----------
     design : the design with its variables
-    requested : sizes requested beside those of the file
+    requested : sizes in addition to those of the file
     materials : of the design, by name
     fault : locates a variable's fault in the file; default: by PATH only
 
     Raises
     ------
     InputError
-        sizes are requested and no variable has any, or the bounds of one contain none; whole plies
-        are requested and a layer has none
+        sizes are requested but no variable has sizes, the bounds of a variable contain no size, or
+        whole plies are requested but a layer states no ply thickness
     """
     if requested.whole_plies or requested.standard:
         _require_plies(design, requested, materials)
@@ -364,7 +364,7 @@ def sizes_of(
 
 
 def _require_plies(design: Design, requested: Wanted, materials: Mapping[str, Material]) -> None:
-    """Check that every fibre layer has countable plies, and whole ones if it is fixed."""
+    """Check that every fibre layer has countable plies, and whole plies if it is fixed."""
     plies_by_path = dict(layers(design))
     hint = "" if requested.whole_plies else '; for bore and rod alone write "sizes: iso_3320"'
     faults = [
@@ -424,7 +424,7 @@ def rounded(
 ) -> tuple[Rounding, Solution]:
     """The best design with the sizes, and the continuous optimum.
 
-    The given optimum, unless the search finds a better one.
+    The continuous optimum is the given solution, unless the search of sizes finds a better design.
 
     Parameters
     ----------
@@ -451,7 +451,7 @@ def rounded(
 
 
 def _cost(objective: float, solution: Solution) -> float:
-    """Loss of an objective against the continuous optimum; rounding noise counts as zero."""
+    """Loss of an objective relative to the continuous optimum; rounding errors count as zero."""
     cost = objective - solution.objective
     return 0.0 if abs(cost) <= 10 * SAME * abs(solution.objective) else cost
 
@@ -504,7 +504,7 @@ def _rounding(
 
 
 def _nearest(actuator: ActuatorProblem, sizes: ListedSizes, size_search: SizeSearch) -> str:
-    """Describe the limits that the nearest sizes miss, if none is feasible."""
+    """The limit that the nearest sizes miss most, in words; empty if unknown."""
     if (
         size_search.nearest is None
         or size_search.missed is None
@@ -541,7 +541,7 @@ _FINER = {
 
 
 def _sentence(name: str, met: bool, complete: bool) -> tuple[str, str]:
-    """The result of the search and the remedy."""
+    """The result of the search, and the remedy, in words."""
     if not met:
         return f"the design of {name} misses a requirement", f"relax it, or {_FINER[name]}"
     if not complete:
@@ -562,7 +562,7 @@ def _unbuildable(
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """PATHs without whole plies, allowed angles or `ply_thickness`, and a sentence on each.
 
-    Before rounding, only those that are not variables.
+    For the design before rounding, without the variables.
     """
     start = design is actuator.subject.design
     excluded = design.variables if start else {}
@@ -612,7 +612,7 @@ def _variables(
 def _runners_up(
     actuator: ActuatorProblem, solution: Solution, listed: Sequence[Listed], size_search: SizeSearch
 ) -> tuple[RunnerUp, ...]:
-    """The next best of the rounded designs."""
+    """The next best rounded designs."""
     candidates = sorted(
         (objective, assignment)
         for assignment, objective in size_search.tried.items()

@@ -1,4 +1,4 @@
-"""Optimise an actuator: problem, solution, prices and, if infeasible, the reason."""
+"""Optimises an actuator: problem, solution, rounding, prices, certificate, infeasibility."""
 
 from __future__ import annotations
 
@@ -37,11 +37,11 @@ from .solver import solve
 CHANCE = 0.95
 """Probability for the evidence of the starts."""
 SAME = 1e-3
-"""Relative difference of objectives up to which two starts reached the same optimum."""
+"""Relative difference of objectives up to which two starts count as equal."""
 
 
 def certified(actuator: ActuatorProblem, solution: Solution) -> Certificate:
-    """Bound the distance of a feasible design from the best possible one.
+    """Bound the distance of a feasible design from the best possible design.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def certified(actuator: ActuatorProblem, solution: Solution) -> Certificate:
 
 
 def enumerated(optimisation: Optimisation, goal: Goal) -> Certificate | None:
-    """The certificate from trying all combinations of the choices, if nothing else is free."""
+    """The certificate from an evaluation of all combinations, for a design without variables."""
     choices = optimisation.choices
     if choices is None or not optimisation.evaluation.met:
         return None
@@ -94,7 +94,9 @@ def enumerated(optimisation: Optimisation, goal: Goal) -> Certificate | None:
     ]
     best = min((sign * objective for objective in objectives), default=sign * value)
     sentence += "none that meets all requirements is better"
-    if best < sign * value:  # a check that some combination meets outranks the objective
+    if (
+        best < sign * value
+    ):  # checks that another combination meets take precedence over the objective
         sentence += ", except those that miss more of the check list"
     if goal.single is None or sign < 0 or not value > 0:
         return Certificate(sentence, "")
@@ -111,7 +113,7 @@ def _percent(share: float) -> str:
 
 
 def _unsuited(actuator: ActuatorProblem, solution: Solution) -> str:
-    """Why an objective has no bound; empty if it has one."""
+    """The reason why no bound can be proven; empty if it can."""
     if actuator.goal.single is None:
         return "a weighted sum of metrics cannot be bounded yet; minimise one metric"
     if actuator.goal.sign < 0:
@@ -122,7 +124,7 @@ def _unsuited(actuator: ActuatorProblem, solution: Solution) -> str:
 
 
 def _evidence(solution: Solution) -> str:
-    """The evidence of the starts against a better optimum elsewhere."""
+    """The evidence of the starts against a better optimum."""
     count = len(solution.starts)
     if count == 0:
         return ""
@@ -140,8 +142,8 @@ def _evidence(solution: Solution) -> str:
 
 
 SAMPLES = 2048
-"""Points of the global sweep: on every shipped design three seeds of 8192, 2048 and 1024 points led
-to the same optimum. With poles and margins the sweep takes most of the time."""
+"""Number of points of the global sweep. For every shipped design, 8192, 2048 and 1024 points led to
+the same optimum, with three seeds each. With poles and margins the sweep takes most of the time."""
 
 
 def optimise(
@@ -166,15 +168,15 @@ def optimise(
     subject : the prepared design
     fault : locates faults of variables in the file
     algorithm : "auto" or an NLopt name such as ``LD_SLSQP``
-    starts : starts taken from the global sweep
+    starts : number of starts from the global sweep
     seed : of sweep and stochastic algorithms; the same seed gives the same result
-    prices : price requirements and parameters (and re-solve at ±10 %)
+    prices : whether to price requirements and parameters, with re-solving at ±10 %
     max_seconds : time limit of the search; the best design so far is kept
-    whole_plies : also find the best design of whole plies and allowed angles
-    standard_sizes : also find the best design with all standard sizes
-    certify : prove the distance of the design from the best possible
-    explain : explain an infeasible result
-    keep_interrupted : Ctrl-C keeps the best design so far (without choices)
+    whole_plies : whether to find the best design of whole plies and allowed angles, too
+    standard_sizes : whether to find the best design with all standard sizes, too
+    certify : whether to prove the distance from the best possible design
+    explain : whether to explain an infeasible result
+    keep_interrupted : whether Ctrl-C keeps the best design so far; not with choices
     """
     began = time.perf_counter()
     deadline = None if max_seconds is None else began + max_seconds
@@ -238,7 +240,7 @@ def result_of(
     prices : as of `optimise`
     seed : of the search
     began : time of `time.perf_counter` when it began
-    start : start of the search; default: the design as stated
+    start : evaluation of the start; default: the design with the values of its file
     """
     follow_up = _FollowUp(solution)
     _complete(actuator, follow_up, prices=prices, certify=False, explain=False)
@@ -333,7 +335,7 @@ def _enumerated(
     *,
     certify: bool,
 ) -> Optimisation:
-    """The best combination of the choices, if nothing else is free."""
+    """The best combination of the choices, for a design without variables."""
     best = choice_search.ranked()[0]
     assert best.subject is not None
     status, remedy = "optimal", ""

@@ -1,15 +1,12 @@
 """The optimiser: sweep the box, descend from the best starts, polish, verify.
 
-Default path: a low-discrepancy sweep suggests starts. SLSQP runs from each in logarithmic
-variables, and again in linear ones if it failed. An augmented Lagrangian around LBFGS takes over if
-nothing worked. Active-set Newton steps polish the result to rounding. Feasibility and optimality
-are then verified here, whatever a solver claims.
+On the default path, a low-discrepancy sweep suggests starts. SLSQP runs from each in logarithmic
+variables, and in linear variables if it failed. If all runs fail, an augmented Lagrangian around
+LBFGS follows. Active-set Newton steps polish the result to rounding. Feasibility and optimality are
+then verified, whatever a solver reports.
 
-The global phase: a low-discrepancy sweep of the box, and its best starts.
-
-A scrambled Halton sequence [Halton1960] [Owen2017]: the radical inverse of the index in one
-prime base per variable, with seeded random digit permutations. It costs microseconds per
-thousand points and needs neither tables nor SciPy.
+The sweep is a scrambled Halton sequence [Halton1960] [Owen2017]: the radical inverse of the index
+in one prime base per variable, with seeded random digit permutations.
 """
 
 from __future__ import annotations
@@ -38,7 +35,7 @@ KEEP = 256
 
 
 def primes(count: int) -> list[int]:
-    """Return the first `count` primes."""
+    """The first `count` primes."""
     result: list[int] = []
     candidate = 2
     while len(result) < count:
@@ -49,7 +46,7 @@ def primes(count: int) -> list[int]:
 
 
 class Halton:
-    """Scrambled Halton points in the unit cube, the same for the same seed."""
+    """Scrambled Halton points in the unit cube; a seed always gives the same points."""
 
     def __init__(self, dimension: int, seed: int, max_points: int = 2**31) -> None:
         generator = np.random.default_rng(seed)
@@ -60,7 +57,7 @@ class Halton:
                 digits += 1
             order = generator.permuted(np.tile(np.arange(base), (digits, 1)), axis=1)
             self.tables.append(order * float(base) ** -np.arange(1, digits + 1)[:, None])
-        self.shift = generator.random(dimension)  # the remaining digits, as one remainder
+        self.shift = generator.random(dimension)  # all digits beyond the tables
         self.most = max_points
 
     def points(self, first: int, count: int) -> Vector:
@@ -86,10 +83,10 @@ class Sweep:
 
     Parameters
     ----------
-    z : candidates (nf, k), the best first: least violation, then least objective
+    z : candidates (nf, k), sorted by violation, then by objective
     violation, objective : of the candidates (k,)
-    count, valid, feasible : points swept, points with finite values, feasible points
-    spread : largest minus smallest objective seen, relative to its largest magnitude
+    count, valid, feasible : number of points, of points with finite values, of feasible points
+    spread : range of the objective over the sweep, relative to its largest magnitude
     scale : largest magnitude among the candidates' objectives
     """
 
@@ -138,7 +135,7 @@ def sweep(evaluator: Evaluator, samples: int, seed: int) -> Sweep:
 
 
 def distinct(evaluator: Evaluator, z: Vector, count: int) -> list[Vector]:
-    """Up to `count` distinct points of the ranked candidates (nf, k)."""
+    """Up to `count` points of the ranked candidates (nf, k) that are far apart."""
     space = evaluator.space
     unit = (z - space.lower[:, None]) / (space.upper - space.lower)[:, None]
     selected: list[int] = []
@@ -177,8 +174,8 @@ def solve(
     ----------
     problem : the problem; its own start, if any, is always tried
     algorithm : "auto" (the default path) or a name that `nlopt_wrapper.find` knows
-    starts : number of starts: those given, the rest from the global sweep
-    samples : points of the global sweep
+    starts : number of starts; beyond the given starts, they come from the global sweep
+    samples : number of points of the global sweep
     seed : of the sweep and of stochastic algorithms; the same seed gives the same result
     max_evaluations, max_seconds : limits of the whole run; the best point so far is kept
     more_starts : further starts (n,)
@@ -224,7 +221,7 @@ def _nothing(evaluator: Evaluator) -> Sweep:
 
 
 def _starts(search: Descents, swept: Sweep, count: int, further: Sequence[Vector]) -> list[Point]:
-    """Return valid starts: the user's, then further ones given, then the best of the sweep."""
+    """Valid starts: the problem's start, then the further starts, then the best of the sweep."""
     evaluator = search.evaluator
     user_starts = [x for x in (evaluator.problem.start, *further) if x is not None]
     coordinates = [evaluator.space.to_z(np.asarray(x, dtype=float)) for x in user_starts]
@@ -236,10 +233,10 @@ def _starts(search: Descents, swept: Sweep, count: int, further: Sequence[Vector
 
 
 def _default_path(search: Descents, points: list[Point]) -> None:
-    """SLSQP in logarithmic variables; failed starts again by other means.
+    """Run SLSQP in logarithmic variables, then other methods from failed starts.
 
-    If the first start leads to no feasible point, even after reducing its worst violation, the
-    others look for a feasible point first.
+    If the first start leads to no feasible point, even after a reduction of its worst violation,
+    the other starts reduce their worst violation first.
     """
     failed = []
     precompute(search.evaluator, points, seed=search.seed, max_evaluations=LOCAL_EVALUATIONS)
@@ -345,7 +342,7 @@ def _conclude(search: Descents, swept: Sweep) -> Solution:
 
 
 def _best_seen(search: Descents, swept: Sweep) -> SearchResult:
-    """The best of all points: of the runs, the sweep, the start or the middle."""
+    """The best of all points: of the runs, the sweep, and the start or the middle."""
     evaluator = search.evaluator
     if search.interrupted or evaluator.exhausted:
         evaluator.enter_precomputed()
@@ -358,7 +355,7 @@ def _best_seen(search: Descents, swept: Sweep) -> SearchResult:
 
 
 def _settle(search: Descents, best: SearchResult) -> tuple[Point, tuple[str, ...]]:
-    """Put variables without effect back to their start, or the middle of their bounds."""
+    """Reset variables without effect to their start, or to the middle of their bounds."""
     evaluator = search.evaluator
     space, problem = evaluator.space, evaluator.problem
     if not best.point.valid or space.size == 0:

@@ -1,9 +1,9 @@
-"""An optimum prepared for nearby problems: re-solve, predict, price, trace.
+"""Re-solves problems near an optimum, and predicts its movement.
 
-Full steps, then restoration and descent, start from the optimum and the other local optima of its
-search (`resolve.ladder`), with their Hessians computed once. If they fail, a search from `STARTS`
-starts follows; if that finds nothing, the first search is repeated. So every problem that the first
-search would solve is solved.
+Full steps, then restoration and descent, start from the local optima of the search
+(`resolve.ladder`), with their Hessians computed once. If they fail, a search from `STARTS` starts
+follows; if it finds no design, the original search is repeated. So every problem that the original
+search solves is solved.
 """
 
 from __future__ import annotations
@@ -24,21 +24,21 @@ from .resolve.steps import RESIDUAL, Valley, valley_at
 from .solver import solve
 
 Stop = Callable[[], bool]
-"""Called between steps; True stops."""
+"""Called between steps; True stops the search."""
 
 STARTS = 3
-"""Starts of the search if the steps fail."""
+"""Number of starts of the search if the steps fail."""
 
 SAMPLES = 1024
-"""Points of its sweep."""
+"""Number of points of the sweep of this search."""
 
 AGREES = 1e-9
-"""Margin difference up to which parameters fully describe a changed problem: rounding."""
+"""Tolerance of margins, for rounding, to decide whether a parameter describes a changed problem."""
 
 
 @dataclass(frozen=True, slots=True)
 class SearchEffort:
-    """The search that led to the optimum: its starts, points of the sweep, and seed."""
+    """Effort of a search: number of starts, points of the sweep, and seed."""
 
     starts: int
     samples: int
@@ -53,7 +53,8 @@ class LinearPath:
     ----------
     below, above : slope of the objective downwards and upwards; infinite without a design
     moves : change of each variable (n,) per unit
-    low, high : the nearest change of the active set, as distance and words; None if none is near
+    low, high : distance and description of the nearest change of the active set on each side; None
+        without a change
     """
 
     below: float
@@ -64,13 +65,13 @@ class LinearPath:
 
 
 class WarmStart:
-    """An optimum with the data for re-solving.
+    """An optimum with the data to re-solve nearby problems.
 
     Parameters
     ----------
     actuator : the problem
     solution : its optimum
-    effort : how it was searched for
+    effort : of the search for the optimum
     """
 
     def __init__(self, actuator: ActuatorProblem, solution: Solution, effort: SearchEffort) -> None:
@@ -127,14 +128,14 @@ class WarmStart:
     ) -> list[Point | None]:  # fmt: skip
         """The optimum at each value of a number, solved together.
 
-        Values that shared steps do not reach are searched in order, outwards. The search stops at
-        the first value without a design.
+        If shared steps do not reach a value, searches proceed outwards, up to the first value
+        without a design on each side.
 
         Parameters
         ----------
         path, values : the number
         rebuilt : the problem with the number at a value
-        stop : called between steps; values not reached by then are None
+        stop : called between steps; True ends the search, and further values are None
         """
         present = self.actuator.subject.numbers.get(path)
         optima: list[Point | None] = [None] * len(values)
@@ -168,7 +169,7 @@ class WarmStart:
         Parameters
         ----------
         changes : difference of each number by PATH
-        size : units that make a change of the numbers' own size
+        size : number of units in a change as large as the numbers themselves
         """
         optimum = self.optimum
         derivatives = self._along(changes, size)
@@ -208,11 +209,9 @@ class WarmStart:
         )
 
     def differentiate(self, paths: Iterable[str]) -> None:
-        """Compute the derivatives by some numbers, unless known; many cost little more than one.
+        """Compute the derivatives by the numbers at `paths`, unless known.
 
-        Parameters
-        ----------
-        paths : of the numbers
+        A joint call for many numbers costs little more than a call for one.
         """
         missing = tuple(path for path in dict.fromkeys(paths) if path not in self._responses)
         if missing:
@@ -226,7 +225,7 @@ class WarmStart:
                 )  # fmt: skip
 
     def _take_gradients(self, evaluator: Evaluator) -> None:
-        """Reuse the gradient check for a changed problem, or run its own."""
+        """Reuse the gradient check for a changed problem with the same rows, else check again."""
         solved, problem = self.evaluator, evaluator.problem
         if tuple(problem.constraint_names) == tuple(solved.problem.constraint_names):
             evaluator.adopt_check(solved)
@@ -236,7 +235,7 @@ class WarmStart:
             )
 
     def _valleys(self, evaluator: Evaluator) -> list[Valley]:
-        """The valleys as starts of descents of a changed problem."""
+        """The valleys as starts for a changed problem."""
         solved, space = self.evaluator.space, evaluator.space
         same_coordinates = np.array_equal(solved.free, space.free) and all(
             np.array_equal(getattr(solved, name), getattr(space, name))
@@ -260,7 +259,7 @@ class WarmStart:
     def _stepped(
         self, evaluator: Evaluator, valleys: Sequence[Valley]
     ) -> tuple[Point | None, Vector | None]:
-        """The optimum that steps from the valleys reach, or a feasible point (nf,)."""
+        """The optimum that steps from the valleys reach, and a feasible point (nf,); or None."""
         problem = evaluator.problem
         parametric = ParametricProblem(problem, (), np.zeros(0), lambda x, _: problem.evaluate(x))
         if not valleys or not applicable(parametric, evaluator):
@@ -282,10 +281,10 @@ class WarmStart:
         values: Sequence[float],
         rebuilt: Callable[[float], ActuatorProblem],
     ) -> bool:
-        """Whether the number alone makes the changed problems, judged at both ends.
+        """Whether the number as a parameter describes the changed problems; checked at both ends.
 
-        Some numbers affect more than the models read directly, as temperatures affect the factors
-        on materials.
+        Some numbers affect more than the models read directly: temperatures affect the factors on
+        materials.
         """
         parametric = self.actuator.parametric((path,))
         if not applicable(parametric, self.evaluator):
@@ -302,7 +301,7 @@ class WarmStart:
         return True
 
     def _curve(self, path: str, values: Sequence[float], stop: Stop | None) -> list[Point | None]:
-        """The optima at values of a number that shared steps reach."""
+        """The optima at values of a number, where shared steps reach them."""
         evaluator = Evaluator(self.actuator.problem, stop=stop)
         self._take_gradients(evaluator)
         changed = ChangedProblems(self.actuator.parametric((path,)), evaluator, np.array([values]))
@@ -311,7 +310,7 @@ class WarmStart:
 
 
 def _solution(evaluator: Evaluator, point: Point, algorithm: str) -> Solution:
-    """A point as a search result; an optimum if it is feasible and stationary."""
+    """A point as a solution; an optimum if it is feasible and stationary."""
     quality = kkt.check(evaluator, point) if point.valid else None
     if point.violation > MET or quality is None:
         outcome = Outcome.INFEASIBLE

@@ -286,22 +286,24 @@ class Tracer:
         return [self._solve_alone(start) for start in starts]
 
     def exchange(
-        self, designs: list[FrontDesign], others: Vector, rest: Vector
+        self, designs: list[FrontDesign], other_x: Vector, other_units: Vector
     ) -> list[FrontDesign]:
         """The designs, each replaced where another design's variables are better.
 
         Parameters
         ----------
         designs : the designs
-        others : variables (n, k) of further feasible designs
-        rest : normalised objectives (objectives, k) of the further designs
+        other_x : variables (n, k) of further feasible designs
+        other_units : normalised objectives (objectives, k) of the further designs
         """
         failed: set[int] = set()
         for _ in range(ROUNDS if designs else 0):
             x = np.concatenate(
-                [np.stack([d.point.x[:-1] for d in designs], axis=1), others], axis=1
+                [np.stack([d.point.x[:-1] for d in designs], axis=1), other_x], axis=1
             )
-            units = np.concatenate([np.stack([d.unit for d in designs], axis=1), rest], axis=1)
+            units = np.concatenate(
+                [np.stack([d.unit for d in designs], axis=1), other_units], axis=1
+            )
             improvements = []
             for k, design in enumerate(designs):
                 if k in failed:
@@ -506,15 +508,13 @@ class FrontSearch:
     def improved_designs(self, starts: Sequence[FrontStart]) -> list[FrontDesign | None]:
         """As `designs_at`, but continued from a known design where it is better at the level."""
         designs = self.designs_at(starts)
-        indices = [k for k, one in enumerate(designs) if one is not None]
+        indices = [k for k, d in enumerate(designs) if d is not None]
         known_x = np.stack([design.point.x[:-1] for design in self.designs], axis=1)
         others = np.concatenate([self.others, known_x], axis=1)
         other_units = np.concatenate([self.other_units, self.units], axis=1)
-        exchanged = self.tracer.exchange(
-            [one for one in designs if one is not None], others, other_units
-        )
-        for k, one in zip(indices, exchanged, strict=True):
-            designs[k] = one
+        exchanged = self.tracer.exchange([d for d in designs if d is not None], others, other_units)
+        for k, d in zip(indices, exchanged, strict=True):
+            designs[k] = d
         return designs
 
     def add(self, designs: Sequence[FrontDesign]) -> None:
@@ -603,7 +603,7 @@ class FrontSearch:
         return np.stack([design.unit for design in self.designs], axis=1)
 
     def front_indices(self) -> Indices:
-        """Indices of the distinct non-dominated designs; designs at their levels take precedence."""
+        """Indices of distinct non-dominated designs; designs at their levels take precedence."""
         order = np.array(
             sorted(range(len(self.designs)), key=lambda k: not self.designs[k].at_level)
         )

@@ -1,8 +1,8 @@
-"""Re-optimise a problem from the optimum of a similar one with other bounds or materials.
+"""Re-optimises a problem from the optimum of a similar problem with other bounds or materials.
 
 Quadratic steps with the Hessian of that optimum, one evaluation each, reach most optima. Where they
 fail, a restoration finds the nearest feasible point and SLSQP continues from it. The Hessian is not
-updated here, as results are only compared to seven digits and equalities are allowed.
+updated: results need only seven digits, and equalities are allowed.
 """
 
 from __future__ import annotations
@@ -50,10 +50,10 @@ EXACT = Criteria(SETTLED, 1e-11, RESIDUAL)
 """For final results: the objective is first order in the violation, second in the others."""
 
 ROUGH = Criteria(1e-4, 1e-7, 1e-3)
-"""For comparisons: to seven digits."""
+"""For comparisons, to seven digits."""
 
 NEAR = Criteria(0.02, 1e-3, np.inf)
-"""For results clearly worse than the known one, by `WORSE`."""
+"""For results that are worse than the known result by more than `WORSE`."""
 
 WORSE = 0.02
 """Relative loss of the objective beyond the accuracy of `NEAR`."""
@@ -62,7 +62,7 @@ WORSE = 0.02
 class Nearest(NamedTuple):
     """The nearby optimum, or None and the least infeasible point.
 
-    `followed` : whether steps with the other optimum's Hessian converged to it
+    `followed` is True if steps with the other optimum's Hessian converged to the optimum.
     """
 
     optimum: Point | None
@@ -72,16 +72,16 @@ class Nearest(NamedTuple):
 
 @dataclass(frozen=True)
 class BoxTask:
-    """A problem to re-optimise near a known optimum of another.
+    """A problem to re-optimise near a known optimum of another problem.
 
     Parameters
     ----------
     evaluator : of the problem
     x : the nearest known point (n,)
     hessian : at the optimum of the other problem
-    criteria : of convergence
+    criteria : convergence criteria
     hopeless : whether the other problem is infeasible, with `x` its least infeasible point
-    above : an optimum clearly worse than this objective need not be reached
+    cutoff : steps may stop near an optimum clearly worse than this objective
     """
 
     evaluator: Evaluator
@@ -89,13 +89,13 @@ class BoxTask:
     hessian: ScaledHessian | None
     criteria: Criteria = EXACT
     hopeless: bool = False
-    above: float = np.inf
+    cutoff: float = np.inf
 
 
 def resolve_boxes(tasks: Sequence[BoxTask]) -> list[Nearest]:
-    """The optimum of every task; None without a feasible point near it.
+    """Resolve every task; no optimum without a feasible point nearby.
 
-    The problems differ only in their bounds, so that one model call serves a step of all.
+    The problems differ only in their bounds, so one model call evaluates a step of all.
     """
 
     def evaluate(requests: Mapping[int, Vector]) -> list[Point]:
@@ -106,7 +106,7 @@ def resolve_boxes(tasks: Sequence[BoxTask]) -> list[Nearest]:
 
 
 def _finished(task: BoxTask, end: Nearest) -> Nearest:
-    """Continue by SLSQP from a point that is only feasible."""
+    """Continue with SLSQP from a point that is feasible but not optimal."""
     if end.optimum is None or end.followed:
         return end
     point = nlopt_wrapper.run(
@@ -117,7 +117,7 @@ def _finished(task: BoxTask, end: Nearest) -> Nearest:
 
 
 def _approach(task: BoxTask) -> Steps[Nearest]:
-    """Steps with the other problem's Hessian, else to a feasible point."""
+    """Step to the optimum with the other problem's Hessian, else to a feasible point."""
     evaluator = task.evaluator
     start = yield evaluator.space.to_z(task.x)
     if evaluator.space.size == 0:
@@ -126,7 +126,7 @@ def _approach(task: BoxTask) -> Steps[Nearest]:
         return Nearest(None)
     if task.hessian is not None and not task.hopeless:
         optimum = yield from fixed_hessian_steps(
-            evaluator, start, task.hessian, task.criteria, task.above
+            evaluator, start, task.hessian, task.criteria, task.cutoff
         )
         if optimum is not None:
             return Nearest(optimum, followed=True)
@@ -142,7 +142,7 @@ def fixed_hessian_steps(
 ) -> Steps[Point | None]:
     """The optimum reached by steps with another problem's Hessian; None without convergence.
 
-    Steps stop early near an optimum clearly worse than `cutoff`.
+    The steps stop early near an optimum clearly worse than `cutoff`.
     """
     clearly_worse = cutoff + WORSE * abs(cutoff) if cutoff < np.inf else np.inf
     space = evaluator.space
@@ -187,7 +187,7 @@ def stepped(
 
 
 def _restored(evaluator: Evaluator, start: Point, patience: int) -> Steps[Nearest]:
-    """A feasible point near another; else None and the least infeasible point."""
+    """A feasible point near the start; else None and the least infeasible point."""
     best = start
     if not evaluator.problem.equality_names:
         feasible, least_infeasible = yield from restoring_steps(evaluator, start, patience)

@@ -1,4 +1,4 @@
-"""Problems that differ from a solved one in the values of their parameters, solved together."""
+"""Solves problems together that differ from a solved problem in the values of parameters."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from .steps import (
 
 
 def applicable(parametric: ParametricProblem, evaluator: Evaluator) -> bool:
-    """Whether one complex evaluation gives exact gradients of every row."""
+    """Whether one complex evaluation gives exact gradients of all rows, without equalities."""
     exact = evaluator.complex_works and not evaluator.difference_rows.any()
     return exact and not parametric.problem.equality_names
 
@@ -47,13 +47,13 @@ class ChangedProblems:
     parameters: Vector
 
     def subset(self, numbers: Sequence[int]) -> ChangedProblems:
-        """The problems with these numbers only."""
+        """The problems with the given numbers."""
         return replace(self, parameters=self.parameters[:, list(numbers)])
 
     def points(self, z: Vector, numbers: Sequence[int] | None = None) -> list[Point]:
-        """Points with gradients at z (nf, k), each of the problem with this number (default: all).
+        """Points with gradients at z (nf, k), one for each problem of `numbers` (default: all).
 
-        Uses one complex evaluation. Raises `LimitReached` at the evaluator's limits.
+        Takes one complex evaluation. Raises `LimitReached` at the evaluator's limits.
         """
         evaluator, parameters = self.evaluator, self.parameters
         evaluator.check_limits()
@@ -103,7 +103,7 @@ class ChangedProblems:
         return [None if result.feasible is None else result.feasible.z for result in results]
 
     def margins_at(self, points: Sequence[Point]) -> Vector:
-        """Rows (rows, points, K) of points under each problem."""
+        """Rows (rows, points, K) of points in each problem."""
         count, size = self.parameters.shape[1], len(points)
         x = np.stack([p.x for p in points], axis=1)
         problem = self.parametric.with_columns(np.tile(self.parameters, size))
@@ -112,7 +112,7 @@ class ChangedProblems:
     def near_optimum(self, valley: Valley, starts: Vector) -> list[Point | None]:
         """Optima by full steps with the Hessian of the unchanged optimum.
 
-        None if these do not converge, or if the unchanged optimum itself is better.
+        None if the steps do not converge, or if the unchanged point is better.
 
         Parameters
         ----------
@@ -135,7 +135,7 @@ class ChangedProblems:
             unmoved_objectives = np.where(feasible, margins[0], np.inf).tolist()
         optima = self.run([full_steps(evaluator, valley.full(), start) for start in first_points])
         return [
-            None  # another valley, then
+            None  # the steps led to another valley
             if optimum is not None and unmoved < optimum.objective - 1e-9 * abs(optimum.objective)
             else optimum
             for optimum, unmoved in zip(optima, unmoved_objectives, strict=True)
@@ -144,7 +144,7 @@ class ChangedProblems:
     def descend_from(
         self, valley: Valley, starts: Vector
     ) -> tuple[list[Point | None], list[Point | None]]:
-        """Optima by descents, and feasible designs for those not reached.
+        """Optima by descents, and feasible points of the problems without an optimum.
 
         Parameters
         ----------

@@ -1,11 +1,11 @@
-"""Re-solve many problems near a solved one, with ever more robust methods.
+"""Re-solves many problems near a solved problem, with methods of increasing robustness.
 
 1. Full steps from the predicted optima, all problems together.
-2. For the rest, a restoration and a descent. Other known local optima are followed too, and the
-   optimum of each problem is a start for all others, as a small change may favour another valley.
-3. For what is left, Newton's method and SLSQP from the points at hand, then a search with a sweep.
+2. Where they fail, a restoration and a descent. Descents also start in the other known valleys, and
+   the optimum of each problem is a start for all others: a small change may favour another valley.
+3. Where both fail, Newton's method and SLSQP from the known points, then a search with a sweep.
 
-Only the last step may end without a design.
+Only the last method may end without a design.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ BETTER = 1e-8
 """Relative improvement of the objective that indicates another valley."""
 
 ROUNDS = 3
-"""Maximum exchanges of optima; each follows only if the last exchange improved."""
+"""Maximum exchanges of optima; they end once an exchange improves nothing."""
 
 BEYOND = 1.0
-"""Start of descents beyond another valley, as a share of the distance from the best: the
-ridge between the two often moves as fast as they do."""
+"""Start of a descent beyond another valley, as a share of its distance from the best valley.
+The ridge between both often moves as fast as they do."""
 
 SAMPLES = 1024
-"""Points of the sweep for a feasible problem whose optimum was not reached."""
+"""Number of points of the sweep for a feasible problem without a known optimum."""
 
 
 @dataclass(frozen=True)
@@ -57,13 +57,13 @@ class SolvedProblem:
 
 @dataclass(frozen=True)
 class ResolveTask:
-    """A problem to solve near a solved one.
+    """A problem to solve near a solved problem.
 
     Parameters
     ----------
     problem : the changed problem
     guess : predicted optimum, in coordinates of the solved problem (nf,)
-    parameters : values of the parameters (q,) that make the problem; None where its bounds differ
+    parameters : values of the parameters (q,) of the problem; None if its bounds differ
     """
 
     problem: BoxProblem
@@ -72,10 +72,7 @@ class ResolveTask:
 
 
 def resolve(solved: SolvedProblem, tasks: Sequence[ResolveTask]) -> list[Point | None]:
-    """The optimum of every task; None without a feasible point.
-
-    If no optimum is reached, the best feasible point.
-    """
+    """The optimum of every task, else its best feasible point; None without a feasible point."""
     optima: list[Point | None] = [None] * len(tasks)
     feasible_z: list[Vector | None] = [None] * len(tasks)
     single = list(range(len(tasks)))
@@ -104,31 +101,31 @@ def resolve(solved: SolvedProblem, tasks: Sequence[ResolveTask]) -> list[Point |
 def resolve_batch(
     changed: ChangedProblems, valleys: Sequence[Valley], starts: Vector
 ) -> tuple[list[Point | None], list[Vector | None]]:
-    """The optimum of each changed problem, and a feasible point; None where not reached.
+    """The optimum and a feasible point of each changed problem; None where not reached.
 
     Parameters
     ----------
     changed : the problems
     valleys : local optima of the solved problem, the best first
-    starts : predicted optima (nf, K) in the first valley; others are entered from beyond
+    starts : predicted optima (nf, K) in the first valley
     """
-    first, space = valleys[0], changed.evaluator.space
-    point = first.point
-    optima = changed.near_optimum(first, starts)
+    best_valley, space = valleys[0], changed.evaluator.space
+    point = best_valley.point
+    optima = changed.near_optimum(best_valley, starts)
     missing = [i for i, optimum in enumerate(optima) if optimum is None]
     restored = changed.subset(missing).restore(point.z)
     ends = _Ends(changed, optima, [None] * len(optima))
-    ends.descend(first, dict(zip(missing, restored, strict=True)))
+    ends.descend(best_valley, dict(zip(missing, restored, strict=True)))
     for valley in valleys[1:]:
         z = valley.point.z
         start = np.clip(z + BEYOND * (z - point.z), space.lower, space.upper)
         ends.descend(valley, dict(enumerate(changed.restore(start))))
-    single = len(optima) == 1 and len(valleys) == 1  # nothing to exchange
+    single = len(optima) == 1 and len(valleys) == 1  # no other optimum to exchange
     for _ in range(0 if single else ROUNDS):
         improved = ends.better_designs([valley.point for valley in valleys])
         if not improved:
             break
-        ends.descend(first, improved)
+        ends.descend(best_valley, improved)
     return ends.results()
 
 
@@ -142,7 +139,7 @@ class _Ends:
     feasible: dict[int, Vector] = field(default_factory=dict)
 
     def descend(self, valley: Valley, starts: Mapping[int, Vector | None]) -> None:
-        """Descend from a start of each of these problems, and keep improvements."""
+        """Descend from a start of each of these problems, and store improvements."""
         feasible_starts = {i: z for i, z in starts.items() if z is not None}
         numbers = list(feasible_starts)
         if not numbers:
@@ -155,22 +152,22 @@ class _Ends:
             self.best_feasible[i] = _better(self.best_feasible[i], stop)
 
     def better_designs(self, valleys: Sequence[Point]) -> dict[int, Vector]:
-        """For each problem the best design of the others, if better than its own."""
+        """For each problem, the best point of the other problems, if better than its own."""
         points = [*valleys, *(optimum for optimum in self.optima if optimum is not None)]
         rows = self.changed.margins_at(points)
         missed = self.changed.evaluator.violations(rows.reshape(len(rows), -1), "worst")
         missed = missed.reshape(rows.shape[1:])
         objectives = np.where(missed <= steps.FEASIBLE, rows[0], np.inf)
         best_points = np.argmin(objectives, axis=0)
-        better = {}
+        improvements = {}
         for i, optimum in enumerate(self.optima):
             objective = float(objectives[best_points[i], i])
             if objective < _beaten(optimum):
-                better[i] = points[int(best_points[i])].z
-        return better
+                improvements[i] = points[int(best_points[i])].z
+        return improvements
 
     def results(self) -> tuple[list[Point | None], list[Vector | None]]:
-        """The optima, None where a better design is known; and those designs."""
+        """The optima, and the feasible points; no optimum where a feasible point is better."""
         feasible_z: list[Vector | None] = [None] * len(self.optima)
         for i, point in enumerate(self.best_feasible):
             if point is not None and point.objective < _beaten(self.optima[i]):
@@ -192,7 +189,7 @@ def _better(point: Point | None, other: Point | None) -> Point | None:
 
 
 def other_optima(evaluator: Evaluator, solution: Solution) -> list[Point]:
-    """Local optima of the search other than the best."""
+    """Local optima of the search, except for the best."""
     points = [
         optimum.x
         for optimum in solution.optima
@@ -217,9 +214,9 @@ def search_near(
     *,
     feasible_z: Vector | None = None,
 ) -> Point | None:
-    """The best point of a slightly changed problem, solved alone; None if infeasible.
+    """Solve one slightly changed problem; None if infeasible.
 
-    Newton steps first; if the active set changes too much, a search from the points at hand.
+    Newton steps come first; if the active set changes too much, a search from the known points.
 
     Parameters
     ----------
@@ -264,5 +261,5 @@ def search_near(
     return feasible
 
 
-def _optimal(near: Evaluator, point: Point) -> bool:
-    return steps.is_met(point) and kkt.check(near, point).residual <= steps.RESIDUAL
+def _optimal(evaluator: Evaluator, point: Point) -> bool:
+    return steps.is_met(point) and kkt.check(evaluator, point).residual <= steps.RESIDUAL

@@ -1,8 +1,8 @@
 """SLSQP runs from several starts in parallel: one model call evaluates a step of every run.
 
-A call costs little more for many points than for one, but NLopt requests one point at a time. So
-each run has a thread, which waits until the others have requested theirs. The result and every
-decision of a run are the same as when it runs alone.
+A model call costs little more for many points than for one, but NLopt requests single points. So
+each run has a thread, which waits until all runs have requested a point. Every run takes the same
+steps as it would alone.
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ RESTORATION = "least worst violation by LD_SLSQP"
 
 
 NEARER = 1e-3
-"""Share by which a worst violation must improve on the known ones to count as new."""
+"""Share by which a worst violation must fall below the known violations to count as new."""
 
 
 ELSEWHERE = 1.0
-"""Share by which a worst violation must exceed the least known for its search to count as stuck."""
+"""Share by which a worst violation must exceed the least known if its search got stuck."""
 
 
 LOCAL_EVALUATIONS = 150
@@ -44,7 +44,7 @@ LOCAL_EVALUATIONS = 150
 
 @dataclass
 class SearchResult:
-    """The end point of runs: its residual, its algorithm, and how often it was reached."""
+    """An end point of runs: its residual, its algorithm, and the number of runs that reached it."""
 
     point: Point
     residual: float
@@ -58,7 +58,7 @@ class SearchResult:
 
 
 class Descents:
-    """The state of one run: evaluator, results and warnings."""
+    """State of a search: evaluator, results and warnings."""
 
     def __init__(self, evaluator: Evaluator, seed: int) -> None:
         self.evaluator = evaluator
@@ -67,7 +67,7 @@ class Descents:
         self.records: list[StartRecord] = []
         self.warnings: list[str] = []
         self.least_infeasible: list[Point] = []
-        """The infeasible point with the least worst violation."""
+        """Infeasible points with the least worst violation."""
         self.objective_scale = 0.0
         self.interrupted = False
 
@@ -88,12 +88,12 @@ class Descents:
         return kkt.check(self.evaluator, point, objective_scale=self.objective_scale).residual
 
     def same(self, point: Point) -> SearchResult | None:
-        """Return the known optimum that a point has reached."""
+        """The known optimum that a point has reached, or None."""
         for optimum in self.optima:
-            known = optimum.point
-            size = max(abs(known.objective), 1e-3 * self.objective_scale, 1e-300)
-            similar = abs(point.objective - known.objective) <= 1e-5 * size
-            if optimum.good and similar and np.abs(point.z - known.z).max(initial=0.0) <= 1e-3:
+            end = optimum.point
+            size = max(abs(end.objective), 1e-3 * self.objective_scale, 1e-300)
+            similar = abs(point.objective - end.objective) <= 1e-5 * size
+            if optimum.good and similar and np.abs(point.z - end.z).max(initial=0.0) <= 1e-3:
                 return optimum
         return None
 
@@ -128,7 +128,7 @@ class Descents:
         return optimum.good
 
     def restore(self, point: Point, *, start: Point) -> None:
-        """Minimise the worst violation, and descend from there if it vanishes."""
+        """Minimise the worst violation, and descend from the result if it is feasible."""
         evaluations_before = self.evaluator.evaluations
         smallest = min((p.violation for p in self.least_infeasible), default=np.inf)
         end = repairs.least_missed(self.evaluator, point, smallest / 2)
@@ -151,18 +151,18 @@ class Descents:
         polished = polish(self.evaluator, point)
         if polished is not point:
             algorithm = f"{algorithm}, {FINISH}"
-        known = self.same(polished) if polished.valid else None
-        if known is not None:
-            known.hits += 1
-            return known
+        optimum = self.same(polished) if polished.valid else None
+        if optimum is not None:
+            optimum.hits += 1
+            return optimum
         optimum = SearchResult(polished, self.residual(polished), algorithm)
         self.optima.append(optimum)
         return optimum
 
-    def best(self, others: Sequence[SearchResult] = ()) -> SearchResult | None:
-        """The best of the optima and other points: feasible ones first, by objective.
+    def best(self, further: Sequence[SearchResult] = ()) -> SearchResult | None:
+        """The best of the optima and other points: by violation, then by objective.
 
-        A proven optimum wins over a point that is better only by rounding.
+        An optimum takes precedence over a point that is better only by rounding.
         """
 
         def rank(optimum: SearchResult) -> tuple[float, float]:
@@ -172,7 +172,7 @@ class Descents:
             missed = point.violation if point.violation > MET else 0.0
             return (missed, point.objective)
 
-        candidates = [*self.optima, *others]
+        candidates = [*self.optima, *further]
         best = min(candidates, key=rank, default=None)
         if best is None or best.good:
             return best
@@ -184,35 +184,35 @@ class Descents:
 
 
 ROUNDS = 60
-"""Maximum points of a run computed in advance; from a sweep start 10 to 60 suffice."""
+"""Maximum precomputed points of a run; from a start of the sweep, 10 to 60 suffice."""
 
 FIRST = 14
-"""Maximum steps with the Hessian of the free directions if none has reached an optimum yet."""
+"""Maximum steps of a run before only the runs of unsolved problems continue."""
 
 
 @dataclass(frozen=True)
 class DescentTask:
-    """Runs of one problem: its evaluator, and their starting points with gradients."""
+    """Runs of one problem: the evaluator, and the starting points with gradients."""
 
     evaluator: Evaluator
     starts: list[Point]
 
 
 Rows = Callable[[npt.NDArray[np.complex128], npt.NDArray[np.intp]], npt.NDArray[np.generic]]
-"""Rows (rows, k) of points (n, k), each of the task with this index (k,)."""
+"""Rows (rows, k) of points (n, k), for the tasks with the given numbers (k,)."""
 
 
 def precompute(
     evaluator: Evaluator, starts: Sequence[Point], *, seed: int, max_evaluations: int
 ) -> None:
-    """Precompute the points SLSQP visits from the given starts.
+    """Precompute the points that SLSQP visits from the given starts.
 
-    Stops early if the first run is infeasible, as the others are then skipped, and at the
-    evaluator's time limit.
+    Does nothing without exact gradients or with a limit of evaluations. Stops early if the first
+    run is infeasible, as the search then skips the others, and at the evaluator's time limit.
 
     Parameters
     ----------
-    evaluator : of the problem; without exact gradients, or with a limit of points, nothing is done
+    evaluator : of the problem
     starts : evaluated points
     seed, max_evaluations : of the runs
     """
@@ -239,13 +239,13 @@ def run_together(
 ) -> list[list[Point]]:
     """The best points of SLSQP runs, for each task and start.
 
-    The evaluators store every point visited. If the first run of a task is infeasible, its others
-    stop. All stop at the time limit of the first evaluator.
+    The evaluators store every visited point. If the first run of a task is infeasible, the other
+    runs of the task stop. All runs stop at the time limit of the first evaluator.
 
     Parameters
     ----------
     tasks : with exact gradients
-    rows : of all tasks in one call
+    rows : evaluates points of all tasks in one call
     seed, max_evaluations, tolerance : of the runs
     rounds : maximum points of a run
     """
@@ -301,9 +301,9 @@ class SlsqpRun:
     Parameters
     ----------
     task : number of its task
-    start : where it starts
-    evaluator : of the task, which keeps the points visited
-    known : optima of the task that end a run
+    start : first point
+    evaluator : of the task; stores the visited points
+    known : optima of the task, at which a run stops
     seed, most, tolerance : of the run
     """
 
@@ -315,9 +315,9 @@ class SlsqpRun:
     most: int
     tolerance: float
     hopeless: bool = False
-    """Whether it ended at an infeasible point."""
+    """Whether the run ended at an infeasible point."""
     new: bool = False
-    """Whether it ended at a feasible point that was not known."""
+    """Whether the run ended at a new feasible point."""
     best: Point = field(init=False)
 
     def __post_init__(self) -> None:
@@ -358,7 +358,7 @@ class SlsqpRun:
 
 
 class _QueuedEvaluator(Evaluator):
-    """An evaluator whose points the batch evaluates."""
+    """An evaluator that requests its points from the batch."""
 
     def __init__(
         self,
@@ -373,7 +373,7 @@ class _QueuedEvaluator(Evaluator):
         self._cache[start.z.tobytes()] = start
 
     def point(self, z: Vector) -> Point:
-        """The evaluated point at z (nf,), once the other runs have requested theirs."""
+        """The evaluated point at z (nf,), once all runs have requested a point."""
         cached = self._cache.get(z.tobytes())
         if cached is not None:
             return cached
@@ -394,12 +394,12 @@ def descents_from(
     tolerance: float = 1e-9,
     rounds: int = ROUNDS,
 ) -> list[list[Point]]:
-    """The results of SLSQP runs, for each problem from each of its starts.
+    """The end points of SLSQP runs, for each problem and start.
 
     Parameters
     ----------
     parametric : the problems
-    evaluators : one of each problem, with exact gradients
+    evaluators : one per problem, with exact gradients
     parameters : of each problem (q, k)
     starts : coordinates (nf,) for each problem
     seed, tolerance, rounds : of the runs, see `run_together`
@@ -471,13 +471,13 @@ def converged_from(
 
 
 def _descent(evaluator: Evaluator, point: Point, hessian: Vector) -> Descent:
-    """A descent from a point, with its own Hessian."""
+    """A descent from a point with a Hessian."""
     scale = kkt.slope_scale(evaluator, point)
     return Descent(hessian, scale, evaluator.constraint_count, 1.0)
 
 
 def distinct_ends(points: Sequence[Point]) -> list[Point]:
-    """Distinct ends of runs, the best first."""
+    """Distinct end points of runs, the best first."""
     distinct: list[Point] = []
     for point in sorted(points, key=lambda p: (p.violation > ARRIVAL[2], p.objective)):
         if not any(_near(point, known) for known in distinct):
@@ -486,7 +486,7 @@ def distinct_ends(points: Sequence[Point]) -> list[Point]:
 
 
 def _near(point: Point, known: Point) -> bool:
-    """Whether a run counts as arrived at a known point."""
+    """Whether a run has arrived at a known point."""
     distance, share, _ = ARRIVAL
     similar = abs(point.objective - known.objective) <= share * abs(known.objective)
     return similar and bool(np.abs(point.z - known.z).max(initial=0.0) <= distance)

@@ -1,17 +1,17 @@
-"""Steps towards an optimum near a solved one, for many problems side by side.
+"""Steps towards an optimum near a solved problem, for many problems in parallel.
 
 A solver is a generator: it yields the coordinates of the point it needs, receives that point with
-its gradients, and returns its result. One model call evaluates a step of every solver. Each sees
-only its own points, so its result is the same alone or beside others.
+its gradients, and returns its result. One model call evaluates a step of every solver. Each solver
+receives only its own points, so its result does not depend on the other solvers.
 
-Full quadratic steps reach most optima. They use the Hessian of the unchanged optimum and update it.
-A descent within a trust region, from a feasible point, reaches the others. A restoration finds such
-a point.
+Full quadratic steps reach most optima. They start with the Hessian of the unchanged optimum and
+update it. A descent within a trust region reaches the other optima from a feasible point, which a
+restoration finds.
 
-Hessians start from another problem's optimum, or along the free directions. Most designs of a front
-have nearly as many active limits as variables. Along the few free directions, a gradient on each
-side gives the curvature. Elsewhere the Hessian only has to be convex, as the rows determine the
-step [NocedalWright2006] section 16.2.
+The first Hessian is that of another optimum, or it is computed along the free directions. Most
+designs of a front have nearly as many active limits as variables. Along the few free directions, a
+gradient on each side gives the curvature. Elsewhere the Hessian only has to be convex, as the rows
+determine the step [NocedalWright2006] section 16.2.
 """
 
 from __future__ import annotations
@@ -39,17 +39,17 @@ BatchEvaluator: TypeAlias = Callable[[Mapping[int, Vector]], Sequence[Point]]
 
 
 class Batch(Generic[Result]):
-    """Solvers under way.
+    """Solvers that share their model calls.
 
     Parameters
     ----------
-    solvers : all of them
-    evaluate : evaluates a point for each solver that asks, in one model call
+    solvers : the solvers
+    evaluate : evaluates the requested points in one model call
 
     Attributes
     ----------
-    requests : the coordinates that the solvers still running ask for, by number
-    results : of the solvers that have ended, by number
+    requests : requested coordinates of the running solvers, by number
+    results : of the finished solvers, by number
     """
 
     def __init__(self, solvers: Sequence[Steps[Result]], evaluate: BatchEvaluator) -> None:
@@ -60,7 +60,7 @@ class Batch(Generic[Result]):
             self._advance(number, None)
 
     def step(self) -> None:
-        """BatchEvaluator every solver that is still running."""
+        """Evaluate the requested points, and advance every running solver."""
         requests, self.requests = self.requests, {}
         for number, point in zip(requests, self._evaluate(requests), strict=True):
             self._advance(number, point)
@@ -93,19 +93,19 @@ LONGEST = 60
 """Maximum evaluations of a descent within a trust region."""
 
 MEMORY = 3
-"""Number of past merits; a trial must beat the worst of them."""
+"""Number of past merits; a trial must beat the worst of these."""
 
 RADIUS = 0.1
 """First trust radius, in solver coordinates: 10 % in a logarithmic variable."""
 
 LEAST_RADIUS = 1e-4
-"""Radius at which a descent gives up."""
+"""Trust radius below which a descent fails."""
 
 RESTORATIONS = 24
 """Maximum steps towards a feasible point."""
 
 PATIENCE = 4
-"""Steps within which the violation must fall by 2 %, or the problem counts as infeasible."""
+"""Number of steps within which the violation must fall by 2 %; else the solver gives up."""
 
 SETTLED = 1e-6
 """Step length below which the optimality conditions are checked."""
@@ -117,16 +117,16 @@ RESIDUAL = 1e-6
 """Allowed residual of the optimality conditions: the objective is second order in it."""
 
 LEAST_CURVATURE = 1e-10
-"""Least ratio of smallest to largest curvature of an updated Hessian, well above rounding."""
+"""Least ratio of smallest to largest curvature of an updated Hessian; well above rounding."""
 
 
 @dataclass
 class Descent:
     """One descent: the last accepted point and the trial step from it.
 
-    The merit is the objective plus the violations, weighted above their price. A trial need only
-    beat the worst of the last `MEMORY` merits, so that curved constraints do not shorten good steps
-    [NocedalWright2006] ch. 15. The trust radius follows the success of the steps.
+    The merit is the objective plus the violations, weighted above their price. A trial must
+    only beat the worst of the last `MEMORY` merits, so that curved constraints do not shorten good
+    steps [NocedalWright2006] ch. 15. The trust radius follows the success of the steps.
     """
 
     hessian: Vector
@@ -177,8 +177,8 @@ class Descent:
     def choose_step(self, evaluator: Evaluator, trial: Point | None = None) -> None:
         """Choose the step from the accepted point, within the trust radius.
 
-        After a trial that curved constraints spoilt, the step is corrected for that curvature
-        [NocedalWright2006] section 18.3.
+        A rejected `trial` corrects the step for the curvature of constraints [NocedalWright2006]
+        section 18.3.
         """
         space, point, unit = evaluator.space, self.current, np.eye(len(self.hessian))
         jacobian = evaluator.jacobian(point)
@@ -204,7 +204,7 @@ class Descent:
         return trial.objective / self.scale, float(missed)
 
     def _learn(self, step: Vector, change: Vector) -> None:
-        """Damped update that keeps the Hessian positive [NocedalWright2006] procedure 18.2."""
+        """Damped update, which keeps the Hessian positive [NocedalWright2006] procedure 18.2."""
         product = self.hessian @ step
         curvature, measured = float(step @ product), float(step @ change)
         if curvature <= 1e-20:
@@ -218,12 +218,12 @@ class Descent:
             + np.outer(change, change) / float(step @ change)
         )
         curvatures = np.linalg.eigvalsh(update)
-        if curvatures[0] > LEAST_CURVATURE * curvatures[-1]:  # otherwise lost in rounding
+        if curvatures[0] > LEAST_CURVATURE * curvatures[-1]:  # otherwise below rounding
             self.hessian = update
 
 
 def margin_price(multipliers: Vector) -> float:
-    """A penalty for missed margins above every multiplier."""
+    """A penalty per missed margin that exceeds every multiplier."""
     return 2 * float(multipliers.max(initial=0.0)) + 1.0
 
 
@@ -237,7 +237,7 @@ class Valley:
     hessian : of the Lagrangian over `scale`, made positive definite (nf, nf)
     scale : size of the objective's gradient
     rows : number of constraints
-    price : of missed margins, above every multiplier
+    price : penalty per missed margin, above every multiplier
     """
 
     point: Point
@@ -280,8 +280,8 @@ def full_steps(
 
     Parameters
     ----------
-    evaluator : of the problem, or of one with the same rows and box
-    descent : a fresh descent with its initial Hessian
+    evaluator : of the problem, or of a problem with the same rows and box
+    descent : a new descent with its initial Hessian
     start : coordinates (nf,), or the evaluated point
     """
     space = evaluator.space
@@ -313,7 +313,7 @@ def trusted_steps(
     Parameters
     ----------
     evaluator, descent, start : as of `full_steps`
-    max_evaluations : evaluations
+    max_evaluations : maximum number of evaluations
     """
     space = evaluator.space
     z = np.clip(start, space.lower, space.upper)
@@ -335,7 +335,7 @@ def trusted_steps(
 
 
 class RestorationResult(NamedTuple):
-    """A feasible point, or None and the least infeasible one met."""
+    """A feasible point, or None and the least infeasible point of the steps."""
 
     feasible: Point | None
     least: Point | None
@@ -344,14 +344,13 @@ class RestorationResult(NamedTuple):
 def restoring_steps(
     evaluator: Evaluator, start: Vector | Point, patience: int = PATIENCE
 ) -> Steps[RestorationResult]:
-    """A feasible point near a start.
+    """A feasible point near a start, for a problem without equalities.
 
-    Every step is the shortest one that satisfies the linearised rows, or violates them least. The
-    problem has no equalities.
+    Every step is the shortest step that satisfies the linearised rows, or violates them least.
 
     Parameters
     ----------
-    evaluator : of the problem, or of one with the same rows and box
+    evaluator : of the problem, or of a problem with the same rows and box
     start : coordinates (nf,), or the evaluated point
     patience : steps within which the violation must fall by 2 %
     """
@@ -380,20 +379,20 @@ def restoring_steps(
 FIRM = 1e-6
 """Multiplier, relative to the largest, above which a row is active."""
 FLATTEST = 1e-10
-"""Least curvature relative to the largest, above rounding; below it no direction is crossed."""
+"""Least ratio of smallest to largest curvature; below it, mixed curvatures are dropped."""
 LEAST = 1e-6
-"""Least curvature over the largest multiplier."""
+"""Least curvature, relative to the largest multiplier."""
 
 
 @dataclass(frozen=True)
 class ScaledHessian:
-    """Scaled Hessian (n, n) of the Lagrangian at an optimum, per x of all variables."""
+    """Hessian (n, n) of the Lagrangian over `scale` at an optimum, in the variables x."""
 
     hessian: Vector
     scale: float
 
     def in_coordinates(self, evaluator: Evaluator, x: Vector) -> Vector:
-        """The Hessian in the free coordinates of a problem, at one of its points (n,)."""
+        """The Hessian in the free coordinates of a problem, at a point x (n,)."""
         space = evaluator.space
         slope = space.slope(x[:, None])[:, 0]
         return np.asarray(self.hessian[np.ix_(space.free, space.free)] * np.outer(slope, slope))
@@ -417,7 +416,7 @@ def free_hessians(evaluator: Evaluator, descents: Sequence[Descent]) -> list[Vec
 
     Parameters
     ----------
-    evaluator : of the problems, which have the same curvature
+    evaluator : of the problems, which share their curvature
     descents : with a point and its multipliers
     """
     free = [_free(evaluator, descent) for descent in descents]
@@ -457,7 +456,7 @@ def _free(evaluator: Evaluator, descent: Descent) -> Vector:
 
 
 def _convex(z: Vector, products: Vector, largest: float) -> Vector:
-    """A convex matrix (nf, nf) with known products (nf, d) along orthonormal directions (nf, d)."""
+    """A convex matrix (nf, nf) with given products (nf, d) with orthonormal vectors z (nf, d)."""
     size = len(z)
     if z.shape[1] == 0:
         return np.eye(size)
