@@ -264,7 +264,7 @@ def _evidence(explanation: Explanation, solution: Solution) -> str:
         return f"{statement}: this is evidence, not proof"
     return (
         f"{statement}: this is evidence, not proof. Each change listed as enough was confirmed by "
-        "a feasible design. No feasible design was found for smaller changes, or for single "
+        "a feasible design. The search gave no feasible design for smaller changes, or for single "
         "changes not listed. Bounds and fixed dimensions were varied up to "
         f"{WIDEST:g} times or down to 1/{WIDEST:g} of their value"
     )

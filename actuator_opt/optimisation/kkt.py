@@ -209,9 +209,8 @@ def multipliers(
     equality_multipliers = np.zeros(len(equalities))
     if len(equalities):
         remainder = slope - active.gradients.T @ inequality
-        equality_multipliers = np.asarray(
-            np.linalg.lstsq(equalities.T, remainder, rcond=1e-12)[0], dtype=float
-        )
+        solution = np.linalg.lstsq(equalities.T, remainder, rcond=1e-12)[0]
+        equality_multipliers = np.asarray(solution, dtype=float)
     return inequality, equality_multipliers
 
 
@@ -258,13 +257,9 @@ def check(
     if len(stacked) == 0:
         rank = 0
     a, b = len(active.constraint), len(active.constraint) + len(active.lower)
-    constraint_multipliers, lower, upper = (
-        np.zeros(m),
-        np.zeros(len(problem.names)),
-        np.zeros(len(problem.names)),
-    )
+    constraints, (lower, upper) = np.zeros(m), np.zeros((2, len(problem.names)))
     free_variables = evaluator.space.free
-    constraint_multipliers[active.constraint] = inequality[:a]
+    constraints[active.constraint] = inequality[:a]
     lower[free_variables[active.lower]] = inequality[a:b]
     upper[free_variables[active.upper]] = inequality[b:]
     labels = [problem.constraint_names[i] for i in active.constraint]
@@ -274,24 +269,10 @@ def check(
     sign = None
     if curvature:
         strong = active.gradients[inequality * np.sqrt((active.gradients**2).sum(axis=1)) > 0]
-        sign = _curvature(
-            evaluator,
-            point,
-            constraint_multipliers,
-            equality_multipliers,
-            np.concatenate([strong, equalities]),
-        )
-    return KktResidual(
-        residual,
-        tuple(labels),
-        len(stacked),
-        rank,
-        constraint_multipliers,
-        equality_multipliers,
-        lower,
-        upper,
-        sign,
-    )
+        rows = np.concatenate([strong, equalities])
+        sign = _curvature(evaluator, point, constraints, equality_multipliers, rows)
+    multipliers = constraints, equality_multipliers, lower, upper
+    return KktResidual(residual, tuple(labels), len(stacked), rank, *multipliers, sign)
 
 
 def lagrangian_weights(constraints: Vector, equalities: Vector) -> Vector:
@@ -466,9 +447,8 @@ def quadratic_step(
     )
     constraint_prices = prices[: len(rows.constraint)]
     equality_prices = np.abs(equality_multipliers) / scale
-    return shift + basis @ inner, 2 * max(
-        constraint_prices.max(initial=0.0), equality_prices.max(initial=0.0)
-    ) + 1.0
+    highest = max(constraint_prices.max(initial=0.0), equality_prices.max(initial=0.0))
+    return shift + basis @ inner, 2 * highest + 1.0
 
 
 def convex_hessian(evaluator: Evaluator, state: NewtonState) -> Vector:
@@ -483,9 +463,8 @@ def convex_hessian(evaluator: Evaluator, state: NewtonState) -> Vector:
     significant = state.multipliers > 1e-6 * state.scale
     a, b = len(active.constraint), len(active.constraint) + len(active.lower)
     at_limit = active.margins <= 1e-8
-    fixed = np.concatenate(
-        [active.lower[(significant & at_limit)[a:b]], active.upper[(significant & at_limit)[b:]]]
-    )
+    binding = significant & at_limit
+    fixed = np.concatenate([active.lower[binding[a:b]], active.upper[binding[b:]]])
     columns = np.setdiff1d(np.arange(evaluator.space.size), fixed)
     weights = lagrangian_weights(constraint_multipliers, state.equality_multipliers)
     hessian = evaluator.hessian(state.point, weights, columns) / state.scale
@@ -519,10 +498,8 @@ def quadratic_programme(
     needed = scaled_rows @ scaled_slope - margins
     length = np.sqrt((scaled_rows**2).sum(axis=1))
     useful = length > 1e-12
-    scaled_rows, needed = (
-        scaled_rows[useful] / length[useful, None],
-        needed[useful] / length[useful],
-    )
+    scaled_rows = scaled_rows[useful] / length[useful, None]
+    needed = needed[useful] / length[useful]
     unit = np.zeros(len(slope) + 1)
     unit[-1] = 1.0
     stacked = np.concatenate([scaled_rows.T, needed[None, :]])

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import types
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields, is_dataclass, replace
 from functools import cache
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
@@ -95,9 +95,8 @@ def from_plain(
         return built.design
 
     def evaluation(entry: Any) -> Evaluation:
-        index, estimate = (
-            entry if isinstance(entry, list) else (entry, None)
-        )  # format before 0.7, without yield
+        # the format before 0.7 has no yield
+        index, estimate = entry if isinstance(entry, list) else (entry, None)
         if index not in evaluated:
             subject = prepare(design(index), None, plugins)
             evaluated[index] = evaluate(replace(subject, lenient=True, aims=aims))
@@ -112,16 +111,16 @@ def from_plain(
             return value
         if len(value) == 1:
             ((key, item),) = value.items()
-            readers = {
-                _DESIGN: design,
-                _EVALUATION: evaluation,
-                _FRACTION: Fraction,
-                _NUMBER: float,
-            }
             if key in readers:
                 return readers[key](item)
         return {key: special(item) for key, item in value.items()}
 
+    readers: dict[str, Callable[[Any], Any]] = {
+        _DESIGN: design,
+        _EVALUATION: evaluation,
+        _FRACTION: Fraction,
+        _NUMBER: float,
+    }
     try:
         aims |= {
             objective["metric"]: objective["sense"]

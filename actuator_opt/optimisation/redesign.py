@@ -268,10 +268,7 @@ def _goal_words(objective_change: ObjectiveChange) -> str:
     old, new = objective_change.before, objective_change.after
     if old is None or new is None:
         return f"{objective_change.metric} has no value"
-    old_text, new_text = (
-        objective_change.quantity.text(old, 5),
-        objective_change.quantity.text(new, 5),
-    )
+    old_text, new_text = (objective_change.quantity.text(x, 5) for x in (old, new))
     if old_text == new_text:
         return f"{objective_change.metric} stays {new_text}"
     change = f" ({100 * (new / old - 1):+.1f} %)" if old else ""

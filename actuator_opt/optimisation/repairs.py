@@ -306,7 +306,7 @@ def without_each(
 ) -> list[Vector | None]:
     """For each group, a point that meets all other rows, with a margin granted to the group.
 
-    `granted` is None for any margin. The result is None where no point is found.
+    `granted` is None for any margin. The result is None without this point.
     """
     evaluator = Evaluator(problem)
     point = evaluator.point(evaluator.space.to_z(x))

@@ -126,7 +126,7 @@ TANGENT_DISTANCES = (1e-5, 1e-3)
 """Smallest and largest distance from a curve at which a tangent is added."""
 
 FINE = 0.01
-"""This distance, relative to the remaining gap."""
+"""Distance from a curve at which a tangent is added, relative to the remaining gap."""
 
 PROVEN = 1e-6
 """Least value of a dual ray that proves a box empty; above rounding."""

@@ -196,9 +196,8 @@ def _collect(
             if isinstance(value, Symbol) or varies:
                 location = ", ".join(x for x in (case, place) if x)
                 limited = value / limit_value if varies else value
-                traced.claims.append(
-                    TracedLimit(limit, f"{limit.name} ({location})", limited, bound)
-                )
+                label = f"{limit.name} ({location})"
+                traced.claims.append(TracedLimit(limit, label, limited, bound))
             else:
                 traced.dropped.setdefault(limit.name, "no variable affects its traced value")
         if not rows and (is_first or limit.case is not None):
@@ -345,10 +344,8 @@ class BoxSearch:
                 raise Empty
             loosest = np.argsort(-self._gains(box, bound), kind="stable")[:DIRECTIONS]
             directions = np.concatenate([loosest, np.setdiff1d(self.variables, loosest)])
-            size, known = (
-                float((box.high - box.low)[directions].sum()),
-                KnownExtents(bound.directions),
-            )
+            known = KnownExtents(bound.directions)
+            size = float((box.high - box.low)[directions].sum())
             for number in map(int, directions):
                 if time.perf_counter() > self.deadline:
                     return box
@@ -364,16 +361,11 @@ class BoxSearch:
     def _gains(self, box: Box, bound: Bound) -> Vector:
         """Estimated gain of a split along each direction."""
         gains = np.minimum(bound.excess, FAR_OFF) * (bound.price + FLOOR)
-        by_direction = np.bincount(self.layout.direction, gains, self.layout.directions).astype(
-            float
-        )
-        width = box.high - box.low
-        first, second = self.layout.factors
-        np.add.at(
-            by_direction,
-            np.where(width[first] > width[second], first, second),
-            bound.product_errors,
-        )
+        layout, width = self.layout, box.high - box.low
+        by_direction = np.bincount(layout.direction, gains, layout.directions).astype(float)
+        first, second = layout.factors
+        wider = np.where(width[first] > width[second], first, second)
+        np.add.at(by_direction, wider, bound.product_errors)
         return by_direction
 
     def _choice(self, box: Box, bound: Bound) -> tuple[int, float] | None:

@@ -37,6 +37,14 @@ class MonotoneFunction(NamedTuple):
     inverse: Function
     convex: int
 
+    def hull(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
+        """Ranges of the values over ranges of the arguments."""
+        return self.value(low), self.value(high)
+
+    def inverse_hull(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
+        """Ranges of the arguments whose values lie in ranges."""
+        return self.inverse(low), self.inverse(high)
+
 
 def _softplus_inverse(y: Vector) -> Vector:
     """log(e^y - 1)."""
@@ -154,12 +162,10 @@ class Tables:
         if len(indices):
             _, inside = self._inside(low[indices], high[indices], indices)
             values = self.values[indices]
-            lowest[indices] = np.minimum(
-                lowest[indices], np.where(inside, values, np.inf).min(axis=1)
-            )
-            highest[indices] = np.maximum(
-                highest[indices], np.where(inside, values, -np.inf).max(axis=1)
-            )
+            inner = np.where(inside, values, np.inf).min(axis=1)
+            lowest[indices] = np.minimum(lowest[indices], inner)
+            inner = np.where(inside, values, -np.inf).max(axis=1)
+            highest[indices] = np.maximum(highest[indices], inner)
         return lowest - self.room, highest + self.room
 
     def secant_errors(
@@ -217,52 +223,49 @@ class CurveFunctions:
     """Functions of all curves, grouped by kind, one argument each."""
 
     def __init__(self, kinds: Sequence[Kind]) -> None:
-        tables = [kind for kind in kinds if isinstance(kind, SampledFunction)]
-        self.table_curves = np.array(
-            [k for k, kind in enumerate(kinds) if isinstance(kind, SampledFunction)], dtype=np.intp
-        )
-        self.tables = Tables(tables) if tables else None
         names = np.array([kind if isinstance(kind, str) else "" for kind in kinds], dtype=object)
-        self.parts = [(shape, np.flatnonzero(names == name)) for name, shape in SHAPES.items()]
-        self.convex = np.zeros(len(kinds), dtype=int)
+        self.groups: list[tuple[MonotoneFunction | Tables, np.ndarray]] = [
+            (shape, np.flatnonzero(names == name)) for name, shape in SHAPES.items()
+        ]
+        tables = [kind for kind in kinds if isinstance(kind, SampledFunction)]
+        self.table_curves = np.flatnonzero(names == "")
+        self.tables = Tables(tables) if tables else None
         self.room = np.zeros(len(kinds))
-        for shape, indices in self.parts:
-            self.convex[indices] = shape.convex
         if self.tables is not None:
-            self.convex[self.table_curves], self.room[self.table_curves] = (
-                self.tables.convex,
-                self.tables.room,
-            )
+            self.groups.append((self.tables, self.table_curves))
+            self.room[self.table_curves] = self.tables.room
+        self.convex = np.zeros(len(kinds), dtype=int)
+        for functions, indices in self.groups:
+            self.convex[indices] = functions.convex
 
     def value(self, x: Vector) -> Vector:
         """The functions' values."""
         values = np.empty_like(x)
-        for shape, indices in self.parts:
-            values[indices] = shape.value(x[indices])
-        if self.tables is not None:
-            values[self.table_curves] = self.tables.value(x[self.table_curves])
+        for functions, indices in self.groups:
+            values[indices] = functions.value(x[indices])
         return values
 
     def slope(self, x: Vector) -> Vector:
         """The functions' slopes."""
         slopes = np.empty_like(x)
-        for shape, indices in self.parts:
-            slopes[indices] = shape.slope(x[indices])
-        if self.tables is not None:
-            slopes[self.table_curves] = self.tables.slope(x[self.table_curves])
+        for functions, indices in self.groups:
+            slopes[indices] = functions.slope(x[indices])
         return slopes
 
     def hull(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
         """Ranges of the values over ranges of the arguments."""
         lowest, highest = np.empty_like(low), np.empty_like(high)
-        for shape, indices in self.parts:
-            lowest[indices], highest[indices] = (
-                shape.value(low[indices]),
-                shape.value(high[indices]),
-            )
-        if self.tables is not None:
-            indices = self.table_curves
-            lowest[indices], highest[indices] = self.tables.hull(low[indices], high[indices])
+        for functions, indices in self.groups:
+            ends = functions.hull(low[indices], high[indices])
+            lowest[indices], highest[indices] = ends
+        return lowest, highest
+
+    def inverse_hull(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
+        """Ranges of the arguments whose values lie in ranges."""
+        lowest, highest = np.empty_like(low), np.empty_like(high)
+        for functions, indices in self.groups:
+            ends = functions.inverse_hull(low[indices], high[indices])
+            lowest[indices], highest[indices] = ends
         return lowest, highest
 
     def secant_errors(self, low: Vector, high: Vector, slope: Vector) -> tuple[Vector, Vector]:
@@ -274,21 +277,6 @@ class CurveFunctions:
                 lowest[curves[indices]], highest[curves[indices]] = self.tables.secant_errors(
                     low[curves], high[curves], slope[curves], indices
                 )
-        return lowest, highest
-
-    def inverse_hull(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
-        """Ranges of the arguments whose values lie in ranges."""
-        lowest, highest = np.empty_like(low), np.empty_like(high)
-        for shape, indices in self.parts:
-            lowest[indices], highest[indices] = (
-                shape.inverse(low[indices]),
-                shape.inverse(high[indices]),
-            )
-        if self.tables is not None:
-            indices = self.table_curves
-            lowest[indices], highest[indices] = self.tables.inverse_hull(
-                low[indices], high[indices]
-            )
         return lowest, highest
 
 

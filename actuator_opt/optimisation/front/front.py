@@ -148,9 +148,7 @@ def _starts(evaluator: Evaluator, swept: Sweep, count: int) -> list[Vector]:
 
 def _optima(run_ends: Sequence[Point], converged: Sequence[Point | None]) -> list[Vector]:
     """Distinct optima, best first; empty if an unfinished run may be better."""
-    optima = sorted(
-        (point for point in converged if point is not None), key=lambda point: point.objective
-    )
+    optima = sorted((p for p in converged if p is not None), key=lambda point: point.objective)
     unfinished = [
         p.objective for p, point in zip(run_ends, converged, strict=True)
         if point is None and p.violation <= MET
@@ -236,9 +234,7 @@ def _feasible_ends(
     tracer: Tracer, designs: Sequence[FrontDesign], effort: FrontEffort
 ) -> list[list[Point]]:
     """Feasible end points of runs, by level."""
-    evaluators = [
-        tracer.evaluator_of(tracer.at(design.level, design.direction)) for design in designs
-    ]
+    evaluators = [tracer.evaluator_of(tracer.at(d.level, d.direction)) for d in designs]
     parameters = np.stack(
         [np.concatenate([design.level, design.direction]) for design in designs], axis=1
     )
@@ -364,9 +360,8 @@ def front(objectives: Objectives, settings: FrontSettings) -> Front | NoAnchor:
         places = _places(search, settings)
         previous = [search.designs[k] for k in places]
         tell("searching for overlooked designs")
-        improvements = overlooked(
-            tracer, previous, replace(effort, seed=settings.seed + 1 + attempt)
-        )
+        reseeded = replace(effort, seed=settings.seed + 1 + attempt)
+        improvements = overlooked(tracer, previous, reseeded)
         searched += len(places)
         if not improvements:
             break

@@ -190,11 +190,8 @@ def _flood(search: FrontSearch, first_places: Iterable[Place], steps: int, max_l
         visited |= set(queue)
         starts = [_start_beside(search, level(place, steps)) for place in queue]
         designs = search.improved_designs(starts)
-        reached_places = [
-            p
-            for p, design in zip(queue, designs, strict=True)
-            if design is not None and design.at_level
-        ]
+        pairs = zip(queue, designs, strict=True)
+        reached_places = [p for p, design in pairs if design is not None and design.at_level]
         successes += len(reached_places)
         search.add(_fully_improved(search, designs))
         neighbours = {neighbour for place in reached_places for neighbour in around(place)}
@@ -222,9 +219,8 @@ def _fully_improved(
     their values, until every objective has a price [Marler2004].
     """
     finished: list[FrontDesign] = []
-    pending = [
-        (design, search.tracer.prices(design) > PRICED) for design in designs if design is not None
-    ]
+    prices = search.tracer.prices
+    pending = [(design, prices(design) > PRICED) for design in designs if design is not None]
     for stage in range(search.tracer.objectives.count):
         finished += [design for design, active in pending if active.all()]
         pending = [(design, active) for design, active in pending if not active.all()]
@@ -236,7 +232,7 @@ def _fully_improved(
         if stage:  # no slack left: keep the design of the last stage
             finished += [design for new, (design, _) in outcomes if new is None]
         pending = [
-            (new, active | (search.tracer.prices(new) > PRICED))
+            (new, active | (prices(new) > PRICED))
             for new, (_, active) in outcomes
             if new is not None
         ]
@@ -250,9 +246,8 @@ def _improving_start(
     level = np.where(active, front_design.unit + HOLD, front_design.level)
     direction = (~active).astype(float)
     t = float((front_design.unit - front_design.level)[~active].max())
-    return FrontStart(
-        level, direction, search.tracer.to_t(front_design.point.z, t), front_design.hessian
-    )
+    z = search.tracer.to_t(front_design.point.z, t)
+    return FrontStart(level, direction, z, front_design.hessian)
 
 
 def _renormalised(search: FrontSearch) -> bool:
@@ -277,11 +272,8 @@ def _fill_holes(search: FrontSearch, count: int) -> None:
         tell("filling holes of the front", number / ROUNDS)
         designs = [search.designs[k] for k in indices]
         references += designs
-        pairs = [
-            pair
-            for pair in _neighbour_pairs(search, indices)
-            if _key(designs, pair) not in tried_pairs
-        ]
+        pairs = _neighbour_pairs(search, indices)
+        pairs = [pair for pair in pairs if _key(designs, pair) not in tried_pairs]
         pairs = pairs[: max(min(missing, len(indices) // 3), 1)]
         if not pairs:
             return
@@ -299,9 +291,8 @@ def _neighbour_pairs(search: FrontSearch, indices: Indices) -> list[tuple[int, i
     units, projected = search.units[:, indices], search.plane[:, indices]
     gaps: dict[tuple[int, int], float] = {}
     for i in range(len(indices)):
-        candidates = np.argsort(distances(projected, projected[:, i]), kind="stable")[
-            1 : 1 + NEIGHBOURS
-        ]
+        order = np.argsort(distances(projected, projected[:, i]), kind="stable")
+        candidates = order[1 : 1 + NEIGHBOURS]
         for j in candidates.tolist():
             middle = (projected[:, i] + projected[:, j]) / 2
             radius = distances(projected[:, [i]], middle)[0] * (1 - 1e-9)
@@ -340,9 +331,8 @@ def _retry_crosswise(search: FrontSearch) -> bool:
     ]
     previous = {id(search.designs[k]) for k in indices}
     search.add(_fully_improved(search, alternatives))
-    return bool(alternatives) and not previous <= {
-        id(search.designs[k]) for k in search.front_indices()
-    }
+    remaining = {id(search.designs[k]) for k in search.front_indices()}
+    return bool(alternatives) and not previous <= remaining
 
 
 def _is_alternative(front_design: FrontDesign, alternative: FrontDesign) -> bool:
@@ -431,9 +421,8 @@ def _weights(places: Vector, u: float) -> Vector:
     differences = places[:, None] - places + np.eye(len(places))
     offsets = u - places + np.zeros((len(places), 1))
     np.fill_diagonal(offsets, 1.0)
-    return np.asarray(
-        (offsets / differences - np.eye(len(places)) * (1 / np.diag(differences) - 1)).prod(axis=1)
-    )
+    correction = np.eye(len(places)) * (1 / np.diag(differences) - 1)
+    return np.asarray((offsets / differences - correction).prod(axis=1))
 
 
 WIDEST = 3.0
@@ -468,9 +457,8 @@ class FrontGap:
 
 def final_designs(search: FrontSearch, count: int) -> Indices:
     """`count` designs, as distant as possible, in order of the first objective."""
-    indices = np.array(
-        [k for k in search.front_indices() if search.residual(k) <= RESIDUAL], dtype=np.intp
-    )
+    optimal = [k for k in search.front_indices() if search.residual(k) <= RESIDUAL]
+    indices = np.array(optimal, dtype=np.intp)
     units = search.units[:, indices]
     order = np.lexsort(units[::-1])
     indices, units = indices[order], units[:, order]

@@ -49,10 +49,8 @@ def nondominated(values: Vector, equal: float = 0.0) -> npt.NDArray[np.bool_]:
     mask = np.ones(count, dtype=bool)
     for k in range(count):
         design = values[:, k : k + 1]
-        beats = (values <= design + equal).all(axis=0) & (values < design - CLEARLY * equal).any(
-            axis=0
-        )
-        mask[k] = not beats.any()
+        no_worse = (values <= design + equal).all(axis=0)
+        mask[k] = not (no_worse & (values < design - CLEARLY * equal).any(axis=0)).any()
     return mask
 
 
@@ -64,10 +62,8 @@ def distinct(units: Vector, order: Indices) -> Indices:
     """
     selected: list[int] = []
     for k in order:
-        if (
-            not selected
-            or np.abs(units[:, selected] - units[:, k : k + 1]).max(axis=0).min() > SAME
-        ):
+        gaps = np.abs(units[:, selected] - units[:, k : k + 1]).max(axis=0)
+        if gaps.min(initial=np.inf) > SAME:
             selected.append(int(k))
     return np.array(selected, dtype=np.intp)
 
@@ -249,10 +245,7 @@ class Tracer:
         z = np.stack([start.z for start in starts], axis=1)
         if not self.exact:
             x = self.evaluator.space.to_x(z)
-            return [
-                self.design_at(start, variables)
-                for start, variables in zip(starts, x.T, strict=True)
-            ]
+            return [self.design_at(*pair) for pair in zip(starts, x.T, strict=True)]
         points = self._changed(starts).points(z)
         return [self._design(s, p, s.hessian) for s, p in zip(starts, points, strict=True)]
 
@@ -489,9 +482,7 @@ class FrontSearch:
 
         `firmly` retries failed starts within trust regions.
         """
-        designs = [
-            design for design in self.designs_at(starts, firmly=firmly) if design is not None
-        ]
+        designs = [d for d in self.designs_at(starts, firmly=firmly) if d is not None]
         self.add(designs)
         return len(designs)
 
@@ -582,11 +573,9 @@ class FrontSearch:
                 starts.append(FrontStart(level, direction, at, neighbour.hessian))
                 targets.append(target)
         for target, retried in zip(targets, self.tracer.solve(starts), strict=True):
-            if (
-                retried is not None
-                and retried.point.objective < self.designs[target].point.objective - BETTER
-            ):
-                self._pass([self.designs[target]])
+            design = self.designs[target]
+            if retried is not None and retried.point.objective < design.point.objective - BETTER:
+                self._pass([design])
                 self.designs[target] = retried
                 self.designs = self.tracer.spread(self.designs, [retried])
 
@@ -604,11 +593,9 @@ class FrontSearch:
 
     def front_indices(self) -> Indices:
         """Indices of distinct non-dominated designs; designs at their levels take precedence."""
-        order = np.array(
-            sorted(range(len(self.designs)), key=lambda k: not self.designs[k].at_level)
-        )
+        order = sorted(range(len(self.designs)), key=lambda k: not self.designs[k].at_level)
         units = self.units
-        indices = distinct(units, order.astype(np.intp))
+        indices = distinct(units, np.array(order, dtype=np.intp))
         all_units = np.concatenate([units[:, indices], self.other_units + BETTER], axis=1)
         equal = EQUAL if len(units) > 2 else 0.0
         mask = nondominated(all_units, equal)[: len(indices)]
