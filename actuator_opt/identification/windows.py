@@ -233,15 +233,9 @@ def windows(
     sections = {id(sliding): sliding for sliding, _ in lanes}
     masks = {key: _steady_above(sliding, slowest, settling) for key, sliding in sections.items()}
     steady = np.where(cut([masks[id(sliding)] for sliding, _ in lanes])[:, kept], 0.0, 1.0)
-    options = np.stack(
-        [
-            velocities(sliding.piece, motion, at - before * stride, at + after * stride)[
-                :, ::stride
-            ]
-            for sliding, at in lanes
-        ],
-        axis=1,
-    )
+    first, last = before * stride, after * stride
+    sets = [velocities(sliding.piece, motion, at - first, at + last) for sliding, at in lanes]
+    options = np.stack([velocity[:, ::stride] for velocity in sets], axis=1)
     accelerations = np.abs(np.gradient(options[-1], step, axis=-1))
     sharpest = max(float(np.median(np.max(accelerations, axis=-1))), 1e-12)
     resolution = motion.quality["x"].resolution
