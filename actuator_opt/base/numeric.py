@@ -193,21 +193,21 @@ def geometry(function: Callable[P, T]) -> Callable[P, T]:
         impossible: Any = False
         for name in names:
             if name in values and not _possible(values[name]):
-                values[name], found = _checked(values[name])
-                impossible = impossible | found
+                values[name], mask = _checked(values[name])
+                impossible = impossible | mask
         for greater, lesser in pairs:
             if greater in values and lesser in values:
-                values[greater], found = _masked(
+                values[greater], mask = _masked(
                     real(values[greater]) <= real(values[lesser]), values[greater]
                 )
-                impossible = impossible | found
+                impossible = impossible | mask
         if "layers" in values and not all(_possible(layer.thickness) for layer in values["layers"]):
-            kept = [_checked(layer.thickness) for layer in values["layers"]]
+            layers = [_checked(layer.thickness) for layer in values["layers"]]
             values["layers"] = [
                 layer if value is layer.thickness else replace(layer, thickness=value)
-                for layer, (value, _) in zip(values["layers"], kept, strict=True)
+                for layer, (value, _) in zip(values["layers"], layers, strict=True)
             ]
-            impossible = functools.reduce(lambda mask, layer: mask | layer[1], kept, impossible)
+            impossible = functools.reduce(lambda mask, layer: mask | layer[1], layers, impossible)
         result = function(*args, **arguments)
         return result if impossible is False else _with_nan(result, impossible)
 
@@ -227,9 +227,9 @@ def _checked(value: Any) -> tuple[Any, Any]:
     """A size, or several, with NaN for negative values; and a mask of these values."""
     if not isinstance(value, tuple | list):
         return _masked(real(value) < 0, value)
-    kept = [_checked(element) for element in value]
-    wrong = functools.reduce(lambda one, other: one | other[1], kept, False)
-    return type(value)(one for one, _ in kept), wrong
+    elements = [_checked(element) for element in value]
+    impossible = functools.reduce(lambda mask, pair: mask | pair[1], elements, False)
+    return type(value)(element for element, _ in elements), impossible
 
 
 def _masked(impossible: Any, value: Any) -> tuple[Any, Any]:
