@@ -31,6 +31,7 @@ PACKAGES = (
     "metrics",
     "models",
     "optimisation",
+    "rendering",
     "replicas",
     "seals",
     "simulation",
