@@ -1,4 +1,4 @@
-"""Options that several commands share, each declared once with its help."""
+"""Options that several commands share, with their help."""
 
 from __future__ import annotations
 
@@ -148,14 +148,14 @@ def quantity_of(option: str, text: str | None, quantity: Quantity) -> float | No
 
 def named_columns(texts: list[str] | None) -> dict[str, str]:
     """Channel and column of every ``--column``."""
-    found: dict[str, str] = {}
+    columns: dict[str, str] = {}
     for text in texts or []:
         channel, equals, name = text.partition("=")
         if not equals or not channel.strip() or not name.strip():
             message = f'--column "{text}" is not CHANNEL=NAME'
             raise UsageError(Diagnostic(message, 'write e.g. "p1=Channel 3 [bar]"'))
-        found[channel.strip()] = name.strip()
-    return found
+        columns[channel.strip()] = name.strip()
+    return columns
 
 
 def file_of_units(units: str | None) -> list[str]:

@@ -158,7 +158,7 @@ def _crosses(one: _Edge, other: _Edge) -> bool:
     return not apart and max(sides) <= 0
 
 
-def sound(profile: Profile) -> bool:
+def bounds_solid(profile: Profile) -> bool:
     """Whether a polygon bounds a solid of revolution: nonzero area, no crossing.
 
     It may touch the axis along one edge only: a point would pinch it, two edges would make a void.
@@ -201,7 +201,7 @@ def _bodies(outline: Outline) -> Iterator[SolidBody]:
     loops = joined(millimetres(polygon) for polygon in outline.polygons)
     names = _NAMES.get(part, (own,))
     for index, loop in enumerate(loops):
-        if not sound(loop):
+        if not bounds_solid(loop):
             raise _fault(own)
         name = names[index] if len(names) == len(loops) else f"{own} {index + 1}"
         start = loop[0][0]
