@@ -72,7 +72,7 @@ def init(
 ) -> None:
     """Write a commented start file for a design or a scenario."""
     if scenario is not None and source is not None:
-        raise UsageError(Diagnostic("--from and --scenario", "use only one of the two"))
+        raise UsageError(Diagnostic("--from and --scenario", "use only one of them"))
     title = {}
     if name is not None:
         title["name"], file = _named_file(name)

@@ -139,18 +139,18 @@ def joined(polygons: Iterable[Profile]) -> list[Profile]:
     for polygon in polygons:
         loop = tidy(polygon)
         while True:
-            found = next(((one, w) for one in loops if (w := _joined(one, loop))), None)
-            if found is None:
+            pair = next(((other, w) for other in loops if (w := _joined(other, loop))), None)
+            if pair is None:
                 break
-            loops.remove(found[0])
-            loop = found[1]
+            loops.remove(pair[0])
+            loop = pair[1]
         loops.append(loop)
     return sorted(loops)
 
 
-def _crosses(one: _Edge, other: _Edge) -> bool:
+def _crosses(first: _Edge, second: _Edge) -> bool:
     """Whether two edges that are not neighbours intersect."""
-    (a, b), (c, d) = one, other
+    (a, b), (c, d) = first, second
     sides = _turn(a, b, c) * _turn(a, b, d), _turn(c, d, a) * _turn(c, d, b)
     apart = any(
         max(a[k], b[k]) < min(c[k], d[k]) or max(c[k], d[k]) < min(a[k], b[k]) for k in (0, 1)
@@ -161,7 +161,7 @@ def _crosses(one: _Edge, other: _Edge) -> bool:
 def bounds_solid(profile: Profile) -> bool:
     """Whether a polygon bounds a solid of revolution: nonzero area, no crossing.
 
-    It may touch the axis along one edge only: a point would pinch it, two edges would make a void.
+    It may touch the axis along a single edge: a point would pinch it, two edges enclose a void.
     """
     sides = edges(profile)
     if len(sides) < 3 or area(profile) <= 0 or min(r for _, r in profile) < 0:
@@ -329,9 +329,9 @@ class _Skin:
         curve = r.add(f"LINE('',{r.point(*start)},{vector})")
         return r.add(f"EDGE_CURVE('',{self.corners[start]},{self.corners[end]},{curve},.T.)")
 
-    def _loop(self, used: Sequence[tuple[str, bool]]) -> str:
+    def _loop(self, edges: Sequence[tuple[str, bool]]) -> str:
         r = self.records
-        sides = [r.add(f"ORIENTED_EDGE('',*,*,{one},.{'FT'[way]}.)") for one, way in used]
+        sides = [r.add(f"ORIENTED_EDGE('',*,*,{edge},.{'FT'[sense]}.)") for edge, sense in edges]
         return r.add(f"EDGE_LOOP('',{listed(sides)})")
 
     def face(self, start: Point, end: Point) -> str:
@@ -342,17 +342,18 @@ class _Skin:
             rims.sort(key=lambda rim: -rim[2])
             kinds = ("FACE_OUTER_BOUND", "FACE_BOUND")
             bounds = [
-                r.add(f"{kind}('',{self._loop([(one, way)])},.T.)")
-                for kind, (one, way, _) in zip(kinds, rims, strict=False)
+                r.add(f"{kind}('',{self._loop([(circle, sense)])},.T.)")
+                for kind, (circle, sense, _) in zip(kinds, rims, strict=False)
             ]
             outwards = 1.0 if end[1] > start[1] else -1.0
             surface = r.add(f"PLANE('',{r.frame(r.point(start[0], 0.0), outwards)})")
             return r.add(f"ADVANCED_FACE('',{listed(bounds)},{surface},.T.)")
         seam = self._seam(start, end)
-        used: list[tuple[str, bool]] = []
-        for forth in (True, False):
-            used += [(seam, forth), *((one, way) for one, way, _ in rims if way is forth)]
-        bound = r.add(f"FACE_OUTER_BOUND('',{self._loop(used)},.T.)")
+        loop: list[tuple[str, bool]] = []
+        for forward in (True, False):
+            loop.append((seam, forward))
+            loop += [(circle, sense) for circle, sense, _ in rims if sense is forward]
+        bound = r.add(f"FACE_OUTER_BOUND('',{self._loop(loop)},.T.)")
         same = "T" if end[0] < start[0] else "F"
         return r.add(f"ADVANCED_FACE('',({bound}),{self._round(start, end)},.{same}.)")
 
