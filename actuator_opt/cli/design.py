@@ -224,7 +224,7 @@ def compare(
     ] = None,
     optimise: Annotated[
         bool,
-        typer.Option("--optimise", help="Optimise each design first; runs and optima are kept."),
+        typer.Option("--optimise", help="First optimise every design that is not an optimum."),
     ] = False,
     seed: Seed = 0,
     as_json: Json = False,

@@ -104,7 +104,7 @@ Yield = Annotated[
     typer.Option(
         "--yield",
         metavar="P",
-        help="Probability that all limits hold under scatter, e.g. 0.99.",
+        help="Required probability of meeting all limits under scatter, e.g. 0.99.",
     ),
 ]
 VerifyDynamics = Annotated[
@@ -121,7 +121,7 @@ NoRecord = Annotated[
 Report = Annotated[bool, typer.Option("--report", help="Write the report (PDF and PNG) too.")]
 AllPages = Annotated[
     bool,
-    typer.Option("--all-pages", help="An image (PNG) of every sheet of the report, not of one."),
+    typer.Option("--all-pages", help="Write an image (PNG) of every sheet, not only the first."),
 ]
 Format = Annotated[
     str,

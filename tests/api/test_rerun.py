@@ -164,7 +164,7 @@ def test_files_that_are_no_report(reports, tmp_path):
     cases = {
         "is not a PDF": SMALL.encode(),
         "has no input": b"%PDF-1.7\n1 0 obj\nendobj\n%%EOF\n",
-        "is cut off": data[: at // 2],
+        "is truncated": data[: at // 2],
         "is damaged": data[:begin] + b"\0\0\0\0" + data[begin + 4 :],
         "several attachments": data + data.replace(b"load_cases", b"x", 0)
         + _pdf(tmp_path, "a: 1\n", FACTS).read_bytes(),
