@@ -190,7 +190,7 @@ def explore(
     ] = None,
     rows: Annotated[
         int,
-        typer.Option("--rows", metavar="N", help="Maximum number of designs shown (an even sample)."),
+        typer.Option("--rows", metavar="N", help="Maximum number shown; of more, an even sample."),
     ] = 5000,
     out: Annotated[
         Path, typer.Option("--out", metavar="FILE", help="File (.html) or folder of the page.")
