@@ -76,14 +76,14 @@ def read(
     InputError
         with every fault of the file, each with its place and remedy
     """
-    own = plugins_of(plugins)
+    loaded_plugins = plugins_of(plugins)
     pairs = set.items() if isinstance(set, Mapping) else set
     loaded: LoadedDesign = read_design(
         source,
         overrides=[(path, str(value)) for path, value in pairs],
-        metrics=with_own(own),
+        metrics=with_own(loaded_plugins),
     )
-    return Actuator(loaded.design, loaded.source, own)
+    return Actuator(loaded.design, loaded.source, loaded_plugins)
 
 
 def read_as(

@@ -130,20 +130,20 @@ def explore(
     front = run is not None and run.head.get("kind") == "pareto"
     study_key: int | str | None = study
     source, target = Path(store), Path(out)
-    own, remarks = plugins_of(plugins), list[str]()
+    loaded_plugins, remarks = plugins_of(plugins), list[str]()
     if run is not None:
         with damage_reported(run):
             source, study_key = (run.path, None) if front else store_of(run)
-            remarks = changed_plugins(run, named_plugins(run, own))
+            remarks = changed_plugins(run, named_plugins(run, loaded_plugins))
     if target.suffix.lower() not in (".html", ".htm"):
         stem = f"{Path(str(run.head.get('file'))).stem}_pareto" if run and front else source.stem
         target = target / f"{stem}_explore.html"
     _require(target, source)
     if run is not None and front:
         with damage_reported(run):
-            explored_rows = _front(run, own)
+            explored_rows = _front(run, loaded_plugins)
     else:
-        explored_rows = explored(source, study=study_key, most=rows, plugins=own)
+        explored_rows = explored(source, study=study_key, most=rows, plugins=loaded_plugins)
     with files.writing(target.parent):
         target.parent.mkdir(parents=True, exist_ok=True)
     paths = [os.path.relpath(Path(file).resolve(), target.parent.resolve()) for file in plugins]

@@ -123,8 +123,8 @@ def rerun(report: str | Path, *, plugins: Plugins = ()) -> Rerun:
         raise InputError(
             [replace(x, file=x.file or str(path)) for x in error.diagnostics]
         ) from None
-    own = plugins_of(plugins)
-    actuator = read_as(attachment.source, name, set=pairs, plugins=own)
+    loaded_plugins = plugins_of(plugins)
+    actuator = read_as(attachment.source, name, set=pairs, plugins=loaded_plugins)
     subject, tables = _again(verb, options, actuator)
     recorded = run.get("result")
     differences: dict[str, tuple[Any, Any]] | None

@@ -68,30 +68,30 @@ def restore(of: Run | str | Path, *, plugins: Plugins = ()) -> Restored:
     try:
         with damage_reported(run):
             source = run.body["input"]
-            own = named_plugins(run, plugins)
+            loaded_plugins = named_plugins(run, plugins)
             sets = [(path, value) for path, value in source["set"]]
-            actuator = read_as(source["text"], source["name"], set=sets, plugins=own)
+            actuator = read_as(source["text"], source["name"], set=sets, plugins=loaded_plugins)
             if kind == "sweep":
-                doubts = tuple(changed_plugins(run, own))
+                doubts = tuple(changed_plugins(run, loaded_plugins))
                 return Restored(run, kept_sweep(run, actuator), actuator, doubts)
-            result, evaluation = _solved(run, own)
-            doubts = (*changed_plugins(run, own), *_doubts(run, evaluation))
+            result, evaluation = _solved(run, loaded_plugins)
+            doubts = (*changed_plugins(run, loaded_plugins), *_doubts(run, evaluation))
             return Restored(run, result, actuator, doubts)
     except InputError as error:
         faults = [replace(x, file=x.file or str(run.path)) for x in error.diagnostics]
         raise InputError(faults) from None
 
 
-def _solved(run: Run, own: tuple[Plugin, ...]) -> tuple[Optimisation | ParetoFront, Evaluation]:
+def _solved(run: Run, plugins: tuple[Plugin, ...]) -> tuple[Optimisation | ParetoFront, Evaluation]:
     """The recorded optimisation or front, and its evaluation."""
     from ..optimisation.pareto import ParetoFront
     from ..optimisation.recorded import from_plain
     from ..optimisation.result import Optimisation
 
     if run.head["kind"] == "pareto":
-        front = from_plain(ParetoFront, run.body["state"], own)
+        front = from_plain(ParetoFront, run.body["state"], plugins)
         return front, front.evaluation
-    best = from_plain(Optimisation, run.body["state"], own)
+    best = from_plain(Optimisation, run.body["state"], plugins)
     return best, best.best_evaluation
 
 
@@ -102,17 +102,17 @@ def named_plugins(run: Run, plugins: Plugins) -> tuple[Plugin, ...]:
     ------
     InputError : the run had custom metrics, and no plugin is named
     """
-    own = plugins_of(plugins)
+    loaded_plugins = plugins_of(plugins)
     files = [plugin["file"] or "a function of a script" for plugin in run.body["input"]["plugins"]]
-    if files and not own:
+    if files and not loaded_plugins:
         message = f"its custom metrics came from {', '.join(files)}, which is a program"
         raise InputError(Diagnostic(message, "name it with --plugin to run it", str(run.path)))
-    return own
+    return loaded_plugins
 
 
-def changed_plugins(run: Run, own: Sequence[Plugin]) -> list[str]:
+def changed_plugins(run: Run, loaded_plugins: Sequence[Plugin]) -> list[str]:
     """List files of custom metrics that differ from those recorded."""
-    hashes = {sha256(file) for file in {plugin.file for plugin in own} if file}
+    hashes = {sha256(file) for file in {plugin.file for plugin in loaded_plugins} if file}
     return [
         f"run {run.id} was made with another version of {plugin['file']} (its SHA-256 differs)"
         for plugin in run.body["input"]["plugins"]

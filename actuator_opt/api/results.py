@@ -288,10 +288,10 @@ def write_csv(result: object, path: str | Path) -> ReportFile:
     return file
 
 
-def keep(result: object, **how: Any) -> Run | None:
+def keep(result: object, **context: Any) -> Run | None:
     """Record the run of a result; None if its kind has no records. Parameters as `record`."""
     name = kind_of(result).record
-    return None if name is None else piece(name, result)(**how)
+    return None if name is None else piece(name, result)(**context)
 
 
 def report(
@@ -354,8 +354,8 @@ def report(
         actuator = as_actuator(subject, plugins)
         subject = evaluate(actuator, seed=seed)
     elif isinstance(subject, Evaluation) and subject.yield_estimate == UNKNOWN:
-        own = () if actuator is None else actuator.plugins
-        subject = with_yield(subject, plugins=own, seed=seed)
+        loaded_plugins = () if actuator is None else actuator.plugins
+        subject = with_yield(subject, plugins=loaded_plugins, seed=seed)
     name = kind_of(subject).report
     if name is None:
         message = f"{type(subject).__name__} has no report"

@@ -213,9 +213,9 @@ class Compared(Displayed):
 
         return blocks(self.overlay, self.fit)
 
-    def report(self, **how: Any) -> list[ReportFile]:
+    def report(self, **paper: Any) -> list[ReportFile]:
         """Write the page of the simulation with the record; parameters as `write_simulation`."""
-        return write_simulation(self.simulation, measured=self, **how)
+        return write_simulation(self.simulation, measured=self, **paper)
 
 
 def compare_measured(

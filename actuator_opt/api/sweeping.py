@@ -332,7 +332,7 @@ def store_of(run: Run) -> tuple[Path, str]:
     return path, store["study"]
 
 
-def report_sweep(kept: KeptSweep, **paper: Unpack[ReportArguments]) -> list[ReportFile]:
+def report_sweep(sweep_record: KeptSweep, **paper: Unpack[ReportArguments]) -> list[ReportFile]:
     """Write the figures and tables of a recorded sweep again, from the rows in its store.
 
     The figures are those of the sweep, else parallel axes if a design is feasible. The CSV file
@@ -349,8 +349,8 @@ def report_sweep(kept: KeptSweep, **paper: Unpack[ReportArguments]) -> list[Repo
     from ..sweeps import swept_again
 
     target = Path(paper.get("folder", "reports"))
-    options, study = kept.run.body["asked"], kept.study
-    path, _ = store_of(kept.run)
+    options, study = sweep_record.run.body["asked"], sweep_record.study
+    path, _ = store_of(sweep_record.run)
     require_folder(target)
     figures, show = options["figures"], options["show"]
     watch = watched(study, figures, show)

@@ -151,12 +151,12 @@ class Job:
             files += verbs.report(result, **self._origin(), **paper, **also)
         return [file.to_dict() for file in files]
 
-    def keep(self, result: object, **how: Any) -> None:
+    def keep(self, result: object, **more: Any) -> None:
         """Record the run of a result; a failure only prints a line."""
         from ..api import results
 
         try:
-            results.keep(result, **self._origin(), **how)
+            results.keep(result, **self._origin(), **more)
         except ActuatorError as error:
             remedy = "set ACTUATOR_OPT_RUNS to another folder, or give --no-record"
             fault = replace(error.diagnostics[0], remedy=remedy)

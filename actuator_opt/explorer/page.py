@@ -197,12 +197,12 @@ def _start(explored: Explored, columns: list[dict[str, Any]]) -> dict[str, Any]:
 def _summary(explored: Explored) -> str:
     """Summary of the rows: designs shown, omitted, failed and damaged."""
     kept = explored.kept
-    good, shown = kept.rows - explored.failed, len(explored.numbers)
+    evaluated, shown = kept.rows - explored.failed, len(explored.numbers)
     feasible = int((explored.numbers[:, -1] == 1.0).sum())
-    words = f"{explored.origin}, {good} design{'s' * (good != 1)} evaluated"
+    words = f"{explored.origin}, {evaluated} design{'s' * (evaluated != 1)} evaluated"
     if explored.thinned:
         words += (
-            f"; {shown} are shown: one in {-(-good // explored.most)}, spread evenly, "
+            f"; {shown} are shown: one in {-(-evaluated // explored.most)}, spread evenly, "
             f"and the {BEST} best feasible"
         )
     words += f". {feasible} of these meet every requirement and check."
@@ -246,15 +246,15 @@ def _shapes(explored: Explored) -> dict[str, Any]:
     }
 
 
-def _template(template: Template, used: list[int]) -> dict[str, Any]:
+def _template(template: Template, dimensions: list[int]) -> dict[str, Any]:
     """A template in mm: its numbers at zero dimensions, and their slopes by each dimension."""
-    zero = template.numbers - template.slopes[:, used] @ template.origin[used]
-    rows, places = np.nonzero(template.slopes[:, used])
+    zero = template.numbers - template.slopes[:, dimensions] @ template.origin[dimensions]
+    rows, places = np.nonzero(template.slopes[:, dimensions])
     return {
         "parts": [_part(outline) for outline in template.outlines],
         "numbers": [round(MM * float(value), 5) + 0.0 for value in zero],
         "slopes": [
-            [int(row), int(k), round(float(template.slopes[row, used[k]]), 7)]
+            [int(row), int(k), round(float(template.slopes[row, dimensions[k]]), 7)]
             for row, k in zip(rows, places, strict=True)
         ],
     }

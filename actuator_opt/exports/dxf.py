@@ -452,7 +452,7 @@ def _axis(space: Any, first: float, last: float, paper: DrawingSizes) -> None:
 
 def _words(
     space: Any, evaluation: Evaluation, outlines: Sequence[Outline], paper: DrawingSizes,
-    corner: tuple[float, float], made: str,
+    corner: tuple[float, float], origin: str,
 ) -> None:  # fmt: skip
     """Title and parts list, line by line below the dimensions."""
     space.doc.layers.add("text", color=7, lineweight=18)
@@ -461,7 +461,7 @@ def _words(
     lines = [
         evaluation.name,
         f"Section, retracted. Lengths in mm, drawn 1:1; text height for print at {size}.",
-        made,
+        origin,
         "",
         *(f"{title(outline.part)}: {outline.material}" for outline in outlines),
         "",
@@ -541,9 +541,9 @@ def dxf(evaluation: Evaluation, *, program: str, date: str | None = None) -> byt
         diameters_above(space, lengths, profiles, paper)
         skirts = _skirts(outlines, 1000 * (lengths["eye_offset"] + lengths["plate"]))
         lowest = lengths_below(space, lengths, skirts, profiles, paper)
-        made = ", ".join(part for part in (program, date) if part)
+        origin = ", ".join(part for part in (program, date) if part)
         corner = (first, lowest - 1.5 * paper.row)
-        _words(space, evaluation, outlines, paper, corner, made)
+        _words(space, evaluation, outlines, paper, corner, origin)
         _ordered_classes(document)
         text = io.StringIO()
         document.write(text)

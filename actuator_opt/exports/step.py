@@ -87,12 +87,12 @@ def _turn(a: Point, b: Point, c: Point) -> float:
 def tidy(profile: Sequence[Point]) -> Profile:
     """The same polygon anticlockwise from its lowest corner, without collinear corners."""
     corners = [a for a, b in edges(profile) if a != b]
-    around = [(corners[k - 1], b, corners[(k + 1) % len(corners)]) for k, b in enumerate(corners)]
-    kept = [b for a, b, c in around if _turn(a, b, c) != 0]
-    if area(kept) < 0:
-        kept.reverse()
-    first = kept.index(min(kept)) if kept else 0
-    return tuple(kept[first:] + kept[:first])
+    triples = [(corners[k - 1], b, corners[(k + 1) % len(corners)]) for k, b in enumerate(corners)]
+    turns = [b for a, b, c in triples if _turn(a, b, c) != 0]
+    if area(turns) < 0:
+        turns.reverse()
+    first = turns.index(min(turns)) if turns else 0
+    return tuple(turns[first:] + turns[:first])
 
 
 def _between(point: Point, edge: _Edge) -> bool:
@@ -197,16 +197,16 @@ def _bars(outline: Outline) -> SolidBody:
 
 def _bodies(outline: Outline) -> Iterator[SolidBody]:
     part = outline.part
-    own = title(part)
+    label = title(part)
     loops = joined(millimetres(polygon) for polygon in outline.polygons)
-    names = _NAMES.get(part, (own,))
+    names = _NAMES.get(part, (label,))
     for index, loop in enumerate(loops):
         if not bounds_solid(loop):
-            raise _fault(own)
-        name = names[index] if len(names) == len(loops) else f"{own} {index + 1}"
+            raise _fault(label)
+        name = names[index] if len(names) == len(loops) else f"{label} {index + 1}"
         start = loop[0][0]
-        moved = tuple((round(x - start, _DIGITS), r) for x, r in loop)
-        yield SolidBody(name, part, outline.material, moved, ((start, 0.0, 0.0),))
+        profile = tuple((round(x - start, _DIGITS), r) for x, r in loop)
+        yield SolidBody(name, part, outline.material, profile, ((start, 0.0, 0.0),))
 
 
 def bodies(evaluation: Evaluation) -> list[SolidBody]:
@@ -395,8 +395,8 @@ class _Product:
     def shaped(self, kind: str, items: Iterable[str]) -> None:
         """Assign the shape."""
         r = self._records
-        made = f"{kind}({text(self.name)},{listed(items)},{self._space})"
-        self.representation = r.add(made)
+        record = f"{kind}({text(self.name)},{listed(items)},{self._space})"
+        self.representation = r.add(record)
         r.add(f"SHAPE_DEFINITION_REPRESENTATION({self._shape},{self.representation})")
 
 
@@ -440,14 +440,14 @@ def _placed(
         f"NEXT_ASSEMBLY_USAGE_OCCURRENCE({text(name)},{text(name)},'',"
         f"{whole.definition},{part.definition},$)"
     )
-    used = r.add(f"PRODUCT_DEFINITION_SHAPE('','',{use})")
+    usage = r.add(f"PRODUCT_DEFINITION_SHAPE('','',{use})")
     move = r.add(f"ITEM_DEFINED_TRANSFORMATION('','',{home},{place})")
     relation = r.add(
         f"(REPRESENTATION_RELATIONSHIP('','',{part.representation},{whole.representation})"
         f"REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION({move})"
         "SHAPE_REPRESENTATION_RELATIONSHIP())"
     )
-    r.add(f"CONTEXT_DEPENDENT_SHAPE_REPRESENTATION({relation},{used})")
+    r.add(f"CONTEXT_DEPENDENT_SHAPE_REPRESENTATION({relation},{usage})")
 
 
 def step(bodies: Sequence[SolidBody], *, name: str, program: str, date: str | None = None) -> str:

@@ -277,9 +277,9 @@ def _even(low: float, high: float, count: int) -> Ticks:
 
 
 def _logarithmic(axis: Axis, values: Sequence[float], exact: bool) -> Scale:
-    stated = axis.range if axis.range is not None and min(axis.range) > 0 else None
-    if stated is not None:
-        ends = (math.log10(stated[0]), math.log10(stated[1]))
+    bounds = axis.range if axis.range is not None and min(axis.range) > 0 else None
+    if bounds is not None:
+        ends = (math.log10(bounds[0]), math.log10(bounds[1]))
     elif exact and values and max(values) > 1.5 * min(values):
         ends = (math.log10(min(values)), math.log10(max(values)))
     else:

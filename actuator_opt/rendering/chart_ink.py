@@ -348,9 +348,9 @@ def _level_style(level: Level) -> dict[str, Any]:
 
 def _at_end(frame: _Frame) -> list[Curve]:
     """Curves with words at their right end; empty if the frame is too low for all of them."""
-    named = [curve for curve in frame.panel.curves if curve.end]
+    curves = [curve for curve in frame.panel.curves if curve.end]
     limits = sum(bool(level.sense) for level in frame.panel.levels)
-    return named if 2.7 * (len(named) + limits) <= frame.height - 1.0 else []
+    return curves if 2.7 * (len(curves) + limits) <= frame.height - 1.0 else []
 
 
 def _right_room(frame: _Frame) -> float:

@@ -136,8 +136,8 @@ def fragment(page: Page, origin: Origin | None = None) -> str:
         parts += ['<div class="tiles">', *map(_tile, page.tiles), "</div>"]
     parts.append(svg(page.hero(max(HERO, page.least)), page.kind))
     if page.items:
-        named = (f"<b>{n}</b> {_say(part)}, {_say(material)}" for n, part, material in page.items)
-        parts.append(f'<p class="note">{" · ".join(named)}</p>')
+        items = (f"<b>{n}</b> {_say(part)}, {_say(material)}" for n, part, material in page.items)
+        parts.append(f'<p class="note">{" · ".join(items)}</p>')
     for block in with_input(page, origin):
         parts += _block(block)
     parts += [*_footer(page, origin), "</article>"]

@@ -111,8 +111,8 @@ def text_width(text: str, size: float, *, bold: bool = False) -> float:
     return width * size * POINT * (1.1 if bold else 1.0)
 
 
-def spread(wanted: Sequence[float], gaps: Sequence[float]) -> list[float]:
-    """Positions nearest to the wanted (ascending) positions, with gaps between neighbours.
+def spread(targets: Sequence[float], gaps: Sequence[float]) -> list[float]:
+    """Positions nearest to the ascending targets, with gaps between neighbours.
 
     `gaps[i]` is the least distance between positions i and i+1; least squares by pooling
     adjacent violators.
@@ -121,10 +121,10 @@ def spread(wanted: Sequence[float], gaps: Sequence[float]) -> list[float]:
     [-1.0, 1.0, 10.0]
     """
     offsets = [0.0]
-    for gap in gaps[: max(len(wanted) - 1, 0)]:
+    for gap in gaps[: max(len(targets) - 1, 0)]:
         offsets.append(offsets[-1] + gap)
     pools: list[list[float]] = []
-    for value, offset in zip(wanted, offsets, strict=False):
+    for value, offset in zip(targets, offsets, strict=False):
         pools.append([value - offset, 1.0])
         while len(pools) > 1 and pools[-2][0] > pools[-1][0]:
             mean, count = pools.pop()
@@ -135,14 +135,14 @@ def spread(wanted: Sequence[float], gaps: Sequence[float]) -> list[float]:
 
 
 def spread_within(
-    wanted: Sequence[float], gaps: Sequence[float], lower: float, upper: float
+    targets: Sequence[float], gaps: Sequence[float], lower: float, upper: float
 ) -> list[float]:
     """`spread` within [lower, upper]; too large gaps are reduced."""
     room = upper - lower
-    total = sum(gaps[: max(len(wanted) - 1, 0)])
+    total = sum(gaps[: max(len(targets) - 1, 0)])
     if total > room > 0:
         gaps = [gap * room / total for gap in gaps]
-    places = spread([min(max(value, lower), upper) for value in wanted], gaps)
+    places = spread([min(max(value, lower), upper) for value in targets], gaps)
     if not places:
         return places
     for index, value in enumerate(places):

@@ -150,8 +150,8 @@ def pretty(words: str) -> str:
     >>> pretty("-20 degC, 30 um, 1570 kg/m^3, 38 N*s/m, 4e-05")
     '−20 °C, 30 µm, 1570 kg/m³, 38 N·s/m, 4×10⁻⁵'
     """
-    for pattern, written in _PRETTY:
-        words = pattern.sub(written, words)
+    for pattern, replacement in _PRETTY:
+        words = pattern.sub(replacement, words)
     return _POWER_E.sub(lambda m: f"×10{str(int(m[1])).translate(SUPERSCRIPTS)}", words)
 
 
@@ -206,7 +206,7 @@ def margin_text(margin: float | None, *, met: bool = True) -> str:
         return f"> {MINUS if percent < 0 else '+'}999 %"
     if math.fabs(percent) >= 100:
         return f"{number(round(percent, 1), 4, signed=True)} %"
-    return f"{_tenth(percent)} %"
+    return f"{percent:+.1f} %".replace("-", MINUS)
 
 
 def margin_of(
@@ -221,10 +221,6 @@ def margin_of(
         return margin_text(margin, met=met)
     room = quantity.to_display(margin) - quantity.to_display(0.0)
     return with_unit(number(room, 3, signed=True), unit_text(quantity.unit))
-
-
-def _tenth(percent: float) -> str:
-    return f"{percent:+.1f}".replace("-", MINUS)
 
 
 def degrees(temperature: float) -> str:
@@ -291,6 +287,6 @@ def brief(case: str | None, place: str | None) -> str:
     >>> brief("stance", "retracting, 25 % of the stroke"), brief(None, "weakest position")
     ('stance, retract, 25 %', 'weakest')
     """
-    for pattern, written in _PLACES:
-        place = pattern.sub(written, place or "")
+    for pattern, replacement in _PLACES:
+        place = pattern.sub(replacement, place or "")
     return ", ".join(part for part in (case, place) if part)
