@@ -84,7 +84,7 @@ def sweep(
     InputError
         an invalid PATH or value, an objective without a value, or a store that cannot be used
     """
-    from ..sweeps import plan, read_axis, sweep as run
+    from ..sweeps import sweep as run
     from ..sweeps.screen import usable_engine
 
     engine = usable_engine(engine, reduced=reduce)
@@ -98,11 +98,7 @@ def sweep(
     actuator = as_actuator(design, plugins)
     for file in files:
         require_apart(file, *_read_from(actuator))
-    subject = _sweepable(actuator)
-    base = without_variables(actuator)
-    texts = [f"{k}={v}" for k, v in vary.items()] if isinstance(vary, Mapping) else list(vary)
-    axes = [read_axis(text, base, subject.quantities) for text in texts]
-    points = plan(axes, method=method, count=n, seed=seed)
+    points = _points(actuator, _sweepable(actuator), vary, method, n, seed)
     if points.count > LARGE and not reduce and not yes:
         message = f"all {points.count:,} points would be evaluated in full".replace(",", " ")
         remedy = "confirm with --yes, or keep only the best with --reduce best:K"
@@ -167,6 +163,23 @@ def _sweepable(actuator: Actuator) -> PreparedDesign:
         raise InputError(faults)
     goal_of(subject).value(compute(subject, subject.values()).computed, subject.cases)
     return subject
+
+
+def _points(
+    actuator: Actuator,
+    subject: PreparedDesign,
+    vary: Sequence[str] | Mapping[str, str],
+    method: Method,
+    count: int | None,
+    seed: int,
+) -> Plan:
+    """The points of a sweep; arguments as `sweep`."""
+    from ..sweeps import plan, read_axis
+
+    base = without_variables(actuator)
+    texts = [f"{k}={v}" for k, v in vary.items()] if isinstance(vary, Mapping) else list(vary)
+    axes = [read_axis(text, base, subject.quantities) for text in texts]
+    return plan(axes, method=method, count=count, seed=seed)
 
 
 def _require_distinct(files: Sequence[Path]) -> None:
