@@ -2,7 +2,7 @@
 
 A number outside a model's domain gives NaN, and the other elements of an array keep their values.
 Impossible geometry gives NaN too: a negative length, area or volume, an outer radius not above the
-inner one, a rod not inside its bore (`actuator_opt.base.geometry`). A search without a solution, an
+inner one, a rod not inside its bore (`base.numeric.geometry`). A search without a solution, an
 unknown choice, and lists of unequal lengths raise ValueError where the docstring says so.
 
 Scripts may call every module: arguments are passed by name, and `help` shows formula, range and
