@@ -50,13 +50,8 @@ def parse_column(
             raise fault(message, "rename all but one") from None
         remedy = shown(remedy_for(header, names), 200)
         raise fault(f'no column "{shown(header)}"', remedy) from None
-    header_unit = cells[place][1]
-    if (
-        header_unit
-        and unit
-        and header_unit != unit
-        and header.strip() != sheet.header[place].strip()
-    ):
+    header_unit, exact = cells[place][1], header.strip() == sheet.header[place].strip()
+    if header_unit and unit and header_unit != unit and not exact:
         message = (
             f'column "{shown(sheet.header[place])}" is in {shown(header_unit)}, not {shown(unit)}'
         )

@@ -349,7 +349,7 @@ ONE = [
      "signal", "a signal beside control: both would drive the valve", "keep one of them"),
     # motor and held ports
     (SHORT, ("1 s\n", "1 s\ncontrol:\n  shaft_angle:\n    - {shape: step, value: 9 deg}\n"),
-     "shaft_angle", "control.shaft_angle", "there is no shaft",
+     "shaft_angle", "control.shaft_angle", "no motor, so no shaft",
      "add motor, or write position or speed"),
     (MOTOR, ("  shaft_speed:\n    - shape: step\n      value: 600 rpm\n"
              "  shaft_speed_gain: 0.1 V*s/rad", "  speed:\n    - shape: step\n      value: 1 m/s\n"
@@ -361,7 +361,7 @@ ONE = [
      "initial.position", "without effect with a motor", "remove the line"),
     (MOTOR, ("motor:\n", "load:\n  drive:\n    stiffness: 1 N/mm\n    position:\n"
              "      - {shape: step, value: 1 mm}\nmotor:\n"), "drive", "load.drive",
-     "without effect with a motor", "the load of the motor is under motor"),
+     "without effect with a motor", "state the load of the motor under motor"),
     (MOTOR, ("motor:\n", "held_ports:\n  pressure_a: 3 bar\n  pressure_b: 0\nmotor:\n"),
      "held_ports", "held_ports", "held_ports beside motor", "keep one of them"),
     (BENCH, ("signal:\n", "load:\n  damping: 3 N*s/m\nsignal:\n"), "damping", "load.damping",
@@ -431,7 +431,7 @@ ONE = [
      "mm is a length, need a time", "use one of ms"),
     (LOOP, ("    max: 5 %", "    max: -5 %"), "-5 %", "requirements.overshoot.max", ">= 0", "0 %"),
     (DRIVEN, ("load:\n", "requirements:\n  rise_time:\n    max: 9 ms\nload:\n"), "rise_time",
-     "requirements.rise_time", "no reference that steps",
+     "requirements.rise_time", "the reference has no step",
      'give control with a reference a part of "shape: step"'),
 ]  # fmt: skip
 
@@ -532,7 +532,7 @@ def test_one_step_answers_step_requirements(name):
     sine = "sine, value: 1 mm, frequency: 5 Hz"
     (fault,) = faults(f"{text}    - {{shape: {sine}}}\n{limit}")
     assert fault.path == f"requirements.{name}"
-    assert "no reference that steps" in fault.message
+    assert "the reference has no step" in fault.message
 
 
 def test_a_design_is_no_scenario():
