@@ -57,14 +57,14 @@ class Stuck(Unsolvable):
         self.time, self.state = time, np.array(state)
 
 
-def _checked(times: Array, found: Array) -> Array:
+def _checked(times: Array, states: Array) -> Array:
     """The states, if all are finite."""
-    bad = ~np.isfinite(found).all(axis=1)
+    bad = ~np.isfinite(states).all(axis=1)
     if bad.any():
         first = int(np.argmax(bad))
         message = "the equations have no solution"
-        raise Stuck(float(times[first]), found[max(first - 1, 0)], message, REMEDY)
-    return found
+        raise Stuck(float(times[first]), states[max(first - 1, 0)], message, REMEDY)
+    return states
 
 
 REMEDY = (
@@ -72,7 +72,7 @@ REMEDY = (
 )
 
 
-def _why(error: Exception) -> str:
+def _reason(error: Exception) -> str:
     return f"the equations cannot be evaluated ({error})"
 
 
@@ -86,64 +86,64 @@ def _longest(compiled: Compiled, times: Array) -> float:
     return max(shortest, float(times[-1] - times[0]) / MOST)
 
 
-def lsoda(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
+def lsoda(compiled: Compiled, relative: float, evaluations: list[int]) -> Advance:
     """Integration by LSODA; Radau takes over sections whose stiffness LSODA misses."""
     from scipy.integrate import ODEintWarning, odeint
 
-    reached: list[Any] = [0.0, compiled.initial]
-    stiff = radau(compiled, relative, counted)
+    latest: list[Any] = [0.0, compiled.initial]
+    stiff = radau(compiled, relative, evaluations)
 
     def rates(t: float, y: Array, m: tuple[bool, ...]) -> list[float]:
-        reached[:] = t, y
+        latest[:] = t, y
         return compiled.rates(t, y, m)
 
-    def advance(times: Array, y: Array, m: tuple[bool, ...], most: int) -> Array:
-        reached[:] = float(times[0]), y
+    def advance(times: Array, y: Array, m: tuple[bool, ...], max_steps: int) -> Array:
+        latest[:] = float(times[0]), y
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ODEintWarning)
             try:
-                found, report = odeint(
+                states, report = odeint(
                     rates, y, times, args=(m,), Dfun=compiled.slopes, tfirst=True,
-                    rtol=relative, atol=compiled.tolerances, mxstep=most, full_output=True,
+                    rtol=relative, atol=compiled.tolerances, mxstep=max_steps, full_output=True,
                     hmax=_longest(compiled, times), tcrit=times[-1:],
                 )  # fmt: skip
             except (ArithmeticError, ValueError) as error:
-                raise Stuck(reached[0], reached[1], _why(error), REMEDY) from None
+                raise Stuck(latest[0], latest[1], _reason(error), REMEDY) from None
         if report["message"] != "Integration successful.":
-            if most < MOST:
-                raise Stuck(reached[0], reached[1], "no step is small enough", REMEDY)
-            return stiff(times, y, m, most)  # near rest LSODA may miss their stiffness
-        counted[0] += int(report["nfe"][-1])
-        return _checked(times, found)
+            if max_steps < MOST:
+                raise Stuck(latest[0], latest[1], "no step is small enough", REMEDY)
+            return stiff(times, y, m, max_steps)  # near rest LSODA may miss their stiffness
+        evaluations[0] += int(report["nfe"][-1])
+        return _checked(times, states)
 
     return advance
 
 
-def radau(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
+def radau(compiled: Compiled, relative: float, evaluations: list[int]) -> Advance:
     """Integration by Radau, implicit of order five."""
     from scipy.integrate import solve_ivp
 
-    reached: list[Any] = [0.0, compiled.initial]
+    latest: list[Any] = [0.0, compiled.initial]
 
-    def advance(times: Array, y: Array, m: tuple[bool, ...], most: int) -> Array:
+    def advance(times: Array, y: Array, m: tuple[bool, ...], max_steps: int) -> Array:
         def rates(t: float, y: Array) -> list[float]:
-            reached[:] = t, y
+            latest[:] = t, y
             return compiled.rates(t, y, m)
 
         try:
             with np.errstate(all="ignore"):
-                found = solve_ivp(
+                solution = solve_ivp(
                     rates, (times[0], times[-1]), y, method="Radau", t_eval=times,
                     rtol=relative, atol=0.01 * compiled.tolerances,
                     jac=lambda t, y: compiled.slopes(t, y, m),
                     max_step=_longest(compiled, times) or np.inf,
                 )  # fmt: skip
         except (ArithmeticError, ValueError) as error:
-            raise Stuck(reached[0], reached[1], _why(error), REMEDY) from None
-        counted[0] += int(found.nfev)
-        if not found.success:
-            raise Stuck(reached[0], reached[1], "no step is small enough", REMEDY)
-        return _checked(times, found.y.T)
+            raise Stuck(latest[0], latest[1], _reason(error), REMEDY) from None
+        evaluations[0] += int(solution.nfev)
+        if not solution.success:
+            raise Stuck(latest[0], latest[1], "no step is small enough", REMEDY)
+        return _checked(times, solution.y.T)
 
     return advance
 
@@ -196,7 +196,7 @@ def translate(outputs: Sequence[Any]) -> tuple[dict[str, Any], list[Any]]:
     free: dict[str, Any] = {}
     known: dict[int, Any] = {}
 
-    def said(value: Any) -> Any:
+    def translated(value: Any) -> Any:
         return known[value.index] if isinstance(value, Symbol) else float(value)
 
     for node in needed(outputs):
@@ -206,8 +206,8 @@ def translate(outputs: Sequence[Any]) -> tuple[dict[str, Any], list[Any]]:
             message = "the method cvodes cannot look up a record"
             raise InputError(Diagnostic(message, "integrate by lsoda, without --fast"))
         else:
-            known[node.index] = _operation(casadi, node.op, [said(arg) for arg in node.args])
-    return free, [said(output) for output in outputs]
+            known[node.index] = _operation(casadi, node.op, [translated(arg) for arg in node.args])
+    return free, [translated(output) for output in outputs]
 
 
 def _operation(casadi: Any, op: str, args: Sequence[Any]) -> Any:
@@ -215,25 +215,27 @@ def _operation(casadi: Any, op: str, args: Sequence[Any]) -> Any:
     unary, binary = casadi.SX.unary, casadi.SX.binary
     if op == "where":
         condition, yes, no = args
-        taken = binary(casadi.OP_IF_ELSE_ZERO, condition, yes)
-        left = binary(casadi.OP_IF_ELSE_ZERO, unary(casadi.OP_NOT, condition), no)
-        return binary(casadi.OP_ADD, taken, left)
+        on_true = binary(casadi.OP_IF_ELSE_ZERO, condition, yes)
+        on_false = binary(casadi.OP_IF_ELSE_ZERO, unary(casadi.OP_NOT, condition), no)
+        return binary(casadi.OP_ADD, on_true, on_false)
     number = getattr(casadi, f"OP_{op.upper()}")
-    found = unary(number, *args) if len(args) == 1 else binary(number, *args)
+    result = unary(number, *args) if len(args) == 1 else binary(number, *args)
     if op == "sqrt" or (op == "pow" and 0 < args[1] < 1):  # no slope at zero, as in `symbolic`
-        return binary(casadi.OP_IF_ELSE_ZERO, args[0], found)
-    return found
+        return binary(casadi.OP_IF_ELSE_ZERO, args[0], result)
+    return result
 
 
-def cvodes(compiled: Compiled, relative: float, counted: list[int], otherwise: Advance) -> Advance:
+def cvodes(
+    compiled: Compiled, relative: float, evaluations: list[int], fallback: Advance
+) -> Advance:
     """Integration by CVODES.
 
     Parameters
     ----------
     compiled : the equations
     relative : relative tolerance of a step
-    counted : counter of rate evaluations
-    otherwise : takes over a section where CVODES fails
+    evaluations : counter of rate evaluations
+    fallback : takes over a section where CVODES fails
 
     Raises
     ------
@@ -245,21 +247,21 @@ def cvodes(compiled: Compiled, relative: float, counted: list[int], otherwise: A
     unit = compiled.tolerances
     built: dict[int, _Integrator] = {}
 
-    def advance(times: Array, y: Array, m: tuple[bool, ...], most: int) -> Array:
-        if most not in built:
-            built[most] = _Integrator(casadi, equations, relative, most)
-        run = built[most]
-        found = np.empty((len(times), len(y)))
-        found[0] = y
+    def advance(times: Array, y: Array, m: tuple[bool, ...], max_steps: int) -> Array:
+        if max_steps not in built:
+            built[max_steps] = _Integrator(casadi, equations, relative, max_steps)
+        run = built[max_steps]
+        samples = np.empty((len(times), len(y)))
+        samples[0] = y
         for begin, end in _even(times):
             try:
                 with interruptible():
-                    states = run(times[begin], times[end], end - begin, found[begin] / unit, m)
+                    states = run(times[begin], times[end], end - begin, samples[begin] / unit, m)
             except RuntimeError:
-                return otherwise(times, y, m, most)
-            counted[0] += run.evaluations()
-            found[begin + 1 : end + 1] = states * unit
-        return found
+                return fallback(times, y, m, max_steps)
+            evaluations[0] += run.evaluations()
+            samples[begin + 1 : end + 1] = states * unit
+        return samples
 
     return advance
 
@@ -294,9 +296,11 @@ def interruptible() -> Iterator[None]:
 class _Integrator:
     """CVODES over `CHUNK` samples; unused ones have zero length."""
 
-    def __init__(self, casadi: Any, equations: dict[str, Any], relative: float, most: int) -> None:
+    def __init__(
+        self, casadi: Any, equations: dict[str, Any], relative: float, max_steps: int
+    ) -> None:
         options = {
-            "reltol": relative, "abstol": SHARPER, "max_num_steps": most,
+            "reltol": relative, "abstol": SHARPER, "max_num_steps": max_steps,
             "disable_internal_warnings": True, "show_eval_warnings": False,
         }  # fmt: skip
         ends = np.arange(1.0, CHUNK + 1.0)
@@ -355,7 +359,7 @@ def _even(times: Array) -> Iterator[tuple[int, int]]:
 
 LOOK = 2e-3
 """Longest time between two samples of a switch [s] (a choice: half an oil oscillation)."""
-MOST_TURNS = 20_000
+MOST_CHANGES = 20_000
 """Changes of a switch before a run counts as chattering (a choice)."""
 APART = 1e-9
 """Instants closer than this count as one [s] (a choice)."""
@@ -433,25 +437,25 @@ def integrate(
     InputError
         "cvodes" without CasADi, or with a record
     """
-    counted = [0]
+    evaluations = [0]
     tolerance = RELATIVE[method] if relative is None else relative
-    advance = METHODS[method](compiled, tolerance, counted)
+    advance = METHODS[method](compiled, tolerance, evaluations)
     run = _Run(compiled, advance, duration)
     count = max(round(duration / sample_time), 1)
-    looks = math.ceil(sample_time / LOOK) if compiled.system.switches else 1
-    grid = np.linspace(0.0, duration, looks * count + 1)
-    told = np.arange(looks * count + 1) % looks == 0
+    checks = math.ceil(sample_time / LOOK) if compiled.system.switches else 1
+    grid = np.linspace(0.0, duration, checks * count + 1)
+    is_stored = np.arange(checks * count + 1) % checks == 0
     stops = [0.0]
-    for moment in sorted(compiled.instants):
-        if stops[-1] + APART < moment < duration - APART:
-            stops.append(moment)
-    near = 1e-6 * sample_time / looks  # a sample close to an instant moves to it
+    for instant in sorted(compiled.instants):
+        if stops[-1] + APART < instant < duration - APART:
+            stops.append(instant)
+    near = 1e-6 * sample_time / checks  # a sample close to an instant moves to it
     t, y = 0.0, compiled.initial.copy()
     m = _flags(compiled, t, y, ())
     for stop in (*stops[1:], duration):
         inside = (grid > t + near) & (grid < stop - near)
         times = np.concatenate(([t], grid[inside], [stop]))
-        y, m = _segment(run, times, np.concatenate(([True], told[inside], [True])), y, m)
+        y, m = _segment(run, times, np.concatenate(([True], is_stored[inside], [True])), y, m)
         t = stop
         m = _flags(compiled, t, y, m)
     return Trajectory(
@@ -459,7 +463,7 @@ def integrate(
         np.concatenate(run.states).T.copy(),
         np.concatenate(run.flags, axis=1),
         tuple(run.events),
-        counted[0],
+        evaluations[0],
         run.restarts,
     )
 
@@ -469,20 +473,20 @@ def _flags(compiled: Compiled, t: float, y: Array, before: tuple[bool, ...]) -> 
     instants = tuple(t + APART >= instant for instant in compiled.instants)
     if before:
         return instants + before[len(instants) :]
-    guards = _each(compiled, compiled.guards, np.array([t]), y[None], ())
+    guards = _at_switches(compiled, compiled.guards, np.array([t]), y[None], ())
     return instants + tuple(guards[:, 0] > 0)
 
 
 def _margins(run: _Run, t: Array, states: Array, m: tuple[bool, ...]) -> tuple[Array, Array]:
     """Guard of every switch and its rate, (switches, samples)."""
     signs = np.where(m[len(run.compiled.instants) :], 1.0, -1.0)[:, None]
-    margin = _each(run.compiled, run.compiled.guards, t, states, m) * signs
-    return margin, _each(run.compiled, run.compiled.guard_rates, t, states, m) * signs
+    margin = _at_switches(run.compiled, run.compiled.guards, t, states, m) * signs
+    return margin, _at_switches(run.compiled, run.compiled.guard_rates, t, states, m) * signs
 
 
-def _each(
+def _at_switches(
     compiled: Compiled,
-    function: Callable[[Array, Array, tuple[Array, ...]], list[Array]],
+    of_switches: Callable[[Array, Array, tuple[Array, ...]], list[Array]],
     t: Array,
     states: Array,
     m: tuple[bool, ...],
@@ -492,84 +496,91 @@ def _each(
     if not count:
         return np.empty((0, len(t)))
     flags = m or (False,) * (len(compiled.instants) + count)
-    return np.array([np.broadcast_to(one, t.shape) for one in function(t, states.T, flags)])
+    return np.array([np.broadcast_to(one, t.shape) for one in of_switches(t, states.T, flags)])
 
 
 def _segment(
-    run: _Run, times: Array, told: Array, y: Array, m: tuple[bool, ...]
+    run: _Run, times: Array, is_stored: Array, y: Array, m: tuple[bool, ...]
 ) -> tuple[Array, tuple[bool, ...]]:
     """Integrate over some times without an input jump; only some samples are stored."""
     first, last = len(run.compiled.instants), len(times) - 1
-    begin, start, own = 0, float(times[0]), True
+    begin, start, store_first = 0, float(times[0]), True
     while begin < last:
         end = min(begin + CHUNK, last)
-        asked = np.concatenate(([start], times[begin + 1 : end + 1]))
-        wanted = np.concatenate(([own], told[begin + 1 : end + 1]))
-        asked, found, turn = _ahead(run, asked, y, m)
+        section = np.concatenate(([start], times[begin + 1 : end + 1]))
+        stored = np.concatenate(([store_first], is_stored[begin + 1 : end + 1]))
+        section, sampled_states, change = _section_to_change(run, section, y, m)
         run.restarts += 1
         tell("simulating", start / run.duration)
-        if turn is None:
-            wanted[-1] &= end == last  # the next section has its first sample
-            run.keep(asked[wanted], found[wanted], m)
-            y, start, own, begin = found[-1], float(times[end]), bool(told[end]), end
+        if change is None:
+            stored[-1] &= end == last  # the next section has its first sample
+            run.keep(section[stored], sampled_states[stored], m)
+            y, start, store_first, begin = (
+                sampled_states[-1],
+                float(times[end]),
+                bool(is_stored[end]),
+                end,
+            )
             continue
-        k, at, there, which = turn
-        before = np.flatnonzero(wanted[: k + 1] & (asked[: k + 1] < at))
-        run.keep(np.append(asked[before], at), np.vstack((found[before], there)), m)
-        m = tuple(flag ^ (i == first + which) for i, flag in enumerate(m))
-        name = run.compiled.system.switches[which].name
-        run.events.append(Event(name, at, bool(m[first + which])))
-        if len(run.events) > MOST_TURNS:
+        k, time, state, switch = change
+        before = np.flatnonzero(stored[: k + 1] & (section[: k + 1] < time))
+        run.keep(np.append(section[before], time), np.vstack((sampled_states[before], state)), m)
+        m = tuple(flag ^ (i == first + switch) for i, flag in enumerate(m))
+        name = run.compiled.system.switches[switch].name
+        run.events.append(Event(name, time, bool(m[first + switch])))
+        if len(run.events) > MOST_CHANGES:
             remedy = "increase the damping of the part that switches"
-            raise Stuck(at, there, f"{name} switches without end", remedy)
-        y, start, own = there, at, True
-        begin += k + (at >= times[begin + k + 1])
+            raise Stuck(time, state, f"{name} switches without end", remedy)
+        y, start, store_first = state, time, True
+        begin += k + (time >= times[begin + k + 1])
     return y, m
 
 
-Turn = tuple[int, float, Array, int]
+SwitchChange = tuple[int, float, Array, int]
 """Sample before it, time, states and number of a switch that changes."""
 
 
-def _ahead(
+def _section_to_change(
     run: _Run, times: Array, y: Array, m: tuple[bool, ...]
-) -> tuple[Array, Array, Turn | None]:
+) -> tuple[Array, Array, SwitchChange | None]:
     """States at some times and the first switch, beyond which the equations may fail."""
     try:
-        found = run.advance(times, y, m, FEW)
-        return times, found, _first_turn(run, times, found, m)
+        states = run.advance(times, y, m, FEW)
+        return times, states, _first_change(run, times, states, m)
     except Stuck as stuck:
         good, bad = float(times[0]), min(stuck.time, float(times[-1]))
     near = good + 0.99 * (bad - good)
     for _ in range(TRIES if run.compiled.system.switches else 0):
         short = np.append(times[times < near], near)
         try:
-            found = run.advance(short, y, m, FEW)
+            states = run.advance(short, y, m, FEW)
         except Stuck:
             bad = near
         else:
-            turn = _first_turn(run, short, found, m)
-            if turn is not None:
-                return short, found, turn
+            change = _first_change(run, short, states, m)
+            if change is not None:
+                return short, states, change
             good = near
         near = 0.5 * (good + bad)
-    found = run.advance(times, y, m, MOST)
-    return times, found, _first_turn(run, times, found, m)
+    states = run.advance(times, y, m, MOST)
+    return times, states, _first_change(run, times, states, m)
 
 
-def _first_turn(run: _Run, times: Array, found: Array, m: tuple[bool, ...]) -> Turn | None:
+def _first_change(
+    run: _Run, times: Array, states: Array, m: tuple[bool, ...]
+) -> SwitchChange | None:
     """The first switch between samples."""
     if not run.compiled.system.switches:
         return None
-    suspect = _suspects(times, *_margins(run, times, found, m))
+    suspect = _suspects(times, *_margins(run, times, states, m))
     for k in np.flatnonzero(suspect.any(axis=0)):
-        turns = []
-        for which in np.flatnonzero(suspect[:, k]):
-            turn = _turn(run, times[k : k + 2], found[k], m, int(which))
-            if turn is not None:
-                turns.append((int(k), *turn, int(which)))
-        if turns:
-            return min(turns, key=lambda one: one[1])
+        changes = []
+        for switch in np.flatnonzero(suspect[:, k]):
+            change = _change_within(run, times[k : k + 2], states[k], m, int(switch))
+            if change is not None:
+                changes.append((int(k), *change, int(switch)))
+        if changes:
+            return min(changes, key=lambda one: one[1])
     return None
 
 
@@ -589,22 +600,22 @@ def _suspects(times: Array, margin: Array, slope: Array) -> Array:
     return gone
 
 
-def _turn(
-    run: _Run, span: Array, y: Array, m: tuple[bool, ...], which: int, level: int = 0
+def _change_within(
+    run: _Run, span: Array, y: Array, m: tuple[bool, ...], switch: int, level: int = 0
 ) -> tuple[float, Array] | None:
     """Time and states at which a switch changes within an interval, or None."""
     from scipy.optimize import brentq
 
     times = np.linspace(span[0], span[1], PARTS + 1)
     states = run.advance(times, y, m, MOST)
-    margin, slope = (margin[which : which + 1] for margin in _margins(run, times, states, m))
+    margin, slope = (margin[switch : switch + 1] for margin in _margins(run, times, states, m))
     for k in np.flatnonzero(_suspects(times, margin, slope)[0]):
         low, high, here = float(times[k]), float(times[k + 1]), states[k]
         if margin[0, k] > 0 >= margin[0, k + 1]:
 
             def left(t: float, low: float = low, here: Array = here) -> float:
                 y = _state_at(run, low, t, here, m)
-                return float(_margins(run, np.array([t]), y[None], m)[0][which, 0])
+                return float(_margins(run, np.array([t]), y[None], m)[0][switch, 0])
 
             at = high
             if left(high) <= 0:
@@ -613,9 +624,9 @@ def _turn(
         if margin[0, k] <= 0 and (slope[0, k] <= 0 or level == LEVELS):
             return low, here
         if level < LEVELS:
-            turn = _turn(run, times[k : k + 2], here, m, which, level + 1)
-            if turn is not None:
-                return turn
+            change = _change_within(run, times[k : k + 2], here, m, switch, level + 1)
+            if change is not None:
+                return change
     return None
 
 

@@ -25,7 +25,7 @@ from .assemble import assemble
 from .components.circuit import Circuit
 from .integrate import Method, Stuck, Trajectory, integrate
 from .linear import CAUSES, UNHELD, Tuned, tune
-from .result import Second, Simulation, Told, balance, failed
+from .result import Second, SignalLabel, Simulation, balance, failed
 from .system import Compiled
 
 SECOND: Final[dict[Method, Method]] = {"lsoda": "radau", "cvodes": "radau", "radau": "lsoda"}
@@ -106,7 +106,7 @@ def run(
     signals = compiled.signals(trajectory.time, trajectory.states, trajectory.flags)
     added = balance(circuit, trajectory)
     followed = reading.servo(scenario, trajectory.time, signals)
-    dynamic, still = reading.shaken(scenario, trajectory.time, signals)
+    dynamic, still = reading.harmonic_load(scenario, trajectory.time, signals)
     values, why = reading.values(
         scenario,
         own,
@@ -126,7 +126,8 @@ def run(
         time=trajectory.time,
         signals=signals,
         told={
-            signal.name: Told(signal.label, signal.quantity) for signal in circuit.system.signals
+            signal.name: SignalLabel(signal.label, signal.quantity)
+            for signal in circuit.system.signals
         },
         balance=added,
         values=values,
@@ -139,21 +140,21 @@ def run(
         notes=(
             *recorded_notes(scenario, records),
             *_notes(circuit, own, tuned),
-            *_reach(own, signals),
+            *_reference_outside_stroke(own, signals),
             *_limits(scenario, own, signals),
-            *_coarse(step, signals),
-            *_unsettled(scenario, own),
+            *_coarse_samples(step, signals),
+            *_pump_not_in_equilibrium(scenario, own),
         ),
         evaluations=trajectory.evaluations,
         seconds=perf_counter() - begin,
     )
     if not verify:
         return result
-    second = _second(compiled, scenario, step, trajectory, signals, SECOND[method])
+    second = _checked_by(compiled, scenario, step, trajectory, signals, SECOND[method])
     return replace(result, second=second)
 
 
-def _second(
+def _checked_by(
     compiled: Compiled,
     scenario: Scenario,
     step: float,
@@ -164,30 +165,30 @@ def _second(
     """Integrate again by another method: largest difference, relative to each signal's span."""
     other = integrate(compiled, duration=scenario.duration, sample_time=step, method=method)
     again = compiled.signals(other.time, other.states, other.flags)
-    grid, at = _single(first.time)
-    times, there = _single(other.time)
+    grid, at = _single_instants(first.time)
+    times, there = _single_instants(other.time)
     differences, where = {}, {}
     for name in COMPARED:
         if name not in signals:
             continue
-        mine = signals[name][at]
-        apart = np.abs(mine - np.interp(grid, times, again[name][there]))
-        span = float(np.ptp(mine))
-        if span <= 1e-9 * max(float(np.max(np.abs(mine))), 1e-12):
+        reference = signals[name][at]
+        deviation = np.abs(reference - np.interp(grid, times, again[name][there]))
+        span = float(np.ptp(reference))
+        if span <= 1e-9 * max(float(np.max(np.abs(reference))), 1e-12):
             continue
-        worst = int(np.argmax(apart))
-        differences[name], where[name] = float(apart[worst]) / span, float(grid[worst])
-    name = max(differences, key=lambda one: differences[one], default="")
+        worst = int(np.argmax(deviation))
+        differences[name], where[name] = float(deviation[worst]) / span, float(grid[worst])
+    name = max(differences, key=lambda signal: differences[signal], default="")
     if not name:
         return Second(method, 0.0, "", 0.0, {})
     return Second(method, differences[name], name, where[name], differences)
 
 
-def _single(time: Array) -> tuple[Array, Array]:
+def _single_instants(time: Array) -> tuple[Array, Array]:
     """Samples without the doubled instants, so that jumps are compared away from the edge."""
-    kept, first, count = np.unique(time, return_index=True, return_counts=True)
-    alone = count == 1
-    return kept[alone], first[alone]
+    instants, first, count = np.unique(time, return_index=True, return_counts=True)
+    single = count == 1
+    return instants[single], first[single]
 
 
 def _notes(circuit: Circuit, own: Plant, tuned: Tuned | None) -> tuple[str, ...]:
@@ -196,8 +197,8 @@ def _notes(circuit: Circuit, own: Plant, tuned: Tuned | None) -> tuple[str, ...]
     if tuned is not None:
         notes += tuned.notes
         if tuned.unheld:
-            said = "the margins of the linear loop are meaningless"
-            notes.append(f"{UNHELD}{tuned.unheld}: {said}; {CAUSES}")
+            consequence = "the margins of the linear loop are meaningless"
+            notes.append(f"{UNHELD}{tuned.unheld}: {consequence}; {CAUSES}")
         elif not tuned.margins.stable:
             notes.append(
                 f"the linear loop is unstable: gain margin {tuned.margins.gain:.2f}; it "
@@ -208,7 +209,7 @@ def _notes(circuit: Circuit, own: Plant, tuned: Tuned | None) -> tuple[str, ...]
         error = max(seals.coulomb.error, seals.static.error)
         if error > WARN_PLANE:
             notes.append(f"the fit of friction over the pressures is within {100 * error:.1f} %")
-        films = [one for one in ("piston", "rod") if own.films[one]]
+        films = [place for place in ("piston", "rod") if own.films[place]]
         if films:
             notes.append(
                 f"the {' and '.join(films)} seal's oil film is simulated as dry friction with "
@@ -242,14 +243,14 @@ def _limits(scenario: Scenario, own: Plant, signals: Mapping[str, Array]) -> Ite
             yield "the load cylinder exceeds its stroke: it starts in the middle and has no stops"
 
 
-def _coarse(step: float, signals: Mapping[str, Array]) -> Iterator[str]:
+def _coarse_samples(step: float, signals: Mapping[str, Array]) -> Iterator[str]:
     """Samples that may miss a peak."""
     if step > COARSE and "pressure_a" in signals:
         apart = f"{1e3 * step:.3g} ms apart"
         yield f"peaks and step results are taken from samples, {apart}: state a shorter sample_time"
 
 
-def _unsettled(scenario: Scenario, own: Plant) -> Iterator[str]:
+def _pump_not_in_equilibrium(scenario: Scenario, own: Plant) -> Iterator[str]:
     """A pump that does not start in equilibrium with its relief valve."""
     from scipy.optimize import brentq
 
@@ -258,31 +259,31 @@ def _unsettled(scenario: Scenario, own: Plant) -> Iterator[str]:
         return
     relief, flow, text = unit.relief, unit.flow, INPUTS["pressure"].text
 
-    def missing(over: float) -> float:
-        passed = relief_flow(
+    def excess_flow(over: float) -> float:
+        relieved = relief_flow(
             pressure_difference=relief.pressure + over,
             cracking_pressure=relief.pressure,
             override=relief.override,
             rated_flow=relief.rated_flow,
         )
-        return float(passed) - flow
+        return float(relieved) - flow
 
-    over = float(brentq(missing, 0.0, 2 * relief.override))  # includes the pump, as checked
-    rest = own.return_pressure + relief.pressure + over
-    if abs(rest - own.supply_pressure) > SETTLED * own.supply_pressure:
+    over = float(brentq(excess_flow, 0.0, 2 * relief.override))  # includes the pump, as checked
+    equilibrium = own.return_pressure + relief.pressure + over
+    if abs(equilibrium - own.supply_pressure) > SETTLED * own.supply_pressure:
         yield (
             f"the supply line starts at {text(own.supply_pressure)} (supply.pressure), but pump "
-            f"and relief valve settle near {text(rest)}: set supply.pressure there"
+            f"and relief valve settle near {text(equilibrium)}: set supply.pressure there"
         )
 
 
-def _reach(own: Plant, signals: Mapping[str, Array]) -> Iterator[str]:
+def _reference_outside_stroke(own: Plant, signals: Mapping[str, Array]) -> Iterator[str]:
     """A reference outside the stroke."""
     if "reference" not in signals or "position" not in signals:
         return
-    asked = signals["reference"]
-    low, high = float(np.min(asked)), float(np.max(asked))
-    follows = np.allclose(asked - signals["error"], signals["position"])
+    reference = signals["reference"]
+    low, high = float(np.min(reference)), float(np.max(reference))
+    follows = np.allclose(reference - signals["error"], signals["position"])
     if follows and (low < 0 or high > own.stroke):
         length = INPUTS["position"].text
         yield (

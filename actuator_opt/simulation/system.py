@@ -106,11 +106,11 @@ class System:
         lower end.
         """
         air = ATMOSPHERIC_PRESSURE
-        held = max(float(initial), (VACUUM - 1) * air)
-        start = held if held >= 0 else air * math.log1p(held / air)
+        clipped = max(float(initial), (VACUUM - 1) * air)
+        start = clipped if clipped >= 0 else air * math.log1p(clipped / air)
         state = self.state(name, start, tolerance=PRESSURE)
-        low = air * Namespace.expm1(_below(state) / air)
-        symbol: Symbol = where(state >= 0, state, low)
+        below_zero = air * Namespace.expm1(_below(state) / air)
+        symbol: Symbol = where(state >= 0, state, below_zero)
         self.curved[symbol.index] = state
         return symbol
 
@@ -195,25 +195,25 @@ class Compiled:
         """Trace, differentiate, generate code and compile."""
         symbols = [state.symbol for state in system.states]
         rates = [state.rate for state in system.states]
-        one, many = (system.unpack(symbols, states) for states in ("y.tolist()", "y"))
+        scalar, many = (system.unpack(symbols, states) for states in ("y.tolist()", "y"))
         entries = [x for row in jacobian(rates, symbols) for x in row]
         filled = np.array([k for k, x in enumerate(entries) if isinstance(x, Symbol) or x], int)
-        flat = function("jacobian", "t, y, m", one, [entries[k] for k in filled])
+        flat = function("jacobian", "t, y, m", scalar, [entries[k] for k in filled])
         size = len(symbols)
 
         def slopes(t: float, y: Array, m: tuple[bool, ...]) -> Array:
-            found = np.zeros(size * size)
-            found[filled] = flat(t, y, m)
-            return found.reshape(size, size)
+            values = np.zeros(size * size)
+            values[filled] = flat(t, y, m)
+            return values.reshape(size, size)
 
         return cls(
             system=system,
-            rates=function("rates", "t, y, m", one, rates),
+            rates=function("rates", "t, y, m", scalar, rates),
             slopes=slopes,
             guards=vectorised(
                 "guards", "t, y, m", many, [switch.guard for switch in system.switches]
             ),
-            guard_rates=vectorised("guard_rates", "t, y, m", many, _along(system)),
+            guard_rates=vectorised("guard_rates", "t, y, m", many, _guard_rates(system)),
             told=vectorised("told", "t, y, m", many, [signal.value for signal in system.signals]),
             initial=np.array([state.initial for state in system.states]),
             tolerances=np.array([state.tolerance for state in system.states]),
@@ -236,11 +236,11 @@ def _below(state: Symbol) -> Expression:
     return clip(state, EMPTY * ATMOSPHERIC_PRESSURE, 0.0)
 
 
-def _along(system: System) -> list[Expression]:
+def _guard_rates(system: System) -> list[Expression]:
     """Rates of the guards along the solution."""
     symbols, rates = [state.symbol for state in system.states], [s.rate for s in system.states]
-    found = []
+    rates_of_guards = []
     for row in jacobian([switch.guard for switch in system.switches], [*symbols, system.time]):
         slopes = zip(row, [*rates, 1.0], strict=True)
-        found.append(sum((slope * rate for slope, rate in slopes), start=0.0))
-    return found
+        rates_of_guards.append(sum((slope * rate for slope, rate in slopes), start=0.0))
+    return rates_of_guards

@@ -48,19 +48,19 @@ def oil_at(oil: Oil, pressure: Expression) -> Volumes:
 
     Oil with (almost) no air forms a cavity below atmospheric pressure, which limits the vacuum.
     """
-    held = maximum(pressure, FLOOR - ATMOSPHERIC_PRESSURE)
+    limited = maximum(pressure, FLOOR - ATMOSPHERIC_PRESSURE)
     mixed = Volumes(
-        chamber.density_ratio(pressure=held, **oil.law),
-        chamber.mixture_bulk_modulus(pressure=held, **oil.law),
-        oil_energy.oil_energy_density(pressure=held, **oil.law),
+        chamber.density_ratio(pressure=limited, **oil.law),
+        chamber.mixture_bulk_modulus(pressure=limited, **oil.law),
+        oil_energy.oil_energy_density(pressure=limited, **oil.law),
     )
     if not oil.cavity:
         return mixed
-    opened, falling, work = cavity(
-        pressure=held, content=oil.cavity, polytropic_index=oil.polytropic_index
+    opening, falling, work = cavity(
+        pressure=limited, content=oil.cavity, polytropic_index=oil.polytropic_index
     )
     filled = (1 + oil.air_content) / mixed.ratio
-    whole = filled + opened
+    whole = filled + opening
     return Volumes(
         (1 + oil.air_content) / whole,
         whole / (filled / mixed.modulus + falling),
@@ -114,10 +114,10 @@ def _left(travel: Expression, film: float) -> tuple[Expression, Expression]:
     touches the end over a growing area, and the remaining volume shrinks.
     """
     half = 0.5 * film
-    deep = clip((travel + half) / half, DEEPEST, 0.0)
-    met = travel < -half
-    left = where(met, half * Namespace.expm1(deep) - half, travel)
-    return left, where(met, Namespace.exp(deep), 1.0)
+    depth = clip((travel + half) / half, DEEPEST, 0.0)
+    in_stop = travel < -half
+    left = where(in_stop, half * Namespace.expm1(depth) - half, travel)
+    return left, where(in_stop, Namespace.exp(depth), 1.0)
 
 
 def cylinder(
@@ -136,7 +136,7 @@ def cylinder(
     dead_b: float,
     walls: Give,
     flexibility: float,
-    of: str = "",
+    suffix: str = "",
 ) -> Expression:
     """Both chambers of a cylinder, coupled by walls and the compliance of the rod; their force [N].
 
@@ -160,36 +160,41 @@ def cylinder(
     law_a, law_b = oil_at(oil, pressure_a), oil_at(oil, pressure_b)
     c_a, c_b = v_a / law_a.modulus + w_a, v_b / law_b.modulus + w_b
     net_a, net_b = inflow_a - swept_a * speed, inflow_b - swept_b * speed
-    moved_a, moved_b = isinstance(pressure_a, Symbol), isinstance(pressure_b, Symbol)
-    det = c_a * c_b - (w_ab * w_ab if moved_a and moved_b else 0.0)
-    rate_a = (c_b * net_a - (w_ab * net_b if moved_b else 0.0)) / det if moved_a else 0.0
-    rate_b = (c_a * net_b - (w_ab * net_a if moved_a else 0.0)) / det if moved_b else 0.0
-    for name, pressure, moved, own, asked in (
-        ("a", pressure_a, moved_a, rate_a, w_ab * rate_b - net_a),
-        ("b", pressure_b, moved_b, rate_b, w_ab * rate_a - net_b),
+    is_state_a, is_state_b = (
+        isinstance(pressure_a, Symbol),
+        isinstance(pressure_b, Symbol),
+    )
+    det = c_a * c_b - (w_ab * w_ab if is_state_a and is_state_b else 0.0)
+    rate_a = (c_b * net_a - (w_ab * net_b if is_state_b else 0.0)) / det if is_state_a else 0.0
+    rate_b = (c_a * net_b - (w_ab * net_a if is_state_a else 0.0)) / det if is_state_b else 0.0
+    for name, pressure, is_state, pressure_rate, demand in (
+        ("a", pressure_a, is_state_a, rate_a, w_ab * rate_b - net_a),
+        ("b", pressure_b, is_state_b, rate_b, w_ab * rate_a - net_b),
     ):
-        if moved:
-            system.rate(pressure, own)
+        if is_state:
+            system.rate(pressure, pressure_rate)
         else:
-            circuit.door("held ports", pressure * asked, state=f"held work {name}", into=True)
-    if moved_a:
+            circuit.energy_port(
+                "held ports", pressure * demand, state=f"held work {name}", into=True
+            )
+    if is_state_a:
         scale = area_a * stroke + dead_a
-        _content(circuit, f"chamber A{of}", law_a, v_a, inflow_a, scale)
-    if moved_b:
+        _content(circuit, f"chamber A{suffix}", law_a, v_a, inflow_a, scale)
+    if is_state_b:
         scale = area_b * stroke + dead_b
-        _content(circuit, f"chamber B{of}", law_b, v_b, inflow_b, scale)
+        _content(circuit, f"chamber B{suffix}", law_b, v_b, inflow_b, scale)
     energy = 0.5 * (
         w_a * pressure_a * pressure_a
         + w_b * pressure_b * pressure_b
         + 2 * w_ab * pressure_a * pressure_b
     )
-    audit.stored.append((f"walls, rod and mount{of}", energy))
-    bent = 0.5 * (
+    audit.stored.append((f"walls, rod and mount{suffix}", energy))
+    wall_force = 0.5 * (
         walls.a1 * pressure_a * pressure_a
         - walls.b1 * pressure_b * pressure_b
         + 2 * walls.c1 * pressure_a * pressure_b
     )
-    return area_a * free_a * pressure_a - area_b * free_b * pressure_b + bent
+    return area_a * free_a * pressure_a - area_b * free_b * pressure_b + wall_force
 
 
 def dead_volume(circuit: Circuit, volume: float, area: float, chamber: str) -> float:
@@ -203,7 +208,7 @@ def dead_volume(circuit: Circuit, volume: float, area: float, chamber: str) -> f
     return least
 
 
-WHOSE = "load_"
+PREFIX = "load_"
 
 
 def push(circuit: Circuit, stated: LoadCylinder, *, position: Symbol, speed: Symbol) -> Expression:
@@ -212,10 +217,10 @@ def push(circuit: Circuit, stated: LoadCylinder, *, position: Symbol, speed: Sym
     area = float(forces.annulus_area(bore=stated.bore, rod_diameter=stated.rod_diameter))
     middle = 0.5 * (stated.supply_pressure + stated.return_pressure)
     half = 0.5 * stated.force / area
-    a = system.pressure(f"{WHOSE}pressure a", middle + half)
-    b = system.pressure(f"{WHOSE}pressure b", middle - half)
+    a = system.pressure(f"{PREFIX}pressure a", middle + half)
+    b = system.pressure(f"{PREFIX}pressure b", middle - half)
     data = _data(stated, circuit.plant.oil.kinematic_viscosity)
-    opening = valve.spool(circuit, data, circuit.course(stated.signal), WHOSE)
+    opening = valve.spool(circuit, data, circuit.scenario_signal(stated.signal), PREFIX)
     flows = valve.edges(
         circuit,
         data,
@@ -224,12 +229,14 @@ def push(circuit: Circuit, stated: LoadCylinder, *, position: Symbol, speed: Sym
         return_pressure=stated.return_pressure,
         pressure_a=a,
         pressure_b=b,
-        whose=WHOSE,
+        prefix=PREFIX,
     )
-    given = stated.supply_pressure * flows.supply - stated.return_pressure * flows.tank
-    circuit.door("supply of the load cylinder", given, state=f"{WHOSE}supply work", into=True)
+    supply_power = stated.supply_pressure * flows.supply - stated.return_pressure * flows.tank
+    circuit.energy_port(
+        "supply of the load cylinder", supply_power, state=f"{PREFIX}supply work", into=True
+    )
     dead = chambers.dead_volume(circuit, stated.dead_volume, area, "load cylinder")
-    pushed = chambers.cylinder(
+    force_on_rod = chambers.cylinder(
         circuit,
         pressure_a=a,
         pressure_b=b,
@@ -244,38 +251,38 @@ def push(circuit: Circuit, stated: LoadCylinder, *, position: Symbol, speed: Sym
         dead_b=dead,
         walls=Give(),
         flexibility=0.0,
-        of=" of the load cylinder",
+        suffix=" of the load cylinder",
     )
     pressures = INPUTS["pressure"]
-    system.signal(f"{WHOSE}pressure_a", "pressure of the load cylinder, side A", pressures, a)
-    system.signal(f"{WHOSE}pressure_b", "pressure of the load cylinder, side B", pressures, b)
+    system.signal(f"{PREFIX}pressure_a", "pressure of the load cylinder, side A", pressures, a)
+    system.signal(f"{PREFIX}pressure_b", "pressure of the load cylinder, side B", pressures, b)
     force = SCENARIOS["force_value"]
-    system.signal("load_cylinder_force", "force of the load cylinder", force, pushed)
-    return pushed
+    system.signal("load_cylinder_force", "force of the load cylinder", force, force_on_rod)
+    return force_on_rod
 
 
 def _data(stated: LoadCylinder, viscosity: float) -> ValveData:
     """Edges of its valve, with the oil of the design."""
-    own = stated.valve
-    after = own.leakage_drop if own.tank_leakage_drop is None else own.tank_leakage_drop
+    data = stated.valve
+    tank_drop = data.leakage_drop if data.tank_leakage_drop is None else data.tank_leakage_drop
 
     def coefficient(flow: float, drop: float) -> float:
         return float(edge_coefficient(flow=flow, pressure_drop=drop))
 
-    rated = coefficient(own.rated_flow, own.rated_drop)
-    if own.rated_viscosity is not None:
+    rated = coefficient(data.rated_flow, data.rated_drop)
+    if data.rated_viscosity is not None:
         corrected = viscosity_corrected(
-            coefficient=rated, rated_viscosity=own.rated_viscosity, viscosity=viscosity
+            coefficient=rated, rated_viscosity=data.rated_viscosity, viscosity=viscosity
         )
         rated = float(corrected)
     return ValveData(
         rated=rated,
-        leakage_supply=coefficient(own.leakage_flow, own.leakage_drop),
-        leakage_tank=coefficient(own.leakage_flow, after),
-        signal=own.signal,
-        natural_frequency=own.natural_frequency,
-        damping_ratio=own.damping_ratio,
-        offset=own.offset,
+        leakage_supply=coefficient(data.leakage_flow, data.leakage_drop),
+        leakage_tank=coefficient(data.leakage_flow, tank_drop),
+        signal=data.signal,
+        natural_frequency=data.natural_frequency,
+        damping_ratio=data.damping_ratio,
+        offset=data.offset,
     )
 
 
@@ -303,7 +310,7 @@ def shaft(system: System) -> Shaft:
 
 def turn(
     circuit: Circuit,
-    own: Shaft,
+    shaft_states: Shaft,
     *,
     pressure_a: Symbol,
     pressure_b: Symbol,
@@ -313,7 +320,7 @@ def turn(
     """Pipes, motor and load; a linear circuit omits Coulomb friction."""
     system, motor = circuit.system, circuit.scenario.motor
     assert motor is not None
-    angle, speed = own
+    angle, speed = shaft_states
     machine = motor.machine
     across = pressure_a - pressure_b
     common = {
@@ -335,12 +342,12 @@ def turn(
         ("pipe B", pressure_b, inflow_b + flow),
     ):
         node(circuit, name, pressure, inflow=inflow, volume=motor.pipe_volume)
-    load = circuit.course(motor.torque) + motor.damping * speed
+    load = circuit.scenario_signal(motor.torque) + motor.damping * speed
     system.rate(angle, speed)
     system.rate(speed, (torque - load) / motor.inertia)
     circuit.audit.stored.append(("motion", 0.5 * motor.inertia * speed * speed))
-    circuit.door("losses of the motor", across * flow - torque * speed, state="motor loss")
-    circuit.door("load", load * speed, state="work on the load")
+    circuit.energy_port("losses of the motor", across * flow - torque * speed, state="motor loss")
+    circuit.energy_port("load", load * speed, state="work on the load")
     system.signal("shaft_speed", "speed of the shaft", SCENARIOS["shaft_speed_value"], speed)
     system.signal("shaft_angle", "angle of the shaft", SCENARIOS["shaft_angle_value"], angle)
     system.signal("torque", "torque of the motor", SCENARIOS["torque_value"], torque)
@@ -383,33 +390,33 @@ def side(circuit: Circuit, name: Chamber, ends: str, start: float) -> ChamberPor
     """
     system, data = circuit.system, circuit.plant.lines[name]
     throttled = circuit.plant.throttle is not None
-    near, wall = data.near_volume, data.near_wall
+    near_volume, near_wall = data.near_volume, data.near_wall
     kind = ENDS[ends]
     if kind.at_cylinder or (not throttled and (kind.shut or data.inertance == 0)):
         if not throttled:
-            near, wall = near + data.far_volume, wall + data.far_wall
+            near_volume, near_wall = near_volume + data.far_volume, near_wall + data.far_wall
         pressure = start if kind.holds else system.pressure(f"pressure {name}", start)
-        return ChamberPort(name, pressure, pressure, near, wall, None, None)
+        return ChamberPort(name, pressure, pressure, near_volume, near_wall, None, None)
     pressure = system.pressure(f"pressure {name}", start)
-    lined = data.inertance > 0 and not kind.shut
-    if throttled and kind.holds and not lined:
-        return ChamberPort(name, pressure, start, near, wall, None, start)
+    has_inertia = data.inertance > 0 and not kind.shut
+    if throttled and kind.holds and not has_inertia:
+        return ChamberPort(name, pressure, start, near_volume, near_wall, None, start)
     outer = system.pressure(f"behind throttle {name}", start) if throttled else None
     line = None
     end: Expression = outer if outer is not None else pressure
-    if lined:
+    if has_inertia:
         line = system.state(f"line {name}", 0.0, tolerance=FLOW)
         end = start
         if not kind.holds:
             end = system.pressure(f"far end {name}", start)
-    return ChamberPort(name, pressure, end, near, wall, line, outer)
+    return ChamberPort(name, pressure, end, near_volume, near_wall, line, outer)
 
 
 def connect(
-    circuit: Circuit, chamber_port: ChamberPort, ends: str, feed: Expression, *, held: float
+    circuit: Circuit, chamber_port: ChamberPort, ends: str, feed: Expression, *, end_pressure: float
 ) -> Expression:
-    """Flow into the chamber; `feed` is the flow at the end, `held` a pressure held there."""
-    feed = FEEDS[ends](circuit, chamber_port, feed, held)
+    """Flow into the chamber; `feed` and `end_pressure` are flow and pressure at the far end."""
+    feed = FEEDS[ends](circuit, chamber_port, feed, end_pressure)
     if chamber_port.line is not None:
         feed = _through_line(circuit, chamber_port, chamber_port.line, feed)
     if chamber_port.outer is not None:
@@ -425,13 +432,13 @@ def _through_line(
     inner = chamber_port.pressure if chamber_port.outer is None else chamber_port.outer
     lost = data.resistance * flow
     circuit.system.rate(flow, (chamber_port.end - inner - lost) / data.inertance)
-    circuit.door(f"line {word}", lost * flow, state=f"line loss {chamber_port.name}")
+    circuit.energy_port(f"line {word}", lost * flow, state=f"line loss {chamber_port.name}")
     motion = 0.5 * data.inertance * flow * flow
     circuit.audit.stored.append((f"oil in motion in line {word}", motion))
     if isinstance(chamber_port.end, Symbol):
         _far(circuit, chamber_port, f"far end {word}", chamber_port.end, feed - flow)
     else:
-        circuit.door(
+        circuit.energy_port(
             "held ports", chamber_port.end * flow, state=f"held work {chamber_port.name}", into=True
         )
     return flow
@@ -445,7 +452,7 @@ def _through_throttle(
     assert circuit.plant.throttle is not None
     drop = chamber_port.pressure - outer
     flow = one_way_valve.one_way_flow(pressure_difference=drop, **circuit.plant.throttle)
-    circuit.door(f"throttle {word}", drop * flow, state=f"throttle loss {chamber_port.name}")
+    circuit.energy_port(f"throttle {word}", drop * flow, state=f"throttle loss {chamber_port.name}")
     circuit.system.signal(
         f"flow_throttle_{chamber_port.name}",
         f"flow out of chamber {word}",
@@ -455,7 +462,7 @@ def _through_throttle(
     if isinstance(outer, Symbol):
         _far(circuit, chamber_port, f"behind throttle {word}", outer, feed + flow)
     else:
-        circuit.door("held ports", outer * flow, state=f"held work {chamber_port.name}")
+        circuit.energy_port("held ports", outer * flow, state=f"held work {chamber_port.name}")
     return flow
 
 
@@ -503,20 +510,20 @@ def _reducing(circuit: Circuit, chamber_port: ChamberPort, held: float) -> Expre
         largest_flow=REDUCING_FLOW,
         passive_conductance=data["passive_conductance"],
     )
-    circuit.door(
+    circuit.energy_port(
         "held ports", chamber_port.end * flow, state=f"reducing work {chamber_port.name}", into=True
     )
     return flow
 
 
-def _given(
+def _from_valve(
     circuit: Circuit, chamber_port: ChamberPort, feed: Expression, held: float
 ) -> Expression:
     """Flow from the valve, or zero."""
     return feed
 
 
-def _nothing(
+def _no_flow(
     circuit: Circuit, chamber_port: ChamberPort, feed: Expression, held: float
 ) -> Expression:
     return 0.0
@@ -531,10 +538,10 @@ def _regulated(
 FEEDS = per_kind(
     ENDS,
     {
-        "valve": _given,
-        "closed": _nothing,
-        "blocked": _nothing,
-        "constant_pressure": _given,
+        "valve": _from_valve,
+        "closed": _no_flow,
+        "blocked": _no_flow,
+        "constant_pressure": _from_valve,
         "reducing_valve": _regulated,
     },
 )
