@@ -24,14 +24,14 @@ PRESSURES = INPUTS["pressure"]
 
 
 def ends_of(scenario: Scenario, plant: Plant) -> str:
-    """Kind of end of the lines at the ports."""
+    """Kind of the far end of the lines at the ports."""
     if scenario.ends is not None:
         return scenario.ends
     return "valve" if plant.valve is not None else plant.design.ports.end
 
 
 def start_of(scenario: Scenario, plant: Plant, records: Records) -> InitialState:
-    """Position and pressures at the start: a load held by a closed valve."""
+    """Initial position and pressures; by default those at which a closed valve holds the load."""
     initial, motor_load, load = scenario.initial, scenario.motor, scenario.load
     place = None if initial.position is None else position_at(initial.position, plant.stroke)
     position = 0.5 * plant.stroke if place is None else float(place)
@@ -72,7 +72,7 @@ def assemble(
 
     Parameters
     ----------
-    scenario, plant : what happens, and the actuator
+    scenario, plant : inputs over time, and the actuator
     records : columns of the files that signals name
     gains : of the controller, None without one
     linear : open the loop at a free variable ``u``, without sticking friction
@@ -113,7 +113,7 @@ def _command(circuit: Circuit, measured: Feedback) -> Expression:
 def _driven(
     circuit: Circuit, valve_signal: Expression, pressures: tuple[Expression, Expression]
 ) -> valve.Port:
-    """The valve with its supply, between two far ends."""
+    """Flows of the valve with its supply, at the pressures of its ports."""
     data = circuit.plant.valve
     if data is None:
         message = "the design has no valve"
@@ -219,7 +219,7 @@ def _chambers(
     position: Symbol,
     speed: Symbol,
 ) -> Expression:
-    """Both chambers with their share of the lines; returns the force of their pressures."""
+    """Add both chambers with their share of the lines; return the force of their pressures."""
     plant, (a, b) = circuit.plant, sides
     return chambers.cylinder(
         circuit,

@@ -44,7 +44,7 @@ def harmonic_fit(*, time: Array, values: Array, frequency: float) -> HarmonicFit
     ----------
     time : (n,) [s], one cycle or more; even steps are not needed
     values : (n,)
-    frequency : of the swing [Hz]
+    frequency : of the oscillation [Hz]
 
     Returns
     -------
@@ -183,7 +183,7 @@ def windows(*, time: Array, frequency: float, cycles: int) -> tuple[slice, ...]:
 
 
 class _Design(NamedTuple):
-    """Columns of a fit, their pseudo-inverse, and the middle and half length of the time."""
+    """Columns of a fit, their pseudo-inverse, and half the duration of the record."""
 
     columns: np.ndarray
     inverse: np.ndarray

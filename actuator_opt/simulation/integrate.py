@@ -1,10 +1,10 @@
 """Integration in time, restarted where an input jumps or a switch changes state.
 
-Integrators of a smooth section return states at its samples, or how far they got. LSODA switches
-between stiff and non-stiff steps and uses the exact Jacobian. Radau gives the second opinion.
+An integrator returns the states at the samples of a smooth section, or raises `Stuck`. LSODA
+switches between stiff and non-stiff steps and uses the exact Jacobian. Radau checks its results.
 
 CVODES of SUNDIALS through CasADi (extra `fast`) runs without Python code. The graph of a system
-becomes symbols of CasADi, each operation once; CasADi derives the exact Jacobian. No compiler is
+becomes CasADi symbols, with each operation once; CasADi derives the exact Jacobian. No compiler is
 needed. If CVODES fails, another integrator takes over that section or reports why it cannot. A
 servo takes about half of LSODA's time, at the same error.
 """
@@ -34,11 +34,11 @@ Method = Literal["lsoda", "radau", "cvodes"]
 
 
 RELATIVE: Final = {"lsoda": 1e-6, "radau": 1e-8, "cvodes": 1e-7}
-"""Relative tolerance of a step; the second opinion uses the tighter one."""
+"""Relative tolerance of a step; tightest for Radau, which checks the other methods."""
 
 
 CHUNK = 200
-"""Samples between checks of the switches (a choice: work beyond a switch is lost)."""
+"""Samples between checks of the switches (a choice: samples beyond a switch are discarded)."""
 
 
 MOST = 100_000
@@ -58,7 +58,7 @@ class Stuck(Unsolvable):
 
 
 def _checked(times: Array, states: Array) -> Array:
-    """The states, if all are finite."""
+    """The given states, if all are finite."""
     bad = ~np.isfinite(states).all(axis=1)
     if bad.any():
         first = int(np.argmax(bad))
@@ -211,7 +211,7 @@ def translate(outputs: Sequence[Any]) -> tuple[dict[str, Any], list[Any]]:
 
 
 def _operation(casadi: Any, op: str, args: Sequence[Any]) -> Any:
-    """An operation by CasADi's own number; its operators are slow, as they check shapes."""
+    """An operation by its CasADi code; CasADi's operators are slow, as they check shapes."""
     unary, binary = casadi.SX.unary, casadi.SX.binary
     if op == "where":
         condition, yes, no = args
@@ -225,23 +225,15 @@ def _operation(casadi: Any, op: str, args: Sequence[Any]) -> Any:
     return result
 
 
-def cvodes(
-    compiled: Compiled, relative: float, evaluations: list[int], fallback: Advance
-) -> Advance:
-    """Integration by CVODES.
-
-    Parameters
-    ----------
-    compiled : the equations
-    relative : relative tolerance of a step
-    evaluations : counter of rate evaluations
-    fallback : takes over a section where CVODES fails
+def cvodes(compiled: Compiled, relative: float, evaluations: list[int]) -> Advance:
+    """Integration by CVODES; LSODA takes over sections where it fails.
 
     Raises
     ------
     InputError
         CasADi is missing or a record is looked up
     """
+    fallback = lsoda(compiled, RELATIVE["lsoda"], evaluations)
     casadi = library()
     equations = _equations(casadi, compiled)
     unit = compiled.tolerances
@@ -294,7 +286,7 @@ def interruptible() -> Iterator[None]:
 
 
 class _Integrator:
-    """CVODES over `CHUNK` samples; unused ones have zero length."""
+    """CVODES over `CHUNK` samples; unused samples have steps of zero length."""
 
     def __init__(
         self, casadi: Any, equations: dict[str, Any], relative: float, max_steps: int
@@ -329,7 +321,7 @@ class _Integrator:
 
 
 def _equations(casadi: Any, compiled: Compiled) -> dict[str, Any]:
-    """The rates per sample, scaled by each state's tolerance, as CVODES takes a single one."""
+    """Rates per sample, with states in units of their tolerance, as CVODES takes one for all."""
     system, unit = compiled.system, compiled.tolerances
     free, rates = translate([state.rate for state in system.states])
 
@@ -362,13 +354,13 @@ LOOK = 2e-3
 MOST_CHANGES = 20_000
 """Changes of a switch before a run counts as chattering (a choice)."""
 APART = 1e-9
-"""Instants closer than this count as one [s] (a choice)."""
+"""Largest time between instants that count as equal [s] (a choice)."""
 FEW = 2_000
-"""Steps between two samples of a first attempt, which may overrun a switch."""
+"""Maximum steps between two samples in a first attempt, which may overrun a switch."""
 TRIES = 12
-"""Number of ever shorter sections tried where the equations fail, to find a switch before."""
+"""Maximum number of shorter sections tried to find a switch before the equations fail."""
 PARTS, LEVELS = 16, 5
-"""Parts of an interval in which a switch may change; each is divided again."""
+"""Parts of an interval in which a switch may change, and how often a part is divided again."""
 _LOCATED = 1e-12
 
 
@@ -383,7 +375,7 @@ class Event:
 
 @dataclass(slots=True)
 class Trajectory:
-    """States at samples; an instant or event appears twice, with the flags before and after it."""
+    """States at samples; an instant or event has two samples: with the flags before and after."""
 
     time: Array
     states: Array
@@ -537,13 +529,13 @@ def _segment(
 
 
 SwitchChange = tuple[int, float, Array, int]
-"""Sample before it, time, states and number of a switch that changes."""
+"""Sample before the change, its time and states, and the number of the switch."""
 
 
 def _section_to_change(
     run: _Run, times: Array, y: Array, m: tuple[bool, ...]
 ) -> tuple[Array, Array, SwitchChange | None]:
-    """States at some times and the first switch, beyond which the equations may fail."""
+    """States up to the first change of a switch, beyond which the equations may fail."""
     try:
         states = run.advance(times, y, m, FEW)
         return times, states, _first_change(run, times, states, m)
@@ -569,7 +561,7 @@ def _section_to_change(
 def _first_change(
     run: _Run, times: Array, states: Array, m: tuple[bool, ...]
 ) -> SwitchChange | None:
-    """The first switch between samples."""
+    """The first change of a switch between samples."""
     if not run.compiled.system.switches:
         return None
     suspect = _suspects(times, *_margins(run, times, states, m))
@@ -634,14 +626,8 @@ def _state_at(run: _Run, start: float, t: float, y: Array, m: tuple[bool, ...]) 
     return y if t <= start else run.advance(np.array([start, t]), y, m, MOST)[-1]
 
 
-def _cvodes(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
-    pass
-
-    return cvodes(compiled, relative, counted, lsoda(compiled, RELATIVE["lsoda"], counted))
-
-
 METHODS: Final[dict[Method, Callable[[Compiled, float, list[int]], Advance]]] = {
-    "lsoda": lsoda, "radau": radau, "cvodes": _cvodes,
+    "lsoda": lsoda, "radau": radau, "cvodes": cvodes,
 }  # fmt: skip
 LAST = 0.1
 """Final share of a record that counts as steady (a choice)."""

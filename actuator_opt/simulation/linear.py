@@ -90,7 +90,7 @@ class OpenLoop:
         return np.unique(np.concatenate((grid, near.ravel())))
 
     @property
-    def swings(self) -> bool:
+    def unstable(self) -> bool:
         """Whether a pole grows, other than slow creep."""
         return _grow(self.poles)
 
@@ -102,7 +102,7 @@ class OpenLoop:
         return float((1j * omega * self.at(np.array(omega))).real)
 
 
-class Around(NamedTuple):
+class LoopsAtPoint(NamedTuple):
     """Loops about a point, for both spool directions."""
 
     loops: list[OpenLoop]
@@ -155,12 +155,12 @@ class Linear:
         flat = self.slopes(0.0, state.tolist(), signal, self.flags)
         return np.array(flat).reshape(size, size)
 
-    def about(self, **states: float) -> Around:
-        """Open loops where the valve holds the load, with some states given, for both directions.
+    def about(self, **states: float) -> LoopsAtPoint:
+        """Open loops with the load held by the valve, for both spool directions, at given `states`.
 
-        On the side where the spool rests, the equilibrium is used. On the other side, and without
-        load on both, the spool is centred, as it passes there when the load drifts. If the valve
-        cannot hold the load, the given states are used.
+        For the direction in which the spool rests, the loop is that at equilibrium. For the other,
+        and for both without a load, the spool is at its centre, which it passes when the load
+        drifts. If the valve cannot hold the load, the given states are used.
         """
         at_rest = {one: 0.0 for one in ("speed", "shaft_speed") if self._known(one)}
         centre = self.circuit.centre
@@ -180,7 +180,7 @@ class Linear:
                     )
             assert point is not None
             loops.append(self.loop(*point))
-        return Around(loops, equilibrium is not None)
+        return LoopsAtPoint(loops, equilibrium is not None)
 
     def steady(self, guess: float, **states: float) -> tuple[Array, float] | None:
         """State and signal in steady motion, with some states given.
@@ -318,7 +318,7 @@ class LoopMargins:
     """Margins of a loop with its controller."""
 
     gain: float
-    """Gain factor at which it oscillates: above one if stable, else below."""
+    """Factor on the gain at which the loop oscillates: above 1 if it is stable, else below."""
     phase: float | None
     """[rad]; None if the loop gain never exceeds one."""
     stable: bool
@@ -358,8 +358,8 @@ def margins(loop: OpenLoop, law: ControllerLaw) -> LoopMargins:
 
 
 def least(loops: Sequence[OpenLoop]) -> tuple[Ultimate, OpenLoop]:
-    """The loop with the lowest ultimate gain; one that is unstable open comes first."""
-    pairs = [(Ultimate(0.0, inf) if loop.swings else ultimate(loop), loop) for loop in loops]
+    """The loop with the lowest ultimate gain; zero for a loop that is unstable when open."""
+    pairs = [(Ultimate(0.0, inf) if loop.unstable else ultimate(loop), loop) for loop in loops]
     return min(pairs, key=lambda pair: pair[0].gain)
 
 
@@ -368,8 +368,8 @@ MARGIN = {"p": 2.0, "pi": 3.0}
 gain; an integral part costs phase)."""
 PHASE = radians(60.0)
 """Phase margin that counts as sufficient (a choice)."""
-KEPT = 0.9
-"""Share of the proportional loop's margins that must remain with an integral part (a choice)."""
+MARGIN_SHARE = 0.9
+"""Share of the proportional loop's margins that remains with an integral part (a choice)."""
 NO_GAIN = 1e-9
 """Replacement factor for a zero gain beside an integral or derivative part."""
 UNHELD = "the valve cannot hold the load"
@@ -384,17 +384,17 @@ class Tuned:
     origin: str
     ultimate: Ultimate
     margins: LoopMargins
-    """Gains in the linear loop, including the scenario's factors."""
+    """Margins of the linear loop, with the scenario's factors on the gains."""
     unit: str
     notes: tuple[str, ...] = ()
     unheld: str = ""
-    """Where the valve cannot hold the load, else empty. Margins are then meaningless."""
+    """Where the valve cannot hold the load, else empty; the margins are then meaningless."""
 
 
 def tune(
     scenario: Scenario, plant: Plant, records: Records, *, previous: Tuned | None = None
 ) -> Tuned | None:
-    """Gains of a scenario's controller; None without one. `previous` keeps gains, with new margins.
+    """Gains of a scenario's controller; those of `previous`, if given, with new margins.
 
     The linear loop has no sticking friction, and the valve holds the load of the start, whatever
     pressures the scenario begins with. It is evaluated at the start and at every end of the
@@ -440,7 +440,7 @@ def tune(
     else:
         gains, origin, notes = _gains_by_rule(control, loop, limit, worst)
     factor, integral = control.gain_factor or NO_GAIN, control.integral_factor
-    shaped = ControllerLaw(  # each factor scales its own part, as in `parts.control`
+    shaped = ControllerLaw(  # each factor scales its own part, as in `components.valve`
         factor * gains.proportional_gain,
         factor / integral * gains.integral_time if integral else inf,
         control.derivative_factor / factor * gains.derivative_time,
@@ -450,7 +450,7 @@ def tune(
 
 
 def _with_held_load(scenario: Scenario) -> Scenario:
-    """The scenario with initial pressures that hold its load."""
+    """The scenario with the initial pressures that hold its load."""
     initial = scenario.initial.model_copy(update={"pressure_a": None, "pressure_b": None})
     return scenario.model_copy(update={"initial": initial})
 
@@ -458,7 +458,7 @@ def _with_held_load(scenario: Scenario) -> Scenario:
 def _loops(
     linear: Linear, scenario: Scenario, plant: Plant, control: Controller, loop: Loop
 ) -> tuple[list[OpenLoop], str]:
-    """Open loops at all relevant points; and where the valve cannot hold the load, in words."""
+    """Open loops at all relevant points, and words for the point where the load cannot be held."""
     if loop != "position":
         loops, held = linear.about()
         end = steady_value(getattr(control, loop))
@@ -493,8 +493,8 @@ def _loop_in_motion(linear: Linear, name: str, value: float) -> list[OpenLoop]:
 def _gains_by_rule(
     control: Controller, loop: Loop, limit: Ultimate, worst: OpenLoop
 ) -> tuple[ControllerGains, str, tuple[str, ...]]:
-    """Gains from the ultimate point by a tuning rule."""
-    if worst.swings:
+    """Gains, their origin and notes, from the ultimate point by a tuning rule."""
+    if worst.unstable:
         message = "the open circuit oscillates by itself"
         remedy = "lower speed_feedback and pressure_feedback, or add leakage across the piston"
         raise InputError(Diagnostic(message, remedy, path="control"))
@@ -537,14 +537,14 @@ def _gains_by_rule(
 
 
 def _integral_time(loop: OpenLoop, law: ControllerLaw, shortest: float, period: float) -> float:
-    """Least integral time from the shortest on that keeps `KEPT` of the margins without it."""
+    """Least integral time, from `shortest` on, that leaves `MARGIN_SHARE` of the margins."""
     alone = margins(loop, law)
-    phase = PHASE if alone.phase is None else min(KEPT * alone.phase, PHASE)
+    phase = PHASE if alone.phase is None else min(MARGIN_SHARE * alone.phase, PHASE)
     longest = 1e4 * period
     for time in np.geomspace(shortest, max(longest, shortest), 140):
         with_integral = margins(loop, replace(law, integral_time=float(time)))
         phase_kept = with_integral.phase is None or with_integral.phase >= phase
-        if with_integral.stable and with_integral.gain >= KEPT * alone.gain and phase_kept:
+        if with_integral.stable and with_integral.gain >= MARGIN_SHARE * alone.gain and phase_kept:
             return float(time)
     return longest
 

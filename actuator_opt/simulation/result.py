@@ -20,7 +20,7 @@ from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..studies.plant import Plant
 from .components.circuit import Circuit, Loop, acts_after, frequencies, loop_of
 from .harmonic import dynamic_stiffness_of_record, windows
-from .integrate import Event, Stuck, Trajectory
+from .integrate import LAST, Event, Stuck, Trajectory
 from .linear import StepMetrics, Tuned, step_metrics
 from .system import Compiled, System
 
@@ -40,7 +40,7 @@ class Balance:
     mass: float
     """Largest |content - inflow| of any volume, over its content."""
     energy: float
-    """stored - net inflow|, relative to all energy across the boundary."""
+    """Largest |stored - net inflow|, relative to all energy across the boundary."""
     flows: tuple[EnergyFlow, ...]
     stored: tuple[EnergyFlow, ...]
     """Change of the stored energy."""
@@ -54,9 +54,9 @@ class Second:
     max_difference: float
     """Largest difference of any compared signal, over its span."""
     signal: str
-    """Its signal."""
+    """Signal with that difference."""
     time: float
-    """Its time [s]."""
+    """Time of that difference [s]."""
     differences: Mapping[str, float]
 
 
@@ -66,7 +66,7 @@ class Window:
 
     time: float
     position: float
-    """Mean pressures of the chambers."""
+    """Means of time [s] and position [m] in the window."""
     stiffness: complex
     """Force over position [N/m]."""
     standard_error: float
@@ -106,7 +106,7 @@ class RequirementResult:
 
     @property
     def state(self) -> State:
-        """Whether it is met, and with what margin (`reserve.NO_RESERVE`)."""
+        """Whether it is missed, met, or met without a reserve."""
         if not self.met:
             return "missed"
         return "no_reserve" if without_reserve(self.margin, self.limit) else "met"
@@ -275,8 +275,6 @@ def _finite(value: float) -> float | None:
     return value if np.isfinite(value) else None
 
 
-LAST = 0.1
-"""Final share of the time used for creep."""
 RISE = 4
 """Least number of samples of a rise for reliable results (a choice)."""
 NOT_HERE = "does not apply to this scenario"
@@ -435,7 +433,7 @@ def values(
         if scenario.load.cylinder is not None or scenario.load.drive is not None:
             why["efficiency"] = "work of an external machine is not counted"
     if dynamic is not None:
-        later = dynamic.windows[1:] or dynamic.windows  # the first value belongs to the start
+        later = dynamic.windows[1:] or dynamic.windows  # the first window contains the transient
         worst = min(later, key=lambda window: abs(window.stiffness))
         results["dynamic_stiffness"] = abs(worst.stiffness)
         results["dynamic_phase"] = float(np.angle(worst.stiffness))
@@ -444,7 +442,7 @@ def values(
 
 
 def _settled_from(parts: Sequence[SignalSegment], duration: float) -> float:
-    """Time after one period of the slowest sine, or zero."""
+    """Time after one period of the slowest sine; the start of the reference without a sine."""
     tones = frequencies(parts)
     begin = min(part.start for part in parts)
     return min(begin + (1 / min(tones) if tones else 0.0), 0.9 * duration)
@@ -453,7 +451,7 @@ def _settled_from(parts: Sequence[SignalSegment], duration: float) -> float:
 def _drift(
     scenario: Scenario, records: Records, time: Array, signals: Mapping[str, Array]
 ) -> float | None:
-    """Mean speed over the last part, if nothing commands motion."""
+    """Mean speed over the last tenth, if nothing commands motion."""
     begin = (1 - LAST) * scenario.duration
     loop, parts = reference(scenario)
     load = scenario.load
@@ -480,7 +478,7 @@ def _stop_speed(time: Array, speed: Array, events: Sequence[Event]) -> float | N
 def requirements(
     scenario: Scenario, results: Mapping[str, float | None], why: Mapping[str, str]
 ) -> tuple[RequirementResult, ...]:
-    """Every limit of the scenario against its result."""
+    """Every requirement of the scenario, compared with its result."""
     rows = []
     for metric, limit in scenario.requirements.items():
         for sense in ("min", "max"):
@@ -502,7 +500,7 @@ def requirements(
 
 
 def balance(circuit: Circuit, run: Trajectory) -> Balance:
-    """The balance of a run from its states, as content and energy are functions of them."""
+    """Mass and energy balance of a run; contents and energies are functions of its states."""
     audit, system = circuit.audit, circuit.system
     at = {state.symbol.index: k for k, state in enumerate(system.states)}
 
@@ -541,20 +539,20 @@ def _values(system: System, expressions: list[object], run: Trajectory) -> list[
     return [np.broadcast_to(np.asarray(value, float), run.time.shape) for value in values]
 
 
-TOLD = ("position", "speed", "shaft_speed", "pressure_a", "pressure_b", "pressure_supply")
+EXPLAINING = ("position", "speed", "shaft_speed", "pressure_a", "pressure_b", "pressure_supply")
 """Signals that help to explain a failure."""
 OUT = 0.1
 """Overrun of the stroke, as a share of it, beyond which the stops have failed (a choice)."""
 
 
 def failed(stuck: Stuck, compiled: Compiled, plant: Plant) -> Unsolvable:
-    """The failure with the actuator's state there, and the likeliest cause."""
+    """The failure with the actuator's state at that time, and the most likely remedy."""
     flags = np.zeros((len(compiled.system.flags), 1), dtype=bool)
     signals = compiled.signals(np.array([stuck.time]), stuck.state[:, None], list(flags))
     words = [
         f"{signal.label} {signal.quantity.text(float(signals[signal.name][0]))}"
         for signal in compiled.system.signals
-        if signal.name in TOLD and np.isfinite(signals[signal.name][0])
+        if signal.name in EXPLAINING and np.isfinite(signals[signal.name][0])
     ]
     (fault,) = stuck.diagnostics
     at = f" ({', '.join(words)})" if words else ""

@@ -32,7 +32,7 @@ from .run import run
 STEP = 0.02
 """Relative step of a parameter (a choice: well above the error of a run)."""
 AGREE = 0.1
-"""Agreement required of a difference with half the step."""
+"""Relative tolerance between the differences with the whole and half the step."""
 NOTHING = 0.05
 """Change of a result, in per cent for 1 %, that counts as zero (a choice)."""
 DESIGN = (
@@ -59,7 +59,7 @@ class Effect:
     change: float
     """Change of the result [SI]."""
     reliable: bool
-    """Whether half the step agrees within 10 %; if nothing changes, only that."""
+    """Whether half the step agrees within 10 %, or the result does not change with either step."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +72,7 @@ class ParameterEffects:
     value: float
     unit: Literal["1 %", "1 K"]
     effects: Mapping[str, Effect]
-    """By result."""
+    """Effects by result."""
 
     @property
     def largest(self) -> float:
@@ -143,7 +143,7 @@ def sensitivities(
 
     Parameters
     ----------
-    scenario, subject : what happens, and the design
+    scenario, subject : inputs over time, and the design
     names : PATHs of design or scenario; default: `DESIGN` and the numbers that the scenario states
     step : relative step of a parameter
     results : names of `quantities.RESULTS`; default: all that the scenario has

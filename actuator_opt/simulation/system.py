@@ -1,6 +1,6 @@
 """A system of ordinary differential equations under construction, and its compiled form.
 
-Parts (`parts`) add states, rates and signals as expressions of the same symbols. They call the
+Components add states, rates and signals as expressions of the same symbols. They call the
 models of `actuator_opt.models` with these symbols, so the simulation has no formulas of its own.
 Jumps are flags that are constant between restarts: an instant of an input, or a switch that follows
 the sign of a guard.
@@ -25,15 +25,14 @@ LOOSE = 1e-4
 PRESSURE = 1.0
 """Error tolerance of a pressure [Pa]."""
 EMPTY = -40.0
-"""Pressure state, relative to the atmosphere's, at which the distance to vacuum has no digits
-left."""
+"""Least pressure state, relative to the atmosphere's; the distance to vacuum is rounding there."""
 VACUUM = 1e-6
 """Least absolute initial pressure, relative to the atmosphere's."""
 
 
 @dataclass(slots=True)
 class SystemState:
-    """A state with its start, error tolerance and rate."""
+    """A state with its initial value, error tolerance and rate."""
 
     name: str
     symbol: Symbol
@@ -73,15 +72,15 @@ class Signal:
 
 @dataclass(slots=True)
 class System:
-    """The equations; `compiled` makes them run."""
+    """Equations under construction; `compiled` returns them as functions."""
 
     graph: Graph = field(default_factory=Graph)
     states: list[SystemState] = field(default_factory=list)
     switches: list[Switch] = field(default_factory=list)
     instants: list[Instant] = field(default_factory=list)
     signals: list[Signal] = field(default_factory=list)
-    curved: dict[int, Symbol] = field(default_factory=dict)
-    """States that represent pressures, by number of the pressure."""
+    pressure_states: dict[int, Symbol] = field(default_factory=dict)
+    """States that represent pressures, by index of the pressure's symbol."""
     bends: list[float] = field(default_factory=list)
     """Instants at which a record changes its slope; no step is longer than the interval."""
     notes: list[str] = field(default_factory=list)
@@ -111,12 +110,12 @@ class System:
         state = self.state(name, start, tolerance=PRESSURE)
         below_zero = air * Namespace.expm1(_below(state) / air)
         symbol: Symbol = where(state >= 0, state, below_zero)
-        self.curved[symbol.index] = state
+        self.pressure_states[symbol.index] = state
         return symbol
 
     def rate(self, symbol: Symbol, rate: Expression) -> None:
-        """Set the time derivative of a state, or of a pressure."""
-        state = self.curved.get(symbol.index)
+        """Set the time derivative of a state or a pressure."""
+        state = self.pressure_states.get(symbol.index)
         if state is not None:
             slope = Namespace.exp(-_below(state) / ATMOSPHERIC_PRESSURE)
             symbol, rate = state, where(state >= 0, rate, rate * slope)
@@ -182,7 +181,7 @@ class Compiled:
     """Guards of all switches at many samples: y is (states, samples)."""
     guard_rates: Callable[[Array, Array, tuple[Array, ...]], list[Array]]
     """Rates of the guards."""
-    told: Callable[[Array, Array, tuple[Array, ...]], list[Array]]
+    signal_values: Callable[[Array, Array, tuple[Array, ...]], list[Array]]
     """The signals, at many samples."""
     initial: Array
     tolerances: Array
@@ -214,7 +213,9 @@ class Compiled:
                 "guards", "t, y, m", many, [switch.guard for switch in system.switches]
             ),
             guard_rates=vectorised("guard_rates", "t, y, m", many, _guard_rates(system)),
-            told=vectorised("told", "t, y, m", many, [signal.value for signal in system.signals]),
+            signal_values=vectorised(
+                "signals", "t, y, m", many, [signal.value for signal in system.signals]
+            ),
             initial=np.array([state.initial for state in system.states]),
             tolerances=np.array([state.tolerance for state in system.states]),
             instants=tuple(instant.time for instant in system.instants),
@@ -224,7 +225,7 @@ class Compiled:
     def signals(self, t: Array, y: Array, m: Sequence[Array]) -> dict[str, Array]:
         """Every signal at samples: y (states, samples), a row of m for every flag."""
         with np.errstate(all="ignore"):
-            values = self.told(t, y, tuple(m))
+            values = self.signal_values(t, y, tuple(m))
         return {
             signal.name: np.broadcast_to(np.asarray(value, dtype=float), np.shape(t)).copy()
             for signal, value in zip(self.system.signals, values, strict=True)

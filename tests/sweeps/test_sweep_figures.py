@@ -192,7 +192,7 @@ def test_the_pareto_line_is_of_every_feasible_design(knee, monkeypatch):
 @settings(max_examples=60, deadline=None)
 def test_what_is_kept_is_every_kth_row(sizes):
     """Whatever the chunks, the kept rows are those of numbers 0, k, 2k, ... and not too few."""
-    pool, most, total = Pool(), swept.MOST_POINTS, 0
+    pool, most, total = Pool(), result.MOST_POINTS, 0
     swept.MOST_POINTS = 10
     try:
         for size in sizes:

@@ -23,11 +23,11 @@ from ...models.fluid import ATMOSPHERIC_PRESSURE
 from ...models.valve import edge_coefficient, viscosity_corrected
 from ...studies.plant import Oil, ValveData
 from ..system import System
-from . import chambers, valve
+from . import valve
 from .circuit import Circuit
 
 DEEPEST = -12.0
-"""Travel into a stop, relative to half the dead volume's length, that leaves 6e-6 of it (a
+"""Travel into a stop, relative to half the dead volume's length, at which 6e-6 of it remains (a
 choice)."""
 FLOOR = 1e-6
 """Lower limit of the absolute pressure in the laws of oil and air [Pa], against rounding only."""
@@ -98,7 +98,7 @@ def _content(
     inflow: Expression,
     scale: float,
 ) -> None:
-    """Count mass and energy of a volume; inflow carries its elastic energy."""
+    """Add mass and energy of a volume to the audit; the inflow carries its elastic energy."""
     system, audit = circuit.system, circuit.audit
     mass = system.integral(f"inflow of {name}", law.ratio * inflow, scale=1e-3 * scale)
     audit.mass.append((name, law.ratio * volume, mass))
@@ -108,10 +108,10 @@ def _content(
 
 
 def _left(travel: Expression, film: float) -> tuple[Expression, Expression]:
-    """Length of the oil relative to that of the dead volume, and its slope over the travel.
+    """Length of the oil column less that of the dead volume, and its slope over the travel.
 
-    Equal to the travel, also beyond the stop. Once half the dead volume is used up, the piston
-    touches the end over a growing area, and the remaining volume shrinks.
+    It equals the travel, also beyond the stop. Once half the dead volume is used up, the piston
+    touches the end over a growing area, so the remaining volume shrinks more slowly.
     """
     half = 0.5 * film
     depth = clip((travel + half) / half, DEEPEST, 0.0)
@@ -138,7 +138,7 @@ def cylinder(
     flexibility: float,
     suffix: str = "",
 ) -> Expression:
-    """Both chambers of a cylinder, coupled by walls and the compliance of the rod; their force [N].
+    """Add both chambers of a cylinder, coupled by walls and rod; return their force [N].
 
     V_A = A_A x + V_0A + W_AA p_A + W_AB p_B, V_B = A_B (s - x) + V_0B + W_BB p_B + W_AB p_A, W(x)
     of the walls plus f a a^T of rod and mount with a = (A_A, -A_B). The force on the piston is a^T
@@ -160,10 +160,8 @@ def cylinder(
     law_a, law_b = oil_at(oil, pressure_a), oil_at(oil, pressure_b)
     c_a, c_b = v_a / law_a.modulus + w_a, v_b / law_b.modulus + w_b
     net_a, net_b = inflow_a - swept_a * speed, inflow_b - swept_b * speed
-    is_state_a, is_state_b = (
-        isinstance(pressure_a, Symbol),
-        isinstance(pressure_b, Symbol),
-    )
+    is_state_a = isinstance(pressure_a, Symbol)
+    is_state_b = isinstance(pressure_b, Symbol)
     det = c_a * c_b - (w_ab * w_ab if is_state_a and is_state_b else 0.0)
     rate_a = (c_b * net_a - (w_ab * net_b if is_state_b else 0.0)) / det if is_state_a else 0.0
     rate_b = (c_a * net_b - (w_ab * net_a if is_state_a else 0.0)) / det if is_state_b else 0.0
@@ -177,12 +175,12 @@ def cylinder(
             circuit.energy_port(
                 "held ports", pressure * demand, state=f"held work {name}", into=True
             )
-    if is_state_a:
-        scale = area_a * stroke + dead_a
-        _content(circuit, f"chamber A{suffix}", law_a, v_a, inflow_a, scale)
-    if is_state_b:
-        scale = area_b * stroke + dead_b
-        _content(circuit, f"chamber B{suffix}", law_b, v_b, inflow_b, scale)
+    for name, is_state, law, volume, inflow, scale in (
+        ("A", is_state_a, law_a, v_a, inflow_a, area_a * stroke + dead_a),
+        ("B", is_state_b, law_b, v_b, inflow_b, area_b * stroke + dead_b),
+    ):
+        if is_state:
+            _content(circuit, f"chamber {name}{suffix}", law, volume, inflow, scale)
     energy = 0.5 * (
         w_a * pressure_a * pressure_a
         + w_b * pressure_b * pressure_b
@@ -198,7 +196,7 @@ def cylinder(
 
 
 def dead_volume(circuit: Circuit, volume: float, area: float, chamber: str) -> float:
-    """Dead volume of a chamber, at least a short length of it."""
+    """Dead volume of a chamber, at least `LEAST_DEAD` times its area."""
     least = LEAST_DEAD * area
     if volume >= least:
         return volume
@@ -235,8 +233,8 @@ def push(circuit: Circuit, stated: LoadCylinder, *, position: Symbol, speed: Sym
     circuit.energy_port(
         "supply of the load cylinder", supply_power, state=f"{PREFIX}supply work", into=True
     )
-    dead = chambers.dead_volume(circuit, stated.dead_volume, area, "load cylinder")
-    force_on_rod = chambers.cylinder(
+    dead = dead_volume(circuit, stated.dead_volume, area, "load cylinder")
+    force_on_rod = cylinder(
         circuit,
         pressure_a=a,
         pressure_b=b,
@@ -262,7 +260,7 @@ def push(circuit: Circuit, stated: LoadCylinder, *, position: Symbol, speed: Sym
 
 
 def _data(stated: LoadCylinder, viscosity: float) -> ValveData:
-    """Edges of its valve, with the oil of the design."""
+    """Valve of the load cylinder, with the oil of the design."""
     data = stated.valve
     tank_drop = data.leakage_drop if data.tank_leakage_drop is None else data.tank_leakage_drop
 
@@ -287,8 +285,6 @@ def _data(stated: LoadCylinder, viscosity: float) -> ValveData:
 
 
 SPEED = 1e-8
-
-
 ANGLE = 1e-9
 """Error tolerances of shaft speed [rad/s] and angle [rad]."""
 
@@ -317,7 +313,7 @@ def turn(
     inflow_a: Expression,
     inflow_b: Expression,
 ) -> None:
-    """Pipes, motor and load; a linear circuit omits Coulomb friction."""
+    """Add pipes, motor and load; a linear circuit omits Coulomb friction."""
     system, motor = circuit.system, circuit.scenario.motor
     assert motor is not None
     angle, speed = shaft_states
@@ -376,7 +372,7 @@ class ChamberPort(NamedTuple):
     end: Expression
     """Pressure at the far end, at the valve or reducing valve."""
     lumped: float
-    """Line volume and wall that belong to the chamber."""
+    """Line volume counted with the chamber; `lumped_wall` is its wall compliance."""
     lumped_wall: float
     line: Symbol | None
     outer: Expression | None
@@ -413,65 +409,65 @@ def side(circuit: Circuit, name: Chamber, ends: str, start: float) -> ChamberPor
 
 
 def connect(
-    circuit: Circuit, chamber_port: ChamberPort, ends: str, feed: Expression, *, end_pressure: float
+    circuit: Circuit, port: ChamberPort, ends: str, feed: Expression, *, end_pressure: float
 ) -> Expression:
     """Flow into the chamber; `feed` and `end_pressure` are flow and pressure at the far end."""
-    feed = FEEDS[ends](circuit, chamber_port, feed, end_pressure)
-    if chamber_port.line is not None:
-        feed = _through_line(circuit, chamber_port, chamber_port.line, feed)
-    if chamber_port.outer is not None:
-        return -_through_throttle(circuit, chamber_port, chamber_port.outer, feed)
+    feed = FEEDS[ends](circuit, port, feed, end_pressure)
+    if port.line is not None:
+        feed = _through_line(circuit, port, port.line, feed)
+    if port.outer is not None:
+        return -_through_throttle(circuit, port, port.outer, feed)
     return feed
 
 
 def _through_line(
-    circuit: Circuit, chamber_port: ChamberPort, flow: Symbol, feed: Expression
+    circuit: Circuit, port: ChamberPort, flow: Symbol, feed: Expression
 ) -> Expression:
     """Flow of the line towards the chamber."""
-    data, word = circuit.plant.lines[chamber_port.name], chamber_port.name.upper()
-    inner = chamber_port.pressure if chamber_port.outer is None else chamber_port.outer
+    data, word = circuit.plant.lines[port.name], port.name.upper()
+    inner = port.pressure if port.outer is None else port.outer
     lost = data.resistance * flow
-    circuit.system.rate(flow, (chamber_port.end - inner - lost) / data.inertance)
-    circuit.energy_port(f"line {word}", lost * flow, state=f"line loss {chamber_port.name}")
+    circuit.system.rate(flow, (port.end - inner - lost) / data.inertance)
+    circuit.energy_port(f"line {word}", lost * flow, state=f"line loss {port.name}")
     motion = 0.5 * data.inertance * flow * flow
     circuit.audit.stored.append((f"oil in motion in line {word}", motion))
-    if isinstance(chamber_port.end, Symbol):
-        _far(circuit, chamber_port, f"far end {word}", chamber_port.end, feed - flow)
+    if isinstance(port.end, Symbol):
+        _far(circuit, port, f"far end {word}", port.end, feed - flow)
     else:
         circuit.energy_port(
-            "held ports", chamber_port.end * flow, state=f"held work {chamber_port.name}", into=True
+            "held ports", port.end * flow, state=f"held work {port.name}", into=True
         )
     return flow
 
 
 def _through_throttle(
-    circuit: Circuit, chamber_port: ChamberPort, outer: Expression, feed: Expression
+    circuit: Circuit, port: ChamberPort, outer: Expression, feed: Expression
 ) -> Expression:
     """Flow of the one-way valve out of the chamber."""
-    word = chamber_port.name.upper()
+    word = port.name.upper()
     assert circuit.plant.throttle is not None
-    drop = chamber_port.pressure - outer
+    drop = port.pressure - outer
     flow = one_way_valve.one_way_flow(pressure_difference=drop, **circuit.plant.throttle)
-    circuit.energy_port(f"throttle {word}", drop * flow, state=f"throttle loss {chamber_port.name}")
+    circuit.energy_port(f"throttle {word}", drop * flow, state=f"throttle loss {port.name}")
     circuit.system.signal(
-        f"flow_throttle_{chamber_port.name}",
+        f"flow_throttle_{port.name}",
         f"flow out of chamber {word}",
         SCENARIOS["flow_value"],
         flow,
     )
     if isinstance(outer, Symbol):
-        _far(circuit, chamber_port, f"behind throttle {word}", outer, feed + flow)
+        _far(circuit, port, f"behind throttle {word}", outer, feed + flow)
     else:
-        circuit.energy_port("held ports", outer * flow, state=f"held work {chamber_port.name}")
+        circuit.energy_port("held ports", outer * flow, state=f"held work {port.name}")
     return flow
 
 
 def _far(
-    circuit: Circuit, chamber_port: ChamberPort, name: str, pressure: Symbol, inflow: Expression
+    circuit: Circuit, port: ChamberPort, name: str, pressure: Symbol, inflow: Expression
 ) -> None:
-    """Volume at the far end: half of the line behind a throttle."""
-    data = circuit.plant.lines[chamber_port.name]
-    share = 0.5 if chamber_port.outer is not None and chamber_port.line is not None else 1.0
+    """Add the volume at the far end, which is half of the line if there is a throttle."""
+    data = circuit.plant.lines[port.name]
+    share = 0.5 if port.outer is not None and port.line is not None else 1.0
     if share * data.far_volume < LEAST_NODE:
         circuit.system.notes.append(f"{name}: volume taken as {LEAST_NODE * 1e6:.2g} ml")
     node(
@@ -484,20 +480,22 @@ def _far(
     )
 
 
-def _reducing(circuit: Circuit, chamber_port: ChamberPort, held: float) -> Expression:
+def _reducing(
+    circuit: Circuit, port: ChamberPort, feed: Expression, end_pressure: float
+) -> Expression:
     """Flow of the reducing valve into the line."""
     system, data = circuit.system, circuit.plant.reducing_valve
     assert data is not None
-    regulated = system.state(f"reducing valve {chamber_port.name}", 0.0, tolerance=FLOW)
-    rate = system.state(f"reducing valve rate {chamber_port.name}", 0.0, tolerance=100 * FLOW)
+    regulated = system.state(f"reducing valve {port.name}", 0.0, tolerance=FLOW)
+    rate = system.state(f"reducing valve rate {port.name}", 0.0, tolerance=100 * FLOW)
     system.rate(regulated, rate)
     system.rate(
         rate,
         supply.reducing_valve_acceleration(
             flow=regulated,
             rate=rate,
-            pressure=chamber_port.end,
-            set_pressure=held,
+            pressure=port.end,
+            set_pressure=end_pressure,
             conductance=data["conductance"],
             natural_frequency=data["natural_frequency"],
             damping_ratio=data["damping_ratio"],
@@ -505,34 +503,28 @@ def _reducing(circuit: Circuit, chamber_port: ChamberPort, held: float) -> Expre
     )
     flow = supply.reducing_valve_flow(
         flow=regulated,
-        pressure=chamber_port.end,
-        set_pressure=held,
+        pressure=port.end,
+        set_pressure=end_pressure,
         largest_flow=REDUCING_FLOW,
         passive_conductance=data["passive_conductance"],
     )
     circuit.energy_port(
-        "held ports", chamber_port.end * flow, state=f"reducing work {chamber_port.name}", into=True
+        "held ports", port.end * flow, state=f"reducing work {port.name}", into=True
     )
     return flow
 
 
 def _from_valve(
-    circuit: Circuit, chamber_port: ChamberPort, feed: Expression, held: float
+    circuit: Circuit, port: ChamberPort, feed: Expression, end_pressure: float
 ) -> Expression:
     """Flow from the valve, or zero."""
     return feed
 
 
 def _no_flow(
-    circuit: Circuit, chamber_port: ChamberPort, feed: Expression, held: float
+    circuit: Circuit, port: ChamberPort, feed: Expression, end_pressure: float
 ) -> Expression:
     return 0.0
-
-
-def _regulated(
-    circuit: Circuit, chamber_port: ChamberPort, feed: Expression, held: float
-) -> Expression:
-    return _reducing(circuit, chamber_port, held)
 
 
 FEEDS = per_kind(
@@ -542,7 +534,7 @@ FEEDS = per_kind(
         "closed": _no_flow,
         "blocked": _no_flow,
         "constant_pressure": _from_valve,
-        "reducing_valve": _regulated,
+        "reducing_valve": _reducing,
     },
 )
 """Flow into the line for every kind of end."""

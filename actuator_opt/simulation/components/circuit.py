@@ -24,7 +24,7 @@ from ..system import System
 
 @dataclass(frozen=True, slots=True)
 class _Clock:
-    """The time of a system (`shapes.Clock`)."""
+    """Time of a system for signal shapes (`Clock` of `design.scenario.kinds`)."""
 
     system: System
 
@@ -122,7 +122,7 @@ class Followed(NamedTuple):
     words: str
     quantity: Quantity
     unit: str
-    """Quantity of the loop's gain."""
+    """Unit of the loop's gain."""
     typical: float
     """A typical error, for tolerances (SI)."""
 
@@ -193,7 +193,7 @@ class Circuit:
     measured: Expression = 0.0
     """Measured value of the loop."""
     centre: float = 0.0
-    """Signal that centres the spool [V]."""
+    """Valve signal that centres the spool [V]."""
 
     def scenario_signal(self, parts: Sequence[SignalSegment]) -> Expression:
         """A signal of the scenario over time."""
@@ -202,7 +202,7 @@ class Circuit:
     def energy_port(
         self, name: str, power: Expression, *, state: str = "", into: bool = False
     ) -> None:
-        """Add an energy flow to the balance, out of or `into` the circuit, as integral `state`."""
+        """Add an energy flow, out of or `into` the circuit; `state` names its integral."""
         scale = self.plant.supply_pressure * FLOW
         work = self.system.integral(state or name, power, scale=scale)
         self.audit.flows.append((name, work, into))

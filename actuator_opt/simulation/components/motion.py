@@ -1,6 +1,6 @@
 """Motion of the rod: mass, end stops, cushions, load, joint, external machine, seal friction.
 
-Seal friction in time follows bristles, a smooth Stribeck curve, or is zero.
+Seal friction follows the LuGre law, a smooth Stribeck curve, or is viscous only.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ def move(
     friction: Expression,
     load_cylinder_force: Expression = 0.0,
 ) -> None:
-    """Motion, m a = F_p - F_fr - b v + F_stop + F_cushion - F_L, with its energy balance."""
+    """Add the motion, m a = F_p - F_fr - b v + F_stop + F_cushion - F_L, and its energy flows."""
     system, plant, load = circuit.system, circuit.plant, circuit.scenario.load
 
     def work_on(name: str, force: Expression) -> None:
@@ -89,20 +89,10 @@ def move(
     stop_force = stops(circuit, position, speed)
     cushion_force = cushions(circuit, position, speed)
     start = circuit.start.position
-    load_force = (
-        circuit.scenario_signal(load.force)
-        + load.stiffness * (position - start)
-        + load.damping * speed
-    )
-    total = (
-        pressure_force
-        - friction
-        - shear
-        + stop_force
-        + cushion_force
-        - load_force
-        + load_cylinder_force
-    )
+    force = circuit.scenario_signal(load.force)
+    load_force = force + load.stiffness * (position - start) + load.damping * speed
+    total = pressure_force - friction - shear + stop_force + cushion_force
+    total = total - load_force + load_cylinder_force
     mass: Expression = plant.mass
     circuit.audit.stored.append(("motion", 0.5 * plant.mass * speed * speed))
     work_on("friction of the seals", friction)
@@ -117,9 +107,8 @@ def move(
     if load.drive is not None:
         drive_position = circuit.scenario_signal(load.drive.position) + start
         drive_speed = rate(system, drive_position)
-        drive_force = load.drive.stiffness * (drive_position - position) + load.drive.damping * (
-            drive_speed - speed
-        )
+        drive_force = load.drive.stiffness * (drive_position - position)
+        drive_force = drive_force + load.drive.damping * (drive_speed - speed)
         total, load_force = total + drive_force, load_force - drive_force
         work_on("machine outside", -drive_force)
         system.signal(
@@ -142,7 +131,7 @@ def move(
 
 
 def _joint(circuit: Circuit, position: Symbol, speed: Symbol) -> tuple[Expression, Expression]:
-    """Mass at the rod with the joint's inertia, and the force of joint torque and inertia."""
+    """Mass at the rod including the joint, and the force of the joint's torque and inertia."""
     system, plant = circuit.system, circuit.plant
     joint = plant.joint(position)
     assert joint is not None
@@ -166,7 +155,7 @@ SMOOTHING = 0.05
 
 
 LONE_SPEED = 1e-3
-"""The same where friction does not depend on speed [m/s]."""
+"""Stribeck speed if friction does not depend on speed [m/s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,7 +173,7 @@ class FrictionCurve:
 
 
 def law(plant: Plant, stated: Stated, start: InitialState) -> FrictionCurve:
-    """The design's friction, or the stated one; bristle stiffness at the initial pressures."""
+    """Friction of the design, or of the scenario; bristle stiffness at the initial pressures."""
     seals, pressures = plant.seals, (start.pressure_a, start.pressure_b)
     coulomb, static = seals.coulomb, seals.static
     speed = seals.stribeck_speed

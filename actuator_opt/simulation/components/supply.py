@@ -16,12 +16,13 @@ from .circuit import Circuit
 RATE_BAND = 1e-3
 """Share of the largest flow over which the swash plate stops at its ends (a choice)."""
 AWAKE = 0.1
-"""Share of it from which equilibria are searched (a choice: at an end nothing moves the plate)."""
+"""Initial share of the largest flow in an equilibrium search (a choice: at an end the plate has no
+rate)."""
 
 
 @dataclass(slots=True)
 class SupplyBuilder:
-    """The supply under construction: first its pressures, later the demand."""
+    """Supply under construction: its pressures come first, the flow to the valve later."""
 
     circuit: Circuit
     pressure: Expression
@@ -42,7 +43,7 @@ class SupplyBuilder:
         return cls(circuit, port, unit)
 
     def feed(self, demand: Expression, tank: Expression) -> None:
-        """Close the supply with the flow to the valve; `tank` is the return flow."""
+        """Add the equations of the supply for the flow to the valve; `tank` is the return flow."""
         circuit = self.circuit
         circuit.energy_port(
             "return line", circuit.plant.return_pressure * tank, state="return work"

@@ -100,8 +100,8 @@ _FLOW = SCENARIOS["flow_value"]
 
 
 HOLD_BAND = 1e-3
-"""Share of the full signal over which the integral part stops before the limit (a choice: the
-integral is frozen while the signal is saturated and the error would increase it)."""
+"""Share of the full signal over which the integral part stops before the limit (a choice). The
+integral is frozen while the signal is saturated and the error would increase it."""
 
 
 RATE_TIME = 1e-4
@@ -121,7 +121,7 @@ class Feedback:
 
 
 def inner(circuit: Circuit, valve_signal: Expression, measured: Feedback) -> Expression:
-    """A reference less the inner loops: speed, and changes of the load pressure."""
+    """Valve signal less the inner loops: speed, and changes of the load pressure."""
     system, control = circuit.system, circuit.scenario.control
     if control is None:
         return valve_signal

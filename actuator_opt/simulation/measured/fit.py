@@ -30,6 +30,7 @@ from .parameters import PARAMETERS, Case, FitParameter, entries
 from .record import (
     FEWEST,
     AlignedRecord,
+    ChannelResidual,
     Overlay,
     SimulatedSignal,
     beside,
@@ -40,7 +41,7 @@ from .record import (
 )
 
 MOST: Final = 4000
-"""Maximum samples of a channel in a fit (a choice: denser records are thinned evenly)."""
+"""Maximum number of samples of a channel in a fit (a choice: denser records are thinned)."""
 
 
 FINE, LONGEST = 2, 5e-4
@@ -54,7 +55,7 @@ RELATIVE: Final = 1e-8
 
 STEPS: Final = (1e-3, 0.1)
 """Least and largest slope step relative to a parameter's size (choices: far above integration
-errors, yet local); between them, the step that moves the residuals by their noise."""
+errors, yet local). Between them, the step changes the residuals by their noise."""
 
 
 FIRST: Final = 1e-2
@@ -70,7 +71,7 @@ ASTRAY: Final = 5.0
 
 
 MARGIN: Final = 0.02
-"""Search range about the best trial lag, relative to the simulated time (a choice)."""
+"""Half the search range about the best trial lag, relative to the simulated time (a choice)."""
 
 
 LAGS: Final = 801
@@ -98,13 +99,13 @@ ROUGH, SHARP = 1e-4, 1e-8
 
 
 class RecordFitProblem:
-    """Weighted residuals as a function of the searched values, logarithms for positive parameters.
+    """Weighted residuals as a function of the searched values (logarithms of positive parameters).
 
     Parameters
     ----------
     scenario, plant, records, tuned : of the simulation
     measured : on the scenario's time
-    own : the parameters
+    parameters : searched parameters
     """
 
     def __init__(
@@ -152,7 +153,7 @@ class RecordFitProblem:
         self.failed = FAR * float(np.max(np.abs(self.residuals(self.start))))
 
     def put(self, x: Array) -> Case:
-        """Scenario and plant with fitted values, in the order of the table."""
+        """Scenario and plant with fitted values, applied in the order of `PARAMETERS`."""
         scenario, plant = self.scenario, self.plant
         for name in PARAMETERS:
             if name in self.names:
@@ -219,7 +220,7 @@ class RecordFitProblem:
         return np.stack(columns, axis=1)
 
     def search_slopes(self, x: Array) -> Array:
-        """One-sided differences, with steps that follow the last ones."""
+        """One-sided differences; the next steps follow from these slopes."""
         here, columns = self.residuals(x), []
         for k, step in enumerate(self.steps):
             row = x.copy()
@@ -231,7 +232,7 @@ class RecordFitProblem:
         return slopes
 
     def solve(self) -> Array:
-        """The best values: trial starts, a search, then a precise one.
+        """The best values, from trial starts, a search and a final precise search.
 
         If the model misses the record by far, the search restarts once from the initial values.
         """
@@ -244,7 +245,7 @@ class RecordFitProblem:
         return self._least_squares(x, SHARP)
 
     def _reweighted(self, x: Array) -> Array:
-        """Least squares with each channel weighted by its residual, until the weights settle."""
+        """Least squares with each channel weighted by its residual, until the weights converge."""
         self._weigh(x)
         for _ in range(ROUNDS):
             x = self._least_squares(x, ROUGH)
@@ -303,7 +304,7 @@ class RecordFitProblem:
         return overlap
 
     def _aligned(self, measured: AlignedRecord, signals: Mapping[str, Array]) -> float:
-        """The most likely lag of the first run, from the overlap."""
+        """Most likely lag at the initial values, over the samples that overlap."""
         assert self.lag_index is not None
         time, _ = self._simulated(self.start)
         lags = np.linspace(self.low[self.lag_index], self.high[self.lag_index], LAGS)
@@ -323,7 +324,7 @@ class RecordFitProblem:
         return float(lags[int(np.argmin(np.where(enough, cost, np.inf)))])
 
     def _best_guess(self, x: Array) -> Array:
-        """Improve the starts of positive parameters by trial factors, one after the other."""
+        """Initial values of positive parameters, improved by trial factors one after the other."""
         best, least = x, self._likelihood_cost(x)
         for k, parameter in enumerate(self.parameters):
             for factor in GUESSES if parameter.positive else ():
@@ -334,7 +335,7 @@ class RecordFitProblem:
         return best
 
     def _least_squares(self, x: Array, tolerance: float) -> Array:
-        """Least squares within the range."""
+        """Solution of the least squares within the range."""
         return least_squares.solve(
             self.residuals,
             x,
@@ -375,7 +376,7 @@ def _every(time: Array) -> int:
 
 
 def _thinned(time: Array, values: Array) -> tuple[Array, Array]:
-    """Every n-th sample, within the fit's maximum."""
+    """Every n-th sample, at most `MOST` in total."""
     every = _every(time)
     return time[::every], values[::every]
 
@@ -443,7 +444,7 @@ def _by_time(problem: RecordFitProblem, rows: Array) -> Array:
 
 
 def _bandwidth(moments: Array) -> float:
-    """Correlation length of the moments in samples, from neighbouring values."""
+    """Bandwidth in samples by Andrews' rule, from correlations of neighbouring moments."""
     before, after = moments[:-1], moments[1:]
     power = np.maximum(np.sum(before**2, axis=0), 1e-300)
     rho = np.clip(np.sum(before * after, axis=0) / power, -STEADIEST, STEADIEST)
@@ -543,7 +544,7 @@ class Fit:
     correlations : of the errors of two parameters, by their names
     before, after : the record against the simulation with the first and the fitted values, the
         first with the best lag if a lag is fitted
-    doubts : caveats that the numbers do not show
+    doubts : reasons for doubt that the numbers do not show
     runs, seconds : number of runs, and time taken
     """
 
@@ -559,13 +560,8 @@ class Fit:
 
     @property
     def missed(self) -> tuple[str, ...]:
-        """Channels with residuals above their noise, where the model lacks something."""
-        residuals = self.after.residuals.items()
-        return tuple(
-            name
-            for name, channel in residuals
-            if channel.span and channel.rms > MISFIT * channel.noise
-        )
+        """Channels with residuals above their noise, for which the model is incomplete."""
+        return tuple(name for name, x in self.after.residuals.items() if _is_missed(x))
 
     @property
     def values(self) -> dict[str, float]:
@@ -666,7 +662,7 @@ def _natural(
     """A parameter in its own unit from the searched value.
 
     Bounds apply to the parameter itself, not to its logarithm, as the effect of an air content or a
-    leakage is proportional. None is below zero.
+    leakage is proportional. No bound is below zero.
     """
     x = fitted_parameters.parameters[fit_parameter.name]
     half = x.upper - x.value
@@ -742,11 +738,16 @@ def _inseparable(
         )
 
 
+def _is_missed(residual: ChannelResidual) -> bool:
+    """Whether the residual of a channel that moves exceeds its noise."""
+    return residual.span > 0 and residual.rms > MISFIT * residual.noise
+
+
 def _misfits(after: Overlay, before: Overlay) -> Iterator[str]:
     """Channels with residuals above the noise."""
     misfits = []
     for name, channel in after.residuals.items():
-        if channel.span == 0 or channel.rms <= MISFIT * channel.noise:
+        if not _is_missed(channel):
             continue
         quantity = after.simulation.told[name].quantity
         misfits.append(

@@ -17,12 +17,12 @@ Case: TypeAlias = tuple[Scenario, Plant]
 Put: TypeAlias = Callable[[Scenario, Plant, float], Case]
 
 SMALL = 0.01
-"""A small share of the full signal, or of the supply pressure's force (a choice): start of the
-search where a design states no friction, and accuracy required of an offset."""
+"""A small share of the full signal or of the supply pressure's force (a choice). Initial value of a
+friction that the design does not state, and accuracy needed of an offset."""
 BLEED = 1e-6 / 60 / 1e5
 """Initial leakage for a design without any (a choice): 1 ml/min/bar [m^3/s/Pa]."""
 RISE = 1.5
-"""Initial breakaway over Coulomb friction for a design with equal ones (a choice)."""
+"""Initial ratio of breakaway to Coulomb friction for a design with equal values (a choice)."""
 LATEST = 0.2
 """Largest lag of a record relative to the simulated time (a choice: a manually started logger)."""
 
@@ -39,7 +39,7 @@ class FitParameter:
     positive: bool
     """Whether its logarithm is searched."""
     near: float
-    """Acceptable half width of the bounds, even about 0; for signed parameters."""
+    """Half width of the bounds that is acceptable even about 0, for signed parameters."""
     put: Put
 
 
@@ -72,7 +72,7 @@ def entries(names: Sequence[str], scenario: Scenario, plant: Plant) -> tuple[Fit
 
 
 def _idle(name: str, scenario: Scenario, plant: Plant) -> str | None:
-    """Why a parameter has no effect here, or None."""
+    """Reason why a parameter has no effect here, or None."""
     on_bench, motor = scenario.held_ports is not None, scenario.motor is not None
     if name in VALVE:
         if plant.valve is None:
@@ -97,7 +97,7 @@ def _idle(name: str, scenario: Scenario, plant: Plant) -> str | None:
 
 
 def _even(scenario: Scenario, plant: Plant) -> bool:
-    """Whether friction is independent of speed."""
+    """Whether static friction does not exceed Coulomb friction."""
     friction = scenario.friction
     if friction.coulomb is not None:
         return (friction.static or friction.coulomb) <= friction.coulomb
@@ -342,5 +342,5 @@ PARAMETERS: dict[str, Callable[[Scenario, Plant], FitParameter]] = {
     "dead_volume_b": _dead("b"),
     "load_offset": _offset,
 }
-"""Parameters by name; `lag`, which shifts the record, is separate.  Friction keeps its shape over
+"""Parameters by name, without `lag`, which shifts the record. Friction keeps its shape over
 the pressures: `coulomb` and `static` are its levels at the start."""

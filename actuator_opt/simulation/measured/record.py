@@ -129,7 +129,7 @@ def named(names: Collection[str], all_names: Collection[str]) -> str:
 
 
 def _rising(record: Record) -> Array:
-    """The times of a record, checked."""
+    """The times of a record, checked to increase."""
     time = record.time
     missing = np.flatnonzero(~np.isfinite(time))
     if missing.size:
@@ -149,12 +149,13 @@ ORDERS = (3, 6)
 ROBUST = 1.4826
 """Ratio of standard deviation to median absolute deviation of a normal distribution."""
 APART = 0.02
-"""Offset at the start, as a share of a channel's span, above which it is reported (a choice)."""
+"""Largest offset at the start that is not reported, as a share of a channel's span (a choice)."""
 BEYOND = 5.0
-"""The same in standard deviations of the noise (a choice)."""
+"""Largest offset at the start that is not reported, in standard deviations of the noise (a
+choice)."""
 BESIDE = 2.0
-"""Plausible multiple of stroke or proof pressure in a record (a choice: bar and MPa differ by
-ten)."""
+"""Plausible multiple of stroke or proof pressure in a record (a choice: bar and MPa differ by a
+factor of ten)."""
 STARTS = ("position", "pressure_a", "pressure_b")
 """Signals with an initial value in the scenario."""
 
@@ -168,7 +169,7 @@ class ChannelResidual:
     largest: float
     """Largest |measured - simulated|."""
     time: float
-    """Its time [s]."""
+    """Time of that difference [s]."""
     bias: float
     """Mean difference."""
     span: float
@@ -264,7 +265,7 @@ def inside(
     Raises
     ------
     InputError
-        there are none
+        no signal or too few samples in common
     """
     common = {name: channel for name, channel in measured.channels.items() if name in signals}
     if not common:

@@ -1,12 +1,9 @@
-"""Small simulated experiments that measure the figures of the linear tier, each with its own runs.
+"""Small simulated experiments that measure the figures of the linear tier, with separate runs.
 
-Amplitudes are small against stroke, signal and pressure, and stated with every figure, as with
-friction all figures depend on them.
-
-A design on a stand: held at a position under a force, for small experiments.
-
-Plant, friction, valve, supply and stops are those of the scenario; excitation and loop closure are
-the experiment's own.
+A stand holds the design at a position under a force. Plant, friction, valve, supply and stops are
+those of the scenario; each experiment has its excitation and its loop. Amplitudes are small against
+stroke, signal and pressure. They are stated with every figure, as friction makes figures depend on
+them.
 """
 
 from __future__ import annotations
@@ -40,7 +37,7 @@ from ..harmonic import dynamic_stiffness_of_record, harmonic_fit
 from ..integrate import integrate
 
 RELATIVE = 1e-7
-"""Relative tolerance of a step for a full-size oscillation; small ones need a smaller one."""
+"""Relative tolerance of a step at full amplitude; it falls with the amplitude."""
 FINEST = 1e-9
 """Least relative tolerance of a step: 0.1 nm beside a position of 100 mm."""
 SETTLED = 3.0
@@ -63,7 +60,7 @@ class RunRecord:
     last: Mapping[str, float]
 
     def within(self, begin: float, end: float = inf) -> RunRecord:
-        """The samples between two times; of a doubled instant the later one."""
+        """The samples between two times; an instant with two samples keeps the later."""
         later = np.append(np.diff(self.time) > 0, True)
         chosen = (self.time >= begin) & (self.time <= end) & later
         signals = {name: values[chosen] for name, values in self.signals.items()}
@@ -72,7 +69,7 @@ class RunRecord:
 
 @dataclass(frozen=True, slots=True)
 class Facts:
-    """Further facts about a record."""
+    """Evidence from a record for the causes of a difference."""
 
     swing: float
     """Amplitude of the position without drift [m]."""
@@ -94,7 +91,7 @@ class Facts:
 
 @dataclass(frozen=True, slots=True)
 class ExperimentResult:
-    """Results of an experiment, None with a reason if it gives none."""
+    """Results of an experiment; a missing result is None, with the reason in `why`."""
 
     values: Mapping[str, float | None]
     how: str
@@ -114,7 +111,7 @@ class Stand:
     gain: float = 0.0
     """Gain of the design's proportional position loop [V/m]; 0 without one."""
     steady_gain: float = 0.0
-    """Gain that brings the loop to rest where the design's own oscillates [V/m]."""
+    """Gain at which the loop comes to rest, even if it oscillates at `gain` [V/m]."""
     bandwidth: float = 1.0
     """Expected bandwidth of the loop, which sets its time to rest [Hz]."""
     scale: float = 1.0
@@ -156,13 +153,13 @@ class Stand:
         force: Sequence[ForceSignal] = (),
         start: Mapping[str, float] | None = None,
     ) -> RunRecord:
-        """One run: closed with a gain, or open with the ports terminated.
+        """A run: closed with a gain, or open with terminated ports.
 
         Parameters
         ----------
         duration, sample_time : [s]
         gain : of a proportional position loop [V/m]; None: no loop
-        ends : what the ports lead to; None: the valve
+        ends : termination of the ports; None: the valve
         signal : of the valve without a loop [V]
         reference : relative to the stand's position
         force : in addition to the balancing one
@@ -267,7 +264,7 @@ class Stand:
         reference: Sequence[PositionSignal] = (),
         force: Sequence[ForceSignal] = (),
     ) -> RunRecord:
-        """A closed-loop run from rest; a new gain is inserted without a jump of the signal."""
+        """A closed-loop run from rest; a shift of the reference keeps the signal from jumping."""
         state = self.rest()
         shift = state["position"] + state["spool"] / gain - self.position
         hold = PositionSignal(shape="constant", value=shift)
@@ -281,7 +278,7 @@ class Stand:
         )
 
     def facts(self, record: RunRecord) -> Facts:
-        """Further facts about a record."""
+        """Evidence from a record for the causes of a difference."""
         t, signals = record.time, record.signals
         position = signals["position"]
         straight = np.polynomial.polynomial.polyfit(t - t[0], position, 1)
@@ -332,7 +329,7 @@ MOST = 16.0
 LASTING = 1e-3
 """Decay per period below which an oscillation counts as sustained (a choice)."""
 FIRST, EARLY, LATE = (0.0, 4.0), (8.0, 12.0), (18.0, 22.0)
-"""Windows after a push, in periods, to compare for growth or decay."""
+"""Windows after a push, in periods, that are compared for growth or decay."""
 UNEVEN = 2.0
 """Ratio of half-period lengths above which the motion is not a decay (a choice)."""
 FADED = 0.01
@@ -344,10 +341,10 @@ RINGING = 20.0
 SHAPED = 0.6
 """Frequency relative to the resonance up to which a force is applied in parts (a choice)."""
 BESIDE = (0.7, 1.0, 1.4)
-"""Factors on a linear crossover among which the nonlinear one is searched."""
+"""Factors on a linear crossover between which the nonlinear crossover is searched."""
 SLIDING = (0.9, 1.0, 1.1)
 STICKING = (0.8, 0.9, 1.0, 1.1, 1.22, 1.35, 1.5)
-"""The same on a resonance; bristles of sticking seals add stiffness to the oil."""
+"""Factors on a resonance; bristles of sticking seals raise it, as they add stiffness."""
 HOW_PHASE = "position over error of the closed loop, at unit gain"
 Loop = Callable[[float], complex]
 """Open loop of the linear tier over frequency [Hz], its gain included."""
@@ -662,15 +659,15 @@ def _extremes(time: Array, values: Array) -> tuple[Array, Array]:
 
 WEAKEST = "weakest position"
 STEADY_STEP = 0.4
-"""Gain relative to the ultimate one that brings an oscillating loop to rest (a choice)."""
+"""Gain relative to the ultimate gain that brings an oscillating loop to rest (a choice)."""
 SLOW = 0.05
-"""Bandwidth relative to the resonance if the loop's is unknown (a choice)."""
+"""Bandwidth relative to the resonance if the bandwidth of the loop is unknown (a choice)."""
 PEAK = 0.5
 """Magnitude above which an open-loop resonance may cause a crossover (a choice)."""
 
 
 class Spot(NamedTuple):
-    """Where a figure of the linear tier is the worst."""
+    """Point at which a figure of the linear tier is worst."""
 
     case: int
     position: float
@@ -698,7 +695,7 @@ class LinearTier:
 
     @classmethod
     def of(cls, subject: PreparedDesign) -> LinearTier:
-        """Build by one evaluation of the models."""
+        """Build from an evaluation of the models."""
         return cls(subject, compute(subject, subject.values()))
 
     def spot(self, row: Requirement) -> Spot:
@@ -841,16 +838,18 @@ class LinearTier:
 
 
 MANY = 9.0
-"""Change above which a factor is clearer than per cent (a choice)."""
+"""Relative change from which a factor is clearer than per cent (a choice)."""
 STILL = 0.01
 """Spool motion, as a share of its opening, that counts as held (a choice)."""
 
 
 def relative_difference(value: float | None, other: float | None) -> float | None:
-    """Relative difference, or None.
+    """Relative difference of a value from another, or None.
 
-    >>> apart(1.5, 2.0), apart(None, 2.0), apart(1.0, 0.0)
-    (-0.25, None, None)
+    >>> relative_difference(1.5, 2.0), relative_difference(None, 2.0)
+    (-0.25, None)
+    >>> relative_difference(1.0, 0.0) is None
+    True
     """
     if value is None or other is None or not isfinite(value) or not isfinite(other) or not other:
         return None
@@ -860,8 +859,8 @@ def relative_difference(value: float | None, other: float | None) -> float | Non
 def relative_change(share: float) -> str:
     """A relative change in per cent.
 
-    >>> percent(0.031), percent(-0.5), percent(19.0), percent(-1.2)
-    ('+3.1 %', '-50 %', 'x 20', 'changes its sign')
+    >>> [relative_change(share) for share in (0.031, -0.5, 19.0, -1.2)]
+    ['+3.1 %', '-50 %', 'x 20', 'changes its sign']
     """
     if share < -1:
         return "changes its sign"
@@ -871,7 +870,7 @@ def relative_change(share: float) -> str:
 
 
 def evidence(facts: Facts | None, cause: str) -> str:
-    """Evidence in a record for a cause: friction, or the size of the oscillation."""
+    """Evidence for a cause, as words: friction, or the size of the oscillation."""
     if facts is None:
         return "no record"
     if cause == "friction":
@@ -896,7 +895,7 @@ def _seals(facts: Facts) -> str:
 
 
 def operating_point(facts: Facts | None, assumed: tuple[float, float]) -> str:
-    """Operating point of the loop, beside the pressures assumed by the linear tier."""
+    """Operating point of a record in words, with the pressures assumed by the linear tier."""
     if facts is None:
         return "no record"
     (a, b), (taken_a, taken_b) = (

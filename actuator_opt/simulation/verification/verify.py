@@ -64,7 +64,7 @@ class VerifiedRequirement:
     stated: float | None
     """Value of the evaluation: the linear tier at its worst."""
     linear: float | None
-    """The same at the position of the experiment, for the direction in which its spool rests."""
+    """Value of the linear tier at the experiment's position and spool direction."""
     value: float | None
     """Value in time."""
     difference: float | None
@@ -74,7 +74,7 @@ class VerifiedRequirement:
     how: str = ""
     """The experiment, with its amplitude."""
     why: str = ""
-    """Cause of the difference; without a value, why it is missing."""
+    """Cause of the difference, or the reason for a missing value."""
     shares: Mapping[str, float] = field(default_factory=dict)
     """Relative change due to friction, amplitude and operating point."""
 
@@ -97,7 +97,7 @@ class Verification(Displayed):
         return all(row.met for row in self.rows)
 
     def to_dict(self) -> dict[str, Any]:
-        """As plain data for JSON, SI; None for what has no finite value."""
+        """As plain data for JSON, SI; None for a value that is not finite."""
         rows = [
             {name: _plain(getattr(row, name)) for name in VerifiedRequirement.__dataclass_fields__}
             for row in self.rows
@@ -130,7 +130,7 @@ def verify(
 
     Parameters
     ----------
-    scenario : what happens; the experiments use its friction, supply, stops and rate limit
+    scenario : inputs over time; the experiments use its friction, supply, stops and rate limit
     subject : the design to verify, such as an optimum
     records : columns of the files that the scenario's signals name
     result : the scenario already simulated with this design
@@ -270,7 +270,7 @@ class _Bench:
         ]
 
     def _impossible(self, metric: str, spot: Spot) -> str:
-        """Why an experiment is impossible; empty if it is possible."""
+        """Reason why an experiment is impossible; empty if it is possible."""
         left_out = self.tier.unsimulated()
         if left_out:
             return left_out
@@ -388,7 +388,7 @@ class _Bench:
         return shares, reasons
 
     def _compared(self, metric: str, spot: Spot) -> str:
-        """Where the linear tier is evaluated, if not where it is worst."""
+        """Words for the point at which the linear tier is compared, if not its worst."""
         stand = self._placed(metric, spot)
         words = f"compared at {1e3 * stand.position:.3g} mm"
         if metric in HELD:
