@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 import pytest
 from report_fixture import overlaps
-from test_finite_elements_step_ring import SECTION, SHAPE, SQUEEZE, seal as step_seal
+from step_ring_case import SECTION, SHAPE, SQUEEZE, seal as step_seal
 from test_report_seal import TEXTS, area, blocks, ink_of, shown
 
 import actuator_opt as ao

@@ -12,7 +12,7 @@ import pytest
 import simulation_report_case as case
 from cli_runner import DESIGNS, run
 from simulation_case import scenario
-from test_report_simulation import boxes_collide
+from simulation_report_case import boxes_collide
 
 import actuator_opt as ao
 from actuator_opt.base.errors import InputError
@@ -227,7 +227,7 @@ def test_every_channel_is_drawn_with_what_is_left_over(count):
     made = [*measured_figures(found)]
     assert [boxes_collide(ink) for ink in made] == [[]] * len(made)
     words = [one[0] for ink in made for one in ink.text_boxes()]
-    assert sum(one.startswith("AlignedRecord less simulated, ") for one in words) == count
+    assert sum(one.startswith("Measured less simulated, ") for one in words) == count
     assert words.count("±2σ of noise") == count
     assert {"Pressure A, bar", "measured", "simulated"} <= set(words)
     assert not [one for one in words if "…" in one]

@@ -193,14 +193,14 @@ def test_the_pareto_line_is_of_every_feasible_design(knee, monkeypatch):
 def test_what_is_kept_is_every_kth_row(sizes):
     """Whatever the chunks, the kept rows are those of numbers 0, k, 2k, ... and not too few."""
     pool, most, total = Pool(), result.MOST_POINTS, 0
-    swept.MOST_POINTS = 10
+    result.MOST_POINTS = 10
     try:
         for size in sizes:
             rows = np.arange(total, total + size, dtype=float)[:, None]
             pool.add(rows[:, 0].astype(int), rows)
             total += size
     finally:
-        swept.MOST_POINTS = most
+        result.MOST_POINTS = most
     assert pool.rows.ravel().tolist() == list(range(0, total, pool.step))
     assert len(pool.rows) <= 10
     assert pool.step == 1 or len(pool.rows) >= 5
