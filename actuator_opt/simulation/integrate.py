@@ -194,19 +194,21 @@ def translate(outputs: Sequence[Any]) -> tuple[dict[str, Any], list[Any]]:
     """
     casadi = library()
     free: dict[str, Any] = {}
-    known: dict[int, Any] = {}
+    translations: dict[int, Any] = {}
 
     def translated(value: Any) -> Any:
-        return known[value.index] if isinstance(value, Symbol) else float(value)
+        return translations[value.index] if isinstance(value, Symbol) else float(value)
 
     for node in needed(outputs):
         if node.op in ("variable", "flag"):
-            known[node.index] = free[node.args[0]] = casadi.SX.sym(node.args[0])
+            translations[node.index] = free[node.args[0]] = casadi.SX.sym(node.args[0])
         elif node.op == "table":
             message = "the method cvodes cannot look up a record"
             raise InputError(Diagnostic(message, "integrate by lsoda, without --fast"))
         else:
-            known[node.index] = _operation(casadi, node.op, [translated(arg) for arg in node.args])
+            translations[node.index] = _operation(
+                casadi, node.op, [translated(arg) for arg in node.args]
+            )
     return free, [translated(output) for output in outputs]
 
 
@@ -488,7 +490,9 @@ def _at_switches(
     if not count:
         return np.empty((0, len(t)))
     flags = m or (False,) * (len(compiled.instants) + count)
-    return np.array([np.broadcast_to(one, t.shape) for one in of_switches(t, states.T, flags)])
+    return np.array(
+        [np.broadcast_to(values, t.shape) for values in of_switches(t, states.T, flags)]
+    )
 
 
 def _segment(
@@ -572,7 +576,7 @@ def _first_change(
             if change is not None:
                 changes.append((int(k), *change, int(switch)))
         if changes:
-            return min(changes, key=lambda one: one[1])
+            return min(changes, key=lambda candidate: candidate[1])
     return None
 
 
@@ -582,14 +586,14 @@ def _suspects(times: Array, margin: Array, slope: Array) -> Array:
     (a, b), (c, d) = (
         (margin[:, :-1], margin[:, 1:]), (slope[:, :-1] * step, slope[:, 1:] * step),
     )  # fmt: skip
-    gone = b <= 0
-    valley = ~gone & (c < 0) & (d > 0)
+    crosses = b <= 0
+    valley = ~crosses & (c < 0) & (d > 0)
     if valley.any():
         for s in np.linspace(0.1, 0.9, 9):
-            here = (1 + 2 * s) * (1 - s) ** 2 * a + s * (1 - s) ** 2 * c
-            here += s * s * (3 - 2 * s) * b + s * s * (s - 1) * d
-            gone = gone | (valley & (here <= 0))
-    return gone
+            guard = (1 + 2 * s) * (1 - s) ** 2 * a + s * (1 - s) ** 2 * c
+            guard += s * s * (3 - 2 * s) * b + s * s * (s - 1) * d
+            crosses = crosses | (valley & (guard <= 0))
+    return crosses
 
 
 def _change_within(
@@ -602,21 +606,21 @@ def _change_within(
     states = run.advance(times, y, m, MOST)
     margin, slope = (margin[switch : switch + 1] for margin in _margins(run, times, states, m))
     for k in np.flatnonzero(_suspects(times, margin, slope)[0]):
-        low, high, here = float(times[k]), float(times[k + 1]), states[k]
+        low, high, start_states = float(times[k]), float(times[k + 1]), states[k]
         if margin[0, k] > 0 >= margin[0, k + 1]:
 
-            def left(t: float, low: float = low, here: Array = here) -> float:
-                y = _state_at(run, low, t, here, m)
-                return float(_margins(run, np.array([t]), y[None], m)[0][switch, 0])
+            def left(moment: float, low: float = low, start_states: Array = start_states) -> float:
+                y = _state_at(run, low, moment, start_states, m)
+                return float(_margins(run, np.array([moment]), y[None], m)[0][switch, 0])
 
             at = high
             if left(high) <= 0:
                 at = float(brentq(left, low, high, xtol=_LOCATED * max(high, 1.0), rtol=1e-14))
-            return at, _state_at(run, low, at, here, m)
+            return at, _state_at(run, low, at, start_states, m)
         if margin[0, k] <= 0 and (slope[0, k] <= 0 or level == LEVELS):
-            return low, here
+            return low, start_states
         if level < LEVELS:
-            change = _change_within(run, times[k : k + 2], here, m, switch, level + 1)
+            change = _change_within(run, times[k : k + 2], start_states, m, switch, level + 1)
             if change is not None:
                 return change
     return None

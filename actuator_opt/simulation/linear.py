@@ -162,7 +162,7 @@ class Linear:
         and for both without a load, the spool is at its centre, which it passes when the load
         drifts. If the valve cannot hold the load, the given states are used.
         """
-        at_rest = {one: 0.0 for one in ("speed", "shaft_speed") if self._known(one)}
+        at_rest = {name: 0.0 for name in ("speed", "shaft_speed") if self._known(name)}
         centre = self.circuit.centre
         guesses = (self.steady(centre + volts, **(at_rest | states)) for volts in self._guesses())
         equilibrium = next((guess for guess in guesses if guess is not None), None)
@@ -351,8 +351,8 @@ def margins(loop: OpenLoop, law: ControllerLaw) -> LoopMargins:
     phase = None
     for k in np.flatnonzero((size[:-1] >= 1) & (size[1:] < 1)):
         share = np.log(size[k]) / np.log(size[k] / size[k + 1])
-        here = response(omega[k : k + 1] * (omega[k + 1] / omega[k]) ** share)[0]
-        phase_here = float(np.angle(-here))
+        value_at_crossover = response(omega[k : k + 1] * (omega[k + 1] / omega[k]) ** share)[0]
+        phase_here = float(np.angle(-value_at_crossover))
         phase = phase_here if phase is None or abs(phase_here) < abs(phase) else phase
     return LoopMargins(gain, phase, stable)
 
@@ -414,14 +414,14 @@ def tune(
     linear = Linear.of(circuit)
     loops, unheld = _loops(linear, scenario, plant, control, loop)
     limit, worst = least(loops)
-    stated = getattr(control, f"{loop}_gain")
+    stated_gain = getattr(control, f"{loop}_gain")
     design = plant.design.control
     notes: tuple[str, ...] = ()
     if previous is not None:
         gains, origin, notes = previous.gains, previous.origin, previous.notes
-    elif stated is not None:
+    elif stated_gain is not None:
         gains = ControllerGains(
-            stated, control.integral_time or inf, control.derivative_time or 0.0
+            stated_gain, control.integral_time or inf, control.derivative_time or 0.0
         )
         origin = "stated"
     elif (
@@ -476,10 +476,10 @@ def _loops(
 
 def _places(parts: Sequence[SignalSegment], start: float, stroke: float) -> list[float]:
     """Start of a position reference, and the end of each of its parts."""
-    places, reached = {start}, start
-    for part in sorted(parts, key=lambda one: one.start or 0.0):
-        reached += steady_value([part])
-        places.add(min(max(reached, 0.0), stroke))
+    places, position = {start}, start
+    for segment in sorted(parts, key=lambda segment: segment.start or 0.0):
+        position += steady_value([segment])
+        places.add(min(max(position, 0.0), stroke))
     return sorted(places)
 
 
@@ -538,13 +538,17 @@ def _gains_by_rule(
 
 def _integral_time(loop: OpenLoop, law: ControllerLaw, shortest: float, period: float) -> float:
     """Least integral time, from `shortest` on, that leaves `MARGIN_SHARE` of the margins."""
-    alone = margins(loop, law)
-    phase = PHASE if alone.phase is None else min(MARGIN_SHARE * alone.phase, PHASE)
+    proportional = margins(loop, law)
+    phase = PHASE if proportional.phase is None else min(MARGIN_SHARE * proportional.phase, PHASE)
     longest = 1e4 * period
     for time in np.geomspace(shortest, max(longest, shortest), 140):
         with_integral = margins(loop, replace(law, integral_time=float(time)))
         phase_kept = with_integral.phase is None or with_integral.phase >= phase
-        if with_integral.stable and with_integral.gain >= MARGIN_SHARE * alone.gain and phase_kept:
+        if (
+            with_integral.stable
+            and with_integral.gain >= MARGIN_SHARE * proportional.gain
+            and phase_kept
+        ):
             return float(time)
     return longest
 

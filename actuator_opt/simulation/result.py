@@ -300,8 +300,10 @@ def servo(scenario: Scenario, time: Array, signals: Mapping[str, Array]) -> Serv
     if loop is None or not steps or not all(SHAPES[part.shape].settles for part in parts):
         return None
     first = min(steps, key=lambda part: part.start)
-    moving = [part for part in parts if SHAPES[part.shape].moves_on]
-    if any(part.start <= first.start < (part.end or 0.0) for part in moving):  # no constant target
+    moving_parts = [part for part in parts if SHAPES[part.shape].moves_on]
+    if any(
+        part.start <= first.start < (part.end or 0.0) for part in moving_parts
+    ):  # no constant target
         return None
     changes = [t for part in parts for t in (part.start, part.end) if t is not None]
     end = min((t for t in changes if t > first.start), default=scenario.duration)

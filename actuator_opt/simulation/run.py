@@ -149,13 +149,13 @@ def _checked_by(
     other = integrate(compiled, duration=scenario.duration, sample_time=step, method=method)
     again = compiled.signals(other.time, other.states, other.flags)
     grid, at = _single_instants(first.time)
-    times, there = _single_instants(other.time)
+    times, other_at = _single_instants(other.time)
     differences, where = {}, {}
     for name in COMPARED:
         if name not in signals:
             continue
         reference = signals[name][at]
-        deviation = np.abs(reference - np.interp(grid, times, again[name][there]))
+        deviation = np.abs(reference - np.interp(grid, times, again[name][other_at]))
         span = float(np.ptp(reference))
         if span <= 1e-9 * max(float(np.max(np.abs(reference))), 1e-12):
             continue
@@ -207,8 +207,8 @@ def _controller_notes(tuned: Tuned | None) -> Iterator[str]:
 
 def _simplifications(scenario: Scenario, actuator: Plant) -> Iterator[str]:
     """Friction and port accumulators that the simulation simplifies."""
-    stated, seals = scenario.friction, actuator.seals
-    if stated.coulomb is None and stated.model != "none" and scenario.motor is None:
+    friction, seals = scenario.friction, actuator.seals
+    if friction.coulomb is None and friction.model != "none" and scenario.motor is None:
         error = max(seals.coulomb.error, seals.static.error)
         if error > WARN_PLANE:
             yield f"the fit of friction over the pressures is within {100 * error:.1f} %"
@@ -248,8 +248,10 @@ def _limits(scenario: Scenario, actuator: Plant, signals: Mapping[str, Array]) -
 def _coarse_samples(step: float, signals: Mapping[str, Array]) -> Iterator[str]:
     """Sample times that may miss a peak."""
     if step > COARSE and "pressure_a" in signals:
-        apart = f"{1e3 * step:.3g} ms apart"
-        yield f"peaks and step results are taken from samples, {apart}: state a shorter sample_time"
+        yield (
+            f"peaks and step results are taken from samples, {1e3 * step:.3g} ms apart: "
+            "state a shorter sample_time"
+        )
 
 
 def _pump_not_in_equilibrium(scenario: Scenario, actuator: Plant) -> Iterator[str]:

@@ -191,8 +191,8 @@ def _results(base: Simulation, requested: Sequence[str] | None) -> dict[str, flo
         if name not in RESULTS:
             raise InputError(Diagnostic(f"{name}: no such result", remedy(name, RESULTS)))
     names = RESULTS if requested is None else requested
-    known = {name: base.values.get(name) for name in names}
-    return {name: value for name, value in known.items() if value is not None}
+    values = {name: base.values.get(name) for name in names}
+    return {name: value for name, value in values.items() if value is not None}
 
 
 @dataclass(frozen=True, slots=True)
@@ -240,8 +240,8 @@ class _Bench:
         if names is not None:
             yield from (self._target(name) for name in names)
             return
-        known = paths.numbers(self.subject.design)
-        yield from (self._target(name) for name in DESIGN if name in known)
+        numbers = paths.numbers(self.subject.design)
+        yield from (self._target(name) for name in DESIGN if name in numbers)
         for loc, _, value in leaves(self.scenario, Scenario):
             stated = _stated(self.scenario, loc)
             if number_of(value) is None or loc[0] in _APART or loc[-1] in _TIMES or not stated:
@@ -288,7 +288,7 @@ class _Bench:
         """Change of the results per unit of a parameter, where both sides have them."""
         units = step / 0.01
         high, low = (
-            self._values(target, target.value + way * units * target.amount) for way in (1, -1)
+            self._values(target, target.value + sign * units * target.amount) for sign in (1, -1)
         )
         slopes: dict[str, _Slope] = {}
         for name, value in reference.items():
@@ -311,10 +311,10 @@ class _Bench:
             new = Fraction(value) if isinstance(old, Fraction) else value
             design = with_values(subject.design, {target.path: new}, metrics=subject.quantities)
             subject = prepare(design, subject.materials, subject.plugins)
-        own = plant(subject)
+        actuator = plant(subject)
         gains_kept = not target.path.startswith("control.")
-        tuned = self.tuned if gains_kept else tune(scenario, own, self.records)
-        return run(scenario, own, self.records, tuned).values
+        tuned = self.tuned if gains_kept else tune(scenario, actuator, self.records)
+        return run(scenario, actuator, self.records, tuned).values
 
 
 def _least(name: str, step: float) -> float:
@@ -344,10 +344,10 @@ def _absolute(quantity: Quantity) -> bool:
 
 def _put(node: Any, loc: Loc, value: float) -> Any:
     """A section with another number at a location."""
-    key, rest = loc[0], loc[1:]
+    key, remaining_path = loc[0], loc[1:]
     old = child(node, key)
-    new: Any = _put(old, rest, value) if rest else value
-    if not rest and isinstance(old, Fraction):
+    new: Any = _put(old, remaining_path, value) if remaining_path else value
+    if not remaining_path and isinstance(old, Fraction):
         new = Fraction(value)
     if isinstance(node, tuple):
         return tuple(new if k == key else item for k, item in enumerate(node))

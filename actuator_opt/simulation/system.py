@@ -131,11 +131,11 @@ class System:
         """A flag that is true after an instant; the integration restarts there."""
         if time <= 0:
             return True
-        known = next((instant for instant in self.instants if instant.time == time), None)
-        if known is None:
-            known = Instant(f"m_{len(self.instants)}", time)
-            self.instants.append(known)
-        return self.graph.flag(known.flag)
+        existing = next((instant for instant in self.instants if instant.time == time), None)
+        if existing is None:
+            existing = Instant(f"m_{len(self.instants)}", time)
+            self.instants.append(existing)
+        return self.graph.flag(existing.flag)
 
     def switch(self, name: str, guard: Expression) -> Symbol:
         """A flag that is true while the guard is positive; its changes are located in time."""

@@ -111,10 +111,10 @@ class Study:
     def __getstate__(self) -> dict[str, object]:
         return self.__dict__ | {"_screens": {}}
 
-    def chunk(self, first: int, count: int, some: Array | None = None) -> Chunk:
-        """Return the rows of consecutive points, or only of those numbered in `some`."""
+    def chunk(self, first: int, count: int, places: Array | None = None) -> Chunk:
+        """Return the rows of consecutive points, or only of those numbered in `places`."""
         points = self.plan.points(first, count)
-        return self.evaluated(first, points if some is None else points.some(some))
+        return self.evaluated(first, points if places is None else points.some(places))
 
     def evaluated(self, first: int, points: SweepPoints, keep_best: int | None = None) -> Chunk:
         """Return the rows of points; with `keep_best`, stop after that many valid best designs."""
@@ -262,8 +262,8 @@ class Study:
     def _at(self, points: SweepPoints, k: int) -> dict[str, float | str]:
         paths = [axis.path for axis in self.plan.numeric]
         numbers = dict(zip(paths, map(float, points.numbers[:, k]), strict=True))
-        found: dict[str, float | str] = {**numbers, **self.plan.texts(int(points.variant[k]))}
-        return {axis.path: found[axis.path] for axis in self.plan.axes}
+        values: dict[str, float | str] = {**numbers, **self.plan.texts(int(points.variant[k]))}
+        return {axis.path: values[axis.path] for axis in self.plan.axes}
 
     @property
     def hash(self) -> str:

@@ -78,8 +78,8 @@ class Designs:
         """Return the design with other values; raises `InputError`."""
         if not values:
             return self.design
-        own = with_own(self.plugins)
-        return with_values(self.design, dict(values), metrics=own)
+        metrics = with_own(self.plugins)
+        return with_values(self.design, dict(values), metrics=metrics)
 
     def made(self, values: Mapping[str, float | str]) -> PreparedDesign:
         """Return the prepared design with other values."""
@@ -160,17 +160,17 @@ class Designs:
     def alike(self, points: SweepPoints) -> Iterator[tuple[Array, int, dict[str, float]]]:
         """Yield points by prepared design: places, combination of texts, values set apart."""
         paths = [axis.path for axis in self.plan.numeric]
-        apart = [k for k, path in enumerate(paths) if path in self.apart]
-        if not apart and self.plan.variants == 1:
+        separate_axes = [k for k, path in enumerate(paths) if path in self.apart]
+        if not separate_axes and self.plan.variants == 1:
             yield np.arange(len(points.variant)), 0, {}
             return
-        keys = np.vstack([points.variant.astype(float), points.numbers[apart]])
+        keys = np.vstack([points.variant.astype(float), points.numbers[separate_axes]])
         unique, which = np.unique(keys, axis=1, return_inverse=True)
         order = np.argsort(which.ravel(), kind="stable")
         starts = np.searchsorted(which.ravel()[order], np.arange(unique.shape[1]))
         for number, indices in enumerate(np.split(order, starts[1:])):
             variant, *set_apart = unique[:, number]
-            fixed = {paths[k]: float(x) for k, x in zip(apart, set_apart, strict=True)}
+            fixed = {paths[k]: float(x) for k, x in zip(separate_axes, set_apart, strict=True)}
             yield indices, int(variant), fixed
 
     def groups(

@@ -224,8 +224,8 @@ def _evaluated(
 
 def _hidden(study: Study) -> tuple[str, ...]:
     """Return the parts whose outline does not follow their varied numbers."""
-    moved = any(axis.path.startswith("rod.fitting.") for axis in study.plan.axes)
-    return ("rod.fitting",) if moved else ()
+    fitting_varies = any(axis.path.startswith("rod.fitting.") for axis in study.plan.axes)
+    return ("rod.fitting",) if fitting_varies else ()
 
 
 def _variants(stored: StoredRows, path: Path) -> tuple[dict[str, str], ...]:
@@ -330,6 +330,6 @@ def _text_numbers(
                 text_numbers[row] = last = number
                 break
         else:
-            message = "holds rows whose texts are not in its list"
+            message = "contains rows with texts that the study does not list"
             raise InputError(Diagnostic(message, "run the sweep again with --store", str(path)))
     return text_numbers

@@ -54,11 +54,13 @@ def front(first: Array, second: Array) -> Array:
     points the first stays.
     """
     order = np.lexsort((second, first))
-    known = order[np.isfinite(first[order]) & np.isfinite(second[order])]
-    falls = second[known]
-    least = np.minimum.accumulate(np.concatenate([[np.inf], falls[:-1]])) if len(falls) else falls
-    kept: Array = known[falls < least]
-    return kept
+    finite = order[np.isfinite(first[order]) & np.isfinite(second[order])]
+    values = second[finite]
+    least = (
+        np.minimum.accumulate(np.concatenate([[np.inf], values[:-1]])) if len(values) else values
+    )
+    non_dominated: Array = finite[values < least]
+    return non_dominated
 
 
 @dataclass

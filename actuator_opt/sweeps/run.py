@@ -114,9 +114,9 @@ class MissingRows(NamedTuple):
 def missing_rows(base: Database, study: Study, first: int, count: int) -> MissingRows:
     """Return the keys of a chunk whose rows are missing or damaged."""
     keys = study.keys(first, count)
-    missing, damaged = base.missing(keys)
-    some = None if len(missing) == len(keys) else np.array(missing, dtype=np.intp)
-    return MissingRows(first, [keys[k] for k in missing], some, damaged)
+    indices, damaged = base.missing(keys)
+    some = None if len(indices) == len(keys) else np.array(indices, dtype=np.intp)
+    return MissingRows(first, [keys[k] for k in indices], some, damaged)
 
 
 def stored_rows(base: Database, study: Study, first: int, count: int) -> tuple[StoredNumbers, int]:
@@ -259,8 +259,8 @@ def swept_again(
         base = Database(reader.connection, number, study.hash, len(study.columns), store)
         size = _chunk_size(study)
         for first in range(0, study.plan.count, size):
-            rows, missing = stored_rows(base, study, first, size)
-            if missing:
+            rows, missing_count = stored_rows(base, study, first, size)
+            if missing_count:
                 message = f"study {number} lacks rows of this sweep, or holds damaged ones"
                 remedy = "run the sweep again with --store to compute them"
                 raise refused(store, message, remedy)

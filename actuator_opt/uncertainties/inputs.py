@@ -110,11 +110,11 @@ def read_by_models(subject: PreparedDesign) -> set[str]:
 # ---- what the file states ----
 
 
-def _stated(subject: PreparedDesign, path: str, entry: dict[str, Any], read: bool) -> Input:
+def _stated(subject: PreparedDesign, path: str, entry: dict[str, Any], is_read: bool) -> Input:
     quantity = quantity_of(path, subject.design)
     place = f"uncertainty.{path}.distribution"
     value = subject.numbers.get(path, 1.0 if path.endswith(_FACTOR) else None)
-    if value is None or not read:
+    if value is None or not is_read:
         message = "no model of this design reads this value, so its uncertainty has no effect"
         raise InputError(Diagnostic(message, "remove the entry", path=place))
     message, remedy = misfit(entry["distribution"], entry, value, quantity)
@@ -149,11 +149,11 @@ def _library(subject: PreparedDesign) -> Iterator[Input]:
                 yield from _property(subject, f"materials.{name}.{key}", entry, name)
     for place in ("piston", "rod"):
         for tail, element in getattr(subject.design.seals, place).elements().items():
-            known = subject.materials[element.compound].properties
+            properties = subject.materials[element.compound].properties
             for key in OWN:
                 path = f"seals.{place}.{tail}{key}"
-                if path in subject.numbers and key in known:
-                    yield from _property(subject, path, known[key], element.compound)
+                if path in subject.numbers and key in properties:
+                    yield from _property(subject, path, properties[key], element.compound)
     yield from _moduli(subject)
 
 

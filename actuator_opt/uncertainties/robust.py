@@ -326,7 +326,7 @@ class _RobustSearch:
         if self.ordinary.choices is not None:
             remarks = "; choices come from the optimum without reserves: try others with --set"
         if outcome.left_out:
-            remarks += f"; not covered, as missed anyway: {', '.join(outcome.left_out)}"
+            remarks += f"; not covered, as the optimum without reserves misses them: {', '.join(outcome.left_out)}"
         if self.infeasible:
             return (
                 f"{_no_design_meets(optimisation)} the reserves needed for a yield of"

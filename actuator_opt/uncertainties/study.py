@@ -175,13 +175,13 @@ def draw(
     for block in range(blocks):
         source = (seed, 2 + stream, block)
         for points in _points(size, per_block, source, blocks > 1):
-            drawn = model.at(points)
-            met = drawn.met
+            draws = model.at(points)
+            met = draws.met
             joint = np.stack([met[model.own].all(axis=0), met.all(axis=0)])
             hits[:, block] += np.concatenate([met, joint]).sum(axis=1)
             space = keep - count_drawn
             if space > 0:
-                stored.append((drawn.values[:, :space], drawn.margins[:, :space]))
+                stored.append((draws.values[:, :space], draws.margins[:, :space]))
             count_drawn += points.shape[1]
             tell("draws", count_drawn / (per_block * blocks))
     values, margins = (np.concatenate(part, axis=1) for part in zip(*stored, strict=True))
@@ -199,13 +199,11 @@ def _points(size: int, count: int, seed: tuple[int, ...], scrambled: bool) -> It
 
 
 def _limits(
-    model: UncertainModel, rates: list[Rate], kept: StoredDraws, nominal: Vector
+    model: UncertainModel, rates: list[Rate], stored: StoredDraws, nominal: Vector
 ) -> tuple[LimitYield, ...]:
     limit_yields = []
     numbers = model.subject.values()
     for row, limit in enumerate(model.limits):
-        drawn = kept.margins[row]
-        margins = [number(float(x)) for x in quantiles(drawn)]
         limit_yields.append(
             LimitYield(
                 name=limit.name,
@@ -215,15 +213,15 @@ def _limits(
                 required=bool(model.own[row]),
                 margin=number(float(nominal[row])),
                 rate=rates[row],
-                margins=tuple(margins),
+                margins=tuple(number(float(x)) for x in quantiles(stored.margins[row])),
             )
         )
     return tuple(limit_yields)
 
 
-def quantiles(drawn: Vector) -> Vector:
+def quantiles(margins: Vector) -> Vector:
     """Return the margins at `POINTS`; a draw without a value counts as the least."""
-    ordered = np.where(np.isnan(drawn), -np.inf, drawn)
+    ordered = np.where(np.isnan(margins), -np.inf, margins)
     return np.quantile(ordered, POINTS, method="inverted_cdf")
 
 

@@ -60,11 +60,11 @@ def oil_at(oil: Oil, pressure: Expression) -> Volumes:
         pressure=limited, content=oil.cavity, polytropic_index=oil.polytropic_index
     )
     filled = (1 + oil.air_content) / mixed.ratio
-    whole = filled + opening
+    total = filled + opening
     return Volumes(
-        (1 + oil.air_content) / whole,
-        whole / (filled / mixed.modulus + falling),
-        (mixed.energy * filled + work) / whole,
+        (1 + oil.air_content) / total,
+        total / (filled / mixed.modulus + falling),
+        (mixed.energy * filled + work) / total,
     )
 
 
@@ -79,14 +79,18 @@ def node(
 ) -> None:
     """Add a rigid volume with an elastic wall; its pressure follows the net inflow."""
     law = oil_at(circuit.plant.oil, pressure)
-    whole = volume + wall * pressure
+    total_volume = volume + wall * pressure
     circuit.system.rate(
         pressure,
         chamber.pressure_rate(
-            flow=inflow, volume=whole, volume_rate=0.0, bulk_modulus=law.modulus, compliance=wall
+            flow=inflow,
+            volume=total_volume,
+            volume_rate=0.0,
+            bulk_modulus=law.modulus,
+            compliance=wall,
         ),
     )
-    _content(circuit, name, law, whole, inflow, volume)
+    _content(circuit, name, law, total_volume, inflow, volume)
     circuit.audit.stored.append((f"walls of {name}", 0.5 * wall * pressure * pressure))
 
 
@@ -116,8 +120,8 @@ def _left(travel: Expression, film: float) -> tuple[Expression, Expression]:
     half = 0.5 * film
     depth = clip((travel + half) / half, DEEPEST, 0.0)
     in_stop = travel < -half
-    left = where(in_stop, half * Namespace.expm1(depth) - half, travel)
-    return left, where(in_stop, Namespace.exp(depth), 1.0)
+    length = where(in_stop, half * Namespace.expm1(depth) - half, travel)
+    return length, where(in_stop, Namespace.exp(depth), 1.0)
 
 
 def cylinder(
@@ -145,8 +149,7 @@ def cylinder(
     p + p^T W' p/2, from the work of the walls. A pressure given as a number is prescribed: its port
     supplies the flow for volume, walls and leakage. Deep in a stop x is that of `_left`.
     """
-    system, audit, oil = circuit.system, circuit.audit, circuit.plant.oil
-    beyond = stroke - position
+    oil, beyond = circuit.plant.oil, stroke - position
     w_a = walls.a0 + walls.a1 * position + flexibility * area_a * area_a
     w_b = walls.b0 + walls.b1 * beyond + flexibility * area_b * area_b
     w_ab = walls.c0 + walls.c1 * position - flexibility * area_a * area_b
@@ -160,39 +163,48 @@ def cylinder(
     law_a, law_b = oil_at(oil, pressure_a), oil_at(oil, pressure_b)
     c_a, c_b = v_a / law_a.modulus + w_a, v_b / law_b.modulus + w_b
     net_a, net_b = inflow_a - swept_a * speed, inflow_b - swept_b * speed
-    is_state_a = isinstance(pressure_a, Symbol)
-    is_state_b = isinstance(pressure_b, Symbol)
-    det = c_a * c_b - (w_ab * w_ab if is_state_a and is_state_b else 0.0)
-    rate_a = (c_b * net_a - (w_ab * net_b if is_state_b else 0.0)) / det if is_state_a else 0.0
-    rate_b = (c_a * net_b - (w_ab * net_a if is_state_a else 0.0)) / det if is_state_b else 0.0
-    for name, pressure, is_state, pressure_rate, demand in (
-        ("a", pressure_a, is_state_a, rate_a, w_ab * rate_b - net_a),
-        ("b", pressure_b, is_state_b, rate_b, w_ab * rate_a - net_b),
+    _set_pressures(circuit, (pressure_a, pressure_b), (c_a, c_b), w_ab, (net_a, net_b))
+    for name, pressure, law, volume, inflow, scale in (
+        ("A", pressure_a, law_a, v_a, inflow_a, area_a * stroke + dead_a),
+        ("B", pressure_b, law_b, v_b, inflow_b, area_b * stroke + dead_b),
     ):
-        if is_state:
-            system.rate(pressure, pressure_rate)
-        else:
-            circuit.energy_port(
-                "held ports", pressure * demand, state=f"held work {name}", into=True
-            )
-    for name, is_state, law, volume, inflow, scale in (
-        ("A", is_state_a, law_a, v_a, inflow_a, area_a * stroke + dead_a),
-        ("B", is_state_b, law_b, v_b, inflow_b, area_b * stroke + dead_b),
-    ):
-        if is_state:
+        if isinstance(pressure, Symbol):
             _content(circuit, f"chamber {name}{suffix}", law, volume, inflow, scale)
     energy = 0.5 * (
         w_a * pressure_a * pressure_a
         + w_b * pressure_b * pressure_b
         + 2 * w_ab * pressure_a * pressure_b
     )
-    audit.stored.append((f"walls, rod and mount{suffix}", energy))
+    circuit.audit.stored.append((f"walls, rod and mount{suffix}", energy))
     wall_force = 0.5 * (
         walls.a1 * pressure_a * pressure_a
         - walls.b1 * pressure_b * pressure_b
         + 2 * walls.c1 * pressure_a * pressure_b
     )
     return area_a * free_a * pressure_a - area_b * free_b * pressure_b + wall_force
+
+
+def _set_pressures(
+    circuit: Circuit,
+    pressures: tuple[Expression, Expression],
+    capacities: tuple[Expression, Expression],
+    coupling: Expression,
+    net: tuple[Expression, Expression],
+) -> None:
+    """Set the rates of two coupled pressures; the port of a prescribed pressure supplies flow."""
+    (c_a, c_b), (net_a, net_b) = capacities, net
+    is_state_a, is_state_b = (isinstance(pressure, Symbol) for pressure in pressures)
+    det = c_a * c_b - (coupling * coupling if is_state_a and is_state_b else 0.0)
+    rate_a = (c_b * net_a - (coupling * net_b if is_state_b else 0.0)) / det if is_state_a else 0.0
+    rate_b = (c_a * net_b - (coupling * net_a if is_state_a else 0.0)) / det if is_state_b else 0.0
+    demands = coupling * rate_b - net_a, coupling * rate_a - net_b
+    sides = zip("ab", pressures, (rate_a, rate_b), demands, strict=True)
+    for name, pressure, rate, demand in sides:
+        if isinstance(pressure, Symbol):
+            circuit.system.rate(pressure, rate)
+        else:
+            work = f"held work {name}"
+            circuit.energy_port("held ports", pressure * demand, state=work, into=True)
 
 
 def dead_volume(circuit: Circuit, volume: float, area: float, chamber: str) -> float:
@@ -259,28 +271,32 @@ def push(circuit: Circuit, stated: LoadCylinder, *, position: Symbol, speed: Sym
     return force_on_rod
 
 
-def _data(stated: LoadCylinder, viscosity: float) -> ValveData:
+def _data(load_cylinder: LoadCylinder, viscosity: float) -> ValveData:
     """Valve of the load cylinder, with the oil of the design."""
-    data = stated.valve
-    tank_drop = data.leakage_drop if data.tank_leakage_drop is None else data.tank_leakage_drop
+    valve_data = load_cylinder.valve
+    tank_drop = (
+        valve_data.leakage_drop
+        if valve_data.tank_leakage_drop is None
+        else valve_data.tank_leakage_drop
+    )
 
     def coefficient(flow: float, drop: float) -> float:
         return float(edge_coefficient(flow=flow, pressure_drop=drop))
 
-    rated = coefficient(data.rated_flow, data.rated_drop)
-    if data.rated_viscosity is not None:
+    rated = coefficient(valve_data.rated_flow, valve_data.rated_drop)
+    if valve_data.rated_viscosity is not None:
         corrected = viscosity_corrected(
-            coefficient=rated, rated_viscosity=data.rated_viscosity, viscosity=viscosity
+            coefficient=rated, rated_viscosity=valve_data.rated_viscosity, viscosity=viscosity
         )
         rated = float(corrected)
     return ValveData(
         rated=rated,
-        leakage_supply=coefficient(data.leakage_flow, data.leakage_drop),
-        leakage_tank=coefficient(data.leakage_flow, tank_drop),
-        signal=data.signal,
-        natural_frequency=data.natural_frequency,
-        damping_ratio=data.damping_ratio,
-        offset=data.offset,
+        leakage_supply=coefficient(valve_data.leakage_flow, valve_data.leakage_drop),
+        leakage_tank=coefficient(valve_data.leakage_flow, tank_drop),
+        signal=valve_data.signal,
+        natural_frequency=valve_data.natural_frequency,
+        damping_ratio=valve_data.damping_ratio,
+        offset=valve_data.offset,
     )
 
 
@@ -318,10 +334,10 @@ def turn(
     assert motor is not None
     angle, speed = shaft_states
     machine = motor.machine
-    across = pressure_a - pressure_b
+    difference = pressure_a - pressure_b
     common = {
         "speed": speed,
-        "pressure_difference": across,
+        "pressure_difference": difference,
         "displacement": machine.displacement,
         "dynamic_viscosity": circuit.plant.oil.dynamic_viscosity,
         "setting": machine.setting,
@@ -342,7 +358,9 @@ def turn(
     system.rate(angle, speed)
     system.rate(speed, (torque - load) / motor.inertia)
     circuit.audit.stored.append(("motion", 0.5 * motor.inertia * speed * speed))
-    circuit.energy_port("losses of the motor", across * flow - torque * speed, state="motor loss")
+    circuit.energy_port(
+        "losses of the motor", difference * flow - torque * speed, state="motor loss"
+    )
     circuit.energy_port("load", load * speed, state="work on the load")
     system.signal("shaft_speed", "speed of the shaft", SCENARIOS["shaft_speed_value"], speed)
     system.signal("shaft_angle", "angle of the shaft", SCENARIOS["shaft_angle_value"], angle)
@@ -426,9 +444,9 @@ def _through_line(
     """Flow of the line towards the chamber."""
     data, word = circuit.plant.lines[port.name], port.name.upper()
     inner = port.pressure if port.outer is None else port.outer
-    lost = data.resistance * flow
-    circuit.system.rate(flow, (port.end - inner - lost) / data.inertance)
-    circuit.energy_port(f"line {word}", lost * flow, state=f"line loss {port.name}")
+    drop = data.resistance * flow
+    circuit.system.rate(flow, (port.end - inner - drop) / data.inertance)
+    circuit.energy_port(f"line {word}", drop * flow, state=f"line loss {port.name}")
     motion = 0.5 * data.inertance * flow * flow
     circuit.audit.stored.append((f"oil in motion in line {word}", motion))
     if isinstance(port.end, Symbol):

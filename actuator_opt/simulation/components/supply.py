@@ -79,18 +79,18 @@ class SupplyBuilder:
         return flow
 
     def _pumped(self, demand: Expression) -> None:
-        circuit, stated = self.circuit, self.circuit.scenario.supply
-        assert stated.volume is not None
-        delivered = DELIVERIES[stated.type](self)
+        circuit, unit = self.circuit, self.circuit.scenario.supply
+        assert unit.volume is not None
+        delivered = DELIVERIES[unit.type](self)
         pressure = self.unit
         circuit.energy_port("supply", pressure * delivered, state="supply work", into=True)
         relieved: Expression = 0.0
-        if stated.relief is not None:
+        if unit.relief is not None:
             relieved = supply.relief_flow(
                 pressure_difference=pressure - circuit.plant.return_pressure,
-                cracking_pressure=stated.relief.pressure,
-                override=stated.relief.override,
-                rated_flow=stated.relief.rated_flow,
+                cracking_pressure=unit.relief.pressure,
+                override=unit.relief.override,
+                rated_flow=unit.relief.rated_flow,
             )
             circuit.energy_port("relief valve", pressure * relieved, state="relief loss")
             circuit.system.signal("flow_relief", "flow of the relief valve", _FLOW, relieved)
@@ -98,7 +98,7 @@ class SupplyBuilder:
         circuit.system.signal("flow_pump", "flow of the pump", _FLOW, delivered)
         assert isinstance(pressure, Symbol)
         inflow = delivered - relieved - demand - stored
-        node(circuit, "supply line", pressure, inflow=inflow, volume=stated.volume)
+        node(circuit, "supply line", pressure, inflow=inflow, volume=unit.volume)
 
     def _accumulator(self) -> Expression:
         """Flow into the accumulator on the line."""
@@ -147,10 +147,10 @@ def _fixed_pump(source: SupplyBuilder) -> Expression:
         assert unit.flow is not None
         return unit.flow
     machine = unit.pump
-    across = source.unit - plant.return_pressure
+    difference = source.unit - plant.return_pressure
     common = {
         "speed": machine.shaft_speed,
-        "pressure_difference": across,
+        "pressure_difference": difference,
         "displacement": machine.displacement,
         "dynamic_viscosity": plant.oil.dynamic_viscosity,
         "setting": machine.setting,

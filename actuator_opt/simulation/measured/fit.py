@@ -139,16 +139,16 @@ class RecordFitProblem:
         self.noise = {name: noise(y) for name, (_, y) in measured.channels.items()}
         constant = [name for name, level in self.noise.items() if level == 0]
         self.notes = [f"{name} is constant in the record: not used in the fit" for name in constant]
-        moving = {
+        varying = {
             name: channel for name, channel in measured.channels.items() if name not in constant
         }
-        if not moving:
+        if not varying:
             raise measured.fault("every channel is constant", "fit to a record with motion")
-        self.weights = {name: 1 / self.noise[name] for name in moving}
+        self.weights = {name: 1 / self.noise[name] for name in varying}
         _, signals = self._simulated(self.start)
-        used = self._overlapping(replace(measured, channels=moving), signals)
-        self.used = {name: _thinned(*channel) for name, channel in used.items()}
-        self.notes += _thinning_notes(used, self.used)
+        overlap = self._overlapping(replace(measured, channels=varying), signals)
+        self.used = {name: _thinned(*channel) for name, channel in overlap.items()}
+        self.notes += _thinning_notes(overlap, self.used)
         self.failed = np.inf
         self.failed = FAR * float(np.max(np.abs(self.residuals(self.start))))
 
@@ -221,11 +221,11 @@ class RecordFitProblem:
 
     def search_slopes(self, x: Array) -> Array:
         """One-sided differences; the next steps follow from these slopes."""
-        here, columns = self.residuals(x), []
+        residuals, columns = self.residuals(x), []
         for k, step in enumerate(self.steps):
             row = x.copy()
             row[k] += step if x[k] + step < self.high[k] else -step
-            columns.append((self.residuals(row) - here) / (row[k] - x[k]))
+            columns.append((self.residuals(row) - residuals) / (row[k] - x[k]))
         slopes = np.stack(columns, axis=1)
         size = np.maximum(np.linalg.norm(slopes, axis=0) * self.sizes, 1e-300)
         self.steps = np.clip(1 / size, *STEPS) * self.sizes
@@ -291,11 +291,11 @@ class RecordFitProblem:
         self.start[self.lag_index] = middle
         low, high = middle - MARGIN * duration, middle + MARGIN * duration
         self.low[self.lag_index], self.high[self.lag_index] = low, high
-        whole = inside(measured, signals, duration, middle)
-        ends = [(t >= high) & (t <= duration + low) for t, _ in whole.values()]
+        samples = inside(measured, signals, duration, middle)
+        ends = [(t >= high) & (t <= duration + low) for t, _ in samples.values()]
         overlap = {
             name: (t[inside_run], y[inside_run])
-            for inside_run, (name, (t, y)) in zip(ends, whole.items(), strict=True)
+            for inside_run, (name, (t, y)) in zip(ends, samples.items(), strict=True)
             if np.count_nonzero(inside_run) >= FEWEST
         }
         if not overlap:
@@ -353,18 +353,18 @@ def _scaled(entry: FitParameter, value: float) -> float:
     return float(np.log(value)) if entry.positive else float(value)
 
 
-def _step(apart: float, duration: float) -> float:
+def _step(spacing: float, duration: float) -> float:
     """Time between samples of a run: a whole fraction of the record's, unless too fine."""
-    longest = max(min(apart / FINE, LONGEST), duration / (FINE * MOST))
-    return apart / ceil(apart / longest) if longest < apart else longest
+    longest = max(min(spacing / FINE, LONGEST), duration / (FINE * MOST))
+    return spacing / ceil(spacing / longest) if longest < spacing else longest
 
 
 def _thinning_notes(
-    whole: Mapping[str, tuple[Array, Array]], used: Mapping[str, tuple[Array, Array]]
+    all_samples: Mapping[str, tuple[Array, Array]], used: Mapping[str, tuple[Array, Array]]
 ) -> Iterator[str]:
     """Notes on channels that the fit thins."""
     steps: dict[int, list[str]] = {}
-    for name, (time, _) in whole.items():
+    for name, (time, _) in all_samples.items():
         steps.setdefault(_every(time), []).append(name)
     for step, names in sorted(steps.items()):
         if step > 1:
@@ -377,8 +377,8 @@ def _every(time: Array) -> int:
 
 def _thinned(time: Array, values: Array) -> tuple[Array, Array]:
     """Every n-th sample, at most `MOST` in total."""
-    every = _every(time)
-    return time[::every], values[::every]
+    step = _every(time)
+    return time[::step], values[::step]
 
 
 STEADIEST: Final = 0.97
@@ -632,8 +632,10 @@ def fit(
         x = problem.solve()
     uncertain = bounds(problem, x)
     fitted = {
-        one.name: Fitted(one, _natural(one, uncertain, problem), _edge(problem, x, k))
-        for k, one in enumerate(searched)
+        parameter.name: Fitted(
+            parameter, _natural(parameter, uncertain, problem), _edge(problem, x, k)
+        )
+        for k, parameter in enumerate(searched)
     }
     correlations = _correlations(uncertain)
     new_scenario, new_plant = problem.put(x)

@@ -224,8 +224,10 @@ def _coulomb(scenario: Scenario, plant: Plant) -> FitParameter:
         )
         return s, replace(p, seals=seals)
 
-    stated = scenario.friction.coulomb
-    level = _level(plant.seals.coulomb, scenario, plant) if stated is None else stated
+    scenario_level = scenario.friction.coulomb
+    level = (
+        _level(plant.seals.coulomb, scenario, plant) if scenario_level is None else scenario_level
+    )
     most = _force(plant)
     return _positive(
         "coulomb", SCENARIOS["coulomb_force"], level or SMALL * most, 1e-5 * most, most, put

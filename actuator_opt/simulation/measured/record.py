@@ -131,9 +131,9 @@ def named(names: Collection[str], all_names: Collection[str]) -> str:
 def _rising(record: Record) -> Array:
     """The times of a record, checked to increase."""
     time = record.time
-    missing = np.flatnonzero(~np.isfinite(time))
-    if missing.size:
-        raise record.fault("missing time", "give a time for every sample", int(missing[0]))
+    without_time = np.flatnonzero(~np.isfinite(time))
+    if without_time.size:
+        raise record.fault("missing time", "give a time for every sample", int(without_time[0]))
     falling = np.flatnonzero(np.diff(time) <= 0)
     if falling.size:
         at = int(falling[0]) + 1
@@ -238,22 +238,22 @@ def overlay(simulation: Simulation, measured: AlignedRecord, *, lag: float = 0.0
     """
     time, signals = simulation.time, simulation.signals
     duration = float(time[-1])
-    used = inside(measured, signals, duration, lag)
+    samples = inside(measured, signals, duration, lag)
     residuals = {
         name: residual(t, y, beside(t - lag, y, time, signals[name]))
-        for name, (t, y) in used.items()
+        for name, (t, y) in samples.items()
     }
     notes = [*measured.notes]
     unsimulated = [name for name in measured.channels if name not in signals]
     if unsimulated:
         notes.append(f"not simulated here: {', '.join(unsimulated)}")
-    outside = [name for name in measured.channels if name in signals and name not in used]
+    outside = [name for name in measured.channels if name in signals and name not in samples]
     if outside:
         notes.append(f"no overlap in time: {', '.join(outside)}")
-    notes += _partial_overlaps(used, measured, duration, lag)
-    notes += _coarse_sampling(simulation, used)
-    notes += _initial_values(simulation, used, residuals, lag)
-    notes += _implausible(simulation, used)
+    notes += _partial_overlaps(samples, measured, duration, lag)
+    notes += _coarse_sampling(simulation, samples)
+    notes += _initial_values(simulation, samples, residuals, lag)
+    notes += _implausible(simulation, samples)
     return Overlay(measured, simulation, lag, residuals, tuple(notes))
 
 
@@ -377,11 +377,11 @@ def noise(values: Array) -> float:
 
 
 def _partial_overlaps(
-    used: Mapping[str, tuple[Array, Array]], measured: AlignedRecord, duration: float, lag: float
+    samples: Mapping[str, tuple[Array, Array]], measured: AlignedRecord, duration: float, lag: float
 ) -> Iterator[str]:
     """Channels that cover less or more time than the run."""
     spans: dict[tuple[str, str], list[str]] = {}
-    for name in used:
+    for name in samples:
         time = measured.channels[name][0] - lag
         room = WIDE * float(np.median(np.diff(time)))
         first = 0.0 if abs(time[0]) <= room else float(time[0])
@@ -390,17 +390,17 @@ def _partial_overlaps(
             spans.setdefault((f"{first:.4g}", f"{last:.4g}"), []).append(name)
     for (begin, end), names in spans.items():
         yield (
-            f"{named(names, used)}: measured from {begin} to {end} s, simulated from 0 to "
+            f"{named(names, samples)}: measured from {begin} to {end} s, simulated from 0 to "
             f"{duration:.4g} s: only the overlap is compared"
         )
 
 
 def _coarse_sampling(
-    simulation: Simulation, used: Mapping[str, tuple[Array, Array]]
+    simulation: Simulation, samples: Mapping[str, tuple[Array, Array]]
 ) -> Iterator[str]:
     """Whether the simulation is sampled more coarsely than the record."""
     simulated_step = float(np.median(np.diff(simulation.time)))
-    record_step = min(float(np.median(np.diff(t))) for t, _ in used.values())
+    record_step = min(float(np.median(np.diff(t))) for t, _ in samples.values())
     if simulated_step > WIDE * record_step:
         yield (
             f"the simulation is sampled every {1000.0 * simulated_step:.3g} ms, the record every "
@@ -410,21 +410,21 @@ def _coarse_sampling(
 
 def _initial_values(
     simulation: Simulation,
-    used: Mapping[str, tuple[Array, Array]],
+    samples: Mapping[str, tuple[Array, Array]],
     residuals: Mapping[str, ChannelResidual],
     lag: float,
 ) -> Iterator[str]:
     """Channels whose initial value differs from the scenario's."""
     for name in STARTS:
-        if name not in used:
+        if name not in samples:
             continue
-        t, y = used[name]
+        t, y = samples[name]
         step = float(np.median(np.diff(t)))
         if t[0] - lag > 1.5 * step:
             continue
         initial = float(simulation.signals[name][0])
-        apart = abs(float(y[0]) - initial)
-        if apart > max(APART * residuals[name].span, BEYOND * residuals[name].noise):
+        offset = abs(float(y[0]) - initial)
+        if offset > max(APART * residuals[name].span, BEYOND * residuals[name].noise):
             quantity = simulation.told[name].quantity
             yield (
                 f"{name} starts at {quantity.text(float(y[0]))} in the record, but at "
@@ -432,7 +432,9 @@ def _initial_values(
             )
 
 
-def _implausible(simulation: Simulation, used: Mapping[str, tuple[Array, Array]]) -> Iterator[str]:
+def _implausible(
+    simulation: Simulation, samples: Mapping[str, tuple[Array, Array]]
+) -> Iterator[str]:
     """Positions and pressures outside the plausible range, which suggests a wrong unit or zero."""
     plant = simulation.plant
     for name, low, high, limit_name in (
@@ -440,10 +442,10 @@ def _implausible(simulation: Simulation, used: Mapping[str, tuple[Array, Array]]
         ("pressure_a", -ATMOSPHERIC_PRESSURE, plant.proof_pressure, "the proof pressure"),
         ("pressure_b", -ATMOSPHERIC_PRESSURE, plant.proof_pressure, "the proof pressure"),
     ):
-        if name not in used:
+        if name not in samples:
             continue
         room = BESIDE * (high - low)
-        least, most = float(np.min(used[name][1])), float(np.max(used[name][1]))
+        least, most = float(np.min(samples[name][1])), float(np.max(samples[name][1]))
         if least < low - room or most > high + room:
             text = simulation.told[name].quantity.text
             yield (

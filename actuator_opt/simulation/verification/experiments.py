@@ -191,8 +191,8 @@ class Stand:
         compiled = system.compiled()
         names = [state.name for state in system.states]
         if start is not None:
-            own = dict(zip(names, compiled.initial.tolist(), strict=True))
-            begin = np.array([start.get(name, value) for name, value in own.items()])
+            initial = dict(zip(names, compiled.initial.tolist(), strict=True))
+            begin = np.array([start.get(name, value) for name, value in initial.items()])
             compiled = replace(compiled, initial=begin)
         relative = max(RELATIVE * min(self.scale, 1.0), FINEST)
         trajectory = integrate(
@@ -204,12 +204,12 @@ class Stand:
 
     def _control(self, gain: float, reference: Sequence[PositionSignal]) -> Controller:
         """A proportional position loop, with the rate limit of the scenario."""
-        stated = self.scenario.control
+        control = self.scenario.control
         return Controller(
             position=(*reference, PositionSignal(shape="constant", value=0.0)),
             tuning="stated",
             position_gain=gain,
-            rate_limit=None if stated is None else stated.rate_limit,
+            rate_limit=None if control is None else control.rate_limit,
         )
 
     @property
@@ -443,7 +443,7 @@ def bandwidth(stand: Stand, expected: float, loop: Loop) -> ExperimentResult:
     facts = stand.facts(sines[-1].record)
     why = _no_sine(sines[-1])
     if share is None or why:
-        why = why or f"no -3 dB point within a factor of {MOST:g} of the linear one"
+        why = why or f"no -3 dB point within a factor of {MOST:g} of the linear bandwidth"
         return ExperimentResult({"bandwidth": None}, how, facts, why)
     return ExperimentResult({"bandwidth": expected * exp(share)}, how, facts)
 
@@ -534,17 +534,19 @@ def ultimate_gain(stand: Stand, expected: float, frequency: float) -> Experiment
 
     step, low, high, most = log(1.25), 0.0, 0.0, log(MOST)
     value = growth(0.0)
-    way = 1 if value < 0 else -1
-    while (value < 0) == (way > 0) and abs(high) < most:
-        low, high, step = high, way * min(abs(high) + step, most), 2 * step
+    direction = 1 if value < 0 else -1
+    while (value < 0) == (direction > 0) and abs(high) < most:
+        low, high, step = high, direction * min(abs(high) + step, most), 2 * step
         value = growth(high)
     facts = stand.facts(records[high])
-    if (value < 0) == (way > 0):
-        result = {"ultimate_gain": inf if way > 0 else 0.0}
-        words = "no oscillation up to" if way > 0 else "it oscillates down to 1 over"
-        return ExperimentResult(result, how, facts, f"{words} {MOST:g} times the linear one")
+    if (value < 0) == (direction > 0):
+        result = {"ultimate_gain": inf if direction > 0 else 0.0}
+        why = f"no oscillation up to {MOST:g} times the linear ultimate gain"
+        if direction < 0:
+            why = f"it oscillates even at 1/{MOST:g} of the linear ultimate gain"
+        return ExperimentResult(result, how, facts, why)
     share = float(brentq(growth, low, high, xtol=2 * EXACT))
-    nearest = min(records, key=lambda tried: abs(tried - share))
+    nearest = min(records, key=lambda candidate: abs(candidate - share))
     facts = stand.facts(records[nearest])
     how += f", amplitude {1000.0 * facts.swing:.2g} mm"
     return ExperimentResult({"ultimate_gain": expected * exp(share)}, how, facts)
@@ -650,11 +652,11 @@ def _extremes(time: Array, values: Array) -> tuple[Array, Array]:
     """Times and values of the extremes, by parabolas through three samples."""
     rising = np.diff(values) > 0
     at = np.flatnonzero(rising[1:] != rising[:-1]) + 1
-    left, here, right = values[at - 1], values[at], values[at + 1]
-    bend = left - 2 * here + right
-    offset = np.where(bend != 0, 0.5 * (left - right) / np.where(bend != 0, bend, 1.0), 0.0)
+    before, peak, after = values[at - 1], values[at], values[at + 1]
+    bend = before - 2 * peak + after
+    offset = np.where(bend != 0, 0.5 * (before - after) / np.where(bend != 0, bend, 1.0), 0.0)
     step = time[at + 1] - time[at]
-    return time[at] + offset * step, here - 0.25 * (left - right) * offset
+    return time[at] + offset * step, peak - 0.25 * (before - after) * offset
 
 
 WEAKEST = "weakest position"
@@ -706,8 +708,8 @@ class LinearTier:
         extending: bool | None = None
         parts = [row.case or "", row.place or WEAKEST]
         if place.startswith(("extending, ", "retracting, ")):
-            way, _, place = place.partition(", ")
-            extending = way == "extending"
+            direction, _, place = place.partition(", ")
+            extending = direction == "extending"
         position = self.done.places.get(place, self.done.places[WEAKEST])
         return Spot(case, of_case(position, case), extending, ", ".join(filter(None, parts)))
 
@@ -716,7 +718,9 @@ class LinearTier:
         subject = self.subject
         order = [case, *(k for k in range(len(subject.cases)) if k != case)]
         cases = tuple(subject.design.load_cases[k] for k in order)
-        films = {(p, order.index(k), way): t for (p, k, way), t in subject.films.items()}
+        films = {
+            (p, order.index(k), direction): t for (p, k, direction), t in subject.films.items()
+        }
         design = subject.design.model_copy(update={"load_cases": cases})
         return plant(replace(subject, design=design, films=films))
 
@@ -736,10 +740,10 @@ class LinearTier:
         if actuator.valve is None:
             return stand
         gain = self._gain(spot.case)
-        both = [self.figures(spot.case, spot.position, way) for way in (True, False)]
+        both = [self.figures(spot.case, spot.position, extending) for extending in (True, False)]
         least = min(figures.ultimate_gain for figures in both)
-        known = [figures.bandwidth for figures in both if figures.bandwidth > 0]
-        slow = min(known, default=SLOW * self.resonance(spot.case, spot.position))
+        bandwidths = [figures.bandwidth for figures in both if figures.bandwidth > 0]
+        slow = min(bandwidths, default=SLOW * self.resonance(spot.case, spot.position))
         return stand.with_changes(
             gain=gain, steady_gain=min(gain, STEADY_STEP * least), bandwidth=slow
         )
@@ -903,5 +907,5 @@ def operating_point(facts: Facts | None, assumed: tuple[float, float]) -> str:
     )
     words = f"chambers at {a:.0f} and {b:.0f} bar, linear tier {taken_a:.0f} and {taken_b:.0f}"
     if facts.spool is not None:
-        words += f"; spool about {0.5 * sum(facts.spool):.2g} V"
+        words += f"; spool at about {0.5 * sum(facts.spool):.2g} V"
     return words

@@ -195,15 +195,15 @@ def _notes(scenario: Scenario, any_requirement: bool) -> tuple[str, ...]:
 
 def _left_out(load: ScenarioLoad) -> str:
     """Parts of the scenario's load that the experiments omit."""
-    stated = {
-        "force of the load": any(signal.shape == "record" or signal.value for signal in load.force),
-        "torque on the joint": any(one.shape == "record" or one.value for one in load.torque),
+    parts = {
+        "force of the load": any(part.shape == "record" or part.value for part in load.force),
+        "torque on the joint": any(part.shape == "record" or part.value for part in load.torque),
         "spring": load.stiffness,
         "damper": load.damping,
         "external machine": load.drive is not None,
         "load cylinder": load.cylinder is not None,
     }
-    return ", ".join(name for name, there in stated.items() if there)
+    return ", ".join(name for name, acts in parts.items() if acts)
 
 
 @dataclass(slots=True)
@@ -258,10 +258,10 @@ class _Bench:
         frictionless = self.measured(requirement.metric, spot, frictionless=True).values.get(
             requirement.metric
         )
-        met = _holds(value, requirement.sense, requirement.limit)
+        is_met = _holds(value, requirement.sense, requirement.limit)
         if (
             frictionless is None
-            or not met
+            or not is_met
             or _holds(frictionless, requirement.sense, requirement.limit)
         ):
             return []
@@ -327,9 +327,9 @@ class _Bench:
             frequency = design.load_cases[spot.case].frequency
             assert frequency is not None
             return experiments.dynamic_stiffness(stand, design.ports.end, frequency, resonance)
-        way = self._way(spot, stand)
-        figures = tier.figures(spot.case, at, way)
-        response = tier.response(spot.case, at, way)
+        rests_extending = self._way(spot, stand)
+        figures = tier.figures(spot.case, at, rests_extending)
+        response = tier.response(spot.case, at, rests_extending)
         if name == "bandwidth":
             return experiments.bandwidth(stand, figures.bandwidth or stand.bandwidth, response)
         if name == "phase":
@@ -357,8 +357,8 @@ class _Bench:
         stand = self._placed(metric, spot)
         if metric in HELD:
             return self.tier.held(spot.case, stand.position)[metric]
-        way = self._way(spot, stand)
-        return self.tier.closed(metric, spot.case, stand.position, way)
+        extending = self._way(spot, stand)
+        return self.tier.closed(metric, spot.case, stand.position, extending)
 
     def _reasons(
         self, metric: str, spot: Spot, full: ExperimentResult
@@ -393,8 +393,8 @@ class _Bench:
         words = f"compared at {1e3 * stand.position:.3g} mm"
         if metric in HELD:
             return f"{words}, off the stop"
-        way = "extending" if self._way(spot, stand) else "retracting"
-        return f"{words}, {way}: the spool rests {stand.opening:.2g} V off its centre"
+        direction = "extending" if self._way(spot, stand) else "retracting"
+        return f"{words}, {direction}: the spool rests {stand.opening:.2g} V off its centre"
 
 
 _EXPERIMENTS = {
