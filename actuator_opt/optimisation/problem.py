@@ -251,8 +251,8 @@ class Robust:
     Parameters
     ----------
     target : requested probability
-    rate, lower, upper : of meeting all covered limits, in an independent sample; 95 % bounds
-    samples : draws of that sample
+    rate, lower, upper : probability of meeting all covered limits, with 95 % bounds
+    samples : number of independent draws behind the rate
     converged : whether the reserves converged
     nominal_objective, nominal_rate : of the optimum without reserves
     reserves : extra margin a robust search requires, by limit
@@ -276,7 +276,7 @@ class Robust:
 
     @property
     def reached(self) -> bool:
-        """Whether the independent sample reaches the requested probability."""
+        """Whether the independent draws reach the requested probability."""
         return self.rate >= self.target
 
     def to_dict(self) -> dict[str, Any]:

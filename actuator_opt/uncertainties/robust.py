@@ -326,7 +326,8 @@ class _RobustSearch:
         if self.ordinary.choices is not None:
             remarks = "; choices come from the optimum without reserves: try others with --set"
         if outcome.left_out:
-            remarks += f"; not covered, as the optimum without reserves misses them: {', '.join(outcome.left_out)}"
+            missed = ", ".join(outcome.left_out)
+            remarks += f"; not covered, as the optimum without reserves misses them: {missed}"
         if self.infeasible:
             return (
                 f"{_no_design_meets(optimisation)} the reserves needed for a yield of"
