@@ -146,7 +146,7 @@ class Screen:
         return arrays.where(objective > rounded_up(limit), np.inf, objective)
 
     def scores_at_once(self, numbers: Array, limit: Array) -> Array:
-        """Return `scores`, with every limit evaluated for every design, as a compiler needs it."""
+        """Return `scores` from every limit of every design, as required for compilation."""
         scores = self.bounded_objective(numbers, limit)
         for stage in self.stages:
             for missed in stage.missed(numbers):
