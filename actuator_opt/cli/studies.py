@@ -33,7 +33,7 @@ from .options import (
 Draws = Annotated[
     int,
     typer.Option(
-        "-n", "--samples", metavar="N", help="Number of samples of the yield, 20 to 10 million."
+        "-n", "--samples", metavar="N", help="Number of draws for the yield, 20 to 10 million."
     ),
 ]
 Quasi = Annotated[
@@ -68,7 +68,7 @@ def uncertainty(
     metric: Metrics = None,
     csv: Annotated[
         Path | None,
-        typer.Option("--csv", metavar="FILE", help="Save the samples: inputs, margins, verdicts."),
+        typer.Option("--csv", metavar="FILE", help="Save the draws: inputs, margins, verdicts."),
     ] = None,
     sets: Set = None,
     plugin: PluginFile = None,

@@ -272,9 +272,8 @@ class Robust:
     Parameters
     ----------
     target : requested probability
-    rate, lower, upper : share of an independent sample that meets all covered limits, with 95 %
-        bounds
-    samples : number of draws of that sample
+    rate, lower, upper : probability of meeting all covered limits, with 95 % bounds
+    samples : number of independent draws behind the rate
     converged : whether the reserves converged
     nominal_objective, nominal_rate : of the optimum without reserves
     reserves : extra margin that the robust search requires, by limit
@@ -298,7 +297,7 @@ class Robust:
 
     @property
     def reached(self) -> bool:
-        """Whether the independent sample reaches the requested probability."""
+        """Whether the independent draws reach the requested probability."""
         return self.rate >= self.target
 
     def to_dict(self) -> dict[str, Any]:

@@ -24,21 +24,21 @@ PRESSURES = INPUTS["pressure"]
 
 
 def ends_of(scenario: Scenario, plant: Plant) -> str:
-    """Kind of end of the lines at the ports."""
+    """Kind of the far end of the lines at the ports."""
     if scenario.ends is not None:
         return scenario.ends
     return "valve" if plant.valve is not None else plant.design.ports.end
 
 
 def start_of(scenario: Scenario, plant: Plant, records: Records) -> InitialState:
-    """Position and pressures at the start: a load held by a closed valve."""
-    stated, turned, load = scenario.initial, scenario.motor, scenario.load
-    place = None if stated.position is None else position_at(stated.position, plant.stroke)
+    """Initial position and pressures; by default those at which a closed valve holds the load."""
+    initial, motor_load, load = scenario.initial, scenario.motor, scenario.load
+    place = None if initial.position is None else position_at(initial.position, plant.stroke)
     position = 0.5 * plant.stroke if place is None else float(place)
     areas = plant.area_a, plant.area_b
-    if turned is not None:  # volume per radian and torque, in place of area and force
-        areas = 2 * (turned.machine.setting * turned.machine.displacement / (2 * pi),)
-        force = circuit.at_start(turned.torque, records)
+    if motor_load is not None:  # volume per radian and torque, in place of area and force
+        areas = 2 * (motor_load.machine.setting * motor_load.machine.displacement / (2 * pi),)
+        force = circuit.at_start(motor_load.torque, records)
     else:
         force = circuit.at_start(load.force, records)
         force -= 0.0 if load.cylinder is None else load.cylinder.force
@@ -46,7 +46,7 @@ def start_of(scenario: Scenario, plant: Plant, records: Records) -> InitialState
         if joint is not None:
             torque = circuit.at_start(load.torque, records)
             force += float(linkage.actuator_force(torque=torque, lever_arm=joint[0].lever_arm))
-    held = holding_pressures(
+    pressures = holding_pressures(
         force=force,
         supply_pressure=plant.supply_pressure,
         return_pressure=plant.return_pressure,
@@ -55,8 +55,8 @@ def start_of(scenario: Scenario, plant: Plant, records: Records) -> InitialState
     )
     return InitialState(
         position,
-        float(held[0]) if stated.pressure_a is None else stated.pressure_a,
-        float(held[1]) if stated.pressure_b is None else stated.pressure_b,
+        float(pressures[0]) if initial.pressure_a is None else initial.pressure_a,
+        float(pressures[1]) if initial.pressure_b is None else initial.pressure_b,
     )
 
 
@@ -72,7 +72,7 @@ def assemble(
 
     Parameters
     ----------
-    scenario, plant : what happens, and the actuator
+    scenario, plant : inputs over time, and the actuator
     records : columns of the files that signals name
     gains : of the controller, None without one
     linear : open the loop at a free variable ``u``, without sticking friction
@@ -102,18 +102,18 @@ def _command(circuit: Circuit, measured: Feedback) -> Expression:
     if circuit.linear:
         return inner(circuit, system.graph.variable("u"), measured)
     if loop is None or control is None:
-        return circuit.course(circuit.scenario.signal)
+        return circuit.scenario_signal(circuit.scenario.signal)
     base = circuit.start.position if loop == "position" else 0.0
-    wanted = base + circuit.course(getattr(control, loop))
-    system.signal("reference", "reference", LOOPS[loop].quantity, wanted)
-    system.signal("error", "error of the loop", LOOPS[loop].quantity, wanted - measured.value)
-    return command(circuit, wanted, measured, LOOPS[loop].typical)
+    reference = base + circuit.scenario_signal(getattr(control, loop))
+    system.signal("reference", "reference", LOOPS[loop].quantity, reference)
+    system.signal("error", "error of the loop", LOOPS[loop].quantity, reference - measured.value)
+    return command(circuit, reference, measured, LOOPS[loop].typical)
 
 
 def _driven(
-    circuit: Circuit, wish: Expression, pressures: tuple[Expression, Expression]
+    circuit: Circuit, valve_signal: Expression, pressures: tuple[Expression, Expression]
 ) -> valve.Port:
-    """The valve with its supply, between two far ends."""
+    """Flows of the valve with its supply, at the pressures of its ports."""
     data = circuit.plant.valve
     if data is None:
         message = "the design has no valve"
@@ -123,7 +123,7 @@ def _driven(
     flows = valve.edges(
         circuit,
         data,
-        opening=valve.spool(circuit, data, wish),
+        opening=valve.spool(circuit, data, valve_signal),
         supply_pressure=source.pressure,
         return_pressure=circuit.plant.return_pressure,
         pressure_a=pressures[0],
@@ -133,22 +133,22 @@ def _driven(
     return flows
 
 
-def _valve_bench(circuit: Circuit, held: HeldPorts) -> None:
-    wish = circuit.course(circuit.scenario.signal)
-    flows = _driven(circuit, wish, (held.pressure_a, held.pressure_b))
-    work = held.pressure_a * flows.into_a + held.pressure_b * flows.into_b
-    circuit.door("held ports", work, state="work on the bench")
+def _valve_bench(circuit: Circuit, ports: HeldPorts) -> None:
+    valve_signal = circuit.scenario_signal(circuit.scenario.signal)
+    flows = _driven(circuit, valve_signal, (ports.pressure_a, ports.pressure_b))
+    work = ports.pressure_a * flows.into_a + ports.pressure_b * flows.into_b
+    circuit.energy_port("held ports", work, state="work on the bench")
 
 
 def _motor(circuit: Circuit) -> None:
-    system, begin = circuit.system, circuit.start
-    a = system.pressure("pressure a", begin.pressure_a)
-    b = system.pressure("pressure b", begin.pressure_b)
+    system, start = circuit.system, circuit.start
+    a = system.pressure("pressure a", start.pressure_a)
+    b = system.pressure("pressure b", start.pressure_b)
     shaft = chambers.shaft(system)
     value = shaft.angle if circuit.loop == "shaft_angle" else shaft.speed
-    across = begin.pressure_a - begin.pressure_b
-    wish = _command(circuit, Feedback(value, shaft.speed, a - b, across))
-    flows = _driven(circuit, wish, (a, b))
+    difference = start.pressure_a - start.pressure_b
+    valve_signal = _command(circuit, Feedback(value, shaft.speed, a - b, difference))
+    flows = _driven(circuit, valve_signal, (a, b))
     chambers.turn(
         circuit,
         shaft,
@@ -166,44 +166,48 @@ def _pressures(system: System, a: Expression, b: Expression, where: str = "chamb
 
 
 def _cylinder(circuit: Circuit) -> None:
-    system, plant, begin = circuit.system, circuit.plant, circuit.start
+    system, plant, start = circuit.system, circuit.plant, circuit.start
     scenario = circuit.scenario
     ends = ends_of(scenario, plant)
-    position = system.state("position", begin.position, tolerance=motion.POSITION)
+    position = system.state("position", start.position, tolerance=motion.POSITION)
     speed = system.state("speed", scenario.initial.speed, tolerance=motion.SPEED)
-    a = chambers.side(circuit, "a", ends, begin.pressure_a)
-    b = chambers.side(circuit, "b", ends, begin.pressure_b)
-    feed: tuple[Expression, Expression] = (0.0, 0.0)
+    a = chambers.side(circuit, "a", ends, start.pressure_a)
+    b = chambers.side(circuit, "b", ends, start.pressure_b)
+    valve_flow: tuple[Expression, Expression] = (0.0, 0.0)
     if ends == "valve":
         ratio = plant.area_b / plant.area_a
         measured = Feedback(
             speed if circuit.loop == "speed" else position,
             speed,
             a.pressure - ratio * b.pressure,
-            begin.pressure_a - ratio * begin.pressure_b,
+            start.pressure_a - ratio * start.pressure_b,
         )
         flows = _driven(circuit, _command(circuit, measured), (a.end, b.end))
-        feed = flows.into_a, flows.into_b
-    into_a = chambers.connect(circuit, a, ends, feed[0], held=begin.pressure_a)
-    into_b = chambers.connect(circuit, b, ends, feed[1], held=begin.pressure_b)
-    across = plant.leakage * (a.pressure - b.pressure)
+        valve_flow = flows.into_a, flows.into_b
+    into_a = chambers.connect(circuit, a, ends, valve_flow[0], end_pressure=start.pressure_a)
+    into_b = chambers.connect(circuit, b, ends, valve_flow[1], end_pressure=start.pressure_b)
+    leakage = plant.leakage * (a.pressure - b.pressure)
     if plant.leakage:
-        lost = across * (a.pressure - b.pressure)
-        circuit.door("leakage across the piston", lost, state="leakage loss")
-        system.signal("flow_leakage", "leakage across the piston", SCENARIOS["flow_value"], across)
-    pressed = _chambers(circuit, (a, b), (into_a - across, into_b + across), position, speed)
-    own = motion.law(plant, scenario.friction, begin)
-    force = motion.resist(circuit, own, speed=speed, pressure_a=a.pressure, pressure_b=b.pressure)
-    bench = scenario.load.cylinder
+        loss = leakage * (a.pressure - b.pressure)
+        circuit.energy_port("leakage across the piston", loss, state="leakage loss")
+        system.signal("flow_leakage", "leakage across the piston", SCENARIOS["flow_value"], leakage)
+    pressure_force = _chambers(
+        circuit, (a, b), (into_a - leakage, into_b + leakage), position, speed
+    )
+    curve = motion.law(plant, scenario.friction, start)
+    friction = motion.resist(
+        circuit, curve, speed=speed, pressure_a=a.pressure, pressure_b=b.pressure
+    )
+    load_cylinder = scenario.load.cylinder
     motion.move(
         circuit,
         position=position,
         speed=speed,
-        pressure_force=pressed,
-        friction=force,
-        pulled=0.0
-        if bench is None
-        else chambers.push(circuit, bench, position=position, speed=speed),
+        pressure_force=pressure_force,
+        friction=friction,
+        load_cylinder_force=0.0
+        if load_cylinder is None
+        else chambers.push(circuit, load_cylinder, position=position, speed=speed),
     )
     _pressures(system, a.pressure, b.pressure)
 
@@ -215,7 +219,7 @@ def _chambers(
     position: Symbol,
     speed: Symbol,
 ) -> Expression:
-    """Both chambers with their share of the lines; returns the force of their pressures."""
+    """Add both chambers with their share of the lines; return the force of their pressures."""
     plant, (a, b) = circuit.plant, sides
     return chambers.cylinder(
         circuit,

@@ -44,7 +44,7 @@ def harmonic_fit(*, time: Array, values: Array, frequency: float) -> HarmonicFit
     ----------
     time : (n,) [s], one cycle or more; even steps are not needed
     values : (n,)
-    frequency : of the swing [Hz]
+    frequency : of the oscillation [Hz]
 
     Returns
     -------
@@ -70,7 +70,7 @@ def harmonic_fit(*, time: Array, values: Array, frequency: float) -> HarmonicFit
     1.000000 -90.0 2.0000
     """
     t, x = sampled(time=time, fewest=FEWEST_SAMPLES, values=values)
-    return _fitted(_design(t, frequency), x)
+    return _harmonic(_design(t, frequency), x)
 
 
 class DynamicStiffness(NamedTuple):
@@ -123,13 +123,15 @@ def dynamic_stiffness_of_record(
     """
     t, x, f = sampled(time=time, fewest=FEWEST_SAMPLES, position=position, force=force)
     design = _design(t, frequency)
-    moved, pushed = _fitted(design, x), _fitted(design, f)
-    size = abs(moved.amplitude)
-    if size <= RESOLVED * np.max(np.abs(x)):
+    position_fit, force_fit = _harmonic(design, x), _harmonic(design, f)
+    amplitude = abs(position_fit.amplitude)
+    if amplitude <= RESOLVED * np.max(np.abs(x)):
         message = f"the position does not oscillate at {frequency:g} Hz"
         raise InputError(Diagnostic(message, "give the frequency of the load"))
-    stiffness = pushed.amplitude / moved.amplitude
-    error = np.hypot(pushed.standard_error, abs(stiffness) * moved.standard_error) / size
+    stiffness = force_fit.amplitude / position_fit.amplitude
+    error = (
+        np.hypot(force_fit.standard_error, abs(stiffness) * position_fit.standard_error) / amplitude
+    )
     return DynamicStiffness(complex(stiffness), float(error))
 
 
@@ -181,7 +183,7 @@ def windows(*, time: Array, frequency: float, cycles: int) -> tuple[slice, ...]:
 
 
 class _Design(NamedTuple):
-    """Columns of a fit, their pseudo-inverse, and the middle and half length of the time."""
+    """Columns of a fit, their pseudo-inverse, and half the duration of the record."""
 
     columns: np.ndarray
     inverse: np.ndarray
@@ -204,16 +206,16 @@ def _design(t: np.ndarray, frequency: float) -> _Design:
     return _Design(columns, np.linalg.pinv(columns), float(half))
 
 
-def _fitted(design: _Design, values: np.ndarray) -> HarmonicFit:
+def _harmonic(design: _Design, values: np.ndarray) -> HarmonicFit:
     """Least-squares fit of one channel."""
-    found = design.inverse @ values
-    left = values - design.columns @ found
-    residual = float(np.linalg.norm(left) / np.sqrt(len(values) - 4))
+    coefficients = design.inverse @ values
+    misfit = values - design.columns @ coefficients
+    residual = float(np.linalg.norm(misfit) / np.sqrt(len(values) - 4))
     spread = np.sqrt(0.5 * np.sum(design.inverse[2:] ** 2))  # (X^T X)^-1 = X+ X+^T
     return HarmonicFit(
-        float(found[0]),
-        float(found[1] / design.half),
-        complex(found[2], -found[3]),
+        float(coefficients[0]),
+        float(coefficients[1] / design.half),
+        complex(coefficients[2], -coefficients[3]),
         residual,
         float(residual * spread),
     )

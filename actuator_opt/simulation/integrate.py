@@ -1,10 +1,10 @@
 """Integration in time, restarted where an input jumps or a switch changes state.
 
-Integrators of a smooth section return states at its samples, or how far they got. LSODA switches
-between stiff and non-stiff steps and uses the exact Jacobian. Radau gives the second opinion.
+An integrator returns the states at the samples of a smooth section, or raises `Stuck`. LSODA
+switches between stiff and non-stiff steps and uses the exact Jacobian. Radau checks its results.
 
 CVODES of SUNDIALS through CasADi (extra `fast`) runs without Python code. The graph of a system
-becomes symbols of CasADi, each operation once; CasADi derives the exact Jacobian. No compiler is
+becomes CasADi symbols, with each operation once; CasADi derives the exact Jacobian. No compiler is
 needed. If CVODES fails, another integrator takes over that section or reports why it cannot. A
 servo takes about half of LSODA's time, at the same error.
 """
@@ -34,11 +34,11 @@ Method = Literal["lsoda", "radau", "cvodes"]
 
 
 RELATIVE: Final = {"lsoda": 1e-6, "radau": 1e-8, "cvodes": 1e-7}
-"""Relative tolerance of a step; the second opinion uses the tighter one."""
+"""Relative tolerance of a step; tightest for Radau, which checks the other methods."""
 
 
 CHUNK = 200
-"""Samples between checks of the switches (a choice: work beyond a switch is lost)."""
+"""Samples between checks of the switches (a choice: samples beyond a switch are discarded)."""
 
 
 MOST = 100_000
@@ -57,14 +57,14 @@ class Stuck(Unsolvable):
         self.time, self.state = time, np.array(state)
 
 
-def _checked(times: Array, found: Array) -> Array:
-    """The states, if all are finite."""
-    bad = ~np.isfinite(found).all(axis=1)
+def _checked(times: Array, states: Array) -> Array:
+    """The given states, if all are finite."""
+    bad = ~np.isfinite(states).all(axis=1)
     if bad.any():
         first = int(np.argmax(bad))
         message = "the equations have no solution"
-        raise Stuck(float(times[first]), found[max(first - 1, 0)], message, REMEDY)
-    return found
+        raise Stuck(float(times[first]), states[max(first - 1, 0)], message, REMEDY)
+    return states
 
 
 REMEDY = (
@@ -72,7 +72,7 @@ REMEDY = (
 )
 
 
-def _why(error: Exception) -> str:
+def _reason(error: Exception) -> str:
     return f"the equations cannot be evaluated ({error})"
 
 
@@ -86,64 +86,64 @@ def _longest(compiled: Compiled, times: Array) -> float:
     return max(shortest, float(times[-1] - times[0]) / MOST)
 
 
-def lsoda(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
+def lsoda(compiled: Compiled, relative: float, evaluations: list[int]) -> Advance:
     """Integration by LSODA; Radau takes over sections whose stiffness LSODA misses."""
     from scipy.integrate import ODEintWarning, odeint
 
-    reached: list[Any] = [0.0, compiled.initial]
-    stiff = radau(compiled, relative, counted)
+    latest: list[Any] = [0.0, compiled.initial]
+    stiff = radau(compiled, relative, evaluations)
 
     def rates(t: float, y: Array, m: tuple[bool, ...]) -> list[float]:
-        reached[:] = t, y
+        latest[:] = t, y
         return compiled.rates(t, y, m)
 
-    def advance(times: Array, y: Array, m: tuple[bool, ...], most: int) -> Array:
-        reached[:] = float(times[0]), y
+    def advance(times: Array, y: Array, m: tuple[bool, ...], max_steps: int) -> Array:
+        latest[:] = float(times[0]), y
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ODEintWarning)
             try:
-                found, report = odeint(
+                states, report = odeint(
                     rates, y, times, args=(m,), Dfun=compiled.slopes, tfirst=True,
-                    rtol=relative, atol=compiled.tolerances, mxstep=most, full_output=True,
+                    rtol=relative, atol=compiled.tolerances, mxstep=max_steps, full_output=True,
                     hmax=_longest(compiled, times), tcrit=times[-1:],
                 )  # fmt: skip
             except (ArithmeticError, ValueError) as error:
-                raise Stuck(reached[0], reached[1], _why(error), REMEDY) from None
+                raise Stuck(latest[0], latest[1], _reason(error), REMEDY) from None
         if report["message"] != "Integration successful.":
-            if most < MOST:
-                raise Stuck(reached[0], reached[1], "no step is small enough", REMEDY)
-            return stiff(times, y, m, most)  # near rest LSODA may miss their stiffness
-        counted[0] += int(report["nfe"][-1])
-        return _checked(times, found)
+            if max_steps < MOST:
+                raise Stuck(latest[0], latest[1], "no step is small enough", REMEDY)
+            return stiff(times, y, m, max_steps)  # near rest LSODA may miss their stiffness
+        evaluations[0] += int(report["nfe"][-1])
+        return _checked(times, states)
 
     return advance
 
 
-def radau(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
+def radau(compiled: Compiled, relative: float, evaluations: list[int]) -> Advance:
     """Integration by Radau, implicit of order five."""
     from scipy.integrate import solve_ivp
 
-    reached: list[Any] = [0.0, compiled.initial]
+    latest: list[Any] = [0.0, compiled.initial]
 
-    def advance(times: Array, y: Array, m: tuple[bool, ...], most: int) -> Array:
+    def advance(times: Array, y: Array, m: tuple[bool, ...], max_steps: int) -> Array:
         def rates(t: float, y: Array) -> list[float]:
-            reached[:] = t, y
+            latest[:] = t, y
             return compiled.rates(t, y, m)
 
         try:
             with np.errstate(all="ignore"):
-                found = solve_ivp(
+                solution = solve_ivp(
                     rates, (times[0], times[-1]), y, method="Radau", t_eval=times,
                     rtol=relative, atol=0.01 * compiled.tolerances,
                     jac=lambda t, y: compiled.slopes(t, y, m),
                     max_step=_longest(compiled, times) or np.inf,
                 )  # fmt: skip
         except (ArithmeticError, ValueError) as error:
-            raise Stuck(reached[0], reached[1], _why(error), REMEDY) from None
-        counted[0] += int(found.nfev)
-        if not found.success:
-            raise Stuck(reached[0], reached[1], "no step is small enough", REMEDY)
-        return _checked(times, found.y.T)
+            raise Stuck(latest[0], latest[1], _reason(error), REMEDY) from None
+        evaluations[0] += int(solution.nfev)
+        if not solution.success:
+            raise Stuck(latest[0], latest[1], "no step is small enough", REMEDY)
+        return _checked(times, solution.y.T)
 
     return advance
 
@@ -194,72 +194,68 @@ def translate(outputs: Sequence[Any]) -> tuple[dict[str, Any], list[Any]]:
     """
     casadi = library()
     free: dict[str, Any] = {}
-    known: dict[int, Any] = {}
+    translations: dict[int, Any] = {}
 
-    def said(value: Any) -> Any:
-        return known[value.index] if isinstance(value, Symbol) else float(value)
+    def translated(value: Any) -> Any:
+        return translations[value.index] if isinstance(value, Symbol) else float(value)
 
     for node in needed(outputs):
         if node.op in ("variable", "flag"):
-            known[node.index] = free[node.args[0]] = casadi.SX.sym(node.args[0])
+            translations[node.index] = free[node.args[0]] = casadi.SX.sym(node.args[0])
         elif node.op == "table":
             message = "the method cvodes cannot look up a record"
             raise InputError(Diagnostic(message, "integrate by lsoda, without --fast"))
         else:
-            known[node.index] = _operation(casadi, node.op, [said(arg) for arg in node.args])
-    return free, [said(output) for output in outputs]
+            translations[node.index] = _operation(
+                casadi, node.op, [translated(arg) for arg in node.args]
+            )
+    return free, [translated(output) for output in outputs]
 
 
 def _operation(casadi: Any, op: str, args: Sequence[Any]) -> Any:
-    """An operation by CasADi's own number; its operators are slow, as they check shapes."""
+    """An operation by its CasADi code; CasADi's operators are slow, as they check shapes."""
     unary, binary = casadi.SX.unary, casadi.SX.binary
     if op == "where":
         condition, yes, no = args
-        taken = binary(casadi.OP_IF_ELSE_ZERO, condition, yes)
-        left = binary(casadi.OP_IF_ELSE_ZERO, unary(casadi.OP_NOT, condition), no)
-        return binary(casadi.OP_ADD, taken, left)
+        on_true = binary(casadi.OP_IF_ELSE_ZERO, condition, yes)
+        on_false = binary(casadi.OP_IF_ELSE_ZERO, unary(casadi.OP_NOT, condition), no)
+        return binary(casadi.OP_ADD, on_true, on_false)
     number = getattr(casadi, f"OP_{op.upper()}")
-    found = unary(number, *args) if len(args) == 1 else binary(number, *args)
+    result = unary(number, *args) if len(args) == 1 else binary(number, *args)
     if op == "sqrt" or (op == "pow" and 0 < args[1] < 1):  # no slope at zero, as in `symbolic`
-        return binary(casadi.OP_IF_ELSE_ZERO, args[0], found)
-    return found
+        return binary(casadi.OP_IF_ELSE_ZERO, args[0], result)
+    return result
 
 
-def cvodes(compiled: Compiled, relative: float, counted: list[int], otherwise: Advance) -> Advance:
-    """Integration by CVODES.
-
-    Parameters
-    ----------
-    compiled : the equations
-    relative : relative tolerance of a step
-    counted : counter of rate evaluations
-    otherwise : takes over a section where CVODES fails
+def cvodes(compiled: Compiled, relative: float, evaluations: list[int]) -> Advance:
+    """Integration by CVODES; LSODA takes over sections where it fails.
 
     Raises
     ------
     InputError
         CasADi is missing or a record is looked up
     """
+    fallback = lsoda(compiled, RELATIVE["lsoda"], evaluations)
     casadi = library()
     equations = _equations(casadi, compiled)
     unit = compiled.tolerances
     built: dict[int, _Integrator] = {}
 
-    def advance(times: Array, y: Array, m: tuple[bool, ...], most: int) -> Array:
-        if most not in built:
-            built[most] = _Integrator(casadi, equations, relative, most)
-        run = built[most]
-        found = np.empty((len(times), len(y)))
-        found[0] = y
+    def advance(times: Array, y: Array, m: tuple[bool, ...], max_steps: int) -> Array:
+        if max_steps not in built:
+            built[max_steps] = _Integrator(casadi, equations, relative, max_steps)
+        run = built[max_steps]
+        samples = np.empty((len(times), len(y)))
+        samples[0] = y
         for begin, end in _even(times):
             try:
                 with interruptible():
-                    states = run(times[begin], times[end], end - begin, found[begin] / unit, m)
+                    states = run(times[begin], times[end], end - begin, samples[begin] / unit, m)
             except RuntimeError:
-                return otherwise(times, y, m, most)
-            counted[0] += run.evaluations()
-            found[begin + 1 : end + 1] = states * unit
-        return found
+                return fallback(times, y, m, max_steps)
+            evaluations[0] += run.evaluations()
+            samples[begin + 1 : end + 1] = states * unit
+        return samples
 
     return advance
 
@@ -292,11 +288,13 @@ def interruptible() -> Iterator[None]:
 
 
 class _Integrator:
-    """CVODES over `CHUNK` samples; unused ones have zero length."""
+    """CVODES over `CHUNK` samples; unused samples have steps of zero length."""
 
-    def __init__(self, casadi: Any, equations: dict[str, Any], relative: float, most: int) -> None:
+    def __init__(
+        self, casadi: Any, equations: dict[str, Any], relative: float, max_steps: int
+    ) -> None:
         options = {
-            "reltol": relative, "abstol": SHARPER, "max_num_steps": most,
+            "reltol": relative, "abstol": SHARPER, "max_num_steps": max_steps,
             "disable_internal_warnings": True, "show_eval_warnings": False,
         }  # fmt: skip
         ends = np.arange(1.0, CHUNK + 1.0)
@@ -325,7 +323,7 @@ class _Integrator:
 
 
 def _equations(casadi: Any, compiled: Compiled) -> dict[str, Any]:
-    """The rates per sample, scaled by each state's tolerance, as CVODES takes a single one."""
+    """Rates per sample, with states in units of their tolerance, as CVODES takes one for all."""
     system, unit = compiled.system, compiled.tolerances
     free, rates = translate([state.rate for state in system.states])
 
@@ -355,16 +353,16 @@ def _even(times: Array) -> Iterator[tuple[int, int]]:
 
 LOOK = 2e-3
 """Longest time between two samples of a switch [s] (a choice: half an oil oscillation)."""
-MOST_TURNS = 20_000
+MOST_CHANGES = 20_000
 """Changes of a switch before a run counts as chattering (a choice)."""
 APART = 1e-9
-"""Instants closer than this count as one [s] (a choice)."""
+"""Largest time between instants that count as equal [s] (a choice)."""
 FEW = 2_000
-"""Steps between two samples of a first attempt, which may overrun a switch."""
+"""Maximum steps between two samples in a first attempt, which may overrun a switch."""
 TRIES = 12
-"""Number of ever shorter sections tried where the equations fail, to find a switch before."""
+"""Maximum number of shorter sections tried to find a switch before the equations fail."""
 PARTS, LEVELS = 16, 5
-"""Parts of an interval in which a switch may change; each is divided again."""
+"""Parts of an interval in which a switch may change, and how often a part is divided again."""
 _LOCATED = 1e-12
 
 
@@ -379,7 +377,7 @@ class Event:
 
 @dataclass(slots=True)
 class Trajectory:
-    """States at samples; an instant or event appears twice, with the flags before and after it."""
+    """States at samples; an instant or event has two samples: with the flags before and after."""
 
     time: Array
     states: Array
@@ -433,25 +431,25 @@ def integrate(
     InputError
         "cvodes" without CasADi, or with a record
     """
-    counted = [0]
+    evaluations = [0]
     tolerance = RELATIVE[method] if relative is None else relative
-    advance = METHODS[method](compiled, tolerance, counted)
+    advance = METHODS[method](compiled, tolerance, evaluations)
     run = _Run(compiled, advance, duration)
     count = max(round(duration / sample_time), 1)
-    looks = math.ceil(sample_time / LOOK) if compiled.system.switches else 1
-    grid = np.linspace(0.0, duration, looks * count + 1)
-    told = np.arange(looks * count + 1) % looks == 0
+    checks = math.ceil(sample_time / LOOK) if compiled.system.switches else 1
+    grid = np.linspace(0.0, duration, checks * count + 1)
+    is_stored = np.arange(checks * count + 1) % checks == 0
     stops = [0.0]
-    for moment in sorted(compiled.instants):
-        if stops[-1] + APART < moment < duration - APART:
-            stops.append(moment)
-    near = 1e-6 * sample_time / looks  # a sample close to an instant moves to it
+    for instant in sorted(compiled.instants):
+        if stops[-1] + APART < instant < duration - APART:
+            stops.append(instant)
+    near = 1e-6 * sample_time / checks  # a sample close to an instant moves to it
     t, y = 0.0, compiled.initial.copy()
     m = _flags(compiled, t, y, ())
     for stop in (*stops[1:], duration):
         inside = (grid > t + near) & (grid < stop - near)
         times = np.concatenate(([t], grid[inside], [stop]))
-        y, m = _segment(run, times, np.concatenate(([True], told[inside], [True])), y, m)
+        y, m = _segment(run, times, np.concatenate(([True], is_stored[inside], [True])), y, m)
         t = stop
         m = _flags(compiled, t, y, m)
     return Trajectory(
@@ -459,7 +457,7 @@ def integrate(
         np.concatenate(run.states).T.copy(),
         np.concatenate(run.flags, axis=1),
         tuple(run.events),
-        counted[0],
+        evaluations[0],
         run.restarts,
     )
 
@@ -469,20 +467,20 @@ def _flags(compiled: Compiled, t: float, y: Array, before: tuple[bool, ...]) -> 
     instants = tuple(t + APART >= instant for instant in compiled.instants)
     if before:
         return instants + before[len(instants) :]
-    guards = _each(compiled, compiled.guards, np.array([t]), y[None], ())
+    guards = _at_switches(compiled, compiled.guards, np.array([t]), y[None], ())
     return instants + tuple(guards[:, 0] > 0)
 
 
 def _margins(run: _Run, t: Array, states: Array, m: tuple[bool, ...]) -> tuple[Array, Array]:
     """Guard of every switch and its rate, (switches, samples)."""
     signs = np.where(m[len(run.compiled.instants) :], 1.0, -1.0)[:, None]
-    margin = _each(run.compiled, run.compiled.guards, t, states, m) * signs
-    return margin, _each(run.compiled, run.compiled.guard_rates, t, states, m) * signs
+    margin = _at_switches(run.compiled, run.compiled.guards, t, states, m) * signs
+    return margin, _at_switches(run.compiled, run.compiled.guard_rates, t, states, m) * signs
 
 
-def _each(
+def _at_switches(
     compiled: Compiled,
-    function: Callable[[Array, Array, tuple[Array, ...]], list[Array]],
+    of_switches: Callable[[Array, Array, tuple[Array, ...]], list[Array]],
     t: Array,
     states: Array,
     m: tuple[bool, ...],
@@ -492,84 +490,93 @@ def _each(
     if not count:
         return np.empty((0, len(t)))
     flags = m or (False,) * (len(compiled.instants) + count)
-    return np.array([np.broadcast_to(one, t.shape) for one in function(t, states.T, flags)])
+    return np.array(
+        [np.broadcast_to(values, t.shape) for values in of_switches(t, states.T, flags)]
+    )
 
 
 def _segment(
-    run: _Run, times: Array, told: Array, y: Array, m: tuple[bool, ...]
+    run: _Run, times: Array, is_stored: Array, y: Array, m: tuple[bool, ...]
 ) -> tuple[Array, tuple[bool, ...]]:
     """Integrate over some times without an input jump; only some samples are stored."""
     first, last = len(run.compiled.instants), len(times) - 1
-    begin, start, own = 0, float(times[0]), True
+    begin, start, store_first = 0, float(times[0]), True
     while begin < last:
         end = min(begin + CHUNK, last)
-        asked = np.concatenate(([start], times[begin + 1 : end + 1]))
-        wanted = np.concatenate(([own], told[begin + 1 : end + 1]))
-        asked, found, turn = _ahead(run, asked, y, m)
+        section = np.concatenate(([start], times[begin + 1 : end + 1]))
+        stored = np.concatenate(([store_first], is_stored[begin + 1 : end + 1]))
+        section, sampled_states, change = _section_to_change(run, section, y, m)
         run.restarts += 1
         tell("simulating", start / run.duration)
-        if turn is None:
-            wanted[-1] &= end == last  # the next section has its first sample
-            run.keep(asked[wanted], found[wanted], m)
-            y, start, own, begin = found[-1], float(times[end]), bool(told[end]), end
+        if change is None:
+            stored[-1] &= end == last  # the next section has its first sample
+            run.keep(section[stored], sampled_states[stored], m)
+            y, start, store_first, begin = (
+                sampled_states[-1],
+                float(times[end]),
+                bool(is_stored[end]),
+                end,
+            )
             continue
-        k, at, there, which = turn
-        before = np.flatnonzero(wanted[: k + 1] & (asked[: k + 1] < at))
-        run.keep(np.append(asked[before], at), np.vstack((found[before], there)), m)
-        m = tuple(flag ^ (i == first + which) for i, flag in enumerate(m))
-        name = run.compiled.system.switches[which].name
-        run.events.append(Event(name, at, bool(m[first + which])))
-        if len(run.events) > MOST_TURNS:
+        k, time, state, switch = change
+        before = np.flatnonzero(stored[: k + 1] & (section[: k + 1] < time))
+        run.keep(np.append(section[before], time), np.vstack((sampled_states[before], state)), m)
+        m = tuple(flag ^ (i == first + switch) for i, flag in enumerate(m))
+        name = run.compiled.system.switches[switch].name
+        run.events.append(Event(name, time, bool(m[first + switch])))
+        if len(run.events) > MOST_CHANGES:
             remedy = "increase the damping of the part that switches"
-            raise Stuck(at, there, f"{name} switches without end", remedy)
-        y, start, own = there, at, True
-        begin += k + (at >= times[begin + k + 1])
+            raise Stuck(time, state, f"{name} switches without end", remedy)
+        y, start, store_first = state, time, True
+        begin += k + (time >= times[begin + k + 1])
     return y, m
 
 
-Turn = tuple[int, float, Array, int]
-"""Sample before it, time, states and number of a switch that changes."""
+SwitchChange = tuple[int, float, Array, int]
+"""Sample before the change, its time and states, and the number of the switch."""
 
 
-def _ahead(
+def _section_to_change(
     run: _Run, times: Array, y: Array, m: tuple[bool, ...]
-) -> tuple[Array, Array, Turn | None]:
-    """States at some times and the first switch, beyond which the equations may fail."""
+) -> tuple[Array, Array, SwitchChange | None]:
+    """States up to the first change of a switch, beyond which the equations may fail."""
     try:
-        found = run.advance(times, y, m, FEW)
-        return times, found, _first_turn(run, times, found, m)
+        states = run.advance(times, y, m, FEW)
+        return times, states, _first_change(run, times, states, m)
     except Stuck as stuck:
         good, bad = float(times[0]), min(stuck.time, float(times[-1]))
     near = good + 0.99 * (bad - good)
     for _ in range(TRIES if run.compiled.system.switches else 0):
         short = np.append(times[times < near], near)
         try:
-            found = run.advance(short, y, m, FEW)
+            states = run.advance(short, y, m, FEW)
         except Stuck:
             bad = near
         else:
-            turn = _first_turn(run, short, found, m)
-            if turn is not None:
-                return short, found, turn
+            change = _first_change(run, short, states, m)
+            if change is not None:
+                return short, states, change
             good = near
         near = 0.5 * (good + bad)
-    found = run.advance(times, y, m, MOST)
-    return times, found, _first_turn(run, times, found, m)
+    states = run.advance(times, y, m, MOST)
+    return times, states, _first_change(run, times, states, m)
 
 
-def _first_turn(run: _Run, times: Array, found: Array, m: tuple[bool, ...]) -> Turn | None:
-    """The first switch between samples."""
+def _first_change(
+    run: _Run, times: Array, states: Array, m: tuple[bool, ...]
+) -> SwitchChange | None:
+    """The first change of a switch between samples."""
     if not run.compiled.system.switches:
         return None
-    suspect = _suspects(times, *_margins(run, times, found, m))
+    suspect = _suspects(times, *_margins(run, times, states, m))
     for k in np.flatnonzero(suspect.any(axis=0)):
-        turns = []
-        for which in np.flatnonzero(suspect[:, k]):
-            turn = _turn(run, times[k : k + 2], found[k], m, int(which))
-            if turn is not None:
-                turns.append((int(k), *turn, int(which)))
-        if turns:
-            return min(turns, key=lambda one: one[1])
+        changes = []
+        for switch in np.flatnonzero(suspect[:, k]):
+            change = _change_within(run, times[k : k + 2], states[k], m, int(switch))
+            if change is not None:
+                changes.append((int(k), *change, int(switch)))
+        if changes:
+            return min(changes, key=lambda candidate: candidate[1])
     return None
 
 
@@ -579,43 +586,43 @@ def _suspects(times: Array, margin: Array, slope: Array) -> Array:
     (a, b), (c, d) = (
         (margin[:, :-1], margin[:, 1:]), (slope[:, :-1] * step, slope[:, 1:] * step),
     )  # fmt: skip
-    gone = b <= 0
-    valley = ~gone & (c < 0) & (d > 0)
+    crosses = b <= 0
+    valley = ~crosses & (c < 0) & (d > 0)
     if valley.any():
         for s in np.linspace(0.1, 0.9, 9):
-            here = (1 + 2 * s) * (1 - s) ** 2 * a + s * (1 - s) ** 2 * c
-            here += s * s * (3 - 2 * s) * b + s * s * (s - 1) * d
-            gone = gone | (valley & (here <= 0))
-    return gone
+            guard = (1 + 2 * s) * (1 - s) ** 2 * a + s * (1 - s) ** 2 * c
+            guard += s * s * (3 - 2 * s) * b + s * s * (s - 1) * d
+            crosses = crosses | (valley & (guard <= 0))
+    return crosses
 
 
-def _turn(
-    run: _Run, span: Array, y: Array, m: tuple[bool, ...], which: int, level: int = 0
+def _change_within(
+    run: _Run, span: Array, y: Array, m: tuple[bool, ...], switch: int, level: int = 0
 ) -> tuple[float, Array] | None:
     """Time and states at which a switch changes within an interval, or None."""
     from scipy.optimize import brentq
 
     times = np.linspace(span[0], span[1], PARTS + 1)
     states = run.advance(times, y, m, MOST)
-    margin, slope = (margin[which : which + 1] for margin in _margins(run, times, states, m))
+    margin, slope = (margin[switch : switch + 1] for margin in _margins(run, times, states, m))
     for k in np.flatnonzero(_suspects(times, margin, slope)[0]):
-        low, high, here = float(times[k]), float(times[k + 1]), states[k]
+        low, high, start_states = float(times[k]), float(times[k + 1]), states[k]
         if margin[0, k] > 0 >= margin[0, k + 1]:
 
-            def left(t: float, low: float = low, here: Array = here) -> float:
-                y = _state_at(run, low, t, here, m)
-                return float(_margins(run, np.array([t]), y[None], m)[0][which, 0])
+            def left(moment: float, low: float = low, start_states: Array = start_states) -> float:
+                y = _state_at(run, low, moment, start_states, m)
+                return float(_margins(run, np.array([moment]), y[None], m)[0][switch, 0])
 
             at = high
             if left(high) <= 0:
                 at = float(brentq(left, low, high, xtol=_LOCATED * max(high, 1.0), rtol=1e-14))
-            return at, _state_at(run, low, at, here, m)
+            return at, _state_at(run, low, at, start_states, m)
         if margin[0, k] <= 0 and (slope[0, k] <= 0 or level == LEVELS):
-            return low, here
+            return low, start_states
         if level < LEVELS:
-            turn = _turn(run, times[k : k + 2], here, m, which, level + 1)
-            if turn is not None:
-                return turn
+            change = _change_within(run, times[k : k + 2], start_states, m, switch, level + 1)
+            if change is not None:
+                return change
     return None
 
 
@@ -623,14 +630,8 @@ def _state_at(run: _Run, start: float, t: float, y: Array, m: tuple[bool, ...]) 
     return y if t <= start else run.advance(np.array([start, t]), y, m, MOST)[-1]
 
 
-def _cvodes(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
-    pass
-
-    return cvodes(compiled, relative, counted, lsoda(compiled, RELATIVE["lsoda"], counted))
-
-
 METHODS: Final[dict[Method, Callable[[Compiled, float, list[int]], Advance]]] = {
-    "lsoda": lsoda, "radau": radau, "cvodes": _cvodes,
+    "lsoda": lsoda, "radau": radau, "cvodes": cvodes,
 }  # fmt: skip
 LAST = 0.1
 """Final share of a record that counts as steady (a choice)."""

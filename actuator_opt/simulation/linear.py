@@ -51,9 +51,9 @@ class OpenLoop:
     """
 
     triangle: Array
-    given: Array
+    input_gains: Array
     """b"""
-    seen: Array
+    output_gains: Array
     """c"""
 
     @classmethod
@@ -72,11 +72,13 @@ class OpenLoop:
     def at(self, omega: Array) -> Array:
         """L(i omega)."""
         s = 1j * np.asarray(omega, dtype=float)
-        t, size = self.triangle, len(self.given)
+        t, size = self.triangle, len(self.input_gains)
         x = np.zeros((size, *s.shape), dtype=complex)
         for k in reversed(range(size)):
-            x[k] = (self.given[k] + np.tensordot(t[k, k + 1 :], x[k + 1 :], 1)) / (s - t[k, k])
-        return np.tensordot(self.seen, x, 1)
+            x[k] = (self.input_gains[k] + np.tensordot(t[k, k + 1 :], x[k + 1 :], 1)) / (
+                s - t[k, k]
+            )
+        return np.tensordot(self.output_gains, x, 1)
 
     @property
     def frequencies(self) -> Array:
@@ -88,7 +90,7 @@ class OpenLoop:
         return np.unique(np.concatenate((grid, near.ravel())))
 
     @property
-    def swings(self) -> bool:
+    def unstable(self) -> bool:
         """Whether a pole grows, other than slow creep."""
         return _grow(self.poles)
 
@@ -100,7 +102,7 @@ class OpenLoop:
         return float((1j * omega * self.at(np.array(omega))).real)
 
 
-class Around(NamedTuple):
+class LoopsAtPoint(NamedTuple):
     """Loops about a point, for both spool directions."""
 
     loops: list[OpenLoop]
@@ -153,29 +155,32 @@ class Linear:
         flat = self.slopes(0.0, state.tolist(), signal, self.flags)
         return np.array(flat).reshape(size, size)
 
-    def about(self, **states: float) -> Around:
-        """Open loops where the valve holds the load, with some states given, for both directions.
+    def about(self, **states: float) -> LoopsAtPoint:
+        """Open loops with the load held by the valve, for both spool directions, at given `states`.
 
-        On the side where the spool rests, the equilibrium is used. On the other side, and without
-        load on both, the spool is centred, as it passes there when the load drifts. If the valve
-        cannot hold the load, the given states are used.
+        For the direction in which the spool rests, the loop is that at equilibrium. For the other,
+        and for both without a load, the spool is at its centre, which it passes when the load
+        drifts. If the valve cannot hold the load, the given states are used.
         """
-        still = {one: 0.0 for one in ("speed", "shaft_speed") if self._known(one)}
+        at_rest = {name: 0.0 for name in ("speed", "shaft_speed") if self._known(name)}
         centre = self.circuit.centre
-        guesses = (self.steady(centre + volts, **(still | states)) for volts in self._guesses())
-        held = next((guess for guess in guesses if guess is not None), None)
-        rest = self._with(still | states) if held is None else held[0]
+        guesses = (self.steady(centre + volts, **(at_rest | states)) for volts in self._guesses())
+        equilibrium = next((guess for guess in guesses if guess is not None), None)
+        fallback = self._with(at_rest | states) if equilibrium is None else equilibrium[0]
         loops = []
         for side in (1.0, -1.0):
-            there: tuple[Array, float] | None = held
-            if held is None or (held[1] - centre) * side < TOUCH:
-                beside = centre + side * TOUCH
-                there = self.steady(beside, **(states | {"spool": beside}))
-                if there is None:
-                    there = np.where([name == "spool" for name in self.names], beside, rest), beside
-            assert there is not None
-            loops.append(self.loop(*there))
-        return Around(loops, held is not None)
+            point: tuple[Array, float] | None = equilibrium
+            if equilibrium is None or (equilibrium[1] - centre) * side < TOUCH:
+                off_centre = centre + side * TOUCH
+                point = self.steady(off_centre, **(states | {"spool": off_centre}))
+                if point is None:
+                    point = (
+                        np.where([name == "spool" for name in self.names], off_centre, fallback),
+                        off_centre,
+                    )
+            assert point is not None
+            loops.append(self.loop(*point))
+        return LoopsAtPoint(loops, equilibrium is not None)
 
     def steady(self, guess: float, **states: float) -> tuple[Array, float] | None:
         """State and signal in steady motion, with some states given.
@@ -194,9 +199,9 @@ class Linear:
         begin = self._with({"spool": guess} | states)
         given = {state.replace("_", " ") for state in states} | set(PLACES)
         free = np.array([k for k, name in enumerate(self.names) if name not in given])
-        kept = np.array([k for k, name in enumerate(self.names) if name not in PLACES])
+        balanced = np.array([k for k, name in enumerate(self.names) if name not in PLACES])
         size = np.append(SIZE * self.scale[free], 1.0)
-        unit = self.scale[kept]
+        unit = self.scale[balanced]
         columns = np.append(free, len(self.names))
 
         def point(x: Array) -> tuple[Array, float]:
@@ -204,21 +209,21 @@ class Linear:
             y[free] = x[:-1] * size[:-1]
             return y, float(x[-1])
 
-        def missing(x: Array) -> Array:
+        def residual(x: Array) -> Array:
             y, u = point(x)
-            return np.array(self.rates(0.0, y.tolist(), u, self.flags))[kept] / unit
+            return np.array(self.rates(0.0, y.tolist(), u, self.flags))[balanced] / unit
 
         def slopes(x: Array) -> Array:
-            return self._table(*point(x))[np.ix_(kept, columns)] * size / unit[:, None]
+            return self._table(*point(x))[np.ix_(balanced, columns)] * size / unit[:, None]
 
         start = np.append(begin[free], guess) / size
         try:
             with np.errstate(all="ignore"):
-                solved = root(missing, start, jac=slopes, method="hybr", tol=1e-12)
-            left = missing(solved.x)
+                solution = root(residual, start, jac=slopes, method="hybr", tol=1e-12)
+            remainder = residual(solution.x)
         except (ArithmeticError, ValueError):  # the equations fail on the way
             return None
-        return point(solved.x) if np.max(np.abs(left)) < RESTING else None  # rejects NaN
+        return point(solution.x) if np.max(np.abs(remainder)) < RESTING else None  # rejects NaN
 
     def _guesses(self) -> Iterator[float]:
         """Offsets of the signal from the centre to start the search for an equilibrium."""
@@ -248,8 +253,8 @@ class Ultimate:
 
 def ultimate(loop: OpenLoop) -> Ultimate:
     """Smallest gain with K L(i omega) = -1; infinite if there is none."""
-    found = [(-1 / value.real, omega) for omega, value in _crossings(loop, loop.at)]
-    gain, omega = min(found, default=(inf, 0.0))
+    oscillations = [(-1 / value.real, omega) for omega, value in _crossings(loop, loop.at)]
+    gain, omega = min(oscillations, default=(inf, 0.0))
     return Ultimate(gain, 2 * pi / omega if omega > 0 else inf)
 
 
@@ -259,17 +264,17 @@ def _crossings(loop: OpenLoop, response: Callable[[Array], Array]) -> list[tuple
 
     omega = loop.frequencies
     value = response(omega)
-    found = []
+    crossings = []
     for k in np.flatnonzero(np.diff(np.sign(value.imag)) != 0):
         if min(value[k].real, value[k + 1].real) >= 0:
             continue
         at = float(
             brentq(lambda w: float(response(np.array(w)).imag), omega[k], omega[k + 1], rtol=1e-12)
         )
-        there = complex(response(np.array(at)))
-        if there.real < 0:
-            found.append((at, there))
-    return found
+        crossing = complex(response(np.array(at)))
+        if crossing.real < 0:
+            crossings.append((at, crossing))
+    return crossings
 
 
 @dataclass(frozen=True, slots=True)
@@ -291,8 +296,8 @@ class ControllerLaw:
 
     def closed(self, loop: OpenLoop) -> Array:
         """Poles of the closed loop."""
-        size = len(loop.given)
-        b, c = loop.given, loop.seen
+        size = len(loop.input_gains)
+        b, c = loop.input_gains, loop.output_gains
         direct = self.gain * (1 + self.derivative_time / self.filter_time)
         a = np.zeros((size + 2, size + 2), dtype=complex)
         # u = -K [(1 + T_d/T_f) y + I/T_i - T_d/T_f f], I' = y, f' = (y - f)/T_f
@@ -313,7 +318,7 @@ class LoopMargins:
     """Margins of a loop with its controller."""
 
     gain: float
-    """Gain factor at which it oscillates: above one if stable, else below."""
+    """Factor on the gain at which the loop oscillates: above 1 if it is stable, else below."""
     phase: float | None
     """[rad]; None if the loop gain never exceeds one."""
     stable: bool
@@ -346,16 +351,16 @@ def margins(loop: OpenLoop, law: ControllerLaw) -> LoopMargins:
     phase = None
     for k in np.flatnonzero((size[:-1] >= 1) & (size[1:] < 1)):
         share = np.log(size[k]) / np.log(size[k] / size[k + 1])
-        here = response(omega[k : k + 1] * (omega[k + 1] / omega[k]) ** share)[0]
-        own = float(np.angle(-here))
-        phase = own if phase is None or abs(own) < abs(phase) else phase
+        value_at_crossover = response(omega[k : k + 1] * (omega[k + 1] / omega[k]) ** share)[0]
+        phase_here = float(np.angle(-value_at_crossover))
+        phase = phase_here if phase is None or abs(phase_here) < abs(phase) else phase
     return LoopMargins(gain, phase, stable)
 
 
 def least(loops: Sequence[OpenLoop]) -> tuple[Ultimate, OpenLoop]:
-    """The loop with the lowest ultimate gain; one that is unstable open comes first."""
-    found = [(Ultimate(0.0, inf) if loop.swings else ultimate(loop), loop) for loop in loops]
-    return min(found, key=lambda pair: pair[0].gain)
+    """The loop with the lowest ultimate gain; zero for a loop that is unstable when open."""
+    pairs = [(Ultimate(0.0, inf) if loop.unstable else ultimate(loop), loop) for loop in loops]
+    return min(pairs, key=lambda pair: pair[0].gain)
 
 
 MARGIN = {"p": 2.0, "pi": 3.0}
@@ -363,8 +368,8 @@ MARGIN = {"p": 2.0, "pi": 3.0}
 gain; an integral part costs phase)."""
 PHASE = radians(60.0)
 """Phase margin that counts as sufficient (a choice)."""
-KEPT = 0.9
-"""Share of the proportional loop's margins that must remain with an integral part (a choice)."""
+MARGIN_SHARE = 0.9
+"""Share of the proportional loop's margins that remains with an integral part (a choice)."""
 NO_GAIN = 1e-9
 """Replacement factor for a zero gain beside an integral or derivative part."""
 UNHELD = "the valve cannot hold the load"
@@ -379,17 +384,17 @@ class Tuned:
     origin: str
     ultimate: Ultimate
     margins: LoopMargins
-    """Gains in the linear loop, including the scenario's factors."""
+    """Margins of the linear loop, with the scenario's factors on the gains."""
     unit: str
     notes: tuple[str, ...] = ()
     unheld: str = ""
-    """Where the valve cannot hold the load, else empty. Margins are then meaningless."""
+    """Where the valve cannot hold the load, else empty; the margins are then meaningless."""
 
 
 def tune(
-    scenario: Scenario, plant: Plant, records: Records, *, held: Tuned | None = None
+    scenario: Scenario, plant: Plant, records: Records, *, previous: Tuned | None = None
 ) -> Tuned | None:
-    """Gains of a scenario's controller; None without one. `held` keeps gains, with new margins.
+    """Gains of a scenario's controller; those of `previous`, if given, with new margins.
 
     The linear loop has no sticking friction, and the valve holds the load of the start, whatever
     pressures the scenario begins with. It is evaluated at the start and at every end of the
@@ -405,18 +410,18 @@ def tune(
     control, loop = scenario.control, loop_of(scenario.control)
     if control is None or loop is None:
         return None
-    circuit = assemble(_held(scenario), plant, records, None, linear=True)
+    circuit = assemble(_with_held_load(scenario), plant, records, None, linear=True)
     linear = Linear.of(circuit)
     loops, unheld = _loops(linear, scenario, plant, control, loop)
     limit, worst = least(loops)
-    stated = getattr(control, f"{loop}_gain")
+    stated_gain = getattr(control, f"{loop}_gain")
     design = plant.design.control
     notes: tuple[str, ...] = ()
-    if held is not None:
-        gains, origin, notes = held.gains, held.origin, held.notes
-    elif stated is not None:
+    if previous is not None:
+        gains, origin, notes = previous.gains, previous.origin, previous.notes
+    elif stated_gain is not None:
         gains = ControllerGains(
-            stated, control.integral_time or inf, control.derivative_time or 0.0
+            stated_gain, control.integral_time or inf, control.derivative_time or 0.0
         )
         origin = "stated"
     elif (
@@ -433,9 +438,9 @@ def tune(
         remedy = f"{CAUSES}; or state the gain"
         raise InputError(Diagnostic(message, remedy, path=f"control.{loop}"))
     else:
-        gains, origin, notes = _ruled(control, loop, limit, worst)
+        gains, origin, notes = _gains_by_rule(control, loop, limit, worst)
     factor, integral = control.gain_factor or NO_GAIN, control.integral_factor
-    shaped = ControllerLaw(  # each factor scales its own part, as in `parts.control`
+    shaped = ControllerLaw(  # each factor scales its own part, as in `components.valve`
         factor * gains.proportional_gain,
         factor / integral * gains.integral_time if integral else inf,
         control.derivative_factor / factor * gains.derivative_time,
@@ -444,26 +449,26 @@ def tune(
     return Tuned(gains, origin, limit, margins(worst, shaped), LOOPS[loop].unit, notes, unheld)
 
 
-def _held(scenario: Scenario) -> Scenario:
-    """The scenario with initial pressures that hold its load."""
-    held = scenario.initial.model_copy(update={"pressure_a": None, "pressure_b": None})
-    return scenario.model_copy(update={"initial": held})
+def _with_held_load(scenario: Scenario) -> Scenario:
+    """The scenario with the initial pressures that hold its load."""
+    initial = scenario.initial.model_copy(update={"pressure_a": None, "pressure_b": None})
+    return scenario.model_copy(update={"initial": initial})
 
 
 def _loops(
     linear: Linear, scenario: Scenario, plant: Plant, control: Controller, loop: Loop
 ) -> tuple[list[OpenLoop], str]:
-    """Open loops at all relevant points; and where the valve cannot hold the load, in words."""
+    """Open loops at all relevant points, and words for the point where the load cannot be held."""
     if loop != "position":
         loops, held = linear.about()
         end = steady_value(getattr(control, loop))
         if loop != "shaft_angle":
-            loops += _running(linear, loop, end)
+            loops += _loop_in_motion(linear, loop, end)
         return loops, "" if held else " at the start"
     loops, words = [], ""
     for place in _places(control.position, linear.circuit.start.position, plant.stroke):
-        found, held = linear.about(position=place)
-        loops += found
+        more, held = linear.about(position=place)
+        loops += more
         if not held:
             words = words or f" with the piston at {INPUTS['position'].text(place)}"
     return loops, words
@@ -471,25 +476,25 @@ def _loops(
 
 def _places(parts: Sequence[SignalSegment], start: float, stroke: float) -> list[float]:
     """Start of a position reference, and the end of each of its parts."""
-    places, reached = {start}, start
-    for part in sorted(parts, key=lambda one: one.start or 0.0):
-        reached += steady_value([part])
-        places.add(min(max(reached, 0.0), stroke))
+    places, position = {start}, start
+    for segment in sorted(parts, key=lambda segment: segment.start or 0.0):
+        position += steady_value([segment])
+        places.add(min(max(position, 0.0), stroke))
     return sorted(places)
 
 
-def _running(linear: Linear, name: str, value: float) -> list[OpenLoop]:
+def _loop_in_motion(linear: Linear, name: str, value: float) -> list[OpenLoop]:
     """The open loop at a steady speed; empty if the actuator cannot reach it."""
     guess = linear.circuit.centre + copysign(1.0, value)
-    found = None if value == 0 else linear.steady(guess, **{name: value})
-    return [] if found is None else [linear.loop(*found)]
+    operating_point = None if value == 0 else linear.steady(guess, **{name: value})
+    return [] if operating_point is None else [linear.loop(*operating_point)]
 
 
-def _ruled(
+def _gains_by_rule(
     control: Controller, loop: Loop, limit: Ultimate, worst: OpenLoop
 ) -> tuple[ControllerGains, str, tuple[str, ...]]:
-    """Gains from the ultimate point by a tuning rule."""
-    if worst.swings:
+    """Gains, their origin and notes, from the ultimate point by a tuning rule."""
+    if worst.unstable:
         message = "the open circuit oscillates by itself"
         remedy = "lower speed_feedback and pressure_feedback, or add leakage across the piston"
         raise InputError(Diagnostic(message, remedy, path="control"))
@@ -532,14 +537,18 @@ def _ruled(
 
 
 def _integral_time(loop: OpenLoop, law: ControllerLaw, shortest: float, period: float) -> float:
-    """Least integral time from the shortest on that keeps `KEPT` of the margins without it."""
-    alone = margins(loop, law)
-    phase = PHASE if alone.phase is None else min(KEPT * alone.phase, PHASE)
+    """Least integral time, from `shortest` on, that leaves `MARGIN_SHARE` of the margins."""
+    proportional = margins(loop, law)
+    phase = PHASE if proportional.phase is None else min(MARGIN_SHARE * proportional.phase, PHASE)
     longest = 1e4 * period
     for time in np.geomspace(shortest, max(longest, shortest), 140):
-        found = margins(loop, replace(law, integral_time=float(time)))
-        kept = found.phase is None or found.phase >= phase
-        if found.stable and found.gain >= KEPT * alone.gain and kept:
+        with_integral = margins(loop, replace(law, integral_time=float(time)))
+        phase_kept = with_integral.phase is None or with_integral.phase >= phase
+        if (
+            with_integral.stable
+            and with_integral.gain >= MARGIN_SHARE * proportional.gain
+            and phase_kept
+        ):
             return float(time)
     return longest
 
@@ -613,27 +622,27 @@ def step_metrics(
     if not 0 < band < 1:
         raise InputError(Diagnostic(f"band {band:g} of the step", "give one between 0 and 1"))
     t = t - t[0]
-    done = (x - start) / (target - start)
-    early, late = _reached(t, done, 0.1), _reached(t, done, 0.9)
-    top = int(np.argmax(done))
+    normalised = (x - start) / (target - start)
+    early, late = _time_at(t, normalised, 0.1), _time_at(t, normalised, 0.9)
+    top = int(np.argmax(normalised))
     return StepMetrics(
         None if early is None or late is None else late - early,
-        _settled(t, done - 1, band),
-        max(float(done[top]) - 1, 0.0),
+        _settling_time(t, normalised - 1, band),
+        max(float(normalised[top]) - 1, 0.0),
         target - last_mean(t, x),
         float(x[top]),
         float(t[top]),
-        _decay(done[top:] - 1),
+        _decay(normalised[top:] - 1),
     )
 
 
-def _reached(t: np.ndarray, done: np.ndarray, level: float) -> float | None:
+def _time_at(t: np.ndarray, normalised: np.ndarray, level: float) -> float | None:
     """First time at a level."""
-    above = np.flatnonzero(done >= level)
+    above = np.flatnonzero(normalised >= level)
     if not above.size:
         return None
     at = int(above[0])
-    return float(t[0]) if at == 0 else _crossing(t, done, at - 1, level)
+    return float(t[0]) if at == 0 else _crossing(t, normalised, at - 1, level)
 
 
 def _crossing(t: np.ndarray, values: np.ndarray, at: int, level: float) -> float:
@@ -642,12 +651,12 @@ def _crossing(t: np.ndarray, values: np.ndarray, at: int, level: float) -> float
     return float(t[at] + share * (t[at + 1] - t[at]))
 
 
-def _settled(t: np.ndarray, error: np.ndarray, band: float) -> float | None:
+def _settling_time(t: np.ndarray, error: np.ndarray, band: float) -> float | None:
     """Last time outside the band, if the rest covers the last tenth."""
-    outside = np.flatnonzero(np.abs(error) > band)
-    if not outside.size:
+    beyond = np.flatnonzero(np.abs(error) > band)
+    if not beyond.size:
         return 0.0
-    at = int(outside[-1])
+    at = int(beyond[-1])
     if at == len(t) - 1:
         return None
     time = _crossing(t, error, at, float(np.copysign(band, error[at])))

@@ -20,7 +20,7 @@ from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..studies.plant import Plant
 from .components.circuit import Circuit, Loop, acts_after, frequencies, loop_of
 from .harmonic import dynamic_stiffness_of_record, windows
-from .integrate import Event, Stuck, Trajectory
+from .integrate import LAST, Event, Stuck, Trajectory
 from .linear import StepMetrics, Tuned, step_metrics
 from .system import Compiled, System
 
@@ -40,7 +40,7 @@ class Balance:
     mass: float
     """Largest |content - inflow| of any volume, over its content."""
     energy: float
-    """stored - net inflow|, relative to all energy across the boundary."""
+    """Largest |stored - net inflow|, relative to all energy across the boundary."""
     flows: tuple[EnergyFlow, ...]
     stored: tuple[EnergyFlow, ...]
     """Change of the stored energy."""
@@ -54,9 +54,9 @@ class Second:
     max_difference: float
     """Largest difference of any compared signal, over its span."""
     signal: str
-    """Its signal."""
+    """Signal with that difference."""
     time: float
-    """Its time [s]."""
+    """Time of that difference [s]."""
     differences: Mapping[str, float]
 
 
@@ -66,7 +66,7 @@ class Window:
 
     time: float
     position: float
-    """Mean pressures of the chambers."""
+    """Means of time [s] and position [m] in the window."""
     stiffness: complex
     """Force over position [N/m]."""
     standard_error: float
@@ -106,14 +106,14 @@ class RequirementResult:
 
     @property
     def state(self) -> State:
-        """Whether it is met, and with what margin (`reserve.NO_RESERVE`)."""
+        """Whether it is missed, met, or met without a reserve."""
         if not self.met:
             return "missed"
         return "no_reserve" if without_reserve(self.margin, self.limit) else "met"
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class SignalLabel:
     """Label and quantity of a signal."""
 
     label: str
@@ -133,7 +133,7 @@ class Simulation(Displayed):
     spec_hash: str
     time: Array
     signals: Mapping[str, Array]
-    told: Mapping[str, Told]
+    told: Mapping[str, SignalLabel]
     balance: Balance
     values: Mapping[str, float | None]
     why: Mapping[str, str]
@@ -200,7 +200,7 @@ class Simulation(Displayed):
                 "mass": self.balance.mass,
                 "energy": self.balance.energy,
                 "flows": {flow.name: flow.energy for flow in self.balance.flows},
-                "stored": {one.name: one.energy for one in self.balance.stored},
+                "stored": {store.name: store.energy for store in self.balance.stored},
             },
             "dynamic_stiffness": self._shaken(),
             "events": [
@@ -275,8 +275,6 @@ def _finite(value: float) -> float | None:
     return value if np.isfinite(value) else None
 
 
-LAST = 0.1
-"""Final share of the time used for creep."""
 RISE = 4
 """Least number of samples of a rise for reliable results (a choice)."""
 NOT_HERE = "does not apply to this scenario"
@@ -302,8 +300,10 @@ def servo(scenario: Scenario, time: Array, signals: Mapping[str, Array]) -> Serv
     if loop is None or not steps or not all(SHAPES[part.shape].settles for part in parts):
         return None
     first = min(steps, key=lambda part: part.start)
-    moving = [part for part in parts if SHAPES[part.shape].moves_on]
-    if any(one.start <= first.start < (one.end or 0.0) for one in moving):  # no constant target
+    moving_parts = [part for part in parts if SHAPES[part.shape].moves_on]
+    if any(
+        part.start <= first.start < (part.end or 0.0) for part in moving_parts
+    ):  # no constant target
         return None
     changes = [t for part in parts for t in (part.start, part.end) if t is not None]
     end = min((t for t in changes if t > first.start), default=scenario.duration)
@@ -314,16 +314,16 @@ def servo(scenario: Scenario, time: Array, signals: Mapping[str, Array]) -> Serv
         inside = np.concatenate(([inside[0] - 1], inside)) if inside.size else inside
     if inside.size < 3:
         return None
-    asked = signals["reference"]
-    target = float(asked[inside[1]])
-    start = float(asked[inside[0] - 1]) if inside[0] > 0 else float(value[0])
+    reference_values = signals["reference"]
+    target = float(reference_values[inside[1]])
+    start = float(reference_values[inside[0] - 1]) if inside[0] > 0 else float(value[0])
     if start == target:
         return None
-    found = step_metrics(time=time[inside], response=value[inside], start=start, target=target)
-    return Servo(loop, first.start, start, target, found)
+    metrics = step_metrics(time=time[inside], response=value[inside], start=start, target=target)
+    return Servo(loop, first.start, start, target, metrics)
 
 
-def shaken(
+def harmonic_load(
     scenario: Scenario, time: Array, signals: Mapping[str, Array]
 ) -> tuple[HarmonicLoad | None, str]:
     """Dynamic stiffness along the stroke under a sinusoidal load, or the reason for none."""
@@ -344,15 +344,15 @@ def shaken(
     begin = max(part.start for part in sines)
     end = min(part.end or scenario.duration for part in sines)
     inside = (time >= begin) & (time <= end)
-    t, keep = np.unique(time[inside], return_index=True)
-    x, force = (signals[name][inside][keep] for name in ("position", "load_force"))
+    t, first_index = np.unique(time[inside], return_index=True)
+    x, force = (signals[name][inside][first_index] for name in ("position", "load_force"))
     cycles = int(scenario.analysis.window_cycles)
     try:
         pieces = windows(time=t, frequency=tone, cycles=cycles)
-        found = tuple(_window(t[piece], x[piece], -force[piece], tone) for piece in pieces)
+        stiffnesses = tuple(_window(t[piece], x[piece], -force[piece], tone) for piece in pieces)
     except InputError as error:
         return None, error.diagnostics[0].message
-    return HarmonicLoad(tone, found), ""
+    return HarmonicLoad(tone, stiffnesses), ""
 
 
 def _window(time: Array, position: Array, force: Array, frequency: float) -> Window:
@@ -367,20 +367,20 @@ def _window(time: Array, position: Array, force: Array, frequency: float) -> Win
     )
 
 
-def _answer(step: Servo, apart: float) -> tuple[dict[str, float | None], dict[str, str]]:
+def _step_results(step: Servo, spacing: float) -> tuple[dict[str, float | None], dict[str, str]]:
     """Step response results at a sample spacing [s], and reasons for missing ones."""
-    own = step.metrics
-    error = abs(own.steady_state_error) / abs(step.target - step.start)
-    if own.rise_time is not None and own.rise_time < RISE * apart:
+    metrics = step.metrics
+    error = abs(metrics.steady_state_error) / abs(step.target - step.start)
+    if metrics.rise_time is not None and metrics.rise_time < RISE * spacing:
         coarse = f"the rise takes at most {RISE} samples: state a shorter sample_time"
         return dict.fromkeys(_STEP) | {"steady_state_ratio": error}, dict.fromkeys(_STEP, coarse)
-    found = {
-        "rise_time": own.rise_time,
-        "settling_time": own.settling_time,
-        "overshoot": own.overshoot,
+    figures = {
+        "rise_time": metrics.rise_time,
+        "settling_time": metrics.settling_time,
+        "overshoot": metrics.overshoot,
         "steady_state_ratio": error,
     }
-    return found, {
+    return figures, {
         "rise_time": "the response never reaches 90 % of the step",
         "settling_time": "the response does not stay within 2 % of the step",
     }
@@ -399,52 +399,52 @@ def values(
     records: Records,
 ) -> tuple[dict[str, float | None], dict[str, str]]:
     """Every result of `quantities.RESULTS`, None with a reason if it does not apply."""
-    found: dict[str, float | None] = dict.fromkeys(RESULTS)
+    results: dict[str, float | None] = dict.fromkeys(RESULTS)
     why = dict.fromkeys(RESULTS, NOT_HERE)
     why |= dict.fromkeys(_STEP, NO_STEP)
     if step is not None:
-        figures, reasons = _answer(step, float(np.median(np.diff(time))))
-        found |= figures
+        figures, reasons = _step_results(step, float(np.median(np.diff(time))))
+        results |= figures
         why |= reasons
     chambers = [signals[name] for name in ("pressure_a", "pressure_b") if name in signals]
     if chambers:
-        found["peak_pressure"] = float(max(np.max(chamber) for chamber in chambers))
+        results["peak_pressure"] = float(max(np.max(chamber) for chamber in chambers))
         lowest = float(min(np.min(chamber) for chamber in chambers))
-        found["lowest_pressure"] = lowest
-        found["cavitation_margin"] = lowest + ATMOSPHERIC_PRESSURE - plant.oil.vapour_pressure
+        results["lowest_pressure"] = lowest
+        results["cavitation_margin"] = lowest + ATMOSPHERIC_PRESSURE - plant.oil.vapour_pressure
     if "position" in signals:
-        found["hold_drift"] = _drift(scenario, records, time, signals)
+        results["hold_drift"] = _drift(scenario, records, time, signals)
         why["hold_drift"] = "signal, reference or load still cause motion in the last tenth"
         speed = _stop_speed(time, signals["speed"], events)
-        found["stop_speed"], why["stop_speed"] = speed, NO_STOP
+        results["stop_speed"], why["stop_speed"] = speed, NO_STOP
     loop, parts = reference(scenario)
     if loop == "position" and any(SHAPES[part.shape].moves_on for part in parts):
         late = time >= _settled_from(parts, scenario.duration)
-        found["following_error"] = float(np.max(np.abs(signals["error"][late])))
+        results["following_error"] = float(np.max(np.abs(signals["error"][late])))
     why["following_error"] = NO_MOTION
-    came = {flow.name: flow.energy for flow in balance.flows}
-    if "supply" in came:
-        found["supply_energy"] = came["supply"]
-        work = -(came.get("load", 0.0) + came.get("joint", 0.0))
-        net = came["supply"] + came.get("return line", 0.0)
-        found["efficiency"] = work / net if work > 0 and net > 0 else None
+    energies = {flow.name: flow.energy for flow in balance.flows}
+    if "supply" in energies:
+        results["supply_energy"] = energies["supply"]
+        work = -(energies.get("load", 0.0) + energies.get("joint", 0.0))
+        net = energies["supply"] + energies.get("return line", 0.0)
+        results["efficiency"] = work / net if work > 0 and net > 0 else None
         why["efficiency"] = "no work was done on the load"
         if scenario.supply.accumulator is not None:
-            found["efficiency"] = None
+            results["efficiency"] = None
             why["efficiency"] = "the accumulator supplies part of the work"
         if scenario.load.cylinder is not None or scenario.load.drive is not None:
             why["efficiency"] = "work of an external machine is not counted"
     if dynamic is not None:
-        settled = dynamic.windows[1:] or dynamic.windows  # the first value belongs to the start
-        worst = min(settled, key=lambda one: abs(one.stiffness))
-        found["dynamic_stiffness"] = abs(worst.stiffness)
-        found["dynamic_phase"] = float(np.angle(worst.stiffness))
+        later = dynamic.windows[1:] or dynamic.windows  # the first window contains the transient
+        worst = min(later, key=lambda window: abs(window.stiffness))
+        results["dynamic_stiffness"] = abs(worst.stiffness)
+        results["dynamic_phase"] = float(np.angle(worst.stiffness))
     why |= dict.fromkeys(("dynamic_stiffness", "dynamic_phase"), still)
-    return found, {name: reason for name, reason in why.items() if found[name] is None}
+    return results, {name: reason for name, reason in why.items() if results[name] is None}
 
 
 def _settled_from(parts: Sequence[SignalSegment], duration: float) -> float:
-    """Time after one period of the slowest sine, or zero."""
+    """Time after one period of the slowest sine; the start of the reference without a sine."""
     tones = frequencies(parts)
     begin = min(part.start for part in parts)
     return min(begin + (1 / min(tones) if tones else 0.0), 0.9 * duration)
@@ -453,7 +453,7 @@ def _settled_from(parts: Sequence[SignalSegment], duration: float) -> float:
 def _drift(
     scenario: Scenario, records: Records, time: Array, signals: Mapping[str, Array]
 ) -> float | None:
-    """Mean speed over the last part, if nothing commands motion."""
+    """Mean speed over the last tenth, if nothing commands motion."""
     begin = (1 - LAST) * scenario.duration
     loop, parts = reference(scenario)
     load = scenario.load
@@ -471,23 +471,23 @@ def _drift(
 
 
 def _stop_speed(time: Array, speed: Array, events: Sequence[Event]) -> float | None:
-    touched = [event.time for event in events if event.on and event.name.startswith("stop")]
-    if not touched:
+    contacts = [event.time for event in events if event.on and event.name.startswith("stop")]
+    if not contacts:
         return None
-    return float(max(abs(np.interp(t, time, speed)) for t in touched))
+    return float(max(abs(np.interp(t, time, speed)) for t in contacts))
 
 
 def requirements(
-    scenario: Scenario, found: Mapping[str, float | None], why: Mapping[str, str]
+    scenario: Scenario, results: Mapping[str, float | None], why: Mapping[str, str]
 ) -> tuple[RequirementResult, ...]:
-    """Every limit of the scenario against its result."""
+    """Every requirement of the scenario, compared with its result."""
     rows = []
     for metric, limit in scenario.requirements.items():
         for sense in ("min", "max"):
             bound: float | None = getattr(limit, sense)
             if bound is None:
                 continue
-            value = found.get(metric)
+            value = results.get(metric)
             if value is None and metric == "stop_speed" and sense == "max":
                 value = 0.0  # no stop is reached
             if value is None:
@@ -502,7 +502,7 @@ def requirements(
 
 
 def balance(circuit: Circuit, run: Trajectory) -> Balance:
-    """The balance of a run from its states, as content and energy are functions of them."""
+    """Mass and energy balance of a run; contents and energies are functions of its states."""
     audit, system = circuit.audit, circuit.system
     at = {state.symbol.index: k for k, state in enumerate(system.states)}
 
@@ -512,23 +512,23 @@ def balance(circuit: Circuit, run: Trajectory) -> Balance:
     contents = _values(system, [value for _, value, _ in audit.mass], run)
     mass = 0.0
     for (_, _, inflow), content in zip(audit.mass, contents, strict=True):
-        missing = content - content[0] - integral(inflow)
-        mass = max(mass, float(np.max(np.abs(missing)) / np.max(np.abs(content))))
+        imbalance = content - content[0] - integral(inflow)
+        mass = max(mass, float(np.max(np.abs(imbalance)) / np.max(np.abs(content))))
     stored = _values(system, [value for _, value in audit.stored], run)
-    kept: dict[str, Array] = {}
+    changes: dict[str, Array] = {}
     for (name, _), value in zip(audit.stored, stored, strict=True):
-        kept[name] = kept.get(name, 0.0) + value - value[0]
-    doors: dict[str, Array] = {}
+        changes[name] = changes.get(name, 0.0) + value - value[0]
+    energies: dict[str, Array] = {}
     for name, symbol, into in audit.flows:
-        doors[name] = doors.get(name, 0.0) + (1 if into else -1) * integral(symbol)
-    missing = sum(kept.values(), start=np.zeros(len(run.time))) - sum(doors.values())
-    through = sum(float(np.sum(np.abs(np.diff(value)))) for value in doors.values())
-    through += max((float(np.ptp(value)) for value in kept.values()), default=0.0)
+        energies[name] = energies.get(name, 0.0) + (1 if into else -1) * integral(symbol)
+    imbalance = sum(changes.values(), start=np.zeros(len(run.time))) - sum(energies.values())
+    throughput = sum(float(np.sum(np.abs(np.diff(value)))) for value in energies.values())
+    throughput += max((float(np.ptp(value)) for value in changes.values()), default=0.0)
     return Balance(
         mass=mass,
-        energy=float(np.max(np.abs(missing))) / through if through > 0 else 0.0,
-        flows=tuple(EnergyFlow(name, float(value[-1])) for name, value in doors.items()),
-        stored=tuple(EnergyFlow(name, float(value[-1])) for name, value in kept.items()),
+        energy=float(np.max(np.abs(imbalance))) / throughput if throughput > 0 else 0.0,
+        flows=tuple(EnergyFlow(name, float(value[-1])) for name, value in energies.items()),
+        stored=tuple(EnergyFlow(name, float(value[-1])) for name, value in changes.items()),
     )
 
 
@@ -541,20 +541,20 @@ def _values(system: System, expressions: list[object], run: Trajectory) -> list[
     return [np.broadcast_to(np.asarray(value, float), run.time.shape) for value in values]
 
 
-TOLD = ("position", "speed", "shaft_speed", "pressure_a", "pressure_b", "pressure_supply")
+EXPLAINING = ("position", "speed", "shaft_speed", "pressure_a", "pressure_b", "pressure_supply")
 """Signals that help to explain a failure."""
 OUT = 0.1
 """Overrun of the stroke, as a share of it, beyond which the stops have failed (a choice)."""
 
 
 def failed(stuck: Stuck, compiled: Compiled, plant: Plant) -> Unsolvable:
-    """The failure with the actuator's state there, and the likeliest cause."""
+    """The failure with the actuator's state at that time, and the most likely remedy."""
     flags = np.zeros((len(compiled.system.flags), 1), dtype=bool)
     signals = compiled.signals(np.array([stuck.time]), stuck.state[:, None], list(flags))
     words = [
         f"{signal.label} {signal.quantity.text(float(signals[signal.name][0]))}"
         for signal in compiled.system.signals
-        if signal.name in TOLD and np.isfinite(signals[signal.name][0])
+        if signal.name in EXPLAINING and np.isfinite(signals[signal.name][0])
     ]
     (fault,) = stuck.diagnostics
     at = f" ({', '.join(words)})" if words else ""

@@ -20,12 +20,12 @@ from ..evaluation.build import spec_hash
 from ..evaluation.kernel import PreparedDesign
 from ..models.supply import relief_flow
 from ..studies.plant import Plant, plant
-from . import result as reading
+from . import result as results
 from .assemble import assemble
 from .components.circuit import Circuit
 from .integrate import Method, Stuck, Trajectory, integrate
 from .linear import CAUSES, UNHELD, Tuned, tune
-from .result import Second, Simulation, Told, balance, failed
+from .result import Second, SignalLabel, Simulation
 from .system import Compiled
 
 SECOND: Final[dict[Method, Method]] = {"lsoda": "radau", "cvodes": "radau", "radau": "lsoda"}
@@ -41,7 +41,8 @@ COARSE = 1e-3
 """Sample time above which oil pressure peaks may be missed [s] (a choice: at 125 Hz, an eighth of a
 period)."""
 SETTLED = 0.02
-"""Difference of a pump line's initial pressure, as a share, that is reported (a choice)."""
+"""Relative difference of a pump line's initial pressure from equilibrium that is reported (a
+choice)."""
 WARN_PLANE = 0.02
 """Fit error of friction over pressure that is reported."""
 
@@ -58,7 +59,7 @@ def simulate(
 
     Parameters
     ----------
-    scenario : what happens
+    scenario : inputs over time
     subject : the design, with the values that the scenario sets
     records : columns of the files that its signals name
     verify : integrate again by another method and compare
@@ -73,17 +74,17 @@ def simulate(
     """
     begin = perf_counter()
     files = {} if records is None else records
-    own = plant(subject)
-    tuned = tune(scenario, own, files)
+    actuator = plant(subject)
+    tuned = tune(scenario, actuator, files)
     return run(
-        scenario, own, files, tuned, verify=verify, method=method,
+        scenario, actuator, files, tuned, verify=verify, method=method,
         spec=spec_of(subject, scenario), begin=begin,
     )  # fmt: skip
 
 
 def run(
     scenario: Scenario,
-    own: Plant,
+    actuator: Plant,
     records: Records,
     tuned: Tuned | None,
     *,
@@ -94,7 +95,7 @@ def run(
 ) -> Simulation:
     """Simulate a scenario around a plant with known gains; parameters as `simulate`."""
     begin = perf_counter() if begin is None else begin
-    circuit = assemble(scenario, own, records, None if tuned is None else tuned.gains)
+    circuit = assemble(scenario, actuator, records, None if tuned is None else tuned.gains)
     compiled = circuit.system.compiled()
     step = scenario.sample_time or scenario.duration / SAMPLES
     try:
@@ -102,58 +103,41 @@ def run(
             compiled, duration=scenario.duration, sample_time=step, method=method
         )
     except Stuck as stuck:
-        raise failed(stuck, compiled, own) from None
+        raise results.failed(stuck, compiled, actuator) from None
     signals = compiled.signals(trajectory.time, trajectory.states, trajectory.flags)
-    added = balance(circuit, trajectory)
-    followed = reading.servo(scenario, trajectory.time, signals)
-    dynamic, still = reading.shaken(scenario, trajectory.time, signals)
-    values, why = reading.values(
-        scenario,
-        own,
-        trajectory.time,
-        signals,
-        added,
-        trajectory.events,
-        followed,
-        dynamic,
-        still,
-        records,
-    )
+    balance = results.balance(circuit, trajectory)
+    servo = results.servo(scenario, trajectory.time, signals)
+    dynamic, reason = results.harmonic_load(scenario, trajectory.time, signals)
+    values, why = results.values(
+        scenario, actuator, trajectory.time, signals, balance, trajectory.events, servo, dynamic,
+        reason, records,
+    )  # fmt: skip
     result = Simulation(
         scenario=scenario,
-        plant=own,
+        plant=actuator,
         spec_hash=spec,
         time=trajectory.time,
         signals=signals,
-        told={
-            signal.name: Told(signal.label, signal.quantity) for signal in circuit.system.signals
-        },
-        balance=added,
+        told={x.name: SignalLabel(x.label, x.quantity) for x in circuit.system.signals},
+        balance=balance,
         values=values,
         why=why,
-        requirements=reading.requirements(scenario, values, why),
+        requirements=results.requirements(scenario, values, why),
         tuned=tuned,
-        servo=followed,
+        servo=servo,
         shaken=dynamic,
         events=trajectory.events,
-        notes=(
-            *recorded_notes(scenario, records),
-            *_notes(circuit, own, tuned),
-            *_reach(own, signals),
-            *_limits(scenario, own, signals),
-            *_coarse(step, signals),
-            *_unsettled(scenario, own),
-        ),
+        notes=_notes(circuit, tuned, signals, step),
         evaluations=trajectory.evaluations,
         seconds=perf_counter() - begin,
     )
     if not verify:
         return result
-    second = _second(compiled, scenario, step, trajectory, signals, SECOND[method])
+    second = _checked_by(compiled, scenario, step, trajectory, signals, SECOND[method])
     return replace(result, second=second)
 
 
-def _second(
+def _checked_by(
     compiled: Compiled,
     scenario: Scenario,
     step: float,
@@ -161,66 +145,85 @@ def _second(
     signals: dict[str, Array],
     method: Method,
 ) -> Second:
-    """Integrate again by another method: largest difference, relative to each signal's span."""
+    """Integrate again by another method; differences are relative to each signal's span."""
     other = integrate(compiled, duration=scenario.duration, sample_time=step, method=method)
     again = compiled.signals(other.time, other.states, other.flags)
-    grid, at = _single(first.time)
-    times, there = _single(other.time)
+    grid, at = _single_instants(first.time)
+    times, other_at = _single_instants(other.time)
     differences, where = {}, {}
     for name in COMPARED:
         if name not in signals:
             continue
-        mine = signals[name][at]
-        apart = np.abs(mine - np.interp(grid, times, again[name][there]))
-        span = float(np.ptp(mine))
-        if span <= 1e-9 * max(float(np.max(np.abs(mine))), 1e-12):
+        reference = signals[name][at]
+        deviation = np.abs(reference - np.interp(grid, times, again[name][other_at]))
+        span = float(np.ptp(reference))
+        if span <= 1e-9 * max(float(np.max(np.abs(reference))), 1e-12):
             continue
-        worst = int(np.argmax(apart))
-        differences[name], where[name] = float(apart[worst]) / span, float(grid[worst])
-    name = max(differences, key=lambda one: differences[one], default="")
+        worst = int(np.argmax(deviation))
+        differences[name], where[name] = float(deviation[worst]) / span, float(grid[worst])
+    name = max(differences, key=lambda signal: differences[signal], default="")
     if not name:
         return Second(method, 0.0, "", 0.0, {})
     return Second(method, differences[name], name, where[name], differences)
 
 
-def _single(time: Array) -> tuple[Array, Array]:
-    """Samples without the doubled instants, so that jumps are compared away from the edge."""
-    kept, first, count = np.unique(time, return_index=True, return_counts=True)
-    alone = count == 1
-    return kept[alone], first[alone]
+def _single_instants(time: Array) -> tuple[Array, Array]:
+    """Times that occur once, and their samples; jumps, which have two samples, are left out."""
+    instants, first, count = np.unique(time, return_index=True, return_counts=True)
+    single = count == 1
+    return instants[single], first[single]
 
 
-def _notes(circuit: Circuit, own: Plant, tuned: Tuned | None) -> tuple[str, ...]:
+def _notes(
+    circuit: Circuit, tuned: Tuned | None, signals: Mapping[str, Array], step: float
+) -> tuple[str, ...]:
     """Notes on a run for its reader."""
-    notes = [*circuit.system.notes]
-    if tuned is not None:
-        notes += tuned.notes
-        if tuned.unheld:
-            said = "the margins of the linear loop are meaningless"
-            notes.append(f"{UNHELD}{tuned.unheld}: {said}; {CAUSES}")
-        elif not tuned.margins.stable:
-            notes.append(
-                f"the linear loop is unstable: gain margin {tuned.margins.gain:.2f}; it "
-                "oscillates until limited by the valve or the friction"
-            )
-    stated, seals = circuit.scenario.friction, own.seals
-    if stated.coulomb is None and stated.model != "none" and circuit.scenario.motor is None:
+    scenario, actuator = circuit.scenario, circuit.plant
+    return (
+        *recorded_notes(scenario, circuit.records),
+        *circuit.system.notes,
+        *_controller_notes(tuned),
+        *_simplifications(scenario, actuator),
+        *_reference_outside_stroke(actuator, signals),
+        *_limits(scenario, actuator, signals),
+        *_coarse_samples(step, signals),
+        *_pump_not_in_equilibrium(scenario, actuator),
+    )
+
+
+def _controller_notes(tuned: Tuned | None) -> Iterator[str]:
+    """Notes of the tuning, and a loop without valid margins or stability."""
+    if tuned is None:
+        return
+    yield from tuned.notes
+    if tuned.unheld:
+        yield f"{UNHELD}{tuned.unheld}: the margins of the linear loop are meaningless; {CAUSES}"
+    elif not tuned.margins.stable:
+        yield (
+            f"the linear loop is unstable: gain margin {tuned.margins.gain:.2f}; it "
+            "oscillates until limited by the valve or the friction"
+        )
+
+
+def _simplifications(scenario: Scenario, actuator: Plant) -> Iterator[str]:
+    """Friction and port accumulators that the simulation simplifies."""
+    friction, seals = scenario.friction, actuator.seals
+    if friction.coulomb is None and friction.model != "none" and scenario.motor is None:
         error = max(seals.coulomb.error, seals.static.error)
         if error > WARN_PLANE:
-            notes.append(f"the fit of friction over the pressures is within {100 * error:.1f} %")
-        films = [one for one in ("piston", "rod") if own.films[one]]
+            yield f"the fit of friction over the pressures is within {100 * error:.1f} %"
+        films = [place for place in ("piston", "rod") if actuator.films[place]]
         if films:
-            notes.append(
+            yield (
                 f"the {' and '.join(films)} seal's oil film is simulated as dry friction with "
                 "its coefficient: state friction.coulomb and viscous for its running friction"
             )
-    if own.design.ports.accumulators:
-        notes.append("accumulators at the ports (ports.accumulators) are not simulated")
-    return tuple(notes)
+    if actuator.design.ports.accumulators:
+        yield "accumulators at the ports (ports.accumulators) are not simulated"
 
 
-def _limits(scenario: Scenario, own: Plant, signals: Mapping[str, Array]) -> Iterator[str]:
-    """Cavitation, excess pressure, or a load cylinder at its end, which the equations ignore."""
+def _limits(scenario: Scenario, actuator: Plant, signals: Mapping[str, Array]) -> Iterator[str]:
+    """Cavitation, excess pressure and an overrun load cylinder, which the equations ignore."""
     where = "chamber" if scenario.motor is None else "pipe"
     for name in ("pressure_a", "pressure_b"):
         if name not in signals:
@@ -229,8 +232,8 @@ def _limits(scenario: Scenario, own: Plant, signals: Mapping[str, Array]) -> Ite
         lowest, highest = float(np.min(signals[name])), float(np.max(signals[name]))
         if lowest < TORN:
             yield f"the oil in {side} cavitates: {text(lowest)} gauge"
-        if highest > own.proof_pressure:
-            proof = text(own.proof_pressure)
+        if highest > actuator.proof_pressure:
+            proof = text(actuator.proof_pressure)
             yield (
                 f"the pressure in {side} peaks at {text(highest)}, above the proof pressure of "
                 f"{proof}"
@@ -242,14 +245,16 @@ def _limits(scenario: Scenario, own: Plant, signals: Mapping[str, Array]) -> Ite
             yield "the load cylinder exceeds its stroke: it starts in the middle and has no stops"
 
 
-def _coarse(step: float, signals: Mapping[str, Array]) -> Iterator[str]:
-    """Samples that may miss a peak."""
+def _coarse_samples(step: float, signals: Mapping[str, Array]) -> Iterator[str]:
+    """Sample times that may miss a peak."""
     if step > COARSE and "pressure_a" in signals:
-        apart = f"{1e3 * step:.3g} ms apart"
-        yield f"peaks and step results are taken from samples, {apart}: state a shorter sample_time"
+        yield (
+            f"peaks and step results are taken from samples, {1e3 * step:.3g} ms apart: "
+            "state a shorter sample_time"
+        )
 
 
-def _unsettled(scenario: Scenario, own: Plant) -> Iterator[str]:
+def _pump_not_in_equilibrium(scenario: Scenario, actuator: Plant) -> Iterator[str]:
     """A pump that does not start in equilibrium with its relief valve."""
     from scipy.optimize import brentq
 
@@ -258,36 +263,37 @@ def _unsettled(scenario: Scenario, own: Plant) -> Iterator[str]:
         return
     relief, flow, text = unit.relief, unit.flow, INPUTS["pressure"].text
 
-    def missing(over: float) -> float:
-        passed = relief_flow(
+    def excess_flow(over: float) -> float:
+        relieved = relief_flow(
             pressure_difference=relief.pressure + over,
             cracking_pressure=relief.pressure,
             override=relief.override,
             rated_flow=relief.rated_flow,
         )
-        return float(passed) - flow
+        return float(relieved) - flow
 
-    over = float(brentq(missing, 0.0, 2 * relief.override))  # includes the pump, as checked
-    rest = own.return_pressure + relief.pressure + over
-    if abs(rest - own.supply_pressure) > SETTLED * own.supply_pressure:
+    over = float(brentq(excess_flow, 0.0, 2 * relief.override))  # includes the pump, as checked
+    initial = actuator.supply_pressure
+    equilibrium = actuator.return_pressure + relief.pressure + over
+    if abs(equilibrium - initial) > SETTLED * initial:
         yield (
-            f"the supply line starts at {text(own.supply_pressure)} (supply.pressure), but pump "
-            f"and relief valve settle near {text(rest)}: set supply.pressure there"
+            f"the supply line starts at {text(initial)} (supply.pressure), but pump "
+            f"and relief valve settle near {text(equilibrium)}: set supply.pressure there"
         )
 
 
-def _reach(own: Plant, signals: Mapping[str, Array]) -> Iterator[str]:
+def _reference_outside_stroke(actuator: Plant, signals: Mapping[str, Array]) -> Iterator[str]:
     """A reference outside the stroke."""
     if "reference" not in signals or "position" not in signals:
         return
-    asked = signals["reference"]
-    low, high = float(np.min(asked)), float(np.max(asked))
-    follows = np.allclose(asked - signals["error"], signals["position"])
-    if follows and (low < 0 or high > own.stroke):
+    reference = signals["reference"]
+    low, high = float(np.min(reference)), float(np.max(reference))
+    follows = np.allclose(reference - signals["error"], signals["position"])
+    if follows and (low < 0 or high > actuator.stroke):
         length = INPUTS["position"].text
         yield (
             f"the reference ranges from {length(low)} to {length(high)}, but the stroke ends at "
-            f"{length(own.stroke)}"
+            f"{length(actuator.stroke)}"
         )
 
 

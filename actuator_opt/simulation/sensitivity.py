@@ -32,7 +32,7 @@ from .run import run
 STEP = 0.02
 """Relative step of a parameter (a choice: well above the error of a run)."""
 AGREE = 0.1
-"""Agreement required of a difference with half the step."""
+"""Relative tolerance between the differences with the whole and half the step."""
 NOTHING = 0.05
 """Change of a result, in per cent for 1 %, that counts as zero (a choice)."""
 DESIGN = (
@@ -59,7 +59,7 @@ class Effect:
     change: float
     """Change of the result [SI]."""
     reliable: bool
-    """Whether half the step agrees within 10 %; if nothing changes, only that."""
+    """Whether half the step agrees within 10 %, or the result does not change with either step."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,17 +72,17 @@ class ParameterEffects:
     value: float
     unit: Literal["1 %", "1 K"]
     effects: Mapping[str, Effect]
-    """By result."""
+    """Effects by result."""
 
     @property
     def largest(self) -> float:
         """Largest reliable effect on any result [%]."""
-        known = [
+        reliable = [
             effect
             for effect in self.effects.values()
             if effect.percent is not None and effect.reliable
         ]
-        return max((abs(one.percent or 0.0) for one in known), default=0.0)
+        return max((abs(effect.percent or 0.0) for effect in reliable), default=0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,7 +143,7 @@ def sensitivities(
 
     Parameters
     ----------
-    scenario, subject : what happens, and the design
+    scenario, subject : inputs over time, and the design
     names : PATHs of design or scenario; default: `DESIGN` and the numbers that the scenario states
     step : relative step of a parameter
     results : names of `quantities.RESULTS`; default: all that the scenario has
@@ -162,22 +162,22 @@ def sensitivities(
         raise InputError(Diagnostic(message, "give a share between 0 and 0.5, such as 0.02"))
     bench = _Bench.of(scenario, subject, {} if records is None else records)
     base = bench.base()
-    chosen = _results(base, results)
-    parameter_effectses: list[ParameterEffects] = []
+    reference = _results(base, results)
+    ranked: list[ParameterEffects] = []
     skipped: dict[str, str] = {}
-    for one in steps("varying each parameter", [*bench.targets(names)]):
-        if one.value == 0:
-            skipped[one.path] = "it is 0, so a relative step has no effect"
+    for target in steps("varying each parameter", [*bench.targets(names)]):
+        if target.value == 0:
+            skipped[target.path] = "it is 0, so a relative step has no effect"
             continue
         try:
-            parameter_effectses.append(bench.parameter(one, chosen, step))
+            ranked.append(bench.parameter(target, reference, step))
         except (InputError, Unsolvable) as error:
-            skipped[one.path] = str(error)
-    parameter_effectses.sort(key=lambda one: -one.largest)
+            skipped[target.path] = str(error)
+    ranked.sort(key=lambda target: -target.largest)
     return Sensitivities(
         scenario.name,
-        chosen,
-        tuple(parameter_effectses),
+        reference,
+        tuple(ranked),
         skipped,
         step,
         bench.runs,
@@ -185,14 +185,14 @@ def sensitivities(
     )
 
 
-def _results(base: Simulation, asked: Sequence[str] | None) -> dict[str, float]:
+def _results(base: Simulation, requested: Sequence[str] | None) -> dict[str, float]:
     """Results that have a value."""
-    for name in asked or ():
+    for name in requested or ():
         if name not in RESULTS:
             raise InputError(Diagnostic(f"{name}: no such result", remedy(name, RESULTS)))
-    names = RESULTS if asked is None else asked
-    known = {name: base.values.get(name) for name in names}
-    return {name: value for name, value in known.items() if value is not None}
+    names = RESULTS if requested is None else requested
+    values = {name: base.values.get(name) for name in names}
+    return {name: value for name, value in values.items() if value is not None}
 
 
 @dataclass(frozen=True, slots=True)
@@ -240,8 +240,8 @@ class _Bench:
         if names is not None:
             yield from (self._target(name) for name in names)
             return
-        known = paths.numbers(self.subject.design)
-        yield from (self._target(name) for name in DESIGN if name in known)
+        numbers = paths.numbers(self.subject.design)
+        yield from (self._target(name) for name in DESIGN if name in numbers)
         for loc, _, value in leaves(self.scenario, Scenario):
             stated = _stated(self.scenario, loc)
             if number_of(value) is None or loc[0] in _APART or loc[-1] in _TIMES or not stated:
@@ -252,59 +252,69 @@ class _Bench:
         """A number by its PATH: the scenario's, else the design's."""
         design = self.subject.design
         try:
-            found = paths.resolve(name, self.scenario, RESULTS, Scenario)
+            resolved = paths.resolve(name, self.scenario, RESULTS, Scenario)
         except ValueFault:
             quantity, value = paths.quantity_of(name, design), paths.get(design, name)
             if isinstance(value, float):
                 return _Target(paths.canonical(name, design), (), quantity, value, "design")
         else:
-            number = number_of(child_at(self.scenario, found.loc))
-            if number is not None and found.quantity is not None:
-                return _Target(found.path, found.loc, found.quantity, number, "scenario")
+            number = number_of(child_at(self.scenario, resolved.loc))
+            if number is not None and resolved.quantity is not None:
+                return _Target(resolved.path, resolved.loc, resolved.quantity, number, "scenario")
         message = "no number is stated here"
         raise InputError(Diagnostic(message, "name a number that the file states", path=name))
 
-    def parameter(self, one: _Target, chosen: Mapping[str, float], step: float) -> ParameterEffects:
+    def parameter(
+        self, target: _Target, reference: Mapping[str, float], step: float
+    ) -> ParameterEffects:
         """Effects of one parameter: two runs, and two more where something changes."""
-        whole = self._slopes(one, chosen, step)
-        moves = {name for name, slope in whole.items() if _moves(slope, _least(name, step))}
-        half = self._slopes(one, chosen, 0.5 * step) if moves else whole
+        full_step = self._slopes(target, reference, step)
+        moving = {name for name, slope in full_step.items() if _moves(slope, _least(name, step))}
+        half_step = self._slopes(target, reference, 0.5 * step) if moving else full_step
         effects = {
-            name: Effect(*slope, name in half and _same(slope, half[name], _least(name, step)))
-            for name, slope in whole.items()
+            name: Effect(
+                *slope, name in half_step and _same(slope, half_step[name], _least(name, step))
+            )
+            for name, slope in full_step.items()
         }
-        per: Literal["1 %", "1 K"] = "1 K" if _absolute(one.quantity) else "1 %"
-        return ParameterEffects(one.path, one.origin, one.quantity, one.value, per, effects)
+        per: Literal["1 %", "1 K"] = "1 K" if _absolute(target.quantity) else "1 %"
+        return ParameterEffects(
+            target.path, target.origin, target.quantity, target.value, per, effects
+        )
 
-    def _slopes(self, one: _Target, chosen: Mapping[str, float], step: float) -> dict[str, _Slope]:
+    def _slopes(
+        self, target: _Target, reference: Mapping[str, float], step: float
+    ) -> dict[str, _Slope]:
         """Change of the results per unit of a parameter, where both sides have them."""
         units = step / 0.01
-        high, low = (self._values(one, one.value + way * units * one.amount) for way in (1, -1))
-        found: dict[str, _Slope] = {}
-        for name, value in chosen.items():
+        high, low = (
+            self._values(target, target.value + sign * units * target.amount) for sign in (1, -1)
+        )
+        slopes: dict[str, _Slope] = {}
+        for name, value in reference.items():
             above, below = high.get(name), low.get(name)
             if above is None or below is None:
                 continue
             change = (above - below) / (2 * units)
             zero = abs(value) < LEAST.get(name, 0.0) or value == 0
-            found[name] = (None if zero else 100 * change / abs(value), change)
-        return found
+            slopes[name] = (None if zero else 100 * change / abs(value), change)
+        return slopes
 
-    def _values(self, one: _Target, value: float) -> Mapping[str, float | None]:
+    def _values(self, target: _Target, value: float) -> Mapping[str, float | None]:
         """Results with another value of a parameter."""
         self.runs += 1
         scenario, subject = self.scenario, self.subject
-        if one.origin == "scenario":
-            scenario = _put(scenario, one.loc, value)
+        if target.origin == "scenario":
+            scenario = _put(scenario, target.loc, value)
         else:
-            old = paths.get(subject.design, one.path)
+            old = paths.get(subject.design, target.path)
             new = Fraction(value) if isinstance(old, Fraction) else value
-            design = with_values(subject.design, {one.path: new}, metrics=subject.quantities)
+            design = with_values(subject.design, {target.path: new}, metrics=subject.quantities)
             subject = prepare(design, subject.materials, subject.plugins)
-        own = plant(subject)
-        kept = not one.path.startswith("control.")
-        tuned = self.tuned if kept else tune(scenario, own, self.records)
-        return run(scenario, own, self.records, tuned).values
+        actuator = plant(subject)
+        gains_kept = not target.path.startswith("control.")
+        tuned = self.tuned if gains_kept else tune(scenario, actuator, self.records)
+        return run(scenario, actuator, self.records, tuned).values
 
 
 def _least(name: str, step: float) -> float:
@@ -312,18 +322,18 @@ def _least(name: str, step: float) -> float:
     return LEAST.get(name, 0.0) * 0.01 / step
 
 
-def _moves(one: _Slope, least: float) -> bool:
+def _moves(slope: _Slope, least: float) -> bool:
     """Whether a result changes by more than rounding."""
-    percent, change = one
+    percent, change = slope
     return abs(change) > least if percent is None else abs(percent) > NOTHING
 
 
-def _same(one: _Slope, other: _Slope, least: float) -> bool:
+def _same(slope: _Slope, other: _Slope, least: float) -> bool:
     """Whether two differences agree, or are both zero."""
-    if not (_moves(one, least) or _moves(other, least)):
+    if not (_moves(slope, least) or _moves(other, least)):
         return True
-    index = 1 if one[0] is None else 0
-    first, second = one[index] or 0.0, other[index] or 0.0
+    index = 1 if slope[0] is None else 0
+    first, second = slope[index] or 0.0, other[index] or 0.0
     return abs(first - second) <= AGREE * max(abs(first), abs(second))
 
 
@@ -334,10 +344,10 @@ def _absolute(quantity: Quantity) -> bool:
 
 def _put(node: Any, loc: Loc, value: float) -> Any:
     """A section with another number at a location."""
-    key, rest = loc[0], loc[1:]
+    key, remaining_path = loc[0], loc[1:]
     old = child(node, key)
-    new: Any = _put(old, rest, value) if rest else value
-    if not rest and isinstance(old, Fraction):
+    new: Any = _put(old, remaining_path, value) if remaining_path else value
+    if not remaining_path and isinstance(old, Fraction):
         new = Fraction(value)
     if isinstance(node, tuple):
         return tuple(new if k == key else item for k, item in enumerate(node))

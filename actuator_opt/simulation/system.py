@@ -1,6 +1,6 @@
 """A system of ordinary differential equations under construction, and its compiled form.
 
-Parts (`parts`) add states, rates and signals as expressions of the same symbols. They call the
+Components add states, rates and signals as expressions of the same symbols. They call the
 models of `actuator_opt.models` with these symbols, so the simulation has no formulas of its own.
 Jumps are flags that are constant between restarts: an instant of an input, or a switch that follows
 the sign of a guard.
@@ -25,15 +25,14 @@ LOOSE = 1e-4
 PRESSURE = 1.0
 """Error tolerance of a pressure [Pa]."""
 EMPTY = -40.0
-"""Pressure state, relative to the atmosphere's, at which the distance to vacuum has no digits
-left."""
+"""Least pressure state, relative to the atmosphere's; the distance to vacuum is rounding there."""
 VACUUM = 1e-6
 """Least absolute initial pressure, relative to the atmosphere's."""
 
 
 @dataclass(slots=True)
 class SystemState:
-    """A state with its start, error tolerance and rate."""
+    """A state with its initial value, error tolerance and rate."""
 
     name: str
     symbol: Symbol
@@ -73,15 +72,15 @@ class Signal:
 
 @dataclass(slots=True)
 class System:
-    """The equations; `compiled` makes them run."""
+    """Equations under construction; `compiled` returns them as functions."""
 
     graph: Graph = field(default_factory=Graph)
     states: list[SystemState] = field(default_factory=list)
     switches: list[Switch] = field(default_factory=list)
     instants: list[Instant] = field(default_factory=list)
     signals: list[Signal] = field(default_factory=list)
-    curved: dict[int, Symbol] = field(default_factory=dict)
-    """States that represent pressures, by number of the pressure."""
+    pressure_states: dict[int, Symbol] = field(default_factory=dict)
+    """States that represent pressures, by index of the pressure's symbol."""
     bends: list[float] = field(default_factory=list)
     """Instants at which a record changes its slope; no step is longer than the interval."""
     notes: list[str] = field(default_factory=list)
@@ -106,17 +105,17 @@ class System:
         lower end.
         """
         air = ATMOSPHERIC_PRESSURE
-        held = max(float(initial), (VACUUM - 1) * air)
-        start = held if held >= 0 else air * math.log1p(held / air)
+        clipped = max(float(initial), (VACUUM - 1) * air)
+        start = clipped if clipped >= 0 else air * math.log1p(clipped / air)
         state = self.state(name, start, tolerance=PRESSURE)
-        low = air * Namespace.expm1(_below(state) / air)
-        symbol: Symbol = where(state >= 0, state, low)
-        self.curved[symbol.index] = state
+        below_zero = air * Namespace.expm1(_below(state) / air)
+        symbol: Symbol = where(state >= 0, state, below_zero)
+        self.pressure_states[symbol.index] = state
         return symbol
 
     def rate(self, symbol: Symbol, rate: Expression) -> None:
-        """Set the time derivative of a state, or of a pressure."""
-        state = self.curved.get(symbol.index)
+        """Set the time derivative of a state or a pressure."""
+        state = self.pressure_states.get(symbol.index)
         if state is not None:
             slope = Namespace.exp(-_below(state) / ATMOSPHERIC_PRESSURE)
             symbol, rate = state, where(state >= 0, rate, rate * slope)
@@ -132,11 +131,11 @@ class System:
         """A flag that is true after an instant; the integration restarts there."""
         if time <= 0:
             return True
-        known = next((instant for instant in self.instants if instant.time == time), None)
-        if known is None:
-            known = Instant(f"m_{len(self.instants)}", time)
-            self.instants.append(known)
-        return self.graph.flag(known.flag)
+        existing = next((instant for instant in self.instants if instant.time == time), None)
+        if existing is None:
+            existing = Instant(f"m_{len(self.instants)}", time)
+            self.instants.append(existing)
+        return self.graph.flag(existing.flag)
 
     def switch(self, name: str, guard: Expression) -> Symbol:
         """A flag that is true while the guard is positive; its changes are located in time."""
@@ -182,7 +181,7 @@ class Compiled:
     """Guards of all switches at many samples: y is (states, samples)."""
     guard_rates: Callable[[Array, Array, tuple[Array, ...]], list[Array]]
     """Rates of the guards."""
-    told: Callable[[Array, Array, tuple[Array, ...]], list[Array]]
+    signal_values: Callable[[Array, Array, tuple[Array, ...]], list[Array]]
     """The signals, at many samples."""
     initial: Array
     tolerances: Array
@@ -195,26 +194,28 @@ class Compiled:
         """Trace, differentiate, generate code and compile."""
         symbols = [state.symbol for state in system.states]
         rates = [state.rate for state in system.states]
-        one, many = (system.unpack(symbols, states) for states in ("y.tolist()", "y"))
+        scalar, many = (system.unpack(symbols, states) for states in ("y.tolist()", "y"))
         entries = [x for row in jacobian(rates, symbols) for x in row]
         filled = np.array([k for k, x in enumerate(entries) if isinstance(x, Symbol) or x], int)
-        flat = function("jacobian", "t, y, m", one, [entries[k] for k in filled])
+        flat = function("jacobian", "t, y, m", scalar, [entries[k] for k in filled])
         size = len(symbols)
 
         def slopes(t: float, y: Array, m: tuple[bool, ...]) -> Array:
-            found = np.zeros(size * size)
-            found[filled] = flat(t, y, m)
-            return found.reshape(size, size)
+            values = np.zeros(size * size)
+            values[filled] = flat(t, y, m)
+            return values.reshape(size, size)
 
         return cls(
             system=system,
-            rates=function("rates", "t, y, m", one, rates),
+            rates=function("rates", "t, y, m", scalar, rates),
             slopes=slopes,
             guards=vectorised(
                 "guards", "t, y, m", many, [switch.guard for switch in system.switches]
             ),
-            guard_rates=vectorised("guard_rates", "t, y, m", many, _along(system)),
-            told=vectorised("told", "t, y, m", many, [signal.value for signal in system.signals]),
+            guard_rates=vectorised("guard_rates", "t, y, m", many, _guard_rates(system)),
+            signal_values=vectorised(
+                "signals", "t, y, m", many, [signal.value for signal in system.signals]
+            ),
             initial=np.array([state.initial for state in system.states]),
             tolerances=np.array([state.tolerance for state in system.states]),
             instants=tuple(instant.time for instant in system.instants),
@@ -224,7 +225,7 @@ class Compiled:
     def signals(self, t: Array, y: Array, m: Sequence[Array]) -> dict[str, Array]:
         """Every signal at samples: y (states, samples), a row of m for every flag."""
         with np.errstate(all="ignore"):
-            values = self.told(t, y, tuple(m))
+            values = self.signal_values(t, y, tuple(m))
         return {
             signal.name: np.broadcast_to(np.asarray(value, dtype=float), np.shape(t)).copy()
             for signal, value in zip(self.system.signals, values, strict=True)
@@ -236,11 +237,11 @@ def _below(state: Symbol) -> Expression:
     return clip(state, EMPTY * ATMOSPHERIC_PRESSURE, 0.0)
 
 
-def _along(system: System) -> list[Expression]:
+def _guard_rates(system: System) -> list[Expression]:
     """Rates of the guards along the solution."""
     symbols, rates = [state.symbol for state in system.states], [s.rate for s in system.states]
-    found = []
+    rates_of_guards = []
     for row in jacobian([switch.guard for switch in system.switches], [*symbols, system.time]):
         slopes = zip(row, [*rates, 1.0], strict=True)
-        found.append(sum((slope * rate for slope, rate in slopes), start=0.0))
-    return found
+        rates_of_guards.append(sum((slope * rate for slope, rate in slopes), start=0.0))
+    return rates_of_guards

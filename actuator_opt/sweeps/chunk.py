@@ -21,14 +21,14 @@ from ..design.writer import to_yaml
 from ..evaluation.build import Many, evaluate_many, limits_of, spec_hash
 from ..evaluation.plugin import Plugin
 from ..optimisation.actuator import Goal, goal_of
-from .designs import KEPT, Designs, first_fault
+from .designs import CACHED, Designs, first_fault
 from .plan import Plan, SweepPoints
-from .screen import Engine, Scores, roomy, screen
+from .screen import Engine, Scores, rounded_up, screen
 
-LOOKED = 1024
+BATCH = 1024
 """Designs evaluated at once when only the best of a chunk are wanted."""
 
-WORTH = 2048
+LEAST_SCREENED = 2048
 """Least number of designs that justifies a screen, which takes some 20 ms to build."""
 
 NO_ANSWER = "not computable for these dimensions"
@@ -38,7 +38,7 @@ MARGIN, MISSED, FEASIBLE = "least_margin", "governing_limit", "feasible"
 
 @dataclass(frozen=True)
 class Chunk:
-    """Rows from point `first` on, and how many of them were newly computed.
+    """Rows of consecutive points from `first` on; `computed` of them were not read from a database.
 
     A reduced chunk only has the rows of the points numbered `places`; no other point can be among
     the best.
@@ -56,8 +56,8 @@ class Chunk:
     @property
     def ranked(self) -> Array:
         """Whether each row may be among the best: feasible, with a value of the objective."""
-        found: Array = self.feasible & ~np.isnan(self.objective)
-        return found
+        ranked: Array = self.feasible & ~np.isnan(self.objective)
+        return ranked
 
     @property
     def numbers(self) -> Array:
@@ -77,7 +77,7 @@ class Study:
     more: tuple[str, ...] = ()
     """Metrics to compute beside those that rank designs."""
     engine: Engine = "numpy"
-    """Screen that rules out early designs that cannot be among the best."""
+    """Array library of the screen, which rules out designs that cannot be among the best."""
     goal: Goal = field(init=False)
     designs: Designs = field(init=False)
     _screens: dict[tuple[object, ...], Scores | None] = field(default_factory=dict, repr=False)
@@ -89,14 +89,14 @@ class Study:
         self._quantities = dict(subject.quantities)
         self.binding = limits_of(subject)
         self.limits = tuple(limit.name for limit in self.binding)
-        judged = {limit.metric for limit in self.binding} | {*self.goal.weights, "mass", *self.more}
-        self.wanted = None if self.full or self.plugins else frozenset(judged)
+        needed = {limit.metric for limit in self.binding} | {*self.goal.weights, "mass", *self.more}
+        self.wanted = None if self.full or self.plugins else frozenset(needed)
         self.metrics = tuple(
             name for name in self._quantities if self.wanted is None or name in self.wanted
         )
         paths = [axis.path for axis in self.plan.numeric]
         self.order = sorted(range(len(paths)), key=paths.__getitem__)
-        """Values of the plan's numeric axes by PATH, in any order."""
+        """Numeric axes in the order of the columns: sorted by PATH."""
         self.columns = (
             *(
                 NumberColumn(paths[k], quantity_of(paths[k], self.design).si_unit)
@@ -111,13 +111,13 @@ class Study:
     def __getstate__(self) -> dict[str, object]:
         return self.__dict__ | {"_screens": {}}
 
-    def chunk(self, first: int, count: int, some: Array | None = None) -> Chunk:
-        """Return the rows of consecutive points, or only of those numbered in `some`."""
+    def chunk(self, first: int, count: int, places: Array | None = None) -> Chunk:
+        """Return the rows of consecutive points, or only of those numbered in `places`."""
         points = self.plan.points(first, count)
-        return self.evaluated(first, points if some is None else points.some(some))
+        return self.evaluated(first, points if places is None else points.some(places))
 
-    def evaluated(self, first: int, points: SweepPoints, keep: int | None = None) -> Chunk:
-        """Return the rows of points; with `keep`, stop after that many valid best designs."""
+    def evaluated(self, first: int, points: SweepPoints, keep_best: int | None = None) -> Chunk:
+        """Return the rows of points; with `keep_best`, stop after that many valid best designs."""
         n = len(points.variant)
         rows = np.full((n, len(self.columns)), np.nan)
         rows[:, : len(points.numbers)] = points.numbers[self.order].T
@@ -128,13 +128,13 @@ class Study:
                 continue
             many = evaluate_many(subject, varied, len(places), self.wanted)
             self._fill(rows, places, many)
-            lost = places[np.isnan(many.metrics["mass"])]
-            failures |= dict.fromkeys(map(int, lost), NO_ANSWER)
+            failed = places[np.isnan(many.metrics["mass"])]
+            failures |= dict.fromkeys(map(int, failed), NO_ANSWER)
         rows[list(failures), len(points.numbers) :] = np.nan
         chunk = self.judged(first, StoredNumbers(rows, failures), n)
         if not self.designs.contradicts:
             return chunk
-        failures |= self._contradictions(chunk, points, keep)
+        failures |= self._contradictions(chunk, points, keep_best)
         rows[list(failures), len(points.numbers) :] = np.nan
         return self.judged(first, StoredNumbers(rows, failures), n)
 
@@ -149,39 +149,39 @@ class Study:
         order = order[scores[order] < np.inf]
         parts: list[Chunk] = []
         best: list[float] = []
-        for start in range(0, len(order), LOOKED):
-            some = order[start : start + LOOKED]
-            if len(best) == keep and scores[some[0]] > roomy(best[-1]):
+        for start in range(0, len(order), BATCH):
+            batch = order[start : start + BATCH]
+            if len(best) == keep and scores[batch[0]] > rounded_up(best[-1]):
                 break
-            part = self.evaluated(first, points.some(some), keep)
-            parts.append(replace(part, places=first + some))
+            part = self.evaluated(first, points.some(batch), keep)
+            parts.append(replace(part, places=first + batch))
             best = sorted([*best, *part.objective[part.ranked].tolist()])[:keep]
         return self._joined(first, parts, len(scores), keep)
 
     def _scores(self, points: SweepPoints, limit: float) -> Array:
         """Return each point's estimated objective: infinite if ruled out, -inf if unknown."""
-        found = np.full(len(points.variant), -np.inf)
+        scores = np.full(len(points.variant), -np.inf)
         apart = self.designs.apart
-        moving = [k for k, axis in enumerate(self.plan.numeric) if axis.path not in apart]
-        for own, variant, fixed in self.designs.alike(points):
+        varied = [k for k, axis in enumerate(self.plan.numeric) if axis.path not in apart]
+        for indices, variant, fixed in self.designs.alike(points):
             sieve = self._screen(variant, fixed)
             if sieve is not None:
-                found[own] = sieve(points.numbers[np.ix_(moving, own)], limit)
-        return found
+                scores[indices] = sieve(points.numbers[np.ix_(varied, indices)], limit)
+        return scores
 
     def _joined(self, first: int, parts: Sequence[Chunk], computed: int, keep: int) -> Chunk:
         """Join parts into one reduced chunk, without feasible designs beyond the `keep` best."""
         rows, failures, places = [np.empty((0, len(self.columns)))], {}, [np.empty(0, dtype=int)]
-        done = 0
+        count = 0
         for part in parts:
-            good = np.flatnonzero(part.feasible)
-            worse = good[np.argsort(part.objective[good], kind="stable")[keep:]]
-            left = np.setdiff1d(np.arange(len(part.feasible)), worse)
-            rows.append(part.rows.numbers[left])
-            places.append(part.numbers[left])
-            for k in np.flatnonzero(np.isin(left, list(part.rows.failures))):
-                failures[done + int(k)] = part.rows.failures[int(left[k])]
-            done += len(left)
+            feasible = np.flatnonzero(part.feasible)
+            surplus = feasible[np.argsort(part.objective[feasible], kind="stable")[keep:]]
+            remaining = np.setdiff1d(np.arange(len(part.feasible)), surplus)
+            rows.append(part.rows.numbers[remaining])
+            places.append(part.numbers[remaining])
+            for k in np.flatnonzero(np.isin(remaining, list(part.rows.failures))):
+                failures[count + int(k)] = part.rows.failures[int(remaining[k])]
+            count += len(remaining)
         joined = self.judged(first, StoredNumbers(np.concatenate(rows), failures), computed)
         return replace(joined, places=np.concatenate(places))
 
@@ -191,43 +191,43 @@ class Study:
         None for the user's own metrics, which are not closed expressions.
         """
         axes = [axis for axis in self.plan.numeric if axis.path not in self.designs.apart]
-        alike = self.plan.count / self.plan.variants / self.designs.apart_count
-        if not axes or self.plugins or alike < WORTH:
+        group_size = self.plan.count / self.plan.variants / self.designs.apart_count
+        if not axes or self.plugins or group_size < LEAST_SCREENED:
             return None
         key = (variant, *fixed.values())
         if key not in self._screens:
-            if len(self._screens) >= KEPT:
+            if len(self._screens) >= CACHED:
                 self._screens.pop(next(iter(self._screens)))
-            found: Scores | None = None
+            scores: Scores | None = None
             values: dict[str, float | str] = {**self.plan.texts(variant), **fixed}
             ends = np.array([axis.ends for axis in axes])
             with contextlib.suppress(InputError):
                 design = self.designs.changed(values)
-                found = screen(design, [axis.path for axis in axes], ends, self.engine)
-            self._screens[key] = found
+                scores = screen(design, [axis.path for axis in axes], ends, self.engine)
+            self._screens[key] = scores
         return self._screens[key]
 
     def _contradictions(
-        self, chunk: Chunk, points: SweepPoints, most: int | None
+        self, chunk: Chunk, points: SweepPoints, enough: int | None
     ) -> dict[int, str]:
         """Return the faults of feasible rows that the design reader would reject.
 
-        Rows are checked from the best on, until `most` are valid.
+        Rows are checked from the best on, until `enough` are valid.
         """
-        found: dict[int, str] = {}
-        good = np.flatnonzero(chunk.feasible)
-        order = good[np.argsort(chunk.objective[good], kind="stable")]
-        for tried, k in enumerate(map(int, order)):
-            if most is not None and tried - len(found) >= most:
+        faults: dict[int, str] = {}
+        feasible = np.flatnonzero(chunk.feasible)
+        order = feasible[np.argsort(chunk.objective[feasible], kind="stable")]
+        for checked, k in enumerate(map(int, order)):
+            if enough is not None and checked - len(faults) >= enough:
                 break
             try:
                 self.designs.changed(self._at(points, k))
             except InputError as error:
-                found[k] = first_fault(error)
-        return found
+                faults[k] = first_fault(error)
+        return faults
 
     def judged(self, first: int, rows: StoredNumbers, computed: int) -> Chunk:
-        """Return a chunk with the objective, to be minimised, and the feasibility of each row."""
+        """Return rows as a chunk, with their objective (to be minimised) and feasibility."""
         place = {column.name: k for k, column in enumerate(self.columns)}
         total = np.zeros(len(rows.numbers))
         for name, weight in self.goal.weights.items():
@@ -262,8 +262,8 @@ class Study:
     def _at(self, points: SweepPoints, k: int) -> dict[str, float | str]:
         paths = [axis.path for axis in self.plan.numeric]
         numbers = dict(zip(paths, map(float, points.numbers[:, k]), strict=True))
-        found: dict[str, float | str] = {**numbers, **self.plan.texts(int(points.variant[k]))}
-        return {axis.path: found[axis.path] for axis in self.plan.axes}
+        values: dict[str, float | str] = {**numbers, **self.plan.texts(int(points.variant[k]))}
+        return {axis.path: values[axis.path] for axis in self.plan.axes}
 
     @property
     def hash(self) -> str:
@@ -282,12 +282,12 @@ class Study:
             variant: key_head(self.plan.texts(variant))
             for variant in map(int, np.unique(points.variant))
         }
-        found = []
+        digests = []
         for k, variant in enumerate(points.variant.tolist()):
             digest = heads[variant].copy()
             digest.update(data[k * width : (k + 1) * width])
-            found.append(digest.digest())
-        return found
+            digests.append(digest.digest())
+        return digests
 
 
 def key_head(texts: Mapping[str, str]) -> hashlib.blake2b:

@@ -19,7 +19,7 @@ from ..evaluation.limits import extremes
 from ..evaluation.plugin import Plugin, with_own
 from .plan import Plan, SweepAxis, SweepPoints
 
-KEPT = 64
+CACHED = 64
 """Prepared designs that a process caches."""
 
 VARIANTS = 8
@@ -28,20 +28,20 @@ VARIANTS = 8
 AT_ONCE = 4096
 """Maximum number of designs in one model call; more take memory without saving time."""
 
-TRIED = (0.0, 1.0, 0.5, 0.25, 0.75)
-"""Places within a range that are tried until two give a valid design."""
+SHARES = (0.0, 1.0, 0.5, 0.25, 0.75)
+"""Shares of a range, tried until two of them give a valid design."""
 
-LISTED = 32
+MOST_TESTED = 32
 """Maximum number of listed values that are checked; longer lists are thinned evenly."""
 
 AGREE = 1e-9
-"""Relative difference up to which varying a number agrees with setting it."""
+"""Relative tolerance between varying a number as an array and setting it in the design."""
 
 
-class _Moved(NamedTuple):
+class _Variation(NamedTuple):
     """Whether a number can vary as an array, and whether any model reads it."""
 
-    moves: bool
+    varies: bool
     read: bool
 
 
@@ -68,7 +68,7 @@ class Designs:
         self.apart = tuple(
             axis.path
             for axis in self.plan.numeric
-            if (self._is_temperature(axis) and not same) or not self._moves(axis)
+            if (self._is_temperature(axis) and not same) or not self._varies(axis)
         )
 
     def __getstate__(self) -> dict[str, object]:
@@ -78,8 +78,8 @@ class Designs:
         """Return the design with other values; raises `InputError`."""
         if not values:
             return self.design
-        own = with_own(self.plugins)
-        return with_values(self.design, dict(values), metrics=own)
+        metrics = with_own(self.plugins)
+        return with_values(self.design, dict(values), metrics=metrics)
 
     def made(self, values: Mapping[str, float | str]) -> PreparedDesign:
         """Return the prepared design with other values."""
@@ -91,97 +91,100 @@ class Designs:
     def _same_extremes(self) -> bool:
         """Whether the lowest and highest temperature stay the same over the sweep.
 
-        Strengths are prepared for these two, and each rises with every temperature. They are
-        therefore constant if they agree at both ends of the ranges.
+        Strengths are prepared at these two temperatures. Both rise with every temperature of the
+        design, so they are constant if they agree at both ends of the ranges.
         """
-        warm = {a.path: a.ends for a in self.plan.numeric if self._is_temperature(a)}
-        found = []
-        for end in (0, 1) if warm else ():
-            ends = {path: both[end] for path, both in warm.items()}
+        temperatures = {a.path: a.ends for a in self.plan.numeric if self._is_temperature(a)}
+        all_extremes = []
+        for end in (0, 1) if temperatures else ():
+            ends = {path: both[end] for path, both in temperatures.items()}
             try:
                 subject = self.made({**self.plan.texts(0), **ends})
             except InputError:
                 return False
-            found.append(extremes(subject.design, subject.numbers))
-        return all(one == found[0] for one in found)
+            all_extremes.append(extremes(subject.design, subject.numbers))
+        return all(pair == all_extremes[0] for pair in all_extremes)
 
     @property
     def apart_count(self) -> float:
         """Return the number of designs to prepare for values set apart; infinite for a range."""
-        found = 1.0
+        count = 1.0
         for axis in self.plan.numeric:
             if axis.path in self.apart:
-                found *= axis.size or math.inf
-        return found
+                count *= axis.size or math.inf
+        return count
 
-    def _moves(self, axis: SweepAxis) -> bool:
-        """Whether a number can vary as an array in some of the designs that texts make.
+    def _varies(self, axis: SweepAxis) -> bool:
+        """Whether a number can vary as an array, checked in some combinations of texts.
 
         Raises
         ------
         InputError
-            no model reads it, and it makes no other design
+            no model reads it, and it changes no design
         """
         count = self.plan.variants
-        tried = np.unique(np.linspace(0, count - 1, min(count, VARIANTS)).astype(int))
-        found = [self._moves_in(axis, self.plan.texts(int(variant))) for variant in tried]
-        moves = all(one.moves for one in found)
-        if moves and len(tried) == count and not any(one.read for one in found):
+        variants = np.unique(np.linspace(0, count - 1, min(count, VARIANTS)).astype(int))
+        checks = [self._varies_in(axis, self.plan.texts(int(variant))) for variant in variants]
+        varies = all(check.varies for check in checks)
+        if varies and len(variants) == count and not any(check.read for check in checks):
             remedy = "vary another, or check that the design uses the part it belongs to"
             raise InputError(
                 Diagnostic("no model of this design reads this number", remedy, path=axis.path)
             )
-        return moves
+        return varies
 
-    def _moves_in(self, axis: SweepAxis, texts: Mapping[str, str]) -> _Moved:
-        """Whether an array of the `_telling` values gives the results of setting each value."""
-        alone: dict[float, Many] = {}
-        for value, needed in _telling(axis):
-            if len(alone) >= 2 and not needed:
+    def _varies_in(self, axis: SweepAxis, texts: Mapping[str, str]) -> _Variation:
+        """Whether an array of the `_test_values` values gives the results of setting each value."""
+        separate: dict[float, Many] = {}
+        for value, mandatory in _test_values(axis):
+            if len(separate) >= 2 and not mandatory:
                 continue
             try:
-                alone[value] = evaluate_many(self.made({**texts, axis.path: value}), {}, 1)
+                separate[value] = evaluate_many(self.made({**texts, axis.path: value}), {}, 1)
             except InputError:
                 self.contradicts = True
-        if not alone:
-            return _Moved(False, True)
+        if not separate:
+            return _Variation(False, True)
         try:
-            base = self.made(texts)  # evaluated like its rows; "worst" ignores position there
+            base = self.made(texts)  # prepared like the rows: "worst" then ignores the position
         except InputError:
-            base = self.made({**texts, axis.path: next(iter(alone))})
-        together = evaluate_many(base, {axis.path: np.array(list(alone))}, len(alone))
-        moves = all(
-            np.isclose(values[k], one.metrics[name][0], rtol=AGREE, atol=0.0, equal_nan=True)
-            for name, values in together.metrics.items()
-            for k, one in enumerate(alone.values())
+            base = self.made({**texts, axis.path: next(iter(separate))})
+        combined = evaluate_many(base, {axis.path: np.array(list(separate))}, len(separate))
+        agrees = all(
+            np.isclose(values[k], single.metrics[name][0], rtol=AGREE, atol=0.0, equal_nan=True)
+            for name, values in combined.metrics.items()
+            for k, single in enumerate(separate.values())
         )
-        return _Moved(moves, axis.path in together.read)
+        return _Variation(agrees, axis.path in combined.read)
 
     def alike(self, points: SweepPoints) -> Iterator[tuple[Array, int, dict[str, float]]]:
         """Yield points by prepared design: places, combination of texts, values set apart."""
         paths = [axis.path for axis in self.plan.numeric]
-        apart = [k for k, path in enumerate(paths) if path in self.apart]
-        if not apart and self.plan.variants == 1:
+        separate_axes = [k for k, path in enumerate(paths) if path in self.apart]
+        if not separate_axes and self.plan.variants == 1:
             yield np.arange(len(points.variant)), 0, {}
             return
-        keys = np.vstack([points.variant.astype(float), points.numbers[apart]])
+        keys = np.vstack([points.variant.astype(float), points.numbers[separate_axes]])
         unique, which = np.unique(keys, axis=1, return_inverse=True)
         order = np.argsort(which.ravel(), kind="stable")
         starts = np.searchsorted(which.ravel()[order], np.arange(unique.shape[1]))
-        for number, every in enumerate(np.split(order, starts[1:])):
+        for number, indices in enumerate(np.split(order, starts[1:])):
             variant, *set_apart = unique[:, number]
-            fixed = {paths[k]: float(x) for k, x in zip(apart, set_apart, strict=True)}
-            yield every, int(variant), fixed
+            fixed = {paths[k]: float(x) for k, x in zip(separate_axes, set_apart, strict=True)}
+            yield indices, int(variant), fixed
 
     def groups(
         self, points: SweepPoints
     ) -> Iterator[tuple[Array, PreparedDesign | str, dict[str, Array]]]:
-        """Yield points by prepared design, with the arrays that vary; a reason if it is invalid."""
+        """Yield the points of each prepared design with the arrays that vary.
+
+        The reason replaces a design that is invalid.
+        """
         paths = [axis.path for axis in self.plan.numeric]
-        for every, variant, fixed in self.alike(points):
+        for indices, variant, fixed in self.alike(points):
             subject = self._prepared(variant, fixed)
-            for first in range(0, len(every), AT_ONCE):
-                places = every[first : first + AT_ONCE]
+            for first in range(0, len(indices), AT_ONCE):
+                places = indices[first : first + AT_ONCE]
                 varied = {
                     path: points.numbers[k][places]
                     for k, path in enumerate(paths)
@@ -193,7 +196,7 @@ class Designs:
         """Return a prepared design, or the reason why it is invalid; the last few are cached."""
         key = (variant, *fixed.values())
         if key not in self._subjects:
-            if len(self._subjects) >= KEPT:
+            if len(self._subjects) >= CACHED:
                 self._subjects.pop(next(iter(self._subjects)))
             try:
                 self._subjects[key] = self.made({**self.plan.texts(variant), **fixed})
@@ -202,8 +205,8 @@ class Designs:
         return self._subjects[key]
 
 
-def _telling(axis: SweepAxis) -> Iterator[tuple[float, bool]]:
-    """Yield values to check in a design, and whether each is mandatory or any two are enough.
+def _test_values(axis: SweepAxis) -> Iterator[tuple[float, bool]]:
+    """Yield test values of an axis, and whether each is mandatory; any two of the others suffice.
 
     All values of a short list are mandatory, and so is zero: the design may change in kind there
     (no speed, no angle).
@@ -211,7 +214,7 @@ def _telling(axis: SweepAxis) -> Iterator[tuple[float, bool]]:
     assert axis.values is not None
     low, high = axis.values[[0, -1]]
     if axis.listed:
-        step = -(-len(axis.values) // LISTED)
+        step = -(-len(axis.values) // MOST_TESTED)
         chosen = [*axis.values[::step].tolist(), float(high)]
         yield from ((value, True) for value in dict.fromkeys(chosen))
         if 0.0 in axis.values and 0.0 not in chosen:
@@ -220,7 +223,7 @@ def _telling(axis: SweepAxis) -> Iterator[tuple[float, bool]]:
         near = round(low / (low - high) * (axis.count - 1))
         if float(axis.at(np.array(near))) == 0.0:
             yield 0.0, True
-    for share in TRIED:
+    for share in SHARES:
         yield float(low + share * (high - low)), False
 
 

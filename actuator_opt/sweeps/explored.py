@@ -43,7 +43,7 @@ class RowGroup:
 class Explored:
     """Rows (rows, columns) of a study in SI, in the order of the axes.
 
-    `variant` numbers the texts of each row; `margins` is (limits, rows).
+    `variant` is the number of each row's text combination; `margins` is (limits, rows).
     """
 
     kept: StoredRows
@@ -59,7 +59,7 @@ class Explored:
     most: int
     """Number of rows above which a study is thinned."""
     origin: str = "Study"
-    """Where the rows come from."""
+    """Name of the source of the rows."""
     shown: tuple[str, ...] = ()
     """Initial metrics of the x and y axis, where not the default."""
     damaged: int = 0
@@ -103,42 +103,44 @@ def explored(
         no such file or study, or rows of other models, materials or custom metrics
     """
     with reading(path, VERSION) as reader:
-        kept = reader.study(reader.number(study) if isinstance(study, str) else study)
-        failed = sum(kept.failures.values())
-        _, some = next(reader.rows(kept), (None, None))
-        if some is None:
-            raise _none_whole(kept, path)
-        bare = _study(kept, plugins, path, np.stack([some.min(axis=0), some.max(axis=0)], axis=1))
-        keys, numbers, good = _thinned(reader, kept, bare, kept.rows - failed, most)
-        damaged = kept.rows - failed - good
-        kept = kept._replace(rows=failed + good)
-    variants = _variants(kept, path)
-    variant = _texts_of(keys, numbers, bare, variants, path)
-    order = np.lexsort((*(numbers[:, k] for k in reversed(range(len(bare.order)))), variant))
+        stored = reader.study(reader.number(study) if isinstance(study, str) else study)
+        failed = sum(stored.failures.values())
+        _, rows = next(reader.rows(stored), (None, None))
+        if rows is None:
+            raise _no_results(stored, path)
+        rebuilt = _study(
+            stored, plugins, path, np.stack([rows.min(axis=0), rows.max(axis=0)], axis=1)
+        )
+        keys, numbers, valid = _thinned(reader, stored, rebuilt, stored.rows - failed, most)
+        damaged = stored.rows - failed - valid
+        stored = stored._replace(rows=failed + valid)
+    variants = _variants(stored, path)
+    variant = _text_numbers(keys, numbers, rebuilt, variants, path)
+    order = np.lexsort((*(numbers[:, k] for k in reversed(range(len(rebuilt.order)))), variant))
     numbers, variant = numbers[order], variant[order]
-    limits, margins, groups = _evaluated(bare, variant, numbers)
+    limits, margins, groups = _evaluated(rebuilt, variant, numbers)
     return Explored(
-        kept,
-        bare,
+        stored,
+        rebuilt,
         variants,
         variant,
         numbers,
         limits,
         margins,
         groups,
-        bare.judged(0, StoredNumbers(numbers, {}), 0).objective,
+        rebuilt.judged(0, StoredNumbers(numbers, {}), 0).objective,
         most,
-        origin=f"Study {kept.number}",
+        origin=f"Study {stored.number}",
         damaged=damaged,
     )
 
 
-def _none_whole(kept: StoredRows, path: Path) -> InputError:
+def _no_results(stored: StoredRows, path: Path) -> InputError:
     """Explain why a study has no results."""
-    if not kept.failures:
-        message = f"study {kept.number}: its rows are damaged"
+    if not stored.failures:
+        message = f"study {stored.number}: its rows are damaged"
         return InputError(Diagnostic(message, "run the sweep again with --store", str(path)))
-    message = f"study {kept.number}: every design failed: {next(iter(kept.failures))}"
+    message = f"study {stored.number}: every design failed: {next(iter(stored.failures))}"
     return InputError(Diagnostic(message, "vary other values", str(path)))
 
 
@@ -196,7 +198,7 @@ def _evaluated(
     paths = [axis.path for axis in study.plan.numeric]
     limits: dict[str, MetricLimit] = {}
     margins: dict[str, Array] = {}
-    alone: list[tuple[Array, PreparedDesign]] = []
+    separate: list[tuple[Array, PreparedDesign]] = []
     shared: dict[int, tuple[list[Array], PreparedDesign]] = {}
     points = SweepPoints(variant, numbers[:, : len(paths)].T)
     for places, subject, varied in study.designs.groups(points):
@@ -206,88 +208,88 @@ def _evaluated(
         for name, margin in margins_many(subject, varied, len(places)).items():
             margins.setdefault(name, np.full(len(numbers), np.inf))[places] = margin
         first = shared.setdefault(int(variant[places[0]]), ([], subject))
-        every = {path: numbers[places, k] for k, path in enumerate(paths)}
-        if same_dimensions((first[1], every), (subject, varied), len(places)):
+        varied_numbers = {path: numbers[places, k] for k, path in enumerate(paths)}
+        if same_dimensions((first[1], varied_numbers), (subject, varied), len(places)):
             first[0].append(places)
         else:
-            alone.append((places, subject))
-    alone += [(np.concatenate(places), subject) for places, subject in shared.values() if places]
+            separate.append((places, subject))
+    separate += [(np.concatenate(places), subject) for places, subject in shared.values() if places]
     groups = []
-    for places, subject in alone:
-        every = {path: numbers[places, k] for k, path in enumerate(paths)}
-        drawn = shapes(subject, every, len(places), _hidden(study))
-        groups.append(RowGroup(places, drawn))
+    for places, subject in separate:
+        varied_numbers = {path: numbers[places, k] for k, path in enumerate(paths)}
+        sections = shapes(subject, varied_numbers, len(places), _hidden(study))
+        groups.append(RowGroup(places, sections))
     return tuple(limits[name] for name in margins), np.stack(list(margins.values())), tuple(groups)
 
 
 def _hidden(study: Study) -> tuple[str, ...]:
     """Return the parts whose outline does not follow their varied numbers."""
-    moved = any(axis.path.startswith("rod.fitting.") for axis in study.plan.axes)
-    return ("rod.fitting",) if moved else ()
+    fitting_varies = any(axis.path.startswith("rod.fitting.") for axis in study.plan.axes)
+    return ("rod.fitting",) if fitting_varies else ()
 
 
-def _variants(kept: StoredRows, path: Path) -> tuple[dict[str, str], ...]:
-    if math.prod(len(texts) for texts in kept.texts.values()) > VARIANTS:
-        message = f"study {kept.number} has over {VARIANTS} combinations of texts"
+def _variants(stored: StoredRows, path: Path) -> tuple[dict[str, str], ...]:
+    if math.prod(len(texts) for texts in stored.texts.values()) > VARIANTS:
+        message = f"study {stored.number} has over {VARIANTS} combinations of texts"
         raise InputError(Diagnostic(message, "vary fewer of them", str(path)))
-    paths = list(kept.texts)
+    paths = list(stored.texts)
     return tuple(
-        dict(zip(paths, texts, strict=True)) for texts in itertools.product(*kept.texts.values())
+        dict(zip(paths, texts, strict=True)) for texts in itertools.product(*stored.texts.values())
     )
 
 
-def _study(kept: StoredRows, plugins: tuple[Plugin, ...], path: Path, ends: Array) -> Study:
+def _study(stored: StoredRows, plugins: tuple[Plugin, ...], path: Path, ends: Array) -> Study:
     """Return the study that made the rows, from the design stored in the database.
 
     Its plan has the texts, and the numbers in column order, each between its `ends` in the rows. It
-    visits no points.
+    contains no points.
     """
-    own = with_own(plugins)
+    metrics = with_own(plugins)
     try:
-        design = read_design(f"{kept.design}\n", metrics=own).design
+        design = read_design(f"{stored.design}\n", metrics=metrics).design
     except InputError:
-        raise _another(path) from None
-    names = [column.name for column in kept.columns]
+        raise _other_models(path) from None
+    names = [column.name for column in stored.columns]
     if next(iter(METRICS)) not in names:
-        raise _another(path)
+        raise _other_models(path)
     first = names.index(next(iter(METRICS)))
     numeric = [
         SweepAxis(column.name, np.array([low, high]), range=True, count=2)
-        for column, (low, high) in zip(kept.columns[:first], ends, strict=False)
+        for column, (low, high) in zip(stored.columns[:first], ends, strict=False)
     ]
-    named = [SweepAxis(name, None, texts) for name, texts in kept.texts.items()]
+    named = [SweepAxis(name, None, texts) for name, texts in stored.texts.items()]
     study = Study(design, Plan((*named, *numeric), "grid", 0), plugins)
-    if study.hash != kept.hash or study.columns != kept.columns:
-        raise _another(path)
+    if study.hash != stored.hash or study.columns != stored.columns:
+        raise _other_models(path)
     return study
 
 
-def _another(path: Path) -> InputError:
+def _other_models(path: Path) -> InputError:
     message = "its rows come from other materials, or from custom metrics"
     remedy = "add --plugin FILE.py as in the sweep, or run the sweep again"
     return InputError(Diagnostic(message, remedy, str(path)))
 
 
 def _thinned(
-    reader: Reader, kept: StoredRows, study: Study, good: int, most: int
+    reader: Reader, stored: StoredRows, study: Study, count: int, most: int
 ) -> tuple[list[bytes], Array, int]:
     """Return rows spread evenly over the study, its best rows, and the number of valid rows."""
-    step = -(-good // most)
+    step = -(-count // most)
     keys: list[bytes] = []
     numbers: list[Array] = []
-    best = _Best([], np.empty((0, len(kept.columns))), np.empty(0))
+    best = _Best([], np.empty((0, len(stored.columns))), np.empty(0))
     start = 0
-    for some, data in reader.rows(kept):
-        chosen = range(-start % step, len(some), step)
-        keys += [some[k] for k in chosen]
+    for batch, data in reader.rows(stored):
+        chosen = range(-start % step, len(batch), step)
+        keys += [batch[k] for k in chosen]
         numbers.append(data[list(chosen)])
         if step > 1:
-            best = best.joined(some, study.judged(0, StoredNumbers(data, {}), 0).objective, data)
-        start += len(some)
-    known = set(keys)
-    extra = [k for k, key in enumerate(best.keys) if key not in known]
-    keys += [best.keys[k] for k in extra]
-    return keys, np.concatenate([*numbers, best.numbers[extra]]), start
+            best = best.joined(batch, study.judged(0, StoredNumbers(data, {}), 0).objective, data)
+        start += len(batch)
+    chosen_keys = set(keys)
+    additional = [k for k, key in enumerate(best.keys) if key not in chosen_keys]
+    keys += [best.keys[k] for k in additional]
+    return keys, np.concatenate([*numbers, best.numbers[additional]]), start
 
 
 @dataclass(frozen=True)
@@ -299,25 +301,25 @@ class _Best:
     objective: Array
 
     def joined(self, keys: list[bytes], objective: Array, numbers: Array) -> _Best:
-        good = np.flatnonzero(numbers[:, -1] == 1.0)
-        every = [*self.keys, *(keys[k] for k in good)]
-        values = np.concatenate([self.objective, objective[good]])
-        rows = np.concatenate([self.numbers, numbers[good]])
+        feasible = np.flatnonzero(numbers[:, -1] == 1.0)
+        all_keys = [*self.keys, *(keys[k] for k in feasible)]
+        values = np.concatenate([self.objective, objective[feasible]])
+        rows = np.concatenate([self.numbers, numbers[feasible]])
         order = np.argsort(values, kind="stable")[:BEST]
-        return _Best([every[k] for k in order], rows[order], values[order])
+        return _Best([all_keys[k] for k in order], rows[order], values[order])
 
 
-def _texts_of(
+def _text_numbers(
     keys: list[bytes],
     numbers: Array,
     study: Study,
     variants: tuple[dict[str, str], ...],
     path: Path,
 ) -> Array:
-    """Return the number of each row's texts, found through its key."""
+    """Return the number of each row's text combination, identified by the row's key."""
     data = np.ascontiguousarray(numbers[:, : len(study.order)], dtype="<f8")
     heads = [key_head(texts) for texts in variants]
-    found = np.empty(len(keys), dtype=np.int64)
+    text_numbers = np.empty(len(keys), dtype=np.int64)
     last = 0
     for row, key in enumerate(keys):
         tail = data[row].tobytes()
@@ -325,9 +327,9 @@ def _texts_of(
             digest = heads[number].copy()
             digest.update(tail)
             if digest.digest() == key:
-                found[row] = last = number
+                text_numbers[row] = last = number
                 break
         else:
-            message = "holds rows whose texts are not in its list"
+            message = "contains rows with texts that the study does not list"
             raise InputError(Diagnostic(message, "run the sweep again with --store", str(path)))
-    return found
+    return text_numbers

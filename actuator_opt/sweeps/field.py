@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, TypeVar
-
-from ..base.errors import Diagnostic, UsageError
-
-if TYPE_CHECKING:
-    pass
-
-
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
+from ..base.errors import Diagnostic, UsageError
 from ..base.numeric import Array
 from ..evaluation.build import TOLERANCE, margins_of
 from .chunk import Study
@@ -26,7 +19,7 @@ FINEST = 161
 """Maximum number of nodes per axis (a choice: one per mm of paper); finer grids are thinned."""
 
 FAR = 2.0
-"""Margins are clipped here (a choice: +-200 %)."""
+"""Limit at which margins are clipped (a choice: +-200 %)."""
 
 NOTHING = -1.0
 """Margin assigned to a wall of negative thickness."""
@@ -58,7 +51,7 @@ class Field:
     `rows` are those of the sweep, (nodes, nodes, columns), NaN where a design failed. `margins` are
     (limits, nodes, nodes), NaN without a value. `failed` marks nodes without a design, whether for
     a fault or for a negative wall. `room`, (limits,), is the tolerance within which a limit counts
-    as met. `thinned`: the sweep had more nodes.
+    as met. `thinned`: whether the sweep had more nodes.
     """
 
     study: Study
@@ -72,8 +65,8 @@ class Field:
 
     def metric(self, name: str) -> Array:
         """Return a metric at the nodes, (nodes, nodes)."""
-        found: Array = self.rows[:, :, self.study.place(name)]
-        return found
+        values: Array = self.rows[:, :, self.study.place(name)]
+        return values
 
     def boundaries(self) -> Iterator[Boundary]:
         """Yield the lines of every limit that is met at some nodes and missed at others."""
@@ -81,25 +74,25 @@ class Field:
 
         for number, margins in enumerate(self.margins):
             table = np.clip(margins, -FAR, FAR)
-            known = table[np.isfinite(table)]
-            if not len(known) or known.min() >= 0 or known.max() < 0:
+            finite = table[np.isfinite(table)]
+            if not len(finite) or finite.min() >= 0 or finite.max() < 0:
                 continue
             maker = contour_generator(
                 self.xs, self.ys, np.ma.masked_invalid(table.T),
                 fill_type=FillType.OuterOffset, line_type=LineType.Separate, corner_mask=True,
             )  # fmt: skip
             filled: Any = maker.filled(-2 * FAR, 0.0)
-            found: Any = maker.lines(0.0)
-            lines = [np.asarray(one) for one in found]
+            zero_lines: Any = maker.lines(0.0)
+            lines = [np.asarray(line) for line in zero_lines]
             areas = [
-                [np.asarray(one)[a:b] for a, b in pairwise(starts)]
-                for one, starts in zip(*filled, strict=True)
+                [np.asarray(points)[a:b] for a, b in pairwise(starts)]
+                for points, starts in zip(*filled, strict=True)
             ]
             rings = [ring for area in areas for ring in area]
-            moved = self._on_zero(number, table, [*lines, *rings])
-            rest = iter(moved[len(lines) :])
+            corrected = self._on_zero(number, table, [*lines, *rings])
+            remaining = iter(corrected[len(lines) :])
             yield Boundary(
-                number, moved[: len(lines)], [[next(rest) for _ in area] for area in areas]
+                number, corrected[: len(lines)], [[next(remaining) for _ in area] for area in areas]
             )
 
     def _on_zero(self, number: int, table: Array, curves: Sequence[Array]) -> list[Array]:
@@ -110,18 +103,18 @@ class Field:
         """
         if self.study.designs.apart or not curves:
             return list(curves)
-        every = np.concatenate(curves)
-        points, which = np.unique(np.round(every, 15), axis=0, return_inverse=True)
+        all_points = np.concatenate(curves)
+        points, which = np.unique(np.round(all_points, 15), axis=0, return_inverse=True)
         edges = [self._edge(table, point) for point in points]
-        moving = np.array([k for k, edge in enumerate(edges) if edge is not None], dtype=np.intp)
-        if len(moving):
+        on_edges = np.array([k for k, edge in enumerate(edges) if edge is not None], dtype=np.intp)
+        if len(on_edges):
             low = np.array([edge[0] for edge in edges if edge is not None])
             high = np.array([edge[1] for edge in edges if edge is not None])
             ends = np.array([edge[2] for edge in edges if edge is not None])
-            points[moving] = self._zeros(number, low, high, ends)
-        found = points[which.ravel()]
+            points[on_edges] = self._zeros(number, low, high, ends)
+        corrected = points[which.ravel()]
         cuts = np.cumsum([len(curve) for curve in curves])[:-1]
-        return list(np.split(found, cuts))
+        return list(np.split(corrected, cuts))
 
     def _edge(
         self, table: Array, point: Array
@@ -146,9 +139,9 @@ class Field:
         """Return points of zero margin between ends of opposite sign, by the Illinois method."""
         a, b = np.zeros(len(low)), np.ones(len(low))
         f, g = ends[:, 0].copy(), ends[:, 1].copy()
-        t, going = np.where(f == 0, 0.0, 1.0), (f != 0) & (g != 0)
+        t, active = np.where(f == 0, 0.0, 1.0), (f != 0) & (g != 0)
         for _ in range(STEPS):
-            at = np.flatnonzero(going)
+            at = np.flatnonzero(active)
             if not len(at):
                 break
             t[at] = (a - f * (b - a) / np.where(g == f, 1.0, g - f))[at]
@@ -159,21 +152,21 @@ class Field:
             f[at] = np.where(same, f[at] / 2, g[at])
             a[at] = np.where(same, a[at], b[at])
             b[at], g[at] = t[at], value
-            going[at] = np.abs(value) > CLOSE
-        found: Array = low + t[:, None] * (high - low)
-        return found
+            active[at] = np.abs(value) > CLOSE
+        zeros: Array = low + t[:, None] * (high - low)
+        return zeros
 
 
 def margins_at(study: Study, numbers: Array) -> Array:
     """Return the margin of every limit, (limits, n), at numbers (axes, n) of the plan."""
     count = numbers.shape[1]
-    found = np.full((len(study.binding), count), np.nan)
+    margins = np.full((len(study.binding), count), np.nan)
     for places, subject, varied in study.designs.groups(
         SweepPoints(np.zeros(count, dtype=int), numbers)
     ):
         if not isinstance(subject, str):
-            found[:, places] = margins_of(subject, varied, len(places))
-    return found
+            margins[:, places] = margins_of(subject, varied, len(places))
+    return margins
 
 
 def require_grid(plan: Plan) -> None:
@@ -202,11 +195,11 @@ def require_grid(plan: Plan) -> None:
 
 def _cut_away(study: Study, margins: Array) -> Array:
     """Return the nodes with a negative wall or clearance; other limits have no margin there."""
-    shapes = np.array([one.origin == "geometry" for one in study.binding])
-    gone: Array = (margins[shapes] < NOTHING).any(axis=0)
+    shapes = np.array([limit.origin == "geometry" for limit in study.binding])
+    cut_away: Array = (margins[shapes] < NOTHING).any(axis=0)
     for number in np.flatnonzero(~shapes):
-        margins[number][gone] = np.nan
-    return gone
+        margins[number][cut_away] = np.nan
+    return cut_away
 
 
 def field(study: Study) -> Field:
@@ -214,27 +207,25 @@ def field(study: Study) -> Field:
     require_grid(study.plan)
     values = [axis.numbers() for axis in study.plan.axes]
     wide = len(values[1])
-    kept = []
-    for one in values:
-        order = np.argsort(one)
-        at = np.unique(np.round(np.linspace(0, len(one) - 1, min(len(one), FINEST))).astype(int))
-        kept.append(order[at])
-    chunks = [study.chunk(int(i) * wide, wide, kept[1]) for i in kept[0]]
-    xs, ys = (value[at] for value, at in zip(values, kept, strict=True))
+    chosen = []
+    for axis_values in values:
+        order = np.argsort(axis_values)
+        size = len(axis_values)
+        at = np.unique(np.round(np.linspace(0, size - 1, min(size, FINEST))).astype(int))
+        chosen.append(order[at])
+    chunks = [study.chunk(int(i) * wide, wide, chosen[1]) for i in chosen[0]]
+    xs, ys = (value[at] for value, at in zip(values, chosen, strict=True))
     failed = np.zeros((len(xs), len(ys)), dtype=bool)
-    for k, one in enumerate(chunks):
-        failed[k, list(one.rows.failures)] = True
+    for k, chunk in enumerate(chunks):
+        failed[k, list(chunk.rows.failures)] = True
     mesh = np.stack([part.ravel() for part in np.meshgrid(xs, ys, indexing="ij")])
     margins = margins_at(study, mesh).reshape(-1, len(xs), len(ys))
-    just = np.abs(margins) <= TOLERANCE  # within tolerance: met, as in every verdict
-    room = np.where(just.any(axis=(1, 2)), TOLERANCE, 0.0)
+    tolerated = np.abs(margins) <= TOLERANCE  # within tolerance: met, as in every verdict
+    room = np.where(tolerated.any(axis=(1, 2)), TOLERANCE, 0.0)
     margins += room[:, None, None]
-    gone = _cut_away(study, margins)
-    margins[:, failed & ~gone] = np.nan  # a negative wall keeps the margins of its shape
-    failed |= gone
+    cut_away = _cut_away(study, margins)
+    margins[:, failed & ~cut_away] = np.nan  # a negative wall keeps the margins of its shape
+    failed |= cut_away
     rows = np.stack([chunk.rows.numbers for chunk in chunks])
     thinned = any(len(value) > FINEST for value in values)
     return Field(study, xs, ys, rows, margins, failed, room, thinned)
-
-
-Task = TypeVar("Task")

@@ -1,4 +1,4 @@
-"""The points of a sweep: full factorial, Sobol or Latin hypercube, any part of them by number.
+"""Points of a sweep by number: full factorial, Sobol or Latin hypercube.
 
 Only the axes are stored; each point is computed from its number. A sweep of any size takes the same
 memory, can start anywhere and gives the same points in any number of processes.
@@ -29,7 +29,7 @@ _RANGE = re.compile(r"(?P<first>.+?)\.\.(?P<last>.+?)(?::(?P<count>[^:]*))?")
 FORM = 'write PATH=A..B:N or PATH=a,b,c, e.g. --vary cylinder.bore="18..40 mm:12"'
 MOST_LISTED = 10_000
 """Maximum number of values in a list."""
-SAID = frozenset({"name", "notes", "reproduces", "waivers", "objective"})
+DESCRIPTIVE = frozenset({"name", "notes", "reproduces", "waivers", "objective"})
 """Blocks of a design that change none of its metrics or limits."""
 
 
@@ -69,12 +69,12 @@ class SweepAxis:
         """Return the values at some places of `numbers`, without computing all of them."""
         assert self.values is not None
         if not self.range:
-            found: Array = self.values[places]
-            return found
+            values: Array = self.values[places]
+            return values
         low, high = self.values
         last = (self.count or 2) - 1
-        between: Array = low + places * ((high - low) / last)
-        return np.where(places == last, high, between)
+        interpolated: Array = low + places * ((high - low) / last)
+        return np.where(places == last, high, interpolated)
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -96,18 +96,18 @@ def read_axis(text: str, design: Design, metrics: Metrics = None) -> SweepAxis:
     InputError
         no such PATH, or a value that does not fit there
     """
-    path, sign, given = text.partition("=")
-    if not sign or not path.strip() or not given.strip():
+    path, sign, values = text.partition("=")
+    if not sign or not path.strip() or not values.strip():
         raise UsageError(Diagnostic(f"--vary {shown(text)}: no values", FORM))
     path = canonical(path.strip(), design)
-    if path.partition(".")[0] in SAID:
+    if path.partition(".")[0] in DESCRIPTIVE:
         message = "is descriptive text that no model reads"
         raise InputError(Diagnostic(message, "vary a dimension, a material or a limit", path=path))
-    found = _RANGE.fullmatch(given.strip())
-    if found is None:
-        parts = [part.strip() for part in given.split(",")]
+    match = _RANGE.fullmatch(values.strip())
+    if match is None:
+        parts = [part.strip() for part in values.split(",")]
         return _listed(path, parts, design, metrics)
-    first, last, count = found["first"].strip(), found["last"].strip(), found["count"]
+    first, last, count = match["first"].strip(), match["last"].strip(), match["count"]
     steps = _steps(text, count)
     ends = [_number(path, end, design, metrics) for end in _with_unit([first, last])]
     if ends[0] == ends[1]:
@@ -141,7 +141,7 @@ def _number(path: str, text: str, design: Design, metrics: Metrics) -> float:
     if not isinstance(value, (int, float)) or isinstance(value, bool):
         message = f"{path}: {shown(text)} is not a number, so it cannot have a range"
         raise InputError(Diagnostic(message, "list its values: PATH=a,b,c"))
-    if not _plain(path, text, value, design, metrics):
+    if not _is_number(path, text, value, design, metrics):
         message = (
             f"{shown(text)} differs in kind from the value of the design, so it cannot have a range"
         )
@@ -150,19 +150,19 @@ def _number(path: str, text: str, design: Design, metrics: Metrics) -> float:
     return float(value)
 
 
-def _plain(path: str, text: str, value: float, design: Design, metrics: Metrics) -> bool:
+def _is_number(path: str, text: str, value: float, design: Design, metrics: Metrics) -> bool:
     """Whether a number fully describes a value: 50 % of a stroke is not 0.5 m."""
-    said = _at(design, path, text, metrics)
-    return said == _at(design, path, repr(float(value)), metrics)
+    design_with_text = _design_with(design, path, text, metrics)
+    return design_with_text == _design_with(design, path, repr(float(value)), metrics)
 
 
 def _value(
     path: str, text: str, design: Design, metrics: Metrics
 ) -> float | int | str | bool | None:
-    return get(_at(design, path, text, metrics), path)
+    return get(_design_with(design, path, text, metrics), path)
 
 
-def _at(design: Design, path: str, text: str, metrics: Metrics) -> Design:
+def _design_with(design: Design, path: str, text: str, metrics: Metrics) -> Design:
     number = _bare(text)
     value = text if number is None else number
     return with_values(
@@ -185,17 +185,17 @@ def _listed(path: str, parts: list[str], design: Design, metrics: Metrics) -> Sw
     if len(parts) > MOST_LISTED:
         raise UsageError(Diagnostic(f"--vary {path}: {len(parts)} values", "write a range"))
     parts = _with_unit(parts)
-    found = [_value(path, part, design, metrics) for part in dict.fromkeys(parts)]
-    if len(set(found)) < len(parts):  # catches 20 mm beside 2 cm
+    values = [_value(path, part, design, metrics) for part in dict.fromkeys(parts)]
+    if len(set(values)) < len(parts):  # catches 20 mm beside 2 cm
         raise UsageError(Diagnostic(f"--vary {path}: a value twice", FORM))
     if all(
-        isinstance(one, (int, float))
-        and not isinstance(one, bool)
-        and _plain(path, part, one, design, metrics)
-        for one, part in zip(found, parts, strict=True)
+        isinstance(value, (int, float))
+        and not isinstance(value, bool)
+        and _is_number(path, part, value, design, metrics)
+        for value, part in zip(values, parts, strict=True)
     ):
         return SweepAxis(
-            path, np.array([float(one) for one in found if one is not None]), tuple(parts)
+            path, np.array([float(value) for value in values if value is not None]), tuple(parts)
         )
     return SweepAxis(path, None, tuple(parts))
 
@@ -259,11 +259,11 @@ class Plan:
 
     def texts(self, variant: int) -> dict[str, str]:
         """Return the texts of one combination, by PATH."""
-        found = {}
+        texts = {}
         for axis in reversed(self.named):
             variant, at = divmod(variant, axis.size)
-            found[axis.path] = axis.texts[at]
-        return dict(reversed(found.items()))
+            texts[axis.path] = axis.texts[at]
+        return dict(reversed(texts.items()))
 
     def points(self, first: int, count: int) -> SweepPoints:
         """Return points `first` to `first + count`, up to the last point."""
@@ -292,15 +292,15 @@ class Plan:
     def _sampled(self, index: Array) -> list[Array]:
         unit = _sobol if self.method == "sobol" else _latin
         shares = unit(index, len(self.axes), self.count, self.seed)
-        found = []
+        columns = []
         for axis, share in zip(self.axes, shares, strict=True):
             if axis.listed:
-                found.append(np.minimum((share * axis.size).astype(np.int64), axis.size - 1))
+                columns.append(np.minimum((share * axis.size).astype(np.int64), axis.size - 1))
             else:
                 assert axis.values is not None
                 low, high = axis.values
-                found.append(low + (high - low) * share)
-        return found
+                columns.append(low + (high - low) * share)
+        return columns
 
 
 def plan(axes: Sequence[SweepAxis], *, method: Method, count: int | None, seed: int = 0) -> Plan:
@@ -308,7 +308,7 @@ def plan(axes: Sequence[SweepAxis], *, method: Method, count: int | None, seed: 
 
     Parameters
     ----------
-    axes : what varies
+    axes : varied numbers and texts
     method : full factorial, Sobol or Latin hypercube
     count : points of the sampled methods
     seed : of the sampled methods
@@ -358,13 +358,13 @@ def _sobol(index: Array, dimension: int, count: int, seed: int) -> Array:
     """
     table, digits = _sobol_parts(dimension, max(count - 1, 1).bit_length(), seed)
     low, high = index & (len(table) - 1), index >> DIGITS
-    unique, which = np.unique(high, return_inverse=True)
+    unique, place = np.unique(high, return_inverse=True)
     heads = np.zeros((len(unique), dimension), dtype=np.int64)
     gray = (unique << DIGITS) ^ (unique << DIGITS >> 1)
     for number, digit in enumerate(digits, start=DIGITS - 1):
         heads ^= np.where((gray >> number & 1)[:, None], digit, 0)
-    found: Array = (table[low] ^ heads[which.ravel()]).T * 2.0**-BITS
-    return found
+    points: Array = (table[low] ^ heads[place.ravel()]).T * 2.0**-BITS
+    return points
 
 
 @lru_cache(maxsize=4)
@@ -389,15 +389,15 @@ def _latin(index: Array, dimension: int, count: int, seed: int) -> Array:
     The part of point k is a permutation of k that needs no table. A Feistel network over the next
     power of four repeats until the result is in range [Black2002].
     """
-    found = np.empty((dimension, len(index)))
+    points = np.empty((dimension, len(index)))
     for axis in range(dimension):
         keys = np.random.default_rng([seed, axis]).integers(2**63, size=ROUNDS + 1, dtype=np.uint64)
         jitter = _mixed(index.astype(np.uint64) ^ keys[ROUNDS]) >> np.uint64(11)
-        found[axis] = jitter
-        found[axis] *= 2.0**-53
-        found[axis] += _permuted(index.astype(np.uint32), count, keys[:ROUNDS].astype(np.uint32))
-        found[axis] /= count
-    return found
+        points[axis] = jitter
+        points[axis] *= 2.0**-53
+        points[axis] += _permuted(index.astype(np.uint32), count, keys[:ROUNDS].astype(np.uint32))
+        points[axis] /= count
+    return points
 
 
 def _permuted(index: Array, count: int, keys: Array) -> Array:
@@ -407,9 +407,9 @@ def _permuted(index: Array, count: int, keys: Array) -> Array:
     place = _rounds(index, keys, mask, shift)
     out = np.flatnonzero(place >= count)
     while len(out):
-        moved = _rounds(place[out], keys, mask, shift)
-        place[out] = moved
-        out = out[moved >= count]
+        permuted = _rounds(place[out], keys, mask, shift)
+        place[out] = permuted
+        out = out[permuted >= count]
     return place
 
 
@@ -419,8 +419,8 @@ def _rounds(place: Array, keys: Array, mask: np.uint32, shift: np.uint32) -> Arr
         mixed = _mixed_half(right ^ key)
         mixed &= mask
         left, right = right, left ^ mixed
-    found: Array = (left << shift) | right
-    return found
+    permuted: Array = (left << shift) | right
+    return permuted
 
 
 def _mixed_half(x: Array) -> Array:

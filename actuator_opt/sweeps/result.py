@@ -18,8 +18,8 @@ from ..version import VERSION
 from .chunk import Chunk, Study
 
 MOST_POINTS = 4096
-"""Rows kept of the feasible designs, and of the others (a choice: print resolves no more). Beyond
-it every second row is dropped, repeatedly."""
+"""Maximum number of rows for figures, for feasible designs and for others (a choice: print resolves
+no more). Above it every second row is dropped."""
 
 
 LONGEST = 65_536
@@ -33,14 +33,14 @@ MORE_IS_BETTER = 1
 
 
 def better(study: Study, metric: str) -> int:
-    """Return which way a metric is better: by the objective, its limits, else its worst value.
+    """Return the better direction of a metric: by the objective, its limits, else its worst value.
 
     1 for more, -1 for less, 0 with limits on both sides.
     """
     goal = study.goal
     if metric in goal.weights:
         return LESS_IS_BETTER if goal.sign * goal.weights[metric] > 0 else MORE_IS_BETTER
-    senses: set[str | None] = {one.sense for one in study.binding if one.metric == metric}
+    senses: set[str | None] = {limit.sense for limit in study.binding if limit.metric == metric}
     if len(senses) > 1:
         return 0
     sense = senses.pop() if senses else study.quantity(metric).worst
@@ -54,11 +54,13 @@ def front(first: Array, second: Array) -> Array:
     points the first stays.
     """
     order = np.lexsort((second, first))
-    known = order[np.isfinite(first[order]) & np.isfinite(second[order])]
-    falls = second[known]
-    least = np.minimum.accumulate(np.concatenate([[np.inf], falls[:-1]])) if len(falls) else falls
-    kept: Array = known[falls < least]
-    return kept
+    finite = order[np.isfinite(first[order]) & np.isfinite(second[order])]
+    values = second[finite]
+    least = (
+        np.minimum.accumulate(np.concatenate([[np.inf], values[:-1]])) if len(values) else values
+    )
+    non_dominated: Array = finite[values < least]
+    return non_dominated
 
 
 @dataclass
@@ -83,7 +85,7 @@ class Pool:
             self.variants, self.rows = self.variants[::2], self.rows[::2]
 
     def thinned(self, most: int) -> tuple[Array, Array, int]:
-        """Return variants and rows, thinned evenly to at most so many, and the step."""
+        """Return variants and rows, thinned evenly to at most `most` rows, and the step."""
         step = max(1, -(-len(self.rows) // most))
         return self.variants[::step], self.rows[::step], self.step * step
 
@@ -103,49 +105,49 @@ class Sample:
     def add(self, study: Study, chunk: Chunk) -> None:
         """Collect the rows of a chunk that are drawn."""
         rows = chunk.rows.numbers
-        answered = np.ones(len(rows), dtype=bool)
-        answered[list(chunk.rows.failures)] = False
+        valid = np.ones(len(rows), dtype=bool)
+        valid[list(chunk.rows.failures)] = False
         variants = np.zeros(len(rows), dtype=np.int64)
         if study.plan.named:
             variants = study.plan.points(chunk.first, len(rows)).variant
-        for pool, which in (
-            (self.feasible, chunk.feasible & answered),
-            (self.others, ~chunk.feasible & answered),
+        for pool, selected in (
+            (self.feasible, chunk.feasible & valid),
+            (self.others, ~chunk.feasible & valid),
         ):
-            at = np.flatnonzero(which)
+            at = np.flatnonzero(selected)
             pool.add(variants[at], rows[at])
-        good = rows[chunk.feasible & answered]
-        if len(good):
+        feasible_rows = rows[chunk.feasible & valid]
+        if len(feasible_rows):
             for pair in combinations(self.watch, 2):
-                self._fronts[pair] = _extended(study, pair, self._fronts.get(pair), good)
+                self._fronts[pair] = _extended(study, pair, self._fronts.get(pair), feasible_rows)
 
     def front(self, study: Study, pair: tuple[str, str]) -> tuple[Array, bool]:
         """Return the Pareto line (2, n) of two metrics (SI), and whether it covers every design.
 
         Empty where the better direction of a metric is unknown.
         """
-        for one in (pair, pair[::-1]):
-            if one in self._fronts:
-                kept = self._fronts[one]
-                return (kept if one == pair else kept[::-1, ::-1]), True
+        for order in (pair, pair[::-1]):
+            if order in self._fronts:
+                line = self._fronts[order]
+                return (line if order == pair else line[::-1, ::-1]), True
         rows = self.feasible.rows
         if not len(rows):
             return np.empty((2, 0)), True
         return _extended(study, pair, None, rows), self.feasible.step == 1
 
 
-def _extended(study: Study, pair: tuple[str, str], known: Array | None, rows: Array) -> Array:
+def _extended(study: Study, pair: tuple[str, str], previous: Array | None, rows: Array) -> Array:
     """Return a Pareto line extended by more designs."""
-    ways = [better(study, name) for name in pair]
-    if 0 in ways:
+    directions = [better(study, name) for name in pair]
+    if 0 in directions:
         return np.empty((2, 0))
     values = rows[:, [study.place(name) for name in pair]].T
-    if known is not None:
-        values = np.concatenate([known, values], axis=1)
-    kept = values[:, front(-ways[0] * values[0], -ways[1] * values[1])]
-    while kept.shape[1] > LONGEST:
-        kept = kept[:, ::2]
-    return kept
+    if previous is not None:
+        values = np.concatenate([previous, values], axis=1)
+    line = values[:, front(-directions[0] * values[0], -directions[1] * values[1])]
+    while line.shape[1] > LONGEST:
+        line = line[:, ::2]
+    return line
 
 
 @dataclass(frozen=True, order=True)
@@ -199,8 +201,8 @@ class Swept(Displayed):
         if study.plan.named:
             return study.values(best.number)
         paths = [axis.path for axis in study.plan.numeric]
-        found = {paths[k]: float(x) for k, x in zip(study.order, best.row, strict=False)}
-        return {path: found[path] for path in paths}
+        numbers = {paths[k]: float(x) for k, x in zip(study.order, best.row, strict=False)}
+        return {path: numbers[path] for path in paths}
 
     def limit(self, keep: int) -> float:
         """Return the objective that another design must improve on to join the best."""
@@ -248,16 +250,16 @@ class Swept(Displayed):
         self.failed += len(chunk.rows.failures)
         for reason in chunk.rows.failures.values():
             self.failures[reason] = self.failures.get(reason, 0) + 1
-        good = np.flatnonzero(chunk.feasible)
+        feasible = np.flatnonzero(chunk.feasible)
         self.count_missed(chunk)
         if self.feasible is not None:
-            self.feasible += len(good)
+            self.feasible += len(feasible)
         ranked = np.flatnonzero(chunk.ranked)
         if keep and len(ranked):
             numbers = chunk.numbers
             order = ranked[np.argsort(chunk.objective[ranked], kind="stable")[:keep]]
-            found = [
+            candidates = [
                 Best(float(chunk.objective[k]), int(numbers[k]), tuple(chunk.rows.numbers[k]))
                 for k in order
             ]
-            self.best = heapq.nsmallest(keep, [*self.best, *found])
+            self.best = heapq.nsmallest(keep, [*self.best, *candidates])

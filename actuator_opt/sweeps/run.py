@@ -17,7 +17,7 @@ from dataclasses import replace
 from functools import lru_cache, partial
 from itertools import chain
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -27,15 +27,16 @@ from ..base.errors import Diagnostic, UsageError
 from ..base.numeric import Array
 from ..version import VERSION
 from .chunk import Chunk, Study
-from .designs import KEPT
-from .field import Task
+from .designs import CACHED
 from .result import Sample, Swept
+
+Task = TypeVar("Task")
 
 PATIENCE = "10s"
 """Time limit for a scheduler to answer."""
 
 
-AGAIN = 5
+RETRIES = 5
 """Maximum restarts of a task after its worker is lost."""
 
 
@@ -81,7 +82,7 @@ def on_cluster(
         blob = pickle.dumps((study, work))
         waiting: deque[Any] = deque()
         for task in tasks:
-            waiting.append(client.submit(_done, blob, task, pure=False, retries=AGAIN))
+            waiting.append(client.submit(_remote_chunk, blob, task, pure=False, retries=RETRIES))
             if len(waiting) > WAITING * max(sum(client.nthreads().values()), 1):
                 yield waiting.popleft().result()
         while waiting:
@@ -94,13 +95,13 @@ def _unpacked(blob: bytes) -> tuple[Any, Any]:
     return study, work
 
 
-def _done(blob: bytes, task: Any) -> Any:
+def _remote_chunk(blob: bytes, task: Any) -> Any:
     """Run a task on a worker."""
     study, work = _unpacked(blob)
     return work(study, task)
 
 
-class Lacking(NamedTuple):
+class MissingRows(NamedTuple):
     """Keys and point numbers of the rows that the database lacks; None where it lacks all."""
 
     first: int
@@ -110,27 +111,27 @@ class Lacking(NamedTuple):
     """Rows that the database holds damaged."""
 
 
-def lacking(base: Database, study: Study, first: int, count: int) -> Lacking:
+def missing_rows(base: Database, study: Study, first: int, count: int) -> MissingRows:
     """Return the keys of a chunk whose rows are missing or damaged."""
     keys = study.keys(first, count)
-    missing, damaged = base.missing(keys)
-    some = None if len(missing) == len(keys) else np.array(missing, dtype=np.intp)
-    return Lacking(first, [keys[k] for k in missing], some, damaged)
+    indices, damaged = base.missing(keys)
+    some = None if len(indices) == len(keys) else np.array(indices, dtype=np.intp)
+    return MissingRows(first, [keys[k] for k in indices], some, damaged)
 
 
-def kept(base: Database, study: Study, first: int, count: int) -> tuple[StoredNumbers, int]:
+def stored_rows(base: Database, study: Study, first: int, count: int) -> tuple[StoredNumbers, int]:
     """Return the stored rows of a chunk, NaN where missing, and their number."""
     keys = study.keys(first, count)
     points = study.plan.points(first, count)
     numbers = np.full((len(keys), len(study.columns)), np.nan)
     numbers[:, : len(points.numbers)] = points.numbers[study.order].T
-    failures, known = {}, base.known(keys)
-    for k, (row, failure) in known.items():
+    failures, stored = {}, base.known(keys)
+    for k, (row, failure) in stored.items():
         if failure is not None:
             failures[k] = failure
         else:
             numbers[k] = row
-    return StoredNumbers(numbers, failures), len(keys) - len(known)
+    return StoredNumbers(numbers, failures), len(keys) - len(stored)
 
 
 CHUNK = 4096
@@ -139,13 +140,13 @@ CHUNK = 4096
 REDUCED = 65_536
 """Points of a chunk when only the best are kept."""
 
-LOOKS = 16
-"""Points examined to explain a sweep without a feasible design."""
+SECTIONS = 16
+"""Sections of a sweep examined if no design is feasible."""
 
-ANEW = 8
-"""Points of a chunk when each needs a new design, some with tables of oil films."""
+SMALL_CHUNK = 8
+"""Points of a chunk when each needs a new design, which may take tables of oil films."""
 
-ALONE = 0.5
+LOCAL_SECONDS = 0.5
 """Seconds of work up to which starting more processes does not pay."""
 MASKS = hasattr(signal, "pthread_sigmask")
 """Whether the system can delay a signal."""
@@ -218,20 +219,20 @@ def sweep(
 
 
 def _chunk_size(study: Study) -> int:
-    """Return the points of a chunk: fewer when most need a new design, which takes long."""
-    if study.designs.apart_count > KEPT:
-        return ANEW
+    """Return the number of points of a chunk: fewer if most need a new design, which takes long."""
+    if study.designs.apart_count > CACHED:
+        return SMALL_CHUNK
     return CHUNK if study.full else REDUCED
 
 
 def _explain(swept: Swept) -> None:
-    """Count the missed limits of a sample, when no design is feasible and few were evaluated."""
-    count, part = swept.study.plan.count, CHUNK // LOOKS
+    """Count the missed limits in some sections of the sweep, as too few designs were evaluated."""
+    count, size = swept.study.plan.count, CHUNK // SECTIONS
     swept.missed = {}
-    every = range(0, count, part)
-    spread = np.linspace(0, count - part, LOOKS).astype(int).tolist()
-    for first in spread if len(every) > LOOKS else every:  # no point is examined twice
-        swept.count_missed(swept.study.chunk(first, part))
+    starts = range(0, count, size)
+    sparse = np.linspace(0, count - size, SECTIONS).astype(int).tolist()
+    for first in sparse if len(starts) > SECTIONS else starts:  # no point is examined twice
+        swept.count_missed(swept.study.chunk(first, size))
 
 
 def swept_again(
@@ -258,8 +259,8 @@ def swept_again(
         base = Database(reader.connection, number, study.hash, len(study.columns), store)
         size = _chunk_size(study)
         for first in range(0, study.plan.count, size):
-            rows, missing = kept(base, study, first, size)
-            if missing:
+            rows, missing_count = stored_rows(base, study, first, size)
+            if missing_count:
                 message = f"study {number} lacks rows of this sweep, or holds damaged ones"
                 remedy = "run the sweep again with --store to compute them"
                 raise refused(store, message, remedy)
@@ -283,18 +284,18 @@ def _computed(
     if scheduler is not None:
         yield from on_cluster(scheduler, study, _chunk, tasks)
         return
-    rest = iter(tasks)
+    remaining = iter(tasks)
     count = workers or (1 if "jax" in sys.modules else os.cpu_count() or 1)  # no forks with threads
     count = min(count, chunks)  # all workers start at once, even without work
     if workers is None or count == 1:
-        yield from _here(study, chunks, rest, patient=count == 1)
-    first = next(rest, None)
-    if first is None:
+        yield from _local_chunks(study, chunks, remaining, patient=count == 1)
+    first_task = next(remaining, None)
+    if first_task is None:
         return
     with ProcessPoolExecutor(count, initializer=_begin, initargs=(study,)) as pool:
         waiting: deque[Future[Chunk]] = deque()
         try:
-            for task in chain([first], rest):
+            for task in chain([first_task], remaining):
                 with _without_interrupts():  # processes start here
                     waiting.append(pool.submit(_work, task))
                 if len(waiting) > 2 * count:
@@ -306,16 +307,19 @@ def _computed(
             raise
 
 
-def _here(
+def _local_chunks(
     study: Study, chunks: int, tasks: Iterator[ChunkTask], *, patient: bool
 ) -> Iterator[Chunk]:
-    """Yield chunks of this process: all, or until other processes pay for the rest."""
-    for done, task in enumerate(tasks, start=1):
+    """Yield chunks computed in this process: all, or until further processes pay off."""
+    for count, task in enumerate(tasks, start=1):
         began = time.perf_counter()
         chunk = _chunk(study, task)
-        took = time.perf_counter() - began
+        seconds = time.perf_counter() - began
         yield chunk
-        if not patient and done > 1 and (chunks - done) * took > ALONE:  # the first takes longer
+        pays = (
+            count > 1 and (chunks - count) * seconds > LOCAL_SECONDS
+        )  # the first chunk takes longer
+        if pays and not patient:
             return
 
 
@@ -334,9 +338,8 @@ def _begin(study: Study) -> None:
 def _end_with_parent() -> None:
     """End this process when its parent ends, for whatever reason.
 
-    Waits for the end of a pipe that only the parent keeps open, which works without system signals.
-    A forked process also inherits the pipes of those before it: they end one after the other, the
-    last process first.
+    It waits until the parent's end of a pipe closes, which works without system signals. A forked
+    process also inherits the pipes of earlier processes, so the last process ends first.
     """
     parent = multiprocessing.parent_process()
     if parent is not None:
@@ -383,24 +386,25 @@ def _stored(
         version=VERSION,
         texts=[(axis.path, text) for axis in study.plan.named for text in axis.texts],
     ) as base:
-        asked: deque[Lacking] = deque()  # checks keys only; the rows are read later
+        queue: deque[MissingRows] = deque()  # checks keys only; the rows are read later
 
         def tasks() -> Iterator[ChunkTask]:
             for first in starts:
-                one = lacking(base, study, first, starts.step)
-                asked.append(one)
-                if one.keys:
-                    yield ChunkTask(first, starts.step, one.some)
+                gap = missing_rows(base, study, first, starts.step)
+                queue.append(gap)
+                if gap.keys:
+                    yield ChunkTask(first, starts.step, gap.some)
 
-        def standing(one: Lacking) -> Chunk:
-            rows, _ = kept(base, study, one.first, starts.step)
-            return study.judged(one.first, rows, len(one.keys))
+        def stored_chunk(gap: MissingRows) -> Chunk:
+            rows, _ = stored_rows(base, study, gap.first, starts.step)
+            return study.judged(gap.first, rows, len(gap.keys))
 
-        for fresh in computed(tasks()):
-            while not asked[0].keys:
-                yield standing(asked.popleft())
-            one = asked.popleft()
-            base.put(one.keys, fresh.rows)
-            yield replace(fresh if one.some is None else standing(one), damaged=one.damaged)
-        for one in asked:
-            yield standing(one)
+        for computed_chunk in computed(tasks()):
+            while not queue[0].keys:
+                yield stored_chunk(queue.popleft())
+            gap = queue.popleft()
+            base.put(gap.keys, computed_chunk.rows)
+            chunk = computed_chunk if gap.some is None else stored_chunk(gap)
+            yield replace(chunk, damaged=gap.damaged)
+        for gap in queue:
+            yield stored_chunk(gap)

@@ -35,7 +35,7 @@ Scores: TypeAlias = Callable[[Array, Array], Array]
 """Estimated objective (n,) of numbers (axes, n) below a bound; infinite where ruled out."""
 
 
-LEAST = 1024
+LEAST_BATCH = 1024
 """Smallest batch of a compiled function; larger batches double, each compiled once."""
 
 
@@ -59,10 +59,10 @@ def array_library(engine: Engine) -> Any:
     """Return the array module of an engine; NumPy where it is not installed."""
     if engine == "jax":
         try:
-            import jax.numpy as found
+            import jax.numpy as library
         except (ImportError, RuntimeError):  # not installed, or incompatible versions
             return np
-        return found
+        return library
     return np
 
 
@@ -74,10 +74,10 @@ def fused(scores: Scores) -> Scores:
 
     def padded(numbers: Array, limit: Array) -> Array:
         count = numbers.shape[1]
-        size = max(LEAST, 1 << (count - 1).bit_length())
+        size = max(LEAST_BATCH, 1 << (count - 1).bit_length())
         with jax.enable_x64(True):
-            found = compiled(np.pad(numbers, ((0, 0), (0, size - count)), mode="edge"), limit)
-            return np.broadcast_to(np.asarray(found), size)[:count]
+            scores = compiled(np.pad(numbers, ((0, 0), (0, size - count)), mode="edge"), limit)
+            return np.broadcast_to(np.asarray(scores), size)[:count]
 
     return padded
 
@@ -86,10 +86,10 @@ ROOM = 2 * TOLERANCE
 """Margin below which a design is ruled out, beyond the rounding of reordered operations."""
 
 CLOSE = 1e-9
-"""Relative tolerance of the objective, for the same reason."""
+"""Relative tolerance of the objective, against the same rounding."""
 
-TRIED = 512
-"""Points that show which limits rule out most designs."""
+TEST_POINTS = 512
+"""Random points that show which limits rule out most designs."""
 
 
 @dataclass(frozen=True)
@@ -126,35 +126,35 @@ class Screen:
 
         Minus infinity where the estimate is not finite.
         """
-        found = self.promised(numbers, limit) + np.zeros(numbers.shape[1])
+        scores = self.bounded_objective(numbers, limit) + np.zeros(numbers.shape[1])
         for stage in self.stages:
-            left = np.flatnonzero(found < np.inf)
-            passed = np.ones(len(left), dtype=bool)
-            for missed in stage.missed(numbers[:, left]):
+            candidates = np.flatnonzero(scores < np.inf)
+            passed = np.ones(len(candidates), dtype=bool)
+            for missed in stage.missed(numbers[:, candidates]):
                 passed &= ~missed
-            found[left[~passed]] = np.inf
-        return found
+            scores[candidates[~passed]] = np.inf
+        return scores
 
-    def promised(self, numbers: Array, limit: Array) -> Array:
+    def bounded_objective(self, numbers: Array, limit: Array) -> Array:
         """Return the objective, (n,) or one for all: infinite where it is above `limit`."""
         arrays = self.library
         with np.errstate(all="ignore"):
-            found, *others = self.objective(numbers)
+            objective, *others = self.objective(numbers)
         for other in others:
-            found = arrays.maximum(found, other)
-        found = arrays.where(arrays.isnan(found), -np.inf, found)
-        return arrays.where(found > roomy(limit), np.inf, found)
+            objective = arrays.maximum(objective, other)
+        objective = arrays.where(arrays.isnan(objective), -np.inf, objective)
+        return arrays.where(objective > rounded_up(limit), np.inf, objective)
 
     def scores_at_once(self, numbers: Array, limit: Array) -> Array:
-        """Return `scores` with every limit of every design: plain arithmetic, for a compiler."""
-        found = self.promised(numbers, limit)
+        """Return `scores` from every limit of every design, as required for compilation."""
+        scores = self.bounded_objective(numbers, limit)
         for stage in self.stages:
             for missed in stage.missed(numbers):
-                found = self.library.where(missed, np.inf, found)
-        return found
+                scores = self.library.where(missed, np.inf, scores)
+        return scores
 
 
-def roomy(objective: Array) -> Array:
+def rounded_up(objective: Array) -> Array:
     """Return an objective plus a rounding tolerance; designs above it are worse."""
     return objective + CLOSE * abs(objective)
 
@@ -176,52 +176,56 @@ def screen(
         traced = trace(actuator, ends.mean(axis=1))
     except (InputError, Unknown):
         return None
-    own = {symbol: f"v[{k}]" for k, symbol in enumerate(traced.variables.values())}
+    names = {symbol: f"v[{k}]" for k, symbol in enumerate(traced.variables.values())}
     objectives = list(dict.fromkeys(traced.objectives))
-    if not objectives or not all(_closed(objective, own) for objective in objectives):
+    if not objectives or not all(_is_closed(objective, names) for objective in objectives):
         return None
     claims = list(
         {
             (claim.value, claim.bound, claim.limit.sense): claim
             for claim in traced.claims
-            if _closed(claim.value, own)
+            if _is_closed(claim.value, names)
         }.values()
     )
-    shares = np.random.default_rng(0).random((len(paths), TRIED))
-    tried = ends[:, :1] + (ends[:, 1:] - ends[:, :1]) * shares
-    first = _telling(_limits(claims, own), tried) if claims else []
-    rest = [claim for k, claim in enumerate(claims) if k not in first]
-    stages = [[claims[k] for k in first], rest]
+    shares = np.random.default_rng(0).random((len(paths), TEST_POINTS))
+    points = ends[:, :1] + (ends[:, 1:] - ends[:, :1]) * shares
+    first = _decisive(_limits(claims, names), points) if claims else []
+    others = [claim for k, claim in enumerate(claims) if k not in first]
+    stages = [[claims[k] for k in first], others]
     library = array_library(engine)
-    found = Screen(
-        vectorised("objective", "v", {}, objectives, known=own, library=library),
-        tuple(_limits(some, own, library) for some in stages if some),
+    compiled = Screen(
+        vectorised("objective", "v", {}, objectives, known=names, library=library),
+        tuple(_limits(stage, names, library) for stage in stages if stage),
         library,
     )
-    return found.scores if library is np else fused(found.scores_at_once)
+    return compiled.scores if library is np else fused(compiled.scores_at_once)
 
 
-def _limits(claims: Sequence[TracedLimit], own: Mapping[Symbol, str], library: Any = np) -> Limits:
+def _limits(
+    claims: Sequence[TracedLimit], names: Mapping[Symbol, str], library: Any = np
+) -> Limits:
     values = [claim.value for claim in claims]
     return Limits(
-        vectorised("limits", "v", {}, values, known=own, library=library),
+        vectorised("limits", "v", {}, values, known=names, library=library),
         np.array([claim.bound for claim in claims]),
         np.array([1.0 if claim.limit.sense == "min" else -1.0 for claim in claims]),
     )
 
 
-def _telling(limits: Limits, tried: Array) -> list[int]:
-    """Return a few limits that together rule out every point that any limit does."""
-    missed = np.stack([np.broadcast_to(one, tried.shape[1]) for one in limits.missed(tried)])
-    found = []
+def _decisive(limits: Limits, points: Array) -> list[int]:
+    """Return a few limits that rule out every point that all limits together rule out."""
+    missed = np.stack(
+        [np.broadcast_to(limit_missed, points.shape[1]) for limit_missed in limits.missed(points)]
+    )
+    chosen = []
     while missed.any():
-        found.append(int(missed.sum(axis=1).argmax()))
-        missed = missed & ~missed[found[-1]]
-    return found
+        chosen.append(int(missed.sum(axis=1).argmax()))
+        missed = missed & ~missed[chosen[-1]]
+    return chosen
 
 
-def _closed(value: Any, own: dict[Symbol, str]) -> bool:
+def _is_closed(value: Any, names: dict[Symbol, str]) -> bool:
     """Whether a traced value depends only on the varied numbers."""
     if not isinstance(value, Symbol):
         return True
-    return all(node in own for node in needed([value]) if node.op == "variable")
+    return all(node in names for node in needed([value]) if node.op == "variable")

@@ -39,7 +39,7 @@ class Rate:
 
 
 def exact(hits: int, count: int) -> Rate:
-    """Return the probability from `hits` in `count` independent draws, exact bounds [Clopper1934].
+    """Return the share of `hits` in `count` independent draws, with exact bounds [Clopper1934].
 
     >>> bounds = exact(0, 100)
     >>> round(bounds.lower, 4), round(bounds.upper, 4)
@@ -51,11 +51,11 @@ def exact(hits: int, count: int) -> Rate:
 
 
 SUMMED = 2000
-"""Largest number of draws for which bounds are summed directly; SciPy is slow to load."""
+"""Largest number of draws whose bounds are summed directly, as SciPy is slow to load."""
 
 
 def _least(hits: int, count: int) -> float:
-    """Return the probability for which `hits` or more of `count` draws have a 2.5 % chance."""
+    """Return the hit probability at which `hits` or more of `count` draws have a 2.5 % chance."""
     tail = (1 - LEVEL) / 2
     if count > SUMMED:
         from scipy.special import betaincinv
@@ -72,18 +72,18 @@ def _least(hits: int, count: int) -> float:
     return (low + high) / 2
 
 
-def replicated(hits: Vector, each: int) -> Rate:
-    """Return the probability from hits in independent replicates of `each` quasi-random points.
+def replicated(hits: Vector, points: int) -> Rate:
+    """Return the share of hits in independent replicates of `points` quasi-random points each.
 
     Bounds use Student's t over the replicates [Owen2013]. With fewer than one miss or one hit per
     replicate, their scatter carries no information. The bounds are then those of independent draws,
     which are wider.
     """
     total, replicates = int(hits.sum()), len(hits)
-    pooled = exact(total, each * replicates)
-    if min(total, each * replicates - total) < replicates:
+    pooled = exact(total, points * replicates)
+    if min(total, points * replicates - total) < replicates:
         return pooled
-    half = half_width(hits / each)
+    half = half_width(hits / points)
     return Rate(pooled.value, max(0.0, pooled.value - half), min(1.0, pooled.value + half))
 
 
@@ -129,7 +129,7 @@ class Indices:
 
 
 TOGETHER = 2048
-"""Points evaluated in one call; several columns share a call."""
+"""Maximum number of points in one call; several columns share a call."""
 REPLICATES = 8
 """Independent randomisations behind each index interval."""
 
@@ -139,7 +139,7 @@ def indices(outputs: Outputs, dimension: int, *, rows: int, seed: int) -> Indice
 
     First order by V_i = E[f(B) (f(AB_i) - f(A))] / V [Saltelli2010], total by E[(f(A) - f(AB_i))^2]
     / 2V [Jansen1999]. A and B are halves of one scrambled Sobol sequence in 2d dimensions; AB_i is
-    A with column i of B. Bounds come from `REPLICATES` randomisations.
+    A with column i of B. Intervals come from `REPLICATES` randomisations.
 
     Parameters
     ----------
@@ -150,12 +150,12 @@ def indices(outputs: Outputs, dimension: int, *, rows: int, seed: int) -> Indice
     """
     power = max(3, round(np.log2(max(rows, 1) / REPLICATES)))
     parts = []
-    lost = 0
+    dropped_rows = 0
     for replicate in range(REPLICATES):
         points = quasi(2 * dimension, power, (seed, 1, replicate))
-        found, bad = _one(outputs, points, dimension, replicate)
-        parts.append(found)
-        lost += bad
+        moments, dropped = _replicate_moments(outputs, points, dimension, replicate)
+        parts.append(moments)
+        dropped_rows += dropped
     sums = np.array(parts)  # (replicates, 2 d + 1, k)
     variance = sums[:, -1]
     with np.errstate(all="ignore"):
@@ -170,37 +170,39 @@ def indices(outputs: Outputs, dimension: int, *, rows: int, seed: int) -> Indice
         first_half=half[:dimension],
         total_half=half[dimension:],
         variance=variance.mean(axis=0),
-        dropped=lost / (REPLICATES << power),
+        dropped=dropped_rows / (REPLICATES << power),
     )
 
 
-def _one(outputs: Outputs, points: Vector, dimension: int, replicate: int) -> tuple[Vector, int]:
-    """Return V_i, V_Ti (2 d) and V (2 d + 1, k) of one randomisation, and the rows dropped."""
+def _replicate_moments(
+    outputs: Outputs, points: Vector, dimension: int, replicate: int
+) -> tuple[Vector, int]:
+    """Return V_i, V_Ti and V (2 d + 1, k) of one randomisation, and the number of dropped rows."""
     first, second = points[:dimension], points[dimension:]
     a, b = outputs(first), outputs(second)
     mixed: list[Vector] = []
     count = first.shape[1]
-    together = max(1, TOGETHER // count)
-    for begin in range(0, dimension, together):
+    columns = max(1, TOGETHER // count)
+    for begin in range(0, dimension, columns):
         tell("indices", (replicate + begin / dimension) / REPLICATES)
-        group = range(begin, min(begin + together, dimension))
+        group = range(begin, min(begin + columns, dimension))
         swapped = np.tile(first, len(group))
         for place, index in enumerate(group):
             swapped[index, place * count : (place + 1) * count] = second[index]
         mixed += np.split(outputs(swapped), len(group), axis=1)
-    whole = np.isfinite(np.stack([a, b, *mixed])).all(axis=0)  # (k, n)
-    number = np.maximum(whole.sum(axis=1), 1)
-    mean = np.where(whole, a + b, 0.0).sum(axis=1) / (2 * number)
-    a, b = (np.where(whole, one - mean[:, None], 0.0) for one in (a, b))
+    valid = np.isfinite(np.stack([a, b, *mixed])).all(axis=0)  # (k, n)
+    number = np.maximum(valid.sum(axis=1), 1)
+    mean = np.where(valid, a + b, 0.0).sum(axis=1) / (2 * number)
+    a, b = (np.where(valid, output - mean[:, None], 0.0) for output in (a, b))
     variance = ((a**2 + b**2).sum(axis=1)) / (2 * number)
     noise = (1e-12 * np.maximum(np.abs(mean), 1e-30)) ** 2
     variance = np.where(variance > noise, variance, 0.0)
     firsts, totals = [], []
-    for one in mixed:
-        changed = np.where(whole, one - mean[:, None], 0.0)
+    for output in mixed:
+        changed = np.where(valid, output - mean[:, None], 0.0)
         firsts.append((b * (changed - a)).sum(axis=1) / number)
         totals.append(((a - changed) ** 2).sum(axis=1) / (2 * number))
-    return np.array([*firsts, *totals, variance]), int((~whole).any(axis=0).sum())
+    return np.array([*firsts, *totals, variance]), int((~valid).any(axis=0).sum())
 
 
 _TAIL = erfc(REACH / sqrt(2)) / 2
@@ -265,15 +267,15 @@ def normal_quantile(share: Vector) -> Vector:
     >>> normal_quantile(np.array([0.5, 0.975])).round(6).tolist()
     [0.0, 1.959964]
     """
-    shares = np.asarray(share)
-    values = map(NormalDist().inv_cdf, shares.ravel().tolist())
-    return np.fromiter(values, float, shares.size).reshape(shares.shape)
+    probabilities = np.asarray(share)
+    values = map(NormalDist().inv_cdf, probabilities.ravel().tolist())
+    return np.fromiter(values, float, probabilities.size).reshape(probabilities.shape)
 
 
 def about(
     shape: str, stated: Mapping[str, Any], value: float, within: tuple[float, float]
 ) -> Distribution:
-    """Return the distribution that an entry of the design file states around a nominal value.
+    """Return the distribution of an entry of the design file about a nominal value.
 
     Parameters
     ----------

@@ -4,7 +4,7 @@ Sources in order of precedence: an entry of ``uncertainty``; bounds of ``measure
 the scatter that a library states for a property; ISO 286 and common practice for diameters, walls,
 angles and air. A coefficient of variation is normal, a tolerance uniform and a factor uniform in
 the logarithm, since bounds say no more [JCGM100]. Values already evaluated at their worst are not
-drawn again: strengths stay at their allowables, gland tolerances at their limits.
+drawn: strengths stay at their allowables, gland tolerances at their limits.
 """
 
 from __future__ import annotations
@@ -82,15 +82,21 @@ def inputs(subject: PreparedDesign) -> tuple[Input, ...]:
     InputError
         an entry of ``uncertainty`` that no model reads, or that leaves the valid range
     """
-    read = read_by_models(subject)
-    found = {one.path: one for one in (*_library(subject), *_practice(subject))}
-    found |= {one.path: one for one in _measured(subject)}
-    kept = {path: one for path, one in found.items() if path in read}
+    paths_read = read_by_models(subject)
+    candidates = (
+        *_library(subject),
+        *_practice(subject),
+        *_measured(subject),
+    )  # later sources replace earlier ones
+    by_path = {
+        candidate.path: candidate for candidate in candidates if candidate.path in paths_read
+    }
     for path, entry in subject.design.uncertainty.items():
-        if path not in read and subject.design.choices:
+        if path not in paths_read and subject.design.choices:
             continue  # read for another option of a choice
-        kept[path] = _stated(subject, path, entry.model_dump(), path in read)
-    return tuple(one for _, one in sorted(kept.items()) if one.distribution.shape != "fixed")
+        by_path[path] = _stated(subject, path, entry.model_dump(), path in paths_read)
+    ordered = (by_path[path] for path in sorted(by_path))
+    return tuple(entry for entry in ordered if entry.distribution.shape != "fixed")
 
 
 def read_by_models(subject: PreparedDesign) -> set[str]:
@@ -106,19 +112,19 @@ def read_by_models(subject: PreparedDesign) -> set[str]:
 
 def _stated(subject: PreparedDesign, path: str, entry: dict[str, Any], is_read: bool) -> Input:
     quantity = quantity_of(path, subject.design)
-    at = f"uncertainty.{path}.distribution"
+    place = f"uncertainty.{path}.distribution"
     value = subject.numbers.get(path, 1.0 if path.endswith(_FACTOR) else None)
     if value is None or not is_read:
         message = "no model of this design reads this value, so its uncertainty has no effect"
-        raise InputError(Diagnostic(message, "remove the entry", path=at))
+        raise InputError(Diagnostic(message, "remove the entry", path=place))
     message, remedy = misfit(entry["distribution"], entry, value, quantity)
     if message:
-        raise InputError(Diagnostic(message, remedy, path=at))
-    drawn = about(entry["distribution"], entry, value, (quantity.lower, quantity.upper))
-    words = entry["source"] or "stated in the design"
+        raise InputError(Diagnostic(message, remedy, path=place))
+    distribution = about(entry["distribution"], entry, value, (quantity.lower, quantity.upper))
+    origin = entry["source"] or "stated in the design"
     if entry["tolerance"]:
-        words += f", {entry['tolerance']} of {source()}"
-    return Input(path, quantity, value, drawn, "design", words)
+        origin += f", {entry['tolerance']} of {source()}"
+    return Input(path, quantity, value, distribution, "design", origin)
 
 
 def _measured(subject: PreparedDesign) -> Iterator[Input]:
@@ -127,27 +133,27 @@ def _measured(subject: PreparedDesign) -> Iterator[Input]:
         deviation = (bounds.upper - bounds.lower) / (2 * NORMAL_95)
         if value is not None:
             stated = {"deviation": deviation}
-            drawn = about("normal", stated, value, (quantity.lower, quantity.upper))
+            distribution = about("normal", stated, value, (quantity.lower, quantity.upper))
             why = f"95 % bounds of {bounds.record}"
-            yield Input(path, quantity, value, drawn, "measured", why, "verified")
+            yield Input(path, quantity, value, distribution, "measured", why, "verified")
 
 
 # ---- libraries ----
 
 
 def _library(subject: PreparedDesign) -> Iterator[Input]:
-    """Yield the scatter that libraries state for properties, and seals for their own."""
+    """Yield the inputs whose scatter a library states, for materials and for seals."""
     for name, material in subject.materials.items():
         for key, entry in material.properties.items():
             if "strength" not in key and entry.basis not in GUARANTEED:
                 yield from _property(subject, f"materials.{name}.{key}", entry, name)
     for place in ("piston", "rod"):
         for tail, element in getattr(subject.design.seals, place).elements().items():
-            known = subject.materials[element.compound].properties
+            properties = subject.materials[element.compound].properties
             for key in OWN:
                 path = f"seals.{place}.{tail}{key}"
-                if path in subject.numbers and key in known:
-                    yield from _property(subject, path, known[key], element.compound)
+                if path in subject.numbers and key in properties:
+                    yield from _property(subject, path, properties[key], element.compound)
     yield from _moduli(subject)
 
 
@@ -160,9 +166,9 @@ def _property(subject: PreparedDesign, path: str, entry: Property, name: str) ->
     within = (quantity.lower, quantity.upper)
     if shape == "loguniform" and value < 0:
         return
-    drawn = about(shape, stated, value, within)
+    distribution = about(shape, stated, value, within)
     why = f"{name}: {entry.scatter}"
-    yield Input(path, quantity, value, drawn, "library", why, entry.confidence)
+    yield Input(path, quantity, value, distribution, "library", why, entry.confidence)
 
 
 def _shape(spread: Spread, value: float) -> tuple[str, dict[str, float]]:
@@ -178,81 +184,86 @@ _FACTOR = "hardness_modulus_factor"
 
 
 def _compounds(subject: PreparedDesign) -> list[str]:
-    return [name for name, one in subject.materials.items() if one.kind == "seal"]
+    return [name for name, material in subject.materials.items() if material.kind == "seal"]
 
 
 def _moduli(subject: PreparedDesign) -> Iterator[Input]:
-    """Yield the factor on each compound's modulus; it spans the hardness laws, log-uniformly."""
+    """Yield the factor on each compound's modulus, log-uniform over the hardness laws."""
     laws: dict[str, set[str]] = {}
     for place in ("piston", "rod"):
         for element in getattr(subject.design.seals, place).elements().values():
             laws.setdefault(element.compound, set()).add(element.hardness_model)
-    for name, used in laws.items():
+    for name, laws_used in laws.items():
         hardness = subject.numbers.get(f"materials.{name}.hardness")
         if hardness is None:
             continue
-        own = min(used)
+        design_law = min(laws_used)
         moduli = {key: float(law.modulus(hardness=hardness)) for key, law in MODULUS_LAWS.items()}
-        ratios = [modulus / moduli[own] for modulus in moduli.values()]
+        ratios = [modulus / moduli[design_law] for modulus in moduli.values()]
         path = f"materials.{name}.{_FACTOR}"
         stated = {"lower": min(ratios), "upper": max(ratios)}
-        drawn = about("loguniform", stated, 1.0, _ANYTHING)
-        cited = " and ".join(law.reference for law in MODULUS_LAWS.values())
-        why = f"the laws for modulus from hardness differ: {cited}"
+        distribution = about("loguniform", stated, 1.0, _ANYTHING)
+        references = " and ".join(law.reference for law in MODULUS_LAWS.values())
+        why = f"the laws for modulus from hardness differ: {references}"
         quantity = quantity_of(path, subject.design)
         value = subject.numbers.get(path, 1.0)
-        yield Input(path, quantity, value, drawn, "library", why, "verified")
+        yield Input(path, quantity, value, distribution, "library", why, "verified")
 
 
 # ---- practice ----
 
 
 def _practice(subject: PreparedDesign) -> Iterator[Input]:
-    """Yield diameters, walls, angles and air, where no better source exists."""
+    """Yield diameters, walls, ply angles and air content, whose scatter is common practice."""
     table: Mapping[str, str] = tables()["scatter_of_dimensions"]
-    origin = f"{citation(table['source'])}"
+    origin = citation(table["source"])
     classes = {
         "cylinder.bore": table["bore"],
         "rod.outer_diameter": table["rod"],
         "rod.inner_diameter": table["rod_bore"],
     }
-    shares: dict[str, tuple[str, dict[str, Any]]] = {
+    spreads: dict[str, tuple[str, dict[str, Any]]] = {
         "fluid.air_content": ("lognormal", {"factor": float(table["air_content_factor"])})
     }
     for tube in ("barrel", "rod"):
         for index, ply in enumerate(getattr(subject.design, tube).layup):
-            at = f"{tube}.layup[{index}]"
+            place = f"{tube}.layup[{index}]"
             if subject.materials[ply.material].isotropic:
-                classes[f"{at}.thickness"] = table["metal_wall"]
+                classes[f"{place}.thickness"] = table["metal_wall"]
                 continue
             share = float(table["ply_thickness_percent"]) / 100
-            shares[f"{at}.thickness"] = ("uniform", {"half_width": share * ply.thickness})
-            wide = np.radians(float(table["angle_deg"]))
-            shares[f"{at}.angle"] = ("uniform", {"half_width": float(wide)})
-    shares |= {path: ("uniform", {"tolerance": name}) for path, name in classes.items()}
-    for path, (shape, stated) in shares.items():
+            spreads[f"{place}.thickness"] = ("uniform", {"half_width": share * ply.thickness})
+            angle = np.radians(float(table["angle_deg"]))
+            spreads[f"{place}.angle"] = ("uniform", {"half_width": float(angle)})
+    spreads |= {path: ("uniform", {"tolerance": name}) for path, name in classes.items()}
+    for path, (shape, stated) in spreads.items():
         value = subject.numbers.get(path, 0.0)
         if value == 0 and not path.endswith("angle"):
             continue
         quantity = quantity_of(path, subject.design)
         try:
-            drawn = about(shape, stated, value, (quantity.lower, quantity.upper))
+            distribution = about(shape, stated, value, (quantity.lower, quantity.upper))
         except ValueFault:  # outside the table of ISO 286
             continue
-        said = f"{stated['tolerance']}, " if "tolerance" in stated else ""
-        why = f"{said}{origin}"
-        yield Input(path, quantity, value, drawn, "practice", why, table["confidence"])
+        why = f"{stated['tolerance']}, {origin}" if "tolerance" in stated else origin
+        yield Input(path, quantity, value, distribution, "practice", why, table["confidence"])
 
 
 CHUNK = 2048
-"""Draws evaluated at a time; this bounds the memory."""
+"""Maximum number of draws in one model call, which bounds the memory."""
 TOLERANCE = 1e-6
 """A limit is met at a margin of -TOLERANCE or more, as in an evaluation."""
 
 
+def chunks(points: Vector) -> Iterator[Vector]:
+    """Yield points (d, n) in chunks."""
+    for first in range(0, points.shape[1], CHUNK):
+        yield points[:, first : first + CHUNK]
+
+
 @dataclass(frozen=True, slots=True)
-class DrawnInputs:
-    """Input values (d, n), limit margins (m, n) and metrics (k, n) of a set of draws."""
+class ModelDraws:
+    """Input values (d, n), limit margins (m, n) and metrics (k, n) of n draws."""
 
     values: Vector
     margins: Vector
@@ -277,97 +288,95 @@ class UncertainModel:
     def __init__(
         self, subject: PreparedDesign, inputs: Sequence[Input], metrics: Sequence[str] = ()
     ) -> None:
-        self.subject = replace(without_basis(subject, inputs), lenient=True)
+        self.subject = replace(without_drawn_basis(subject, inputs), lenient=True)
         self.inputs = tuple(inputs)
         self.metrics = tuple(metrics)
         nominal = compute(self.subject, self.subject.values())
-        kept = ("requirement", "case", "check")
+        origins = ("requirement", "case", "check")
         self.limits = tuple(
             limit
             for limit in all_limits(subject.design, subject.plugins)
-            if limit.origin in kept
+            if limit.origin in origins
             and (limit.origin != "check" or nominal.computed.metrics.get(limit.metric))
         )
         self.own = np.array([limit.origin != "check" for limit in self.limits], dtype=bool)
-        """Which limits are requirements of the design, including forces of its load cases."""
+        """Which limits are requirements of the design, including those of its load cases."""
         _require_metrics(self.metrics, nominal.computed)
         self._wanted = {limit.metric for limit in self.limits} | set(self.metrics)
 
     @property
-    def nominal(self) -> DrawnInputs:
+    def nominal(self) -> ModelDraws:
         """Return the nominal design."""
-        return self.where(np.array([[one.value] for one in self.inputs]).reshape(-1, 1))
+        return self.where(np.array([[entry.value] for entry in self.inputs]).reshape(-1, 1))
 
-    def at(self, shares: Vector) -> DrawnInputs:
+    def at(self, shares: Vector) -> ModelDraws:
         """Return the design at the given quantiles (d, n) of its inputs."""
-        drawn = [one.distribution.at(row) for one, row in zip(self.inputs, shares, strict=True)]
-        return self.where(np.array(drawn).reshape(len(self.inputs), shares.shape[1]))
+        quantiles = [
+            entry.distribution.at(row) for entry, row in zip(self.inputs, shares, strict=True)
+        ]
+        return self.where(np.array(quantiles).reshape(len(self.inputs), shares.shape[1]))
 
     def outputs(self, shares: Vector) -> Vector:
         """Return margins, the least margin of the requirements, and metrics: (m + 1 + k, n)."""
-        parts = [
-            self.flat(self.at(shares[:, first : first + CHUNK]))
-            for first in range(0, shares.shape[1], CHUNK)
-        ]
-        return np.concatenate(parts, axis=1)
+        return np.concatenate([self.flat(self.at(part)) for part in chunks(shares)], axis=1)
 
-    def flat(self, drawn_inputs: DrawnInputs) -> Vector:
-        """Stack margins, their least and metrics; a margin without a value is infinite."""
+    def flat(self, drawn_inputs: ModelDraws) -> Vector:
+        """Stack margins, their least and metrics; a margin of 1e9 or more counts as missing."""
         margins = np.where(np.abs(drawn_inputs.margins) < 1e9, drawn_inputs.margins, np.nan)
         with np.errstate(all="ignore"):
             least = np.min(drawn_inputs.margins[self.own], axis=0, initial=np.inf)
         return np.concatenate([margins, least[None], drawn_inputs.metrics])
 
     @np.errstate(all="ignore")
-    def where(self, values: Vector) -> DrawnInputs:
+    def where(self, values: Vector) -> ModelDraws:
         """Return the design at the given input values (d, n), SI."""
         count = values.shape[1]
-        varied = {one.path: row for one, row in zip(self.inputs, values, strict=True)}
+        varied = {entry.path: row for entry, row in zip(self.inputs, values, strict=True)}
         numbers = self.subject.values(varied)
         wanted = None if self.subject.plugins else self._wanted
         computed = compute(self.subject, numbers, wanted).computed
         margins = [_margin(limit, computed, numbers, count) for limit in self.limits]
         metrics = [governing(name, computed, numbers, self.subject) for name in self.metrics]
-        return DrawnInputs(values, _rows(margins, count), _rows(metrics, count))
+        return ModelDraws(values, _stacked(margins, count), _stacked(metrics, count))
 
 
-def _rows(arrays: Sequence[Vector], count: int) -> Vector:
+def _stacked(arrays: Sequence[Vector], count: int) -> Vector:
     """Stack arrays (n,) or (1,) as (len, n)."""
-    found = np.empty((len(arrays), count))
-    for row, array in zip(found, arrays, strict=True):
+    rows = np.empty((len(arrays), count))
+    for row, array in zip(rows, arrays, strict=True):
         row[:] = array
-    return found
+    return rows
 
 
 def _margin(limit: MetricLimit, computed: MetricArrays, numbers: Values, count: int) -> Vector:
-    """Return the least margin of a limit over cases and places (n,); NaN where one has no value."""
+    """Return the least margin of a limit over cases and places (n,); NaN without a value."""
     least = np.full(count, np.inf)
-    seen = False
+    has_value = False
     for row in rows_of(limit, computed, numbers):
-        least, seen = np.minimum(least, row.margin), True
-    return np.where(least > UNLIMITED / 1e6, np.inf, least) if seen else np.full(count, np.nan)
+        least, has_value = np.minimum(least, row.margin), True
+    return np.where(least > UNLIMITED / 1e6, np.inf, least) if has_value else np.full(count, np.nan)
 
 
 def _require_metrics(metrics: Sequence[str], computed: MetricArrays) -> None:
     for name in metrics:
         if not computed.metrics.get(name):
-            why = computed.why.get(name, "this design has no such metric")
+            reason = computed.why.get(name, "this design has no such metric")
             remedy = "choose a metric that `actuator-opt evaluate` lists with a value"
-            raise InputError(Diagnostic(f"{name} cannot be evaluated: {why}", remedy))
+            raise InputError(Diagnostic(f"{name} cannot be evaluated: {reason}", remedy))
 
 
-def without_basis(subject: PreparedDesign, inputs: Sequence[Input]) -> PreparedDesign:
+def without_drawn_basis(subject: PreparedDesign, inputs: Sequence[Input]) -> PreparedDesign:
     """Return the design without the basis knock-down of strengths that are drawn.
 
     The knock-down from mean to allowable accounts for scatter; drawing the strength covers it
     already. Knock-downs for temperature, moisture and process stay.
     """
-    drawn = {one.path for one in inputs}
+    drawn_paths = {uncertain.path for uncertain in inputs}
     factors = dict(subject.factors)
     for (name, key, cold), factor in subject.factors.items():
         path = f"materials.{name}.{key}"
-        knocked = subject.numbers.get(f"materials.{name}.basis_knockdown")
+        knockdown = subject.numbers.get(f"materials.{name}.basis_knockdown")
         entry = subject.materials[name].properties[key]
-        if path in drawn and knocked and entry.basis in ("typical", "mean"):
-            factors[name, key, cold] = factor / knocked
+        if path in drawn_paths and knockdown and entry.basis in ("typical", "mean"):
+            factors[name, key, cold] = factor / knockdown
     return replace(subject, factors=factors) if factors != subject.factors else subject

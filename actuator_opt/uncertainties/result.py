@@ -24,7 +24,7 @@ class LimitYield:
     required : whether it is a requirement; otherwise it belongs to the check list
     margin : margin of the nominal design; None without a value
     rate : probability of meeting it
-    margins : at 1, 5, 50, 95 and 99 % of the draws; None where that draw has no value
+    margins : at 1, 5, 50, 95 and 99 % of the draws; None without a value
     """
 
     name: str
@@ -87,7 +87,7 @@ class Swing:
 
     @property
     def size(self) -> float:
-        """Return the distance between both ends; infinite where one has no value."""
+        """Return the distance between both ends; infinite if either has no value."""
         if self.at_5 is None or self.at_95 is None:
             return float("inf")
         return abs(self.at_95 - self.at_5)
@@ -100,8 +100,8 @@ class Swing:
 
 
 @dataclass(frozen=True, slots=True)
-class Kept:
-    """Stored draws: input values (d, n) and limit margins (m, n)."""
+class StoredDraws:
+    """Input values (d, n) and limit margins (m, n) of the stored draws."""
 
     values: Vector
     margins: Vector
@@ -121,7 +121,7 @@ class Uncertainty(Displayed):
     inputs : uncertain inputs
     count, method, seed : of the draws
     rate : probability of meeting all requirements
-    rate_checks : the same, check list included
+    rate_checks : probability of also meeting the check list
     limits : each requirement, then each check
     nominal : outputs of the nominal design, by name; a margin has the name of its limit
     units : metrics among the outputs, with their SI unit
@@ -147,7 +147,7 @@ class Uncertainty(Displayed):
     swings: tuple[Swing, ...]
     index_rows: int
     dropped: float
-    kept: Kept
+    kept: StoredDraws
     notes: tuple[str, ...]
     seconds: float
 
@@ -168,11 +168,11 @@ class Uncertainty(Displayed):
 
     def of_output(self, output: str) -> tuple[list[Index], list[Swing]]:
         """Return indices and swings of one output, the largest first."""
-        found = [index for index in self.indices if index.output == output]
+        indices = [index for index in self.indices if index.output == output]
         swings = [swing for swing in self.swings if swing.output == output]
-        found.sort(key=lambda one: (-(one.total or 0.0), one.path))
-        swings.sort(key=lambda one: (-one.size, one.path))
-        return found, swings
+        indices.sort(key=lambda index: (-(index.total or 0.0), index.path))
+        swings.sort(key=lambda swing: (-swing.size, swing.path))
+        return indices, swings
 
     def to_dict(self) -> dict[str, Any]:
         """Return the `uncertainty --json` object (SI)."""
@@ -185,8 +185,8 @@ class Uncertainty(Displayed):
             "samples": self.count,
             "method": self.method,
             "seed": self.seed,
-            "inputs": [one.to_dict() for one in self.inputs],
-            "requirements": [one.to_dict() for one in self.required],
+            "inputs": [entry.to_dict() for entry in self.inputs],
+            "requirements": [limit.to_dict() for limit in self.required],
             "checks": [check.to_dict() for check in self.checks],
             "outputs": {
                 name: {"value": value, "unit": self.units.get(name, "")}
@@ -203,16 +203,16 @@ class Uncertainty(Displayed):
     def __str__(self) -> str:
         """Return yield and requirements as a table."""
         rows = [["requirement", "margin", "holds", "lower", "upper"]]
-        for one in self.required:
-            margin = "-" if one.margin is None else f"{100 * one.margin:.2f} %"
-            bounds = (one.rate.value, one.rate.lower, one.rate.upper)
-            rows.append([one.name, margin, *(f"{100 * x:.2f} %" for x in bounds)])
+        for limit in self.required:
+            margin = "-" if limit.margin is None else f"{100 * limit.margin:.2f} %"
+            bounds = (limit.rate.value, limit.rate.lower, limit.rate.upper)
+            rows.append([limit.name, margin, *(f"{100 * x:.2f} %" for x in bounds)])
         rate = self.rate
-        words = (
+        headline = (
             f"yield {100 * rate.value:.2f} % ({100 * rate.lower:.2f} to {100 * rate.upper:.2f} "
             f"%) of {self.count} draws"
         )
-        return "\n".join([words, "", aligned(rows, right=(1, 2, 3, 4))])
+        return "\n".join([headline, "", aligned(rows, right=(1, 2, 3, 4))])
 
 
 def _worst(limit_yield: LimitYield) -> tuple[float, float, str]:

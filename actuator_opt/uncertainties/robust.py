@@ -1,21 +1,21 @@
 """Robust optima: meet all limits with a stated probability.
 
-The design is optimised repeatedly. At each optimum the margins of all limits are drawn. Each limit
-then requires a reserve: the distance from its nominal margin to its quantile. The design is
-optimised again with these reserves until they settle. The failure probability allowed for one limit
-follows from how often any limit fails. An independent sample then verifies the last design.
+The design is optimised repeatedly. At each optimum, draws of the uncertain inputs give the margins
+of all limits. Each limit then needs a reserve: the distance from its nominal margin to a quantile
+of its draws. The design is optimised again with these reserves until they converge. The failure
+probability allowed for one limit follows from how often any limit fails. Independent draws then
+verify the last design.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
 from ..base.errors import Diagnostic, UsageError
+from ..base.numeric import Array
 from ..base.progress import whole
 from ..design.model import Design
 from ..evaluation import PreparedDesign, prepare
@@ -26,7 +26,6 @@ from .estimate import Rate
 from .inputs import TOLERANCE, UncertainModel, inputs, read_by_models
 from .study import draw
 
-Held: TypeAlias = npt.NDArray[Any]
 Search = Callable[[PreparedDesign, bool], Optimisation]
 """Search for an ordinary optimum of a design; the flag asks for prices."""
 
@@ -35,25 +34,25 @@ LEAST, MOST = 0.5, 0.9999
 ROUNDS = 12
 """Maximum number of optimisation rounds."""
 REFUSALS = 3
-"""Maximum reductions of infeasible reserves to those of the nearest design."""
+"""Maximum number of reductions of infeasible reserves to those of the nearest design."""
 STILL = 2e-3
 """Relative change of the objective that counts as converged."""
 FAR = 1.0
-"""Drawn margin above which a limit needs no reserve, as it is far from active. Its reserve, of a
-life say, could exceed what any other design can meet."""
+"""Margin of a draw above which a limit needs no reserve, as it is far from active. A reserve of a
+life, for example, could exceed the margin of every other design."""
 AIM, ROOM = 0.85, 0.15
 """Target share of the allowed failures, and the tolerance on it. The requested yield then lies
-outside the bounds of the last sample."""
+outside the bounds of the verifying draws."""
 
 
 @dataclass(frozen=True, slots=True)
-class _Seen:
-    """Draws at one design: how often all covered limits are met, and the reserves they imply."""
+class _DesignDraws:
+    """Margins of the draws at one design, with the reserves that follow from them."""
 
     model: UncertainModel
-    covered: Held
-    nominal: Held
-    margins: Held
+    covered: Array
+    nominal: Array
+    margins: Array
 
     @property
     def rate(self) -> float:
@@ -61,15 +60,15 @@ class _Seen:
         return float((self.margins[self.covered] >= -TOLERANCE).all(axis=0).mean())
 
     def reserves(self, level: float) -> dict[str, float]:
-        """Return the reserve by limit for which each limit alone fails with this probability."""
-        found = {}
+        """Return the reserves by limit; each limit alone then fails with probability `level`."""
+        reserves = {}
         for row in np.flatnonzero(self.covered):
-            drawn = np.where(np.isnan(self.margins[row]), -np.inf, self.margins[row])
-            low = float(np.quantile(drawn, level, method="inverted_cdf"))
-            reserve = float(self.nominal[row]) - low
-            if np.isfinite(self.nominal[row]) and reserve > 0 and low <= FAR:
-                found[self.model.limits[row].name] = reserve
-        return found
+            margins = np.where(np.isnan(self.margins[row]), -np.inf, self.margins[row])
+            quantile = float(np.quantile(margins, level, method="inverted_cdf"))
+            reserve = float(self.nominal[row]) - quantile
+            if np.isfinite(self.nominal[row]) and reserve > 0 and quantile <= FAR:
+                reserves[self.model.limits[row].name] = reserve
+        return reserves
 
 
 def robust(
@@ -90,159 +89,167 @@ def robust(
         a probability outside that range
     """
     require(target)
-    plain = search(subject, False)
-    if plain.status.startswith("interrupted"):
-        return plain
-    if not _solved(plain):
+    ordinary = search(subject, False)
+    if ordinary.status.startswith("interrupted"):
+        return ordinary
+    if not _solved(ordinary):
         return search(subject, True)
-    fixed = _without_choices(subject, plain)
-    way = _Way(fixed, target, search, seed, plain)
-    way.walk()
-    return way.result() if way.stopped is None else way.stopped
+    fixed = _without_choices(subject, ordinary)
+    robust_search = _RobustSearch(fixed, target, search, seed, ordinary)
+    robust_search.iterate()
+    return robust_search.result() if robust_search.stopped is None else robust_search.stopped
 
 
 def require(target: float) -> None:
-    """Reject a probability outside the range that the samples can verify."""
+    """Reject a probability outside the range that the draws can verify."""
     if not LEAST <= target <= MOST:
         message = f"a yield of {target:g} is outside the valid range"
         raise UsageError(Diagnostic(message, f"write {LEAST:g} to {MOST:g}, e.g. 0.99"))
 
 
-def _without_choices(subject: PreparedDesign, plain: Optimisation) -> PreparedDesign:
-    """Return the design with the choices of its ordinary optimum fixed, and inputs to match."""
+def _without_choices(subject: PreparedDesign, ordinary: Optimisation) -> PreparedDesign:
+    """Return the design with the choices of its ordinary optimum, and only their inputs."""
     if not subject.design.choices:
         return subject
-    design = plain.design.model_copy(update={"choices": {}})
-    found = _prepared(design, subject)
-    read = read_by_models(found)
-    kept = {path: entry for path, entry in design.uncertainty.items() if path in read}
-    design = design.model_copy(update={"uncertainty": kept})
+    design = ordinary.design.model_copy(update={"choices": {}})
+    prepared = _prepared(design, subject)
+    paths_read = read_by_models(prepared)
+    uncertainty = {path: entry for path, entry in design.uncertainty.items() if path in paths_read}
+    design = design.model_copy(update={"uncertainty": uncertainty})
     return replace(_prepared(design, subject), reserves=subject.reserves)
 
 
 def _prepared(design: Design, subject: PreparedDesign) -> PreparedDesign:
-    found = prepare(design, plugins=subject.plugins)
-    return replace(found, lenient=True)
+    prepared = prepare(design, plugins=subject.plugins)
+    return replace(prepared, lenient=True)
 
 
-class _Level:
+class _FailureLevel:
     """Allowed failure probability of one limit, adjusted by how often any limit fails."""
 
     def __init__(self, aim: float) -> None:
         self.aim = self.value = aim
         self.last: tuple[float, float] | None = None
 
-    def near(self, missed: float) -> bool:
-        """Whether the failures are near the target, or below it with the level at its maximum."""
-        return abs(missed - self.aim) <= ROOM * self.aim or (missed < self.aim == self.value)
+    def near(self, failure_rate: float) -> bool:
+        """Whether the failure rate is near the target, or below it at the largest level."""
+        return abs(failure_rate - self.aim) <= ROOM * self.aim or (
+            failure_rate < self.aim == self.value
+        )
 
-    def follow(self, missed: float) -> None:
+    def follow(self, failure_rate: float) -> None:
         """Set the level expected to give the target failure rate: a secant step in logarithms."""
-        missed = max(missed, 1e-3 * self.aim)
-        steep = 1.0
+        failure_rate = max(failure_rate, 1e-3 * self.aim)
+        slope = 1.0
         if self.last is not None and self.last[0] != self.value:
-            steep = np.log(self.last[1] / missed) / np.log(self.last[0] / self.value)
-        self.last = (self.value, missed)
-        step = (self.aim / missed) ** (1 / float(np.clip(steep, 1.0, 4.0)))
+            slope = np.log(self.last[1] / failure_rate) / np.log(self.last[0] / self.value)
+        self.last = (self.value, failure_rate)
+        step = (self.aim / failure_rate) ** (1 / float(np.clip(slope, 1.0, 4.0)))
         self.value = min(self.aim, self.value * float(np.clip(step, 0.2, 5.0)))
 
 
-class _Way:
-    """The sequence of optima."""
+class _RobustSearch:
+    """Optimisations with reserves from the draws at the previous optimum."""
 
     def __init__(
-        self, subject: PreparedDesign, target: float, search: Search, seed: int, plain: Optimisation
+        self,
+        subject: PreparedDesign,
+        target: float,
+        search: Search,
+        seed: int,
+        ordinary: Optimisation,
     ) -> None:
         self.subject, self.target, self.search, self.seed = subject, target, search, seed
-        self.plain = plain
+        self.ordinary = ordinary
         self.allowed = 1 - target
         self.count = round(float(np.clip(100 / self.allowed, 4096, 100_000)))
-        first = self._see(plain.best, None)
-        covered = first.model.own | (first.nominal >= -TOLERANCE)
-        self.names = [limit.name for limit in first.model.limits]
+        draws = self._drawn(ordinary.best, None)
+        covered = draws.model.own | (draws.nominal >= -TOLERANCE)
+        self.names = [limit.name for limit in draws.model.limits]
         self.covered = covered
         self.left_out = tuple(
-            name for name, held in zip(self.names, covered, strict=True) if not held
+            name for name, is_covered in zip(self.names, covered, strict=True) if not is_covered
         )
-        self.seen = replace(first, covered=covered)
-        self.rounds = [Round(plain.best_objective, self.seen.rate)]
-        self.found, self.reserves = plain, dict[str, float]()
+        self.draws = replace(draws, covered=covered)
+        self.rounds = [Round(ordinary.best_objective, self.draws.rate)]
+        self.best, self.reserves = ordinary, dict[str, float]()
         self.converged, self.refusals = False, 0
-        self.refused: dict[str, float] = {}
+        self.infeasible: dict[str, float] = {}
         self.stopped: Optimisation | None = None
-        self.level = _Level(AIM * self.allowed)
+        self.level = _FailureLevel(AIM * self.allowed)
 
-    def _see(self, design: Design, covered: Held | None) -> _Seen:
+    def _drawn(self, design: Design, covered: Array | None) -> _DesignDraws:
         subject = _prepared(design, self.subject)
         model = UncertainModel(subject, inputs(subject))
-        tally = draw(model, self.count, self.seed, keep=self.count)
+        counts = draw(model, self.count, self.seed, keep=self.count)
         nominal = model.nominal.margins[:, 0]
-        held = model.own if covered is None else covered
-        return _Seen(model, held, nominal, tally.kept.margins)
+        covered_limits = model.own if covered is None else covered
+        return _DesignDraws(model, covered_limits, nominal, counts.kept.margins)
 
-    def walk(self) -> None:
-        """Optimise with the reserves of the previous design until they settle."""
+    def iterate(self) -> None:
+        """Optimise with the reserves of the previous design until they converge."""
         level = self.level
-        self.converged = self.seen.rate >= 1 - level.aim
-        asked = self.reserves if self.converged else self.seen.reserves(level.value)
+        self.converged = self.draws.rate >= 1 - level.aim
+        reserves = self.reserves if self.converged else self.draws.reserves(level.value)
         while not self.converged and len(self.rounds) <= ROUNDS:
             with whole("robust optimum", (len(self.rounds) - 1) / ROUNDS):
-                found = self.search(replace(self.subject, reserves=asked), False)
-            if found.status.startswith("interrupted"):
-                self.stopped = found
+                optimisation = self.search(replace(self.subject, reserves=reserves), False)
+            if optimisation.status.startswith("interrupted"):
+                self.stopped = optimisation
                 return
-            if not _solved(found):
-                self.refused = asked
+            if not _solved(optimisation):
+                self.infeasible = reserves
                 if self.refusals == REFUSALS:
                     return
                 self.refusals += 1
-                asked = self._nearer(self._see(found.best, self.covered), level.value)
+                reserves = self._nearer(self._drawn(optimisation.best, self.covered), level.value)
                 continue
-            self.refused = {}
-            seen = self._see(found.best, self.covered)
-            before = self.rounds[-1].objective
-            self.rounds.append(Round(found.best_objective, seen.rate))
-            self._keep(found, seen, asked)
-            still = abs(found.best_objective - before) <= STILL * abs(before)
-            self.converged = still and level.near(1 - seen.rate)
-            level.follow(1 - seen.rate)
-            asked = seen.reserves(level.value)
+            self.infeasible = {}
+            draws = self._drawn(optimisation.best, self.covered)
+            previous = self.rounds[-1].objective
+            self.rounds.append(Round(optimisation.best_objective, draws.rate))
+            self._keep(optimisation, draws, reserves)
+            unchanged = abs(optimisation.best_objective - previous) <= STILL * abs(previous)
+            self.converged = unchanged and level.near(1 - draws.rate)
+            level.follow(1 - draws.rate)
+            reserves = draws.reserves(level.value)
 
-    def _nearer(self, near: _Seen, level: float) -> dict[str, float]:
+    def _nearer(self, nearest: _DesignDraws, level: float) -> dict[str, float]:
         """Return the reserves available at the least infeasible design.
 
-        Its draws may still meet the target when one limit fails more and others less than the
-        level. Then its own reserves are enough.
+        Its draws may still meet the target if one limit fails more and others less than the level.
+        Reserves up to its own margins are then enough.
         """
-        asked = near.reserves(level)
-        if near.rate < self.target:
-            return asked
-        margins = dict(zip(self.names, near.nominal.tolist(), strict=True))
-        return {name: max(min(kept, margins[name]), 0.0) for name, kept in asked.items()}
+        reserves = nearest.reserves(level)
+        if nearest.rate < self.target:
+            return reserves
+        margins = dict(zip(self.names, nearest.nominal.tolist(), strict=True))
+        return {name: max(min(reserve, margins[name]), 0.0) for name, reserve in reserves.items()}
 
-    def _keep(self, optimisation: Optimisation, seen: _Seen, reserves: dict[str, float]) -> None:
-        """Keep the better design: yield counts before the objective."""
+    def _keep(
+        self, optimisation: Optimisation, draws: _DesignDraws, reserves: dict[str, float]
+    ) -> None:
+        """Keep the better design: first by its yield, then by its objective."""
         sign = -1.0 if optimisation.design.objective.maximise is not None else 1.0
 
-        def rank(one: Optimisation, at: _Seen) -> tuple[float, float]:
-            missed = 1 - at.rate
-            enough = AIM * (1 + ROOM / 2) * self.allowed
-            return max(missed - enough, 0.0), sign * one.best_objective
+        def rank(candidate: Optimisation, draws: _DesignDraws) -> tuple[float, float]:
+            failure_rate = 1 - draws.rate
+            target_failures = AIM * (1 + ROOM / 2) * self.allowed
+            return max(failure_rate - target_failures, 0.0), sign * candidate.best_objective
 
-        if rank(optimisation, seen) <= rank(self.found, self.seen):
-            self.found, self.seen, self.reserves = optimisation, seen, reserves
+        if rank(optimisation, draws) <= rank(self.best, self.draws):
+            self.best, self.draws, self.reserves = optimisation, draws, reserves
 
     def result(self) -> Optimisation:
-        """Return the last design with prices, verified with an independent sample."""
-        found, reserves, seen = self._last()
-        if self.plain.choices is not None:
-            words = (
-                f"{self.plain.choices.sentence}; all choices were compared without yield reserves"
-            )
-            found = replace(found, choices=replace(self.plain.choices, sentence=words))
+        """Return the final design with prices, verified with independent draws."""
+        optimisation, reserves, draws = self._last()
+        if self.ordinary.choices is not None:
+            choices = self.ordinary.choices
+            words = f"{choices.sentence}; all choices were compared without yield reserves"
+            optimisation = replace(optimisation, choices=replace(choices, sentence=words))
         count = round(float(np.clip(200 / self.allowed, 10_000, 400_000)))
-        rate = _covered_rate(seen.model, self.covered, count, self.seed)
-        made = Robust(
+        rate = _covered_rate(draws.model, self.covered, count, self.seed)
+        outcome = Robust(
             target=self.target,
             rate=rate.value,
             lower=rate.lower,
@@ -256,88 +263,96 @@ class _Way:
             left_out=self.left_out,
             sentence="",
         )
-        made = replace(made, sentence=self._words(made, found))
-        if found.certificate is not None:
-            found = replace(found, certificate=self._proven(found.certificate))
-        if made.reached and not self.refused:
-            return replace(found, robust=made)
-        sentence = f"{_none(found)} all requirements with the reserves for this yield"
-        if not self.refused:
-            sentence = f"the yield is below the requested {_percent(self.target)}"
-        remedy = f"{found.remedy or 'relax a requirement'}, or request a lower yield"
-        return replace(found, robust=made, sentence=sentence, remedy=remedy)
+        outcome = replace(outcome, sentence=self._words(outcome, optimisation))
+        if optimisation.certificate is not None:
+            optimisation = replace(optimisation, certificate=self._proven(optimisation.certificate))
+        if outcome.reached and not self.infeasible:
+            return replace(optimisation, robust=outcome)
+        sentence = f"the yield is below the requested {_percent(self.target)}"
+        if self.infeasible:
+            none = _no_design_meets(optimisation)
+            sentence = f"{none} all requirements with the reserves for this yield"
+        remedy = f"{optimisation.remedy or 'relax a requirement'}, or request a lower yield"
+        return replace(optimisation, robust=outcome, sentence=sentence, remedy=remedy)
 
-    def _last(self) -> tuple[Optimisation, dict[str, float], _Seen]:
+    def _last(self) -> tuple[Optimisation, dict[str, float], _DesignDraws]:
         """Return the final design with its reserves: the best feasible, else the nearest one."""
-        if self.seen.rate >= self.target:
-            self.refused = {}
-        reserves = self.refused or self.reserves
-        found = self.search(replace(self.subject, reserves=reserves), True)
-        seen = self._see(found.best, self.covered)
-        if self.refused and seen.rate >= self.target:
-            enough = self._nearer(seen, self.level.value)
-            again = self.search(replace(self.subject, reserves=enough), True)
-            if _solved(again):
-                self.refused = {}
-                return again, enough, self._see(again.best, self.covered)
-        return found, reserves, seen
+        if self.draws.rate >= self.target:
+            self.infeasible = {}
+        reserves = self.infeasible or self.reserves
+        optimisation = self.search(replace(self.subject, reserves=reserves), True)
+        draws = self._drawn(optimisation.best, self.covered)
+        if self.infeasible and draws.rate >= self.target:
+            available = self._nearer(draws, self.level.value)
+            retried = self.search(replace(self.subject, reserves=available), True)
+            if _solved(retried):
+                self.infeasible = {}
+                return retried, available, self._drawn(retried.best, self.covered)
+        return optimisation, reserves, draws
 
     def _proven(self, certificate: Certificate) -> Certificate:
-        """Return a certificate that states what it does not cover."""
+        """Return the certificate with a remark that it does not cover the reserves."""
         if certificate.lower_bound is None:
             return certificate
         words = "the bound is for the limits themselves, without yield reserves"
-        if self.plain.choices is not None:
+        if self.ordinary.choices is not None:
             words += ", and for the chosen options only"
         return replace(certificate, sentence=f"{certificate.sentence}; {words}")
 
-    def _wanting(self) -> str:
-        """Name the limits whose required reserve most exceeds the margin of the last design."""
-        margins = dict(zip(self.names, self.seen.nominal, strict=True))
-        lacks = sorted((margins[x] - kept, x) for x, kept in self.refused.items())
-        told = [f"{x} {100 * self.refused[x]:.2g} %" for lack, x in lacks[:3] if lack < 0]
-        return ", ".join(told) or "those below"
+    def _shortfalls(self) -> str:
+        """Name the limits whose required reserve exceeds the margin of the last design by most."""
+        margins = dict(zip(self.names, self.draws.nominal, strict=True))
+        shortfalls = sorted((margins[x] - reserve, x) for x, reserve in self.infeasible.items())
+        limits_named = [
+            f"{x} {100 * self.infeasible[x]:.2g} %"
+            for shortfall, x in shortfalls[:3]
+            if shortfall < 0
+        ]
+        return ", ".join(limits_named) or "those below"
 
-    def _words(self, made: Robust, optimisation: Optimisation) -> str:
+    def _words(self, outcome: Robust, optimisation: Optimisation) -> str:
         quantity = of_metric(optimisation.objective_metric)
         before, after = (
-            quantity.text(x, 5) for x in (made.nominal_objective, optimisation.best_objective)
+            quantity.text(x, 5) for x in (outcome.nominal_objective, optimisation.best_objective)
         )
-        shown = f"{_percent(made.rate)} ({_percent(made.lower)} to {_percent(made.upper)})"
+        yield_text = (
+            f"{_percent(outcome.rate)} ({_percent(outcome.lower)} to {_percent(outcome.upper)})"
+        )
         cost = (
             f"{quantity.label} is {after}, against {before} without reserves at a yield of "
-            f"{_percent(made.nominal_rate)}"
+            f"{_percent(outcome.nominal_rate)}"
         )
-        rest = ""
-        if self.plain.choices is not None:
-            rest = "; choices come from the optimum without reserves: try others with --set"
-        if made.left_out:
-            rest += f"; not covered, as missed anyway: {', '.join(made.left_out)}"
-        if self.refused:
+        remarks = ""
+        if self.ordinary.choices is not None:
+            remarks = "; choices come from the optimum without reserves: try others with --set"
+        if outcome.left_out:
+            missed = ", ".join(outcome.left_out)
+            remarks += f"; not covered, as the optimum without reserves misses them: {missed}"
+        if self.infeasible:
             return (
-                f"{_none(optimisation)} the reserves needed for a yield of"
+                f"{_no_design_meets(optimisation)} the reserves needed for a yield of"
                 f" {_percent(self.target)}: "
-                f"{self._wanting()}. The design shown meets all limits in {shown} of "
-                f"{made.samples} independent draws; without reserves {quantity.label} is "
-                f"{before} at a yield of {_percent(made.nominal_rate)}{rest}. The changes "
+                f"{self._shortfalls()}. The design shown meets all limits in {yield_text} of "
+                f"{outcome.samples} independent draws; without reserves {quantity.label} is "
+                f"{before} at a yield of {_percent(outcome.nominal_rate)}{remarks}. The changes "
                 "suggested assume these reserves, which grow when a limit is relaxed: apply "
                 "them and optimise again"
             )
-        if not made.reached:
+        if not outcome.reached:
             return (
-                f"the reserves did not settle in {len(made.rounds) - 1} rounds: all limits are "
-                f"met in {shown} of {made.samples} independent draws, not "
-                f"{_percent(self.target)}; {cost}{rest}"
+                f"the reserves did not settle in {len(outcome.rounds) - 1} rounds: all limits are "
+                f"met in {yield_text} of {outcome.samples} independent draws, not "
+                f"{_percent(self.target)}; {cost}{remarks}"
             )
-        how = "" if self.converged else ", though the reserves did not settle"
+        remark = "" if self.converged else ", though the reserves did not settle"
         return (
-            f"all limits are met in {shown} of {made.samples} independent draws, "
-            f"{_percent(self.target)} requested{how}; {cost}{rest}"
+            f"all limits are met in {yield_text} of {outcome.samples} independent draws, "
+            f"{_percent(self.target)} requested{remark}; {cost}{remarks}"
         )
 
 
-def _none(optimisation: Optimisation) -> str:
-    """Return the start of a sentence that no design meets something."""
+def _no_design_meets(optimisation: Optimisation) -> str:
+    """Return the start of a sentence: no design of these sizes meets ..."""
     sizes = "" if optimisation.rounding is None else f" of {optimisation.rounding.name}"
     return f"no design{sizes} meets"
 
@@ -348,12 +363,12 @@ def _solved(optimisation: Optimisation) -> bool:
     usable = optimisation.status != "undefined" and not optimisation.status.startswith(
         "interrupted"
     )
-    made = optimisation.rounding is None or optimisation.rounding.met
-    return not infeasible and usable and made and optimisation.evaluation.met
+    rounded = optimisation.rounding is None or optimisation.rounding.met
+    return not infeasible and usable and rounded and optimisation.evaluation.met
 
 
-def _covered_rate(model: UncertainModel, covered: Held, count: int, seed: int) -> Rate:
-    """Return how often all covered limits are met, in an independent sample."""
+def _covered_rate(model: UncertainModel, covered: Array, count: int, seed: int) -> Rate:
+    """Return how often independent draws meet all covered limits."""
     model.own = covered
     return draw(model, count, seed, stream=1).rates()[-2]
 

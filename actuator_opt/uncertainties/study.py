@@ -1,4 +1,4 @@
-"""Draw the uncertain inputs of a design: yield with bounds, indices, tornado."""
+"""Uncertainty study: draws of the uncertain inputs, yield with bounds, indices and tornado."""
 
 from __future__ import annotations
 
@@ -17,19 +17,15 @@ from ..evaluation.result import YieldEstimate
 from ..optimisation.problem import Vector
 from ..version import VERSION
 from .estimate import Rate, exact, indices, quasi, replicated
-from .inputs import CHUNK, Input, UncertainModel, inputs
-from .result import LEAST, Index, Kept, LimitYield, Swing, Uncertainty, number
+from .inputs import CHUNK, Input, UncertainModel, chunks, inputs
+from .result import LEAST, Index, LimitYield, StoredDraws, Swing, Uncertainty, number
 
 
-def notes(subject: PreparedDesign, found: Sequence[Input]) -> tuple[str, ...]:
-    """Return the notes on the draws of a design."""
-    return tuple(_notes(subject, found))
-
-
-def _notes(subject: PreparedDesign, found: Sequence[Input]) -> Iterator[str]:
-    drawn = {one.path for one in found}
-    strengths = sorted(path for path in drawn if "strength" in path)
-    if not found:
+def _notes(subject: PreparedDesign, uncertain_inputs: Sequence[Input]) -> Iterator[str]:
+    """Yield notes on what is drawn, and what is not."""
+    drawn_paths = {entry.path for entry in uncertain_inputs}
+    strengths = sorted(path for path in drawn_paths if "strength" in path)
+    if not uncertain_inputs:
         yield (
             "no input is uncertain: the yield is 100 % if the nominal design meets all "
             "requirements, else 0"
@@ -47,13 +43,13 @@ def _notes(subject: PreparedDesign, found: Sequence[Input]) -> Iterator[str]:
         "squeeze, gland fill and extrusion gap are checked at the worst tolerances of ring and "
         "gland, so these tolerances are not drawn"
     )
-    for path in sorted(drawn):
+    for path in sorted(drawn_paths):
         place, _, last = path.rpartition(".")
         twice = {"section": "section_tolerance", "squeeze": "tolerance"}.get(last)
         if twice and place.startswith("seals.") and subject.numbers.get(f"{place}.{twice}", 0.0):
             yield f"{path} is drawn, and {place}.{twice} is applied at its worst too: set it to 0"
     yield "all inputs are drawn independently, even properties of the same material"
-    practice = [one.path for one in found if one.origin == "practice"]
+    practice = [entry.path for entry in uncertain_inputs if entry.origin == "practice"]
     if practice:
         yield (
             f"scatter from common practice, not from a verified source: {', '.join(practice)}; "
@@ -74,7 +70,9 @@ BLOCKS = 16
 MOST_KEPT = 16_384
 """Draws stored for quantiles, figures and tables; any subset of independent draws is unbiased."""
 ENDS = (0.05, 0.95)
+"""Cumulative probabilities of an input in the tornado."""
 POINTS = (0.01, 0.05, 0.5, 0.95, 0.99)
+"""Cumulative probabilities at which margins are reported."""
 
 
 def uncertainty(
@@ -103,52 +101,52 @@ def uncertainty(
         an invalid entry of ``uncertainty``, or a metric that the design does not have
     """
     began = time.perf_counter()
-    found = inputs(subject)
-    model = UncertainModel(subject, found, metrics or subject.design.objective.metrics)
+    uncertain_inputs = inputs(subject)
+    model = UncertainModel(subject, uncertain_inputs, metrics or subject.design.objective.metrics)
     blocks = BLOCKS if quasi_random else 1
-    tally = draw(model, count, seed, blocks)
-    rates = tally.rates()
+    counts = draw(model, count, seed, blocks)
+    rates = counts.rates()
     outputs = [*(limit.name for limit in model.limits), LEAST, *model.metrics]
-    first, dropped = _indices(model, outputs, rows, seed)
+    sensitivity_indices, dropped = _indices(model, outputs, rows, seed)
     nominal = model.flat(model.nominal)[:, 0]
     return Uncertainty(
         name=subject.design.name,
         version=VERSION,
         spec_hash=spec_hash(subject),
-        inputs=found,
-        count=tally.each * blocks,
+        inputs=uncertain_inputs,
+        count=counts.per_block * blocks,
         method=(f"scrambled Sobol points, {blocks} randomisations")
         if quasi_random
         else "independent draws",
         seed=seed,
         rate=rates[-2],
         rate_checks=rates[-1],
-        limits=_limits(model, rates, tally.kept, nominal),
+        limits=_limits(model, rates, counts.kept, nominal),
         nominal={name: number(x) for name, x in zip(outputs, nominal, strict=True)},
         units={name: subject.quantities[name].si_unit for name in model.metrics},
-        indices=first,
+        indices=sensitivity_indices,
         swings=_swings(model, outputs),
         index_rows=rows,
         dropped=dropped,
-        kept=tally.kept,
-        notes=notes(subject, found),
+        kept=counts.kept,
+        notes=tuple(_notes(subject, uncertain_inputs)),
         seconds=time.perf_counter() - began,
     )
 
 
 @dataclass(frozen=True, slots=True)
 class HitCounts:
-    """Hits (m + 2, blocks) of every limit, of all requirements and of all limits; stored draws."""
+    """Draws that meet each limit, all requirements and all limits, (m + 2, blocks)."""
 
     hits: Vector
-    each: int
-    kept: Kept
+    per_block: int
+    kept: StoredDraws
 
     def rates(self) -> list[Rate]:
         """Return the probability of each row of hits."""
         if self.hits.shape[1] == 1:
-            return [exact(int(row[0]), self.each) for row in self.hits]
-        return [replicated(row, self.each) for row in self.hits]
+            return [exact(int(row[0]), self.per_block) for row in self.hits]
+        return [replicated(row, self.per_block) for row in self.hits]
 
 
 def draw(
@@ -170,24 +168,24 @@ def draw(
     keep : maximum number of draws to store
     """
     size, limits = len(model.inputs), len(model.limits)
-    each = count if blocks == 1 else 1 << max(0, int(np.ceil(np.log2(count / blocks))))
+    per_block = count if blocks == 1 else 1 << max(0, int(np.ceil(np.log2(count / blocks))))
     hits = np.zeros((limits + 2, blocks))
-    kept: list[tuple[Vector, Vector]] = []
-    done = 0
+    stored: list[tuple[Vector, Vector]] = []
+    count_drawn = 0
     for block in range(blocks):
         source = (seed, 2 + stream, block)
-        for points in _points(size, each, source, blocks > 1):
-            found = model.at(points)
-            met = found.met
-            every = np.stack([met[model.own].all(axis=0), met.all(axis=0)])
-            hits[:, block] += np.concatenate([met, every]).sum(axis=1)
-            room = keep - done
-            if room > 0:
-                kept.append((found.values[:, :room], found.margins[:, :room]))
-            done += points.shape[1]
-            tell("draws", done / (each * blocks))
-    values, margins = (np.concatenate(part, axis=1) for part in zip(*kept, strict=True))
-    return HitCounts(hits, each, Kept(values, margins))
+        for points in _points(size, per_block, source, blocks > 1):
+            draws = model.at(points)
+            met = draws.met
+            joint = np.stack([met[model.own].all(axis=0), met.all(axis=0)])
+            hits[:, block] += np.concatenate([met, joint]).sum(axis=1)
+            space = keep - count_drawn
+            if space > 0:
+                stored.append((draws.values[:, :space], draws.margins[:, :space]))
+            count_drawn += points.shape[1]
+            tell("draws", count_drawn / (per_block * blocks))
+    values, margins = (np.concatenate(part, axis=1) for part in zip(*stored, strict=True))
+    return HitCounts(hits, per_block, StoredDraws(values, margins))
 
 
 def _points(size: int, count: int, seed: tuple[int, ...], scrambled: bool) -> Iterator[Vector]:
@@ -200,21 +198,13 @@ def _points(size: int, count: int, seed: tuple[int, ...], scrambled: bool) -> It
         yield generator.random((min(CHUNK, count - first), size)).T
 
 
-def chunks(points: Vector) -> Iterator[Vector]:
-    """Yield points (d, n) in chunks."""
-    for first in range(0, points.shape[1], CHUNK):
-        yield points[:, first : first + CHUNK]
-
-
 def _limits(
-    model: UncertainModel, rates: list[Rate], kept: Kept, nominal: Vector
+    model: UncertainModel, rates: list[Rate], stored: StoredDraws, nominal: Vector
 ) -> tuple[LimitYield, ...]:
-    found = []
+    limit_yields = []
     numbers = model.subject.values()
     for row, limit in enumerate(model.limits):
-        drawn = kept.margins[row]
-        points = [number(float(x)) for x in quantiles(drawn)]
-        found.append(
+        limit_yields.append(
             LimitYield(
                 name=limit.name,
                 metric=limit.metric,
@@ -223,15 +213,15 @@ def _limits(
                 required=bool(model.own[row]),
                 margin=number(float(nominal[row])),
                 rate=rates[row],
-                margins=tuple(points),
+                margins=tuple(number(float(x)) for x in quantiles(stored.margins[row])),
             )
         )
-    return tuple(found)
+    return tuple(limit_yields)
 
 
-def quantiles(drawn: Vector) -> Vector:
+def quantiles(margins: Vector) -> Vector:
     """Return the margins at `POINTS`; a draw without a value counts as the least."""
-    ordered = np.where(np.isnan(drawn), -np.inf, drawn)
+    ordered = np.where(np.isnan(margins), -np.inf, margins)
     return np.quantile(ordered, POINTS, method="inverted_cdf")
 
 
@@ -240,38 +230,42 @@ def _indices(
 ) -> tuple[tuple[Index, ...], float]:
     if rows == 0 or not model.inputs:
         return (), 0.0
-    found = indices(model.outputs, len(model.inputs), rows=rows, seed=seed)
+    estimate = indices(model.outputs, len(model.inputs), rows=rows, seed=seed)
     named = tuple(
-        Index(one.path, output, *(number(float(x[i, k])) for x in (
-            found.first, found.total, found.first_half, found.total_half)))
+        Index(entry.path, output, *(number(float(x[i, k])) for x in (
+            estimate.first, estimate.total, estimate.first_half, estimate.total_half)))
         for k, output in enumerate(outputs)
-        for i, one in enumerate(model.inputs)
+        for i, entry in enumerate(model.inputs)
     )  # fmt: skip
-    return named, found.dropped
+    return named, estimate.dropped
 
 
 def _swings(model: UncertainModel, outputs: Sequence[str]) -> tuple[Swing, ...]:
-    """Return every output at both ends of every input, all others nominal."""
+    """Return every output with one input at each of its `ENDS`, all others nominal."""
     if not model.inputs:
         return ()
-    values = np.repeat(np.array([[one.value] for one in model.inputs]), 2 * len(model.inputs), 1)
-    for i, one in enumerate(model.inputs):
-        values[i, 2 * i : 2 * i + 2] = one.distribution.at(np.array(ENDS))
-    found = model.flat(model.where(values))
+    values = np.repeat(
+        np.array([[entry.value] for entry in model.inputs]), 2 * len(model.inputs), 1
+    )
+    for i, entry in enumerate(model.inputs):
+        values[i, 2 * i : 2 * i + 2] = entry.distribution.at(np.array(ENDS))
+    outputs_at_ends = model.flat(model.where(values))
     return tuple(
-        Swing(one.path, output, *(number(float(found[k, 2 * i + end])) for end in (0, 1)))
+        Swing(
+            entry.path, output, *(number(float(outputs_at_ends[k, 2 * i + end])) for end in (0, 1))
+        )
         for k, output in enumerate(outputs)
-        for i, one in enumerate(model.inputs)
+        for i, entry in enumerate(model.inputs)
     )
 
 
 DRAWS = 500
-"""Draws of the estimate. Its bounds lie within 4.5 % of the yield, for a few per cent of a search's
-time."""
+"""Draws of the estimate (a choice: bounds within 4.5 % of the yield, for a few per cent of the time
+of a search)."""
 
 
 def quick_yield(subject: PreparedDesign, evaluation: Evaluation, *, seed: int = 0) -> YieldEstimate:
-    """Estimate the yield of a design from `DRAWS` independent draws: the first of `uncertainty`.
+    """Estimate the yield of a design from the first `DRAWS` independent draws of `uncertainty`.
 
     Parameters
     ----------
@@ -292,23 +286,23 @@ def quick_yield(subject: PreparedDesign, evaluation: Evaluation, *, seed: int = 
         return YieldEstimate(why="solving the oil films of its seals takes too long")
     try:
         model = UncertainModel(subject, inputs(subject))
-        tally = draw(model, DRAWS, seed)
+        counts = draw(model, DRAWS, seed)
     except ActuatorError as error:
         return YieldEstimate(why=error.diagnostics[0].message)
-    *_, own, every = rates = tally.rates()
-    fails = {
+    *_, requirements, all_limits = rates = counts.rates()
+    failure_rates = {
         limit.name: 1 - rate.value
         for limit, rate, required in zip(model.limits, rates, model.own, strict=False)
         if required
     }
-    worst = max(fails, key=lambda name: fails[name], default=None)
+    worst = max(failure_rates, key=lambda name: failure_rates[name], default=None)
     checked = all(check.status != "missed" for check in evaluation.checks)
     return YieldEstimate(
-        value=own.value,
-        lower=own.lower,
-        upper=own.upper,
+        value=requirements.value,
+        lower=requirements.lower,
+        upper=requirements.upper,
         draws=DRAWS,
-        with_checks=every.value if checked else None,
+        with_checks=all_limits.value if checked else None,
         worst=worst,
-        worst_fails=None if worst is None else fails[worst],
+        worst_fails=None if worst is None else failure_rates[worst],
     )

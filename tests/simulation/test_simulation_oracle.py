@@ -403,7 +403,7 @@ def test_a_valve_that_leaks_nothing_has_the_oracles_ultimate_gain():
         control = {"position": [{"shape": "step", "start": 0.5, "value": 0.02}]}
         scene = scenario(initial=MIDDLE, load={"force": BALANCED}, control=control)
         loops = Linear.of(assemble(scene, own, {}, None, linear=True)).about(position=0.08).loops
-        assert not any(loop.swings for loop in loops)
+        assert not any(loop.unstable for loop in loops)
         gains.append([ultimate(loop).gain for loop in loops])
     circuit = twin(own, reference=steps((0.0, 0.08)), load=steps((0.0, HOLD)))
     for k, side in enumerate((1.0, -1.0)):

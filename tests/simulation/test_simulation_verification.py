@@ -201,7 +201,7 @@ def test_the_bristles_of_sticking_seals_are_a_spring_beside_the_oil():
     stand = Stand(own, scenario("lugre"), 0.055, MIDDLE, MIDDLE, scale=0.01)
     held = [
         experiments.dynamic_stiffness(one, "closed", 2.0, 110.0).values for one in
-        (stand, stand.bare())
+        (stand, stand.frictionless())
     ]  # fmt: skip
     with_seals, without = (
         one["dynamic_stiffness"] * np.exp(1j * one["dynamic_phase"]) for one in held

@@ -99,7 +99,7 @@ MORE = {
 def test_a_screen_loses_none_of_the_best(more, monkeypatch):
     """The best of a reduced sweep are those of all rows, found in chunks with a falling limit."""
     monkeypatch.setattr(run, "REDUCED", 256)
-    monkeypatch.setattr(chunk, "WORTH", 100)
+    monkeypatch.setattr(chunk, "LEAST_SCREENED", 100)
     screened_and_whole_agree(more, "numpy")
 
 
@@ -159,7 +159,7 @@ def test_rows_and_screen_show_the_objective_of_the_optimiser(
 ):
     """Also where the objective's worst case is not the metric's own, or not that of a limit."""
     monkeypatch.setattr(run, "REDUCED", 256)
-    monkeypatch.setattr(chunk, "WORTH", 100)
+    monkeypatch.setattr(chunk, "LEAST_SCREENED", 100)
     design = aimed(tmp_path, objective, limit)
     vary = [*WAYS, "rod.outer_diameter=10.8..11.2 mm", "piston.length=9..12 mm"]
     how = {"method": "lhs", "n": 2000, "seed": 4, "keep": 7}

@@ -15,7 +15,7 @@ from actuator_opt.design.uncertain import REACH
 from actuator_opt.models.elastomer import modulus_gent, modulus_ruess
 from actuator_opt.uncertainties import estimate
 from actuator_opt.uncertainties.estimate import about
-from actuator_opt.uncertainties.inputs import UncertainModel, inputs, without_basis
+from actuator_opt.uncertainties.inputs import UncertainModel, inputs, without_drawn_basis
 from actuator_opt.uncertainties.study import draw
 
 WIDE = (-math.inf, math.inf)
@@ -234,7 +234,7 @@ def test_more_draws_than_are_kept_are_counted():
     subject = actuator.subject()
     model = UncertainModel(subject, inputs(subject))
     tally = draw(model, 5000, 0, keep=1000)
-    assert tally.each == 5000
+    assert tally.per_block == 5000
     assert tally.kept.margins.shape[1] == tally.kept.values.shape[1] == 1000
     own = list(model.own).index(True)
     assert tally.hits[own].sum() <= 5000
@@ -297,7 +297,7 @@ def test_strengths_stand_at_their_allowables_unless_stated():
     subject = ao.read(case.block(stated)).subject()
     found = inputs(subject)
     assert path in {one.path for one in found}
-    changed = without_basis(subject, found)
+    changed = without_drawn_basis(subject, found)
     knocked = subject.numbers["materials.t700_epoxy.basis_knockdown"]
     for (name, key, cold), factor in subject.factors.items():
         own = f"materials.{name}.{key}" == path

@@ -1,1 +1,1 @@
-"""The parts of a circuit: each adds its states, rates and signals to a system."""
+"""Components of a circuit, which add their states, rates and signals to a system."""

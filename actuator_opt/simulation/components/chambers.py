@@ -23,11 +23,11 @@ from ...models.fluid import ATMOSPHERIC_PRESSURE
 from ...models.valve import edge_coefficient, viscosity_corrected
 from ...studies.plant import Oil, ValveData
 from ..system import System
-from . import chambers, valve
+from . import valve
 from .circuit import Circuit
 
 DEEPEST = -12.0
-"""Travel into a stop, relative to half the dead volume's length, that leaves 6e-6 of it (a
+"""Travel into a stop, relative to half the dead volume's length, at which 6e-6 of it remains (a
 choice)."""
 FLOOR = 1e-6
 """Lower limit of the absolute pressure in the laws of oil and air [Pa], against rounding only."""
@@ -48,23 +48,23 @@ def oil_at(oil: Oil, pressure: Expression) -> Volumes:
 
     Oil with (almost) no air forms a cavity below atmospheric pressure, which limits the vacuum.
     """
-    held = maximum(pressure, FLOOR - ATMOSPHERIC_PRESSURE)
+    limited = maximum(pressure, FLOOR - ATMOSPHERIC_PRESSURE)
     mixed = Volumes(
-        chamber.density_ratio(pressure=held, **oil.law),
-        chamber.mixture_bulk_modulus(pressure=held, **oil.law),
-        oil_energy.oil_energy_density(pressure=held, **oil.law),
+        chamber.density_ratio(pressure=limited, **oil.law),
+        chamber.mixture_bulk_modulus(pressure=limited, **oil.law),
+        oil_energy.oil_energy_density(pressure=limited, **oil.law),
     )
     if not oil.cavity:
         return mixed
-    opened, falling, work = cavity(
-        pressure=held, content=oil.cavity, polytropic_index=oil.polytropic_index
+    opening, falling, work = cavity(
+        pressure=limited, content=oil.cavity, polytropic_index=oil.polytropic_index
     )
     filled = (1 + oil.air_content) / mixed.ratio
-    whole = filled + opened
+    total = filled + opening
     return Volumes(
-        (1 + oil.air_content) / whole,
-        whole / (filled / mixed.modulus + falling),
-        (mixed.energy * filled + work) / whole,
+        (1 + oil.air_content) / total,
+        total / (filled / mixed.modulus + falling),
+        (mixed.energy * filled + work) / total,
     )
 
 
@@ -79,14 +79,18 @@ def node(
 ) -> None:
     """Add a rigid volume with an elastic wall; its pressure follows the net inflow."""
     law = oil_at(circuit.plant.oil, pressure)
-    whole = volume + wall * pressure
+    total_volume = volume + wall * pressure
     circuit.system.rate(
         pressure,
         chamber.pressure_rate(
-            flow=inflow, volume=whole, volume_rate=0.0, bulk_modulus=law.modulus, compliance=wall
+            flow=inflow,
+            volume=total_volume,
+            volume_rate=0.0,
+            bulk_modulus=law.modulus,
+            compliance=wall,
         ),
     )
-    _content(circuit, name, law, whole, inflow, volume)
+    _content(circuit, name, law, total_volume, inflow, volume)
     circuit.audit.stored.append((f"walls of {name}", 0.5 * wall * pressure * pressure))
 
 
@@ -98,7 +102,7 @@ def _content(
     inflow: Expression,
     scale: float,
 ) -> None:
-    """Count mass and energy of a volume; inflow carries its elastic energy."""
+    """Add mass and energy of a volume to the audit; the inflow carries its elastic energy."""
     system, audit = circuit.system, circuit.audit
     mass = system.integral(f"inflow of {name}", law.ratio * inflow, scale=1e-3 * scale)
     audit.mass.append((name, law.ratio * volume, mass))
@@ -108,16 +112,16 @@ def _content(
 
 
 def _left(travel: Expression, film: float) -> tuple[Expression, Expression]:
-    """Length of the oil relative to that of the dead volume, and its slope over the travel.
+    """Length of the oil column less that of the dead volume, and its slope over the travel.
 
-    Equal to the travel, also beyond the stop. Once half the dead volume is used up, the piston
-    touches the end over a growing area, and the remaining volume shrinks.
+    It equals the travel, also beyond the stop. Once half the dead volume is used up, the piston
+    touches the end over a growing area, so the remaining volume shrinks more slowly.
     """
     half = 0.5 * film
-    deep = clip((travel + half) / half, DEEPEST, 0.0)
-    met = travel < -half
-    left = where(met, half * Namespace.expm1(deep) - half, travel)
-    return left, where(met, Namespace.exp(deep), 1.0)
+    depth = clip((travel + half) / half, DEEPEST, 0.0)
+    in_stop = travel < -half
+    length = where(in_stop, half * Namespace.expm1(depth) - half, travel)
+    return length, where(in_stop, Namespace.exp(depth), 1.0)
 
 
 def cylinder(
@@ -136,17 +140,16 @@ def cylinder(
     dead_b: float,
     walls: Give,
     flexibility: float,
-    of: str = "",
+    suffix: str = "",
 ) -> Expression:
-    """Both chambers of a cylinder, coupled by walls and the compliance of the rod; their force [N].
+    """Add both chambers of a cylinder, coupled by walls and rod; return their force [N].
 
     V_A = A_A x + V_0A + W_AA p_A + W_AB p_B, V_B = A_B (s - x) + V_0B + W_BB p_B + W_AB p_A, W(x)
     of the walls plus f a a^T of rod and mount with a = (A_A, -A_B). The force on the piston is a^T
     p + p^T W' p/2, from the work of the walls. A pressure given as a number is prescribed: its port
     supplies the flow for volume, walls and leakage. Deep in a stop x is that of `_left`.
     """
-    system, audit, oil = circuit.system, circuit.audit, circuit.plant.oil
-    beyond = stroke - position
+    oil, beyond = circuit.plant.oil, stroke - position
     w_a = walls.a0 + walls.a1 * position + flexibility * area_a * area_a
     w_b = walls.b0 + walls.b1 * beyond + flexibility * area_b * area_b
     w_ab = walls.c0 + walls.c1 * position - flexibility * area_a * area_b
@@ -160,40 +163,52 @@ def cylinder(
     law_a, law_b = oil_at(oil, pressure_a), oil_at(oil, pressure_b)
     c_a, c_b = v_a / law_a.modulus + w_a, v_b / law_b.modulus + w_b
     net_a, net_b = inflow_a - swept_a * speed, inflow_b - swept_b * speed
-    moved_a, moved_b = isinstance(pressure_a, Symbol), isinstance(pressure_b, Symbol)
-    det = c_a * c_b - (w_ab * w_ab if moved_a and moved_b else 0.0)
-    rate_a = (c_b * net_a - (w_ab * net_b if moved_b else 0.0)) / det if moved_a else 0.0
-    rate_b = (c_a * net_b - (w_ab * net_a if moved_a else 0.0)) / det if moved_b else 0.0
-    for name, pressure, moved, own, asked in (
-        ("a", pressure_a, moved_a, rate_a, w_ab * rate_b - net_a),
-        ("b", pressure_b, moved_b, rate_b, w_ab * rate_a - net_b),
+    _set_pressures(circuit, (pressure_a, pressure_b), (c_a, c_b), w_ab, (net_a, net_b))
+    for name, pressure, law, volume, inflow, scale in (
+        ("A", pressure_a, law_a, v_a, inflow_a, area_a * stroke + dead_a),
+        ("B", pressure_b, law_b, v_b, inflow_b, area_b * stroke + dead_b),
     ):
-        if moved:
-            system.rate(pressure, own)
-        else:
-            circuit.door("held ports", pressure * asked, state=f"held work {name}", into=True)
-    if moved_a:
-        scale = area_a * stroke + dead_a
-        _content(circuit, f"chamber A{of}", law_a, v_a, inflow_a, scale)
-    if moved_b:
-        scale = area_b * stroke + dead_b
-        _content(circuit, f"chamber B{of}", law_b, v_b, inflow_b, scale)
+        if isinstance(pressure, Symbol):
+            _content(circuit, f"chamber {name}{suffix}", law, volume, inflow, scale)
     energy = 0.5 * (
         w_a * pressure_a * pressure_a
         + w_b * pressure_b * pressure_b
         + 2 * w_ab * pressure_a * pressure_b
     )
-    audit.stored.append((f"walls, rod and mount{of}", energy))
-    bent = 0.5 * (
+    circuit.audit.stored.append((f"walls, rod and mount{suffix}", energy))
+    wall_force = 0.5 * (
         walls.a1 * pressure_a * pressure_a
         - walls.b1 * pressure_b * pressure_b
         + 2 * walls.c1 * pressure_a * pressure_b
     )
-    return area_a * free_a * pressure_a - area_b * free_b * pressure_b + bent
+    return area_a * free_a * pressure_a - area_b * free_b * pressure_b + wall_force
+
+
+def _set_pressures(
+    circuit: Circuit,
+    pressures: tuple[Expression, Expression],
+    capacities: tuple[Expression, Expression],
+    coupling: Expression,
+    net: tuple[Expression, Expression],
+) -> None:
+    """Set the rates of two coupled pressures; the port of a prescribed pressure supplies flow."""
+    (c_a, c_b), (net_a, net_b) = capacities, net
+    is_state_a, is_state_b = (isinstance(pressure, Symbol) for pressure in pressures)
+    det = c_a * c_b - (coupling * coupling if is_state_a and is_state_b else 0.0)
+    rate_a = (c_b * net_a - (coupling * net_b if is_state_b else 0.0)) / det if is_state_a else 0.0
+    rate_b = (c_a * net_b - (coupling * net_a if is_state_a else 0.0)) / det if is_state_b else 0.0
+    demands = coupling * rate_b - net_a, coupling * rate_a - net_b
+    sides = zip("ab", pressures, (rate_a, rate_b), demands, strict=True)
+    for name, pressure, rate, demand in sides:
+        if isinstance(pressure, Symbol):
+            circuit.system.rate(pressure, rate)
+        else:
+            work = f"held work {name}"
+            circuit.energy_port("held ports", pressure * demand, state=work, into=True)
 
 
 def dead_volume(circuit: Circuit, volume: float, area: float, chamber: str) -> float:
-    """Dead volume of a chamber, at least a short length of it."""
+    """Dead volume of a chamber, at least `LEAST_DEAD` times its area."""
     least = LEAST_DEAD * area
     if volume >= least:
         return volume
@@ -203,7 +218,7 @@ def dead_volume(circuit: Circuit, volume: float, area: float, chamber: str) -> f
     return least
 
 
-WHOSE = "load_"
+PREFIX = "load_"
 
 
 def push(circuit: Circuit, stated: LoadCylinder, *, position: Symbol, speed: Symbol) -> Expression:
@@ -212,10 +227,10 @@ def push(circuit: Circuit, stated: LoadCylinder, *, position: Symbol, speed: Sym
     area = float(forces.annulus_area(bore=stated.bore, rod_diameter=stated.rod_diameter))
     middle = 0.5 * (stated.supply_pressure + stated.return_pressure)
     half = 0.5 * stated.force / area
-    a = system.pressure(f"{WHOSE}pressure a", middle + half)
-    b = system.pressure(f"{WHOSE}pressure b", middle - half)
+    a = system.pressure(f"{PREFIX}pressure a", middle + half)
+    b = system.pressure(f"{PREFIX}pressure b", middle - half)
     data = _data(stated, circuit.plant.oil.kinematic_viscosity)
-    opening = valve.spool(circuit, data, circuit.course(stated.signal), WHOSE)
+    opening = valve.spool(circuit, data, circuit.scenario_signal(stated.signal), PREFIX)
     flows = valve.edges(
         circuit,
         data,
@@ -224,12 +239,14 @@ def push(circuit: Circuit, stated: LoadCylinder, *, position: Symbol, speed: Sym
         return_pressure=stated.return_pressure,
         pressure_a=a,
         pressure_b=b,
-        whose=WHOSE,
+        prefix=PREFIX,
     )
-    given = stated.supply_pressure * flows.supply - stated.return_pressure * flows.tank
-    circuit.door("supply of the load cylinder", given, state=f"{WHOSE}supply work", into=True)
-    dead = chambers.dead_volume(circuit, stated.dead_volume, area, "load cylinder")
-    pushed = chambers.cylinder(
+    supply_power = stated.supply_pressure * flows.supply - stated.return_pressure * flows.tank
+    circuit.energy_port(
+        "supply of the load cylinder", supply_power, state=f"{PREFIX}supply work", into=True
+    )
+    dead = dead_volume(circuit, stated.dead_volume, area, "load cylinder")
+    force_on_rod = cylinder(
         circuit,
         pressure_a=a,
         pressure_b=b,
@@ -244,44 +261,46 @@ def push(circuit: Circuit, stated: LoadCylinder, *, position: Symbol, speed: Sym
         dead_b=dead,
         walls=Give(),
         flexibility=0.0,
-        of=" of the load cylinder",
+        suffix=" of the load cylinder",
     )
     pressures = INPUTS["pressure"]
-    system.signal(f"{WHOSE}pressure_a", "pressure of the load cylinder, side A", pressures, a)
-    system.signal(f"{WHOSE}pressure_b", "pressure of the load cylinder, side B", pressures, b)
+    system.signal(f"{PREFIX}pressure_a", "pressure of the load cylinder, side A", pressures, a)
+    system.signal(f"{PREFIX}pressure_b", "pressure of the load cylinder, side B", pressures, b)
     force = SCENARIOS["force_value"]
-    system.signal("load_cylinder_force", "force of the load cylinder", force, pushed)
-    return pushed
+    system.signal("load_cylinder_force", "force of the load cylinder", force, force_on_rod)
+    return force_on_rod
 
 
-def _data(stated: LoadCylinder, viscosity: float) -> ValveData:
-    """Edges of its valve, with the oil of the design."""
-    own = stated.valve
-    after = own.leakage_drop if own.tank_leakage_drop is None else own.tank_leakage_drop
+def _data(load_cylinder: LoadCylinder, viscosity: float) -> ValveData:
+    """Valve of the load cylinder, with the oil of the design."""
+    valve_data = load_cylinder.valve
+    tank_drop = (
+        valve_data.leakage_drop
+        if valve_data.tank_leakage_drop is None
+        else valve_data.tank_leakage_drop
+    )
 
     def coefficient(flow: float, drop: float) -> float:
         return float(edge_coefficient(flow=flow, pressure_drop=drop))
 
-    rated = coefficient(own.rated_flow, own.rated_drop)
-    if own.rated_viscosity is not None:
+    rated = coefficient(valve_data.rated_flow, valve_data.rated_drop)
+    if valve_data.rated_viscosity is not None:
         corrected = viscosity_corrected(
-            coefficient=rated, rated_viscosity=own.rated_viscosity, viscosity=viscosity
+            coefficient=rated, rated_viscosity=valve_data.rated_viscosity, viscosity=viscosity
         )
         rated = float(corrected)
     return ValveData(
         rated=rated,
-        leakage_supply=coefficient(own.leakage_flow, own.leakage_drop),
-        leakage_tank=coefficient(own.leakage_flow, after),
-        signal=own.signal,
-        natural_frequency=own.natural_frequency,
-        damping_ratio=own.damping_ratio,
-        offset=own.offset,
+        leakage_supply=coefficient(valve_data.leakage_flow, valve_data.leakage_drop),
+        leakage_tank=coefficient(valve_data.leakage_flow, tank_drop),
+        signal=valve_data.signal,
+        natural_frequency=valve_data.natural_frequency,
+        damping_ratio=valve_data.damping_ratio,
+        offset=valve_data.offset,
     )
 
 
 SPEED = 1e-8
-
-
 ANGLE = 1e-9
 """Error tolerances of shaft speed [rad/s] and angle [rad]."""
 
@@ -303,22 +322,22 @@ def shaft(system: System) -> Shaft:
 
 def turn(
     circuit: Circuit,
-    own: Shaft,
+    shaft_states: Shaft,
     *,
     pressure_a: Symbol,
     pressure_b: Symbol,
     inflow_a: Expression,
     inflow_b: Expression,
 ) -> None:
-    """Pipes, motor and load; a linear circuit omits Coulomb friction."""
+    """Add pipes, motor and load; a linear circuit omits Coulomb friction."""
     system, motor = circuit.system, circuit.scenario.motor
     assert motor is not None
-    angle, speed = own
+    angle, speed = shaft_states
     machine = motor.machine
-    across = pressure_a - pressure_b
+    difference = pressure_a - pressure_b
     common = {
         "speed": speed,
-        "pressure_difference": across,
+        "pressure_difference": difference,
         "displacement": machine.displacement,
         "dynamic_viscosity": circuit.plant.oil.dynamic_viscosity,
         "setting": machine.setting,
@@ -335,12 +354,14 @@ def turn(
         ("pipe B", pressure_b, inflow_b + flow),
     ):
         node(circuit, name, pressure, inflow=inflow, volume=motor.pipe_volume)
-    load = circuit.course(motor.torque) + motor.damping * speed
+    load = circuit.scenario_signal(motor.torque) + motor.damping * speed
     system.rate(angle, speed)
     system.rate(speed, (torque - load) / motor.inertia)
     circuit.audit.stored.append(("motion", 0.5 * motor.inertia * speed * speed))
-    circuit.door("losses of the motor", across * flow - torque * speed, state="motor loss")
-    circuit.door("load", load * speed, state="work on the load")
+    circuit.energy_port(
+        "losses of the motor", difference * flow - torque * speed, state="motor loss"
+    )
+    circuit.energy_port("load", load * speed, state="work on the load")
     system.signal("shaft_speed", "speed of the shaft", SCENARIOS["shaft_speed_value"], speed)
     system.signal("shaft_angle", "angle of the shaft", SCENARIOS["shaft_angle_value"], angle)
     system.signal("torque", "torque of the motor", SCENARIOS["torque_value"], torque)
@@ -369,7 +390,7 @@ class ChamberPort(NamedTuple):
     end: Expression
     """Pressure at the far end, at the valve or reducing valve."""
     lumped: float
-    """Line volume and wall that belong to the chamber."""
+    """Line volume counted with the chamber; `lumped_wall` is its wall compliance."""
     lumped_wall: float
     line: Symbol | None
     outer: Expression | None
@@ -383,88 +404,88 @@ def side(circuit: Circuit, name: Chamber, ends: str, start: float) -> ChamberPor
     """
     system, data = circuit.system, circuit.plant.lines[name]
     throttled = circuit.plant.throttle is not None
-    near, wall = data.near_volume, data.near_wall
+    near_volume, near_wall = data.near_volume, data.near_wall
     kind = ENDS[ends]
     if kind.at_cylinder or (not throttled and (kind.shut or data.inertance == 0)):
         if not throttled:
-            near, wall = near + data.far_volume, wall + data.far_wall
+            near_volume, near_wall = near_volume + data.far_volume, near_wall + data.far_wall
         pressure = start if kind.holds else system.pressure(f"pressure {name}", start)
-        return ChamberPort(name, pressure, pressure, near, wall, None, None)
+        return ChamberPort(name, pressure, pressure, near_volume, near_wall, None, None)
     pressure = system.pressure(f"pressure {name}", start)
-    lined = data.inertance > 0 and not kind.shut
-    if throttled and kind.holds and not lined:
-        return ChamberPort(name, pressure, start, near, wall, None, start)
+    has_inertia = data.inertance > 0 and not kind.shut
+    if throttled and kind.holds and not has_inertia:
+        return ChamberPort(name, pressure, start, near_volume, near_wall, None, start)
     outer = system.pressure(f"behind throttle {name}", start) if throttled else None
     line = None
     end: Expression = outer if outer is not None else pressure
-    if lined:
+    if has_inertia:
         line = system.state(f"line {name}", 0.0, tolerance=FLOW)
         end = start
         if not kind.holds:
             end = system.pressure(f"far end {name}", start)
-    return ChamberPort(name, pressure, end, near, wall, line, outer)
+    return ChamberPort(name, pressure, end, near_volume, near_wall, line, outer)
 
 
 def connect(
-    circuit: Circuit, chamber_port: ChamberPort, ends: str, feed: Expression, *, held: float
+    circuit: Circuit, port: ChamberPort, ends: str, feed: Expression, *, end_pressure: float
 ) -> Expression:
-    """Flow into the chamber; `feed` is the flow at the end, `held` a pressure held there."""
-    feed = FEEDS[ends](circuit, chamber_port, feed, held)
-    if chamber_port.line is not None:
-        feed = _through_line(circuit, chamber_port, chamber_port.line, feed)
-    if chamber_port.outer is not None:
-        return -_through_throttle(circuit, chamber_port, chamber_port.outer, feed)
+    """Flow into the chamber; `feed` and `end_pressure` are flow and pressure at the far end."""
+    feed = FEEDS[ends](circuit, port, feed, end_pressure)
+    if port.line is not None:
+        feed = _through_line(circuit, port, port.line, feed)
+    if port.outer is not None:
+        return -_through_throttle(circuit, port, port.outer, feed)
     return feed
 
 
 def _through_line(
-    circuit: Circuit, chamber_port: ChamberPort, flow: Symbol, feed: Expression
+    circuit: Circuit, port: ChamberPort, flow: Symbol, feed: Expression
 ) -> Expression:
     """Flow of the line towards the chamber."""
-    data, word = circuit.plant.lines[chamber_port.name], chamber_port.name.upper()
-    inner = chamber_port.pressure if chamber_port.outer is None else chamber_port.outer
-    lost = data.resistance * flow
-    circuit.system.rate(flow, (chamber_port.end - inner - lost) / data.inertance)
-    circuit.door(f"line {word}", lost * flow, state=f"line loss {chamber_port.name}")
+    data, word = circuit.plant.lines[port.name], port.name.upper()
+    inner = port.pressure if port.outer is None else port.outer
+    drop = data.resistance * flow
+    circuit.system.rate(flow, (port.end - inner - drop) / data.inertance)
+    circuit.energy_port(f"line {word}", drop * flow, state=f"line loss {port.name}")
     motion = 0.5 * data.inertance * flow * flow
     circuit.audit.stored.append((f"oil in motion in line {word}", motion))
-    if isinstance(chamber_port.end, Symbol):
-        _far(circuit, chamber_port, f"far end {word}", chamber_port.end, feed - flow)
+    if isinstance(port.end, Symbol):
+        _far(circuit, port, f"far end {word}", port.end, feed - flow)
     else:
-        circuit.door(
-            "held ports", chamber_port.end * flow, state=f"held work {chamber_port.name}", into=True
+        circuit.energy_port(
+            "held ports", port.end * flow, state=f"held work {port.name}", into=True
         )
     return flow
 
 
 def _through_throttle(
-    circuit: Circuit, chamber_port: ChamberPort, outer: Expression, feed: Expression
+    circuit: Circuit, port: ChamberPort, outer: Expression, feed: Expression
 ) -> Expression:
     """Flow of the one-way valve out of the chamber."""
-    word = chamber_port.name.upper()
+    word = port.name.upper()
     assert circuit.plant.throttle is not None
-    drop = chamber_port.pressure - outer
+    drop = port.pressure - outer
     flow = one_way_valve.one_way_flow(pressure_difference=drop, **circuit.plant.throttle)
-    circuit.door(f"throttle {word}", drop * flow, state=f"throttle loss {chamber_port.name}")
+    circuit.energy_port(f"throttle {word}", drop * flow, state=f"throttle loss {port.name}")
     circuit.system.signal(
-        f"flow_throttle_{chamber_port.name}",
+        f"flow_throttle_{port.name}",
         f"flow out of chamber {word}",
         SCENARIOS["flow_value"],
         flow,
     )
     if isinstance(outer, Symbol):
-        _far(circuit, chamber_port, f"behind throttle {word}", outer, feed + flow)
+        _far(circuit, port, f"behind throttle {word}", outer, feed + flow)
     else:
-        circuit.door("held ports", outer * flow, state=f"held work {chamber_port.name}")
+        circuit.energy_port("held ports", outer * flow, state=f"held work {port.name}")
     return flow
 
 
 def _far(
-    circuit: Circuit, chamber_port: ChamberPort, name: str, pressure: Symbol, inflow: Expression
+    circuit: Circuit, port: ChamberPort, name: str, pressure: Symbol, inflow: Expression
 ) -> None:
-    """Volume at the far end: half of the line behind a throttle."""
-    data = circuit.plant.lines[chamber_port.name]
-    share = 0.5 if chamber_port.outer is not None and chamber_port.line is not None else 1.0
+    """Add the volume at the far end, which is half of the line if there is a throttle."""
+    data = circuit.plant.lines[port.name]
+    share = 0.5 if port.outer is not None and port.line is not None else 1.0
     if share * data.far_volume < LEAST_NODE:
         circuit.system.notes.append(f"{name}: volume taken as {LEAST_NODE * 1e6:.2g} ml")
     node(
@@ -477,20 +498,22 @@ def _far(
     )
 
 
-def _reducing(circuit: Circuit, chamber_port: ChamberPort, held: float) -> Expression:
+def _reducing(
+    circuit: Circuit, port: ChamberPort, feed: Expression, end_pressure: float
+) -> Expression:
     """Flow of the reducing valve into the line."""
     system, data = circuit.system, circuit.plant.reducing_valve
     assert data is not None
-    regulated = system.state(f"reducing valve {chamber_port.name}", 0.0, tolerance=FLOW)
-    rate = system.state(f"reducing valve rate {chamber_port.name}", 0.0, tolerance=100 * FLOW)
+    regulated = system.state(f"reducing valve {port.name}", 0.0, tolerance=FLOW)
+    rate = system.state(f"reducing valve rate {port.name}", 0.0, tolerance=100 * FLOW)
     system.rate(regulated, rate)
     system.rate(
         rate,
         supply.reducing_valve_acceleration(
             flow=regulated,
             rate=rate,
-            pressure=chamber_port.end,
-            set_pressure=held,
+            pressure=port.end,
+            set_pressure=end_pressure,
             conductance=data["conductance"],
             natural_frequency=data["natural_frequency"],
             damping_ratio=data["damping_ratio"],
@@ -498,44 +521,38 @@ def _reducing(circuit: Circuit, chamber_port: ChamberPort, held: float) -> Expre
     )
     flow = supply.reducing_valve_flow(
         flow=regulated,
-        pressure=chamber_port.end,
-        set_pressure=held,
+        pressure=port.end,
+        set_pressure=end_pressure,
         largest_flow=REDUCING_FLOW,
         passive_conductance=data["passive_conductance"],
     )
-    circuit.door(
-        "held ports", chamber_port.end * flow, state=f"reducing work {chamber_port.name}", into=True
+    circuit.energy_port(
+        "held ports", port.end * flow, state=f"reducing work {port.name}", into=True
     )
     return flow
 
 
-def _given(
-    circuit: Circuit, chamber_port: ChamberPort, feed: Expression, held: float
+def _from_valve(
+    circuit: Circuit, port: ChamberPort, feed: Expression, end_pressure: float
 ) -> Expression:
     """Flow from the valve, or zero."""
     return feed
 
 
-def _nothing(
-    circuit: Circuit, chamber_port: ChamberPort, feed: Expression, held: float
+def _no_flow(
+    circuit: Circuit, port: ChamberPort, feed: Expression, end_pressure: float
 ) -> Expression:
     return 0.0
-
-
-def _regulated(
-    circuit: Circuit, chamber_port: ChamberPort, feed: Expression, held: float
-) -> Expression:
-    return _reducing(circuit, chamber_port, held)
 
 
 FEEDS = per_kind(
     ENDS,
     {
-        "valve": _given,
-        "closed": _nothing,
-        "blocked": _nothing,
-        "constant_pressure": _given,
-        "reducing_valve": _regulated,
+        "valve": _from_valve,
+        "closed": _no_flow,
+        "blocked": _no_flow,
+        "constant_pressure": _from_valve,
+        "reducing_valve": _reducing,
     },
 )
 """Flow into the line for every kind of end."""

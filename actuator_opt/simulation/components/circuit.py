@@ -24,7 +24,7 @@ from ..system import System
 
 @dataclass(frozen=True, slots=True)
 class _Clock:
-    """The time of a system (`shapes.Clock`)."""
+    """Time of a system for signal shapes (`Clock` of `design.scenario.kinds`)."""
 
     system: System
 
@@ -56,8 +56,8 @@ def _between(time: Array, values: Array) -> Callable[[Any], Any]:
     """Linear between samples, constant outside."""
 
     def at(moment: Any) -> Any:
-        found = np.interp(moment, time, values)
-        return float(found) if np.ndim(found) == 0 else found
+        values_at = np.interp(moment, time, values)
+        return float(values_at) if np.ndim(values_at) == 0 else values_at
 
     return at
 
@@ -69,8 +69,8 @@ def _slope(time: Array, values: Array) -> Callable[[Any], Any]:
     steps = np.concatenate(([0.0], rise, [0.0]))
 
     def at(moment: Any) -> Any:
-        found = steps[np.searchsorted(time, moment, side="right")]
-        return float(found) if np.ndim(found) == 0 else found
+        slopes_at = steps[np.searchsorted(time, moment, side="right")]
+        return float(slopes_at) if np.ndim(slopes_at) == 0 else slopes_at
 
     return at
 
@@ -80,8 +80,8 @@ def _bends(time: Array, values: Array) -> list[float]:
     rise, run = np.diff(values, prepend=values[:1], append=values[-1:]), np.diff(time)
     run = np.concatenate(([1.0], run, [1.0]))
     slope = np.divide(rise, run, out=np.full(len(rise), np.inf), where=run > 0)
-    found: list[float] = time[slope[1:] != slope[:-1]].tolist()
-    return found
+    bends: list[float] = time[slope[1:] != slope[:-1]].tolist()
+    return bends
 
 
 def rate(system: System, expression: Expression) -> Expression:
@@ -122,7 +122,7 @@ class Followed(NamedTuple):
     words: str
     quantity: Quantity
     unit: str
-    """Quantity of the loop's gain."""
+    """Unit of the loop's gain."""
     typical: float
     """A typical error, for tolerances (SI)."""
 
@@ -193,14 +193,16 @@ class Circuit:
     measured: Expression = 0.0
     """Measured value of the loop."""
     centre: float = 0.0
-    """Signal that centres the spool [V]."""
+    """Valve signal that centres the spool [V]."""
 
-    def course(self, parts: Sequence[SignalSegment]) -> Expression:
+    def scenario_signal(self, parts: Sequence[SignalSegment]) -> Expression:
         """A signal of the scenario over time."""
         return signal(self.system, parts, self.records)
 
-    def door(self, name: str, power: Expression, *, state: str = "", into: bool = False) -> None:
-        """Add an energy flow to the balance, out of or `into` the circuit, as integral `state`."""
+    def energy_port(
+        self, name: str, power: Expression, *, state: str = "", into: bool = False
+    ) -> None:
+        """Add an energy flow, out of or `into` the circuit; `state` names its integral."""
         scale = self.plant.supply_pressure * FLOW
         work = self.system.integral(state or name, power, scale=scale)
         self.audit.flows.append((name, work, into))

@@ -1,6 +1,6 @@
 """Motion of the rod: mass, end stops, cushions, load, joint, external machine, seal friction.
 
-Seal friction in time follows bristles, a smooth Stribeck curve, or is zero.
+Seal friction follows the LuGre law, a smooth Stribeck curve, or is viscous only.
 """
 
 from __future__ import annotations
@@ -49,24 +49,24 @@ def cushions(circuit: Circuit, position: Symbol, speed: Symbol) -> Expression:
         ("cap", position, -speed, plant.area_a, 1.0),
         ("rod", plant.stroke - position, speed, plant.area_b, -1.0),
     )
-    for name, left, into, area, way in ends:
+    for name, remaining, closing_speed, area, sign in ends:
         if cushion.ends not in ("both", name):
             continue
         opening = end_stop.cushion_flow_area(
-            remaining=left,
+            remaining=remaining,
             length=cushion.length,
             open_area=cushion.open_area,
             end_area=cushion.end_area,
             exponent=cushion.exponent,
         )
         pressure = end_stop.cushion_pressure(
-            speed=into,
+            speed=closing_speed,
             area=area,
             flow_area=opening,
             density=plant.oil.density,
             dynamic_viscosity=plant.oil.dynamic_viscosity,
         )
-        total = total + way * where(left < cushion.length, pressure * area, 0.0)
+        total = total + sign * where(remaining < cushion.length, pressure * area, 0.0)
     return total
 
 
@@ -77,70 +77,73 @@ def move(
     speed: Symbol,
     pressure_force: Expression,
     friction: Expression,
-    pulled: Expression = 0.0,
+    load_cylinder_force: Expression = 0.0,
 ) -> None:
-    """Motion, m a = F_p - F_fr - b v + F_stop + F_cushion - F_L, with its energy balance."""
+    """Add the motion, m a = F_p - F_fr - b v + F_stop + F_cushion - F_L, and its energy flows."""
     system, plant, load = circuit.system, circuit.plant, circuit.scenario.load
 
-    def spent(name: str, force: Expression) -> None:
-        circuit.door(name, force * speed, state=f"work on {name}")
+    def work_on(name: str, force: Expression) -> None:
+        circuit.energy_port(name, force * speed, state=f"work on {name}")
 
-    sheared = plant.oil_damping * speed
-    stopping = stops(circuit, position, speed)
-    braking = cushions(circuit, position, speed)
-    begin = circuit.start.position
-    held = circuit.course(load.force) + load.stiffness * (position - begin) + load.damping * speed
-    total = pressure_force - friction - sheared + stopping + braking - held + pulled
+    shear = plant.oil_damping * speed
+    stop_force = stops(circuit, position, speed)
+    cushion_force = cushions(circuit, position, speed)
+    start = circuit.start.position
+    force = circuit.scenario_signal(load.force)
+    load_force = force + load.stiffness * (position - start) + load.damping * speed
+    total = pressure_force - friction - shear + stop_force + cushion_force
+    total = total - load_force + load_cylinder_force
     mass: Expression = plant.mass
     circuit.audit.stored.append(("motion", 0.5 * plant.mass * speed * speed))
-    spent("friction of the seals", friction)
+    work_on("friction of the seals", friction)
     if plant.oil_damping:
-        spent("shear of the oil", sheared)
-    spent("stops", -stopping)
+        work_on("shear of the oil", shear)
+    work_on("stops", -stop_force)
     if circuit.scenario.stops.cushion is not None:
-        spent("cushions", -braking)
-        system.signal("cushion_force", "force of the cushions", _FORCE, braking)
-    spent("load", held)
-    held = held - pulled
+        work_on("cushions", -cushion_force)
+        system.signal("cushion_force", "force of the cushions", _FORCE, cushion_force)
+    work_on("load", load_force)
+    load_force = load_force - load_cylinder_force
     if load.drive is not None:
-        where_to = circuit.course(load.drive.position) + begin
-        moved = rate(system, where_to)
-        pull = load.drive.stiffness * (where_to - position) + load.drive.damping * (moved - speed)
-        total, held = total + pull, held - pull
-        spent("machine outside", -pull)
+        drive_position = circuit.scenario_signal(load.drive.position) + start
+        drive_speed = rate(system, drive_position)
+        drive_force = load.drive.stiffness * (drive_position - position)
+        drive_force = drive_force + load.drive.damping * (drive_speed - speed)
+        total, load_force = total + drive_force, load_force - drive_force
+        work_on("machine outside", -drive_force)
         system.signal(
-            "drive_position", "position of the external machine", INPUTS["position"], where_to
+            "drive_position", "position of the external machine", INPUTS["position"], drive_position
         )
     if plant.design.linkage is not None:
-        mass, more = _joint(circuit, position, speed)
-        total, held = total - more, held + more
+        mass, joint_force = _joint(circuit, position, speed)
+        total, load_force = total - joint_force, load_force + joint_force
     system.rate(position, speed)
     system.rate(speed, total / mass)
     for name, words, quantity, value in (
         ("position", "position of the piston", INPUTS["position"], position),
         ("speed", "speed of the piston", SCENARIOS["speed_value"], speed),
-        ("load_force", "force of the load", _FORCE, held),
+        ("load_force", "force of the load", _FORCE, load_force),
         ("friction", "friction of the seals", _FORCE, friction),
-        ("stop_force", "force of the end stops", _FORCE, stopping),
+        ("stop_force", "force of the end stops", _FORCE, stop_force),
         ("pressure_force", "force of the pressures", _FORCE, pressure_force),
     ):
         system.signal(name, words, quantity, value)
 
 
 def _joint(circuit: Circuit, position: Symbol, speed: Symbol) -> tuple[Expression, Expression]:
-    """Mass at the rod with the joint's inertia, and the force of joint torque and inertia."""
+    """Mass at the rod including the joint, and the force of the joint's torque and inertia."""
     system, plant = circuit.system, circuit.plant
     joint = plant.joint(position)
     assert joint is not None
-    arm, felt = joint
-    torque = circuit.course(circuit.scenario.load.torque)
+    arm, inertia = joint
+    torque = circuit.scenario_signal(circuit.scenario.load.torque)
     force = linkage.actuator_force(torque=torque, lever_arm=arm.lever_arm)
-    circuit.door("joint", force * speed, state="work on the joint")
-    circuit.audit.stored.append(("motion of the joint", 0.5 * felt.mass * speed * speed))
+    circuit.energy_port("joint", force * speed, state="work on the joint")
+    circuit.audit.stored.append(("motion of the joint", 0.5 * inertia.mass * speed * speed))
     angle = plant.joint_angle(position)
     system.signal("joint_angle", "joint angle", SCENARIOS["shaft_angle_value"], angle)
     system.signal("joint_torque", "torque on the joint", SCENARIOS["torque_value"], torque)
-    return plant.mass + felt.mass, force + felt.velocity_factor * speed * speed
+    return plant.mass + inertia.mass, force + inertia.velocity_factor * speed * speed
 
 
 LEAST = 1e-3
@@ -152,7 +155,7 @@ SMOOTHING = 0.05
 
 
 LONE_SPEED = 1e-3
-"""The same where friction does not depend on speed [m/s]."""
+"""Stribeck speed if friction does not depend on speed [m/s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,7 +173,7 @@ class FrictionCurve:
 
 
 def law(plant: Plant, stated: Stated, start: InitialState) -> FrictionCurve:
-    """The design's friction, or the stated one; bristle stiffness at the initial pressures."""
+    """Friction of the design, or of the scenario; bristle stiffness at the initial pressures."""
     seals, pressures = plant.seals, (start.pressure_a, start.pressure_b)
     coulomb, static = seals.coulomb, seals.static
     speed = seals.stribeck_speed
@@ -199,13 +202,20 @@ def law(plant: Plant, stated: Stated, start: InitialState) -> FrictionCurve:
         level=level, bristle_damping=max(damping, 1e-9), viscous=viscous
     )
     return FrictionCurve(
-        coulomb, static, speed, stated.exponent, viscous, stiffness, damping, 0.5 * float(passive)
+        coulomb,
+        static,
+        speed,
+        stated.exponent,
+        viscous,
+        stiffness,
+        damping,
+        0.5 * float(passive),
     )
 
 
 def resist(
     circuit: Circuit,
-    own: FrictionCurve,
+    curve: FrictionCurve,
     *,
     speed: Expression,
     pressure_a: Expression,
@@ -213,81 +223,81 @@ def resist(
 ) -> Expression:
     """Friction force on the piston, with the sign of the speed [N]."""
     if circuit.linear:
-        return _viscous(circuit, own, speed, pressure_a, pressure_b)
-    return FORCES[circuit.scenario.friction.model](circuit, own, speed, pressure_a, pressure_b)
+        return _viscous(circuit, curve, speed, pressure_a, pressure_b)
+    return FORCES[circuit.scenario.friction.model](circuit, curve, speed, pressure_a, pressure_b)
 
 
 def _levels(
-    own: FrictionCurve, pressure_a: Expression, pressure_b: Expression
+    curve: FrictionCurve, pressure_a: Expression, pressure_b: Expression
 ) -> tuple[Expression, Expression]:
     """Coulomb and static friction at the chamber pressures."""
-    coulomb = maximum(own.coulomb.at(pressure_a, pressure_b), LEAST)
-    if own.static is own.coulomb:
+    coulomb = maximum(curve.coulomb.at(pressure_a, pressure_b), LEAST)
+    if curve.static is curve.coulomb:
         return coulomb, coulomb
-    return coulomb, maximum(own.static.at(pressure_a, pressure_b), coulomb)
+    return coulomb, maximum(curve.static.at(pressure_a, pressure_b), coulomb)
 
 
 def _viscous(
     circuit: Circuit,
-    own: FrictionCurve,
+    curve: FrictionCurve,
     speed: Expression,
     pressure_a: Expression,
     pressure_b: Expression,
 ) -> Expression:
-    return own.viscous * speed
+    return curve.viscous * speed
 
 
 def _stribeck(
     circuit: Circuit,
-    own: FrictionCurve,
+    curve: FrictionCurve,
     speed: Expression,
     pressure_a: Expression,
     pressure_b: Expression,
 ) -> Expression:
-    coulomb, static = _levels(own, pressure_a, pressure_b)
+    coulomb, static = _levels(curve, pressure_a, pressure_b)
     return friction.stribeck(
         speed=speed,
         coulomb=coulomb,
         static=static,
-        stribeck_speed=own.stribeck_speed,
-        exponent=own.exponent,
-        viscous=own.viscous,
-        smoothing_speed=SMOOTHING * own.stribeck_speed,
+        stribeck_speed=curve.stribeck_speed,
+        exponent=curve.exponent,
+        viscous=curve.viscous,
+        smoothing_speed=SMOOTHING * curve.stribeck_speed,
     )
 
 
 def _lugre(
     circuit: Circuit,
-    own: FrictionCurve,
+    curve: FrictionCurve,
     speed: Expression,
     pressure_a: Expression,
     pressure_b: Expression,
 ) -> Expression:
     system = circuit.system
-    coulomb, static = _levels(own, pressure_a, pressure_b)
+    coulomb, static = _levels(curve, pressure_a, pressure_b)
     level = friction.stribeck_level(
         speed=speed,
         coulomb=coulomb,
         static=static,
-        stribeck_speed=own.stribeck_speed,
-        exponent=own.exponent,
+        stribeck_speed=curve.stribeck_speed,
+        exponent=curve.exponent,
     )
     bristle = system.state("bristles", 0.0, tolerance=1e-10)
     rate = lugre.lugre_rate(
-        deflection=bristle, speed=speed, level=level, bristle_stiffness=own.bristle_stiffness
+        deflection=bristle, speed=speed, level=level, bristle_stiffness=curve.bristle_stiffness
     )
     system.rate(bristle, rate)
     system.signal("bristles", "deflection of the bristles", SCENARIOS["position_value"], bristle)
     damping = lugre.lugre_tapered_damping(
-        bristle_damping=own.bristle_damping, speed=speed, taper_speed=own.taper_speed
+        bristle_damping=curve.bristle_damping, speed=speed, taper_speed=curve.taper_speed
     )
     return lugre.lugre_force(
         deflection=bristle,
         rate=rate,
         speed=speed,
-        bristle_stiffness=own.bristle_stiffness,
+        bristle_stiffness=curve.bristle_stiffness,
         bristle_damping=damping,
-        viscous=own.viscous,
+        viscous=curve.viscous,
     )
 
 

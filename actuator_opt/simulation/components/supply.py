@@ -16,12 +16,13 @@ from .circuit import Circuit
 RATE_BAND = 1e-3
 """Share of the largest flow over which the swash plate stops at its ends (a choice)."""
 AWAKE = 0.1
-"""Share of it from which equilibria are searched (a choice: at an end nothing moves the plate)."""
+"""Initial share of the largest flow in an equilibrium search (a choice: at an end the plate has no
+rate)."""
 
 
 @dataclass(slots=True)
 class SupplyBuilder:
-    """The supply under construction: first its pressures, later the demand."""
+    """Supply under construction: its pressures come first, the flow to the valve later."""
 
     circuit: Circuit
     pressure: Expression
@@ -42,9 +43,11 @@ class SupplyBuilder:
         return cls(circuit, port, unit)
 
     def feed(self, demand: Expression, tank: Expression) -> None:
-        """Close the supply with the flow to the valve; `tank` is the return flow."""
+        """Add the equations of the supply for the flow to the valve; `tank` is the return flow."""
         circuit = self.circuit
-        circuit.door("return line", circuit.plant.return_pressure * tank, state="return work")
+        circuit.energy_port(
+            "return line", circuit.plant.return_pressure * tank, state="return work"
+        )
         circuit.system.signal(
             "pressure_supply", "supply pressure", INPUTS["pressure"], self.pressure
         )
@@ -52,7 +55,7 @@ class SupplyBuilder:
         if SUPPLIES[circuit.scenario.supply.type].pumps:
             self._pumped(taken)
         else:
-            circuit.door("supply", self.unit * taken, state="supply work", into=True)
+            circuit.energy_port("supply", self.unit * taken, state="supply work", into=True)
 
     def _through_line(self, demand: Expression) -> Expression:
         """Flow from the pump into the supply pipe; its elastic volume is at the valve."""
@@ -65,7 +68,7 @@ class SupplyBuilder:
         inertance = elements.inertance(**size, density=oil.density)
         flow = system.state("supply pipe", 0.0, tolerance=1e-12)
         system.rate(flow, (self.unit - self.pressure - resistance * flow) / inertance)
-        circuit.door("supply pipe", resistance * flow * flow, state="supply pipe loss")
+        circuit.energy_port("supply pipe", resistance * flow * flow, state="supply pipe loss")
         motion = 0.5 * inertance * flow * flow
         circuit.audit.stored.append(("oil in motion in the supply pipe", motion))
         system.signal("pressure_unit", "pressure at the pump", INPUTS["pressure"], self.unit)
@@ -80,7 +83,7 @@ class SupplyBuilder:
         assert unit.volume is not None
         delivered = DELIVERIES[unit.type](self)
         pressure = self.unit
-        circuit.door("supply", pressure * delivered, state="supply work", into=True)
+        circuit.energy_port("supply", pressure * delivered, state="supply work", into=True)
         relieved: Expression = 0.0
         if unit.relief is not None:
             relieved = supply.relief_flow(
@@ -89,7 +92,7 @@ class SupplyBuilder:
                 override=unit.relief.override,
                 rated_flow=unit.relief.rated_flow,
             )
-            circuit.door("relief valve", pressure * relieved, state="relief loss")
+            circuit.energy_port("relief valve", pressure * relieved, state="relief loss")
             circuit.system.signal("flow_relief", "flow of the relief valve", _FLOW, relieved)
         stored = self._accumulator()
         circuit.system.signal("flow_pump", "flow of the pump", _FLOW, delivered)
@@ -99,18 +102,18 @@ class SupplyBuilder:
 
     def _accumulator(self) -> Expression:
         """Flow into the accumulator on the line."""
-        circuit, one = self.circuit, self.circuit.scenario.supply.accumulator
-        if one is None:
+        circuit, stated = self.circuit, self.circuit.scenario.supply.accumulator
+        if stated is None:
             return 0.0
         system, plant = circuit.system, circuit.plant
         filled = accumulator.gas_volume_at(  # slow at first, then fast about the equilibrium
             pressure=plant.supply_pressure,
-            precharge_pressure=one.precharge,
-            gas_volume=one.gas_volume,
+            precharge_pressure=stated.precharge,
+            gas_volume=stated.gas_volume,
         )
-        begin = max(plant.supply_pressure, one.precharge)
-        gas = system.state("gas volume", float(filled), tolerance=1e-9 * one.gas_volume)
-        held = accumulator.gas_pressure(
+        begin = max(plant.supply_pressure, stated.precharge)
+        gas = system.state("gas volume", float(filled), tolerance=1e-9 * stated.gas_volume)
+        gas_pressure = accumulator.gas_pressure(
             volume=gas,
             precharge_pressure=begin,
             gas_volume=float(filled),
@@ -119,14 +122,19 @@ class SupplyBuilder:
         neck = elements.resistance(
             inner_diameter=NECK, length=NECK, dynamic_viscosity=plant.oil.dynamic_viscosity
         )
-        flow = (self.unit - held) / neck
-        full = clip((one.gas_volume - gas) / (1e-4 * one.gas_volume), 0.0, 1.0)
+        flow = (self.unit - gas_pressure) / neck
+        full = clip((stated.gas_volume - gas) / (1e-4 * stated.gas_volume), 0.0, 1.0)
         flow = where(flow < 0, flow * full, flow)
         system.rate(gas, -flow)
-        circuit.door("accumulator neck", (self.unit - held) * flow, state="neck loss")
-        circuit.door("accumulator", held * flow)
+        circuit.energy_port(
+            "accumulator neck", (self.unit - gas_pressure) * flow, state="neck loss"
+        )
+        circuit.energy_port("accumulator", gas_pressure * flow)
         system.signal(
-            "pressure_accumulator", "gas pressure of the accumulator", INPUTS["pressure"], held
+            "pressure_accumulator",
+            "gas pressure of the accumulator",
+            INPUTS["pressure"],
+            gas_pressure,
         )
         return flow
 
@@ -139,10 +147,10 @@ def _fixed_pump(source: SupplyBuilder) -> Expression:
         assert unit.flow is not None
         return unit.flow
     machine = unit.pump
-    across = source.unit - plant.return_pressure
+    difference = source.unit - plant.return_pressure
     common = {
         "speed": machine.shaft_speed,
-        "pressure_difference": across,
+        "pressure_difference": difference,
         "displacement": machine.displacement,
         "dynamic_viscosity": plant.oil.dynamic_viscosity,
         "setting": machine.setting,
@@ -164,8 +172,8 @@ def _controlled_pump(source: SupplyBuilder) -> Expression:
     assert unit.flow is not None
     assert unit.gain is not None
     assert unit.time_constant is not None
-    begin = AWAKE * unit.flow if circuit.linear else 0.0
-    state = system.state("pump", begin, tolerance=1e-6 * unit.flow)
+    initial = AWAKE * unit.flow if circuit.linear else 0.0
+    state = system.state("pump", initial, tolerance=1e-6 * unit.flow)
     rate = supply.controlled_pump_rate(
         flow=state,
         pressure=source.unit,
@@ -181,7 +189,7 @@ def _controlled_pump(source: SupplyBuilder) -> Expression:
 
 
 DELIVERIES = per_kind(
-    {name: one for name, one in SUPPLIES.items() if one.pumps},
+    {name: kind for name, kind in SUPPLIES.items() if kind.pumps},
     {"fixed_pump": _fixed_pump, "controlled_pump": _controlled_pump},
 )
 """Flow for every kind of pump."""

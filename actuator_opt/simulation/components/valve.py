@@ -30,11 +30,11 @@ class Port(NamedTuple):
     tank: Expression
 
 
-def spool(circuit: Circuit, data: ValveData, command: Expression, whose: str = "") -> Expression:
-    """Spool position for a command, in volts; `whose` prefixes the names of its signals."""
+def spool(circuit: Circuit, data: ValveData, command: Expression, prefix: str = "") -> Expression:
+    """Spool position for a command, in volts; `prefix` prefixes the names of its signals."""
     system = circuit.system
-    opening = system.state(f"{whose}spool", 0.0, tolerance=SPOOL)
-    speed = system.state(f"{whose}spool rate", 0.0, tolerance=SPOOL * 6 * data.natural_frequency)
+    opening = system.state(f"{prefix}spool", 0.0, tolerance=SPOOL)
+    speed = system.state(f"{prefix}spool rate", 0.0, tolerance=SPOOL * 6 * data.natural_frequency)
     limited = clip(command, -data.signal, data.signal)
     system.rate(opening, speed)
     system.rate(
@@ -48,9 +48,9 @@ def spool(circuit: Circuit, data: ValveData, command: Expression, whose: str = "
         ),
     )
     volts = SCENARIOS["signal_value"]
-    of = " of the load cylinder" if whose else ""
-    system.signal(f"{whose}signal", f"signal of the valve{of}", volts, limited)
-    system.signal(f"{whose}spool", f"position of the spool{of}", volts, opening)
+    of = " of the load cylinder" if prefix else ""
+    system.signal(f"{prefix}signal", f"signal of the valve{of}", volts, limited)
+    system.signal(f"{prefix}spool", f"position of the spool{of}", volts, opening)
     return opening
 
 
@@ -63,7 +63,7 @@ def edges(
     return_pressure: float,
     pressure_a: Expression,
     pressure_b: Expression,
-    whose: str = "",
+    prefix: str = "",
 ) -> Port:
     """Flows through the four edges, and their losses."""
     flows = valve.valve_flows(
@@ -77,22 +77,22 @@ def edges(
         pressure_a=pressure_a,
         pressure_b=pressure_b,
     )
-    lost = (
+    loss = (
         (supply_pressure - pressure_a) * flows.supply_a
         + (supply_pressure - pressure_b) * flows.supply_b
         + (pressure_a - return_pressure) * flows.a_tank
         + (pressure_b - return_pressure) * flows.b_tank
     )
-    of = " of the load cylinder" if whose else ""
-    name = "load cylinder's valve" if whose else "valve edges"
-    circuit.door(name, lost, state=f"{whose}valve loss")
+    of = " of the load cylinder" if prefix else ""
+    name = "load cylinder's valve" if prefix else "valve edges"
+    circuit.energy_port(name, loss, state=f"{prefix}valve loss")
     for name, words, value in (
         ("a", "into port A", flows.into_a),
         ("b", "into port B", flows.into_b),
         ("supply", "from the supply", flows.supply),
         ("tank", "to the tank", flows.tank),
     ):
-        circuit.system.signal(f"{whose}flow_{name}", f"flow {words}{of}", _FLOW, value)
+        circuit.system.signal(f"{prefix}flow_{name}", f"flow {words}{of}", _FLOW, value)
     return Port(flows.into_a, flows.into_b, flows.supply, flows.tank)
 
 
@@ -100,8 +100,8 @@ _FLOW = SCENARIOS["flow_value"]
 
 
 HOLD_BAND = 1e-3
-"""Share of the full signal over which the integral part stops before the limit (a choice: the
-integral is frozen while the signal is saturated and the error would increase it)."""
+"""Share of the full signal over which the integral part stops before the limit (a choice). The
+integral is frozen while the signal is saturated and the error would increase it."""
 
 
 RATE_TIME = 1e-4
@@ -120,51 +120,55 @@ class Feedback:
     load_pressure_start: float = 0.0
 
 
-def inner(circuit: Circuit, wish: Expression, measured: Feedback) -> Expression:
-    """A reference less the inner loops: speed, and changes of the load pressure."""
-    system, stated = circuit.system, circuit.scenario.control
-    if stated is None:
-        return wish
-    wish = wish - stated.speed_feedback * measured.speed
-    if stated.pressure_feedback:
+def inner(circuit: Circuit, valve_signal: Expression, measured: Feedback) -> Expression:
+    """Valve signal less the inner loops: speed, and changes of the load pressure."""
+    system, control = circuit.system, circuit.scenario.control
+    if control is None:
+        return valve_signal
+    valve_signal = valve_signal - control.speed_feedback * measured.speed
+    if control.pressure_feedback:
         start = measured.load_pressure_start
-        slow = system.state("filtered load pressure", start, tolerance=1.0)
-        system.rate(slow, (measured.load_pressure - slow) / stated.pressure_time)
-        wish = wish - stated.pressure_feedback * (measured.load_pressure - slow)
-    return wish
+        filtered = system.state("filtered load pressure", start, tolerance=1.0)
+        system.rate(filtered, (measured.load_pressure - filtered) / control.pressure_time)
+        valve_signal = valve_signal - control.pressure_feedback * (
+            measured.load_pressure - filtered
+        )
+    return valve_signal
 
 
 def command(
     circuit: Circuit, reference: Expression, measured: Feedback, scale: float
 ) -> Expression:
     """Signal to the valve; `scale` is a typical control error, for tolerances."""
-    system, stated, gains = circuit.system, circuit.scenario.control, circuit.gains
-    assert stated is not None
+    system, control, gains = circuit.system, circuit.scenario.control, circuit.gains
+    assert control is not None
     assert gains is not None
     assert circuit.plant.valve is not None
     full_signal = circuit.plant.valve.signal
-    gain = stated.gain_factor * gains.proportional_gain
+    gain = control.gain_factor * gains.proportional_gain
     error = reference - measured.value
-    wish: Expression = gain * error
+    valve_signal: Expression = gain * error
     if gains.derivative_time > 0:
-        slow = system.state("filtered error", 0.0, tolerance=1e-9 * scale)
-        change = (error - slow) / stated.filter_time
-        system.rate(slow, change)
-        factor = stated.derivative_factor * gains.proportional_gain
-        wish = wish + factor * gains.derivative_time * change
-    wish = inner(circuit, wish, measured)
+        filtered = system.state("filtered error", 0.0, tolerance=1e-9 * scale)
+        change = (error - filtered) / control.filter_time
+        system.rate(filtered, change)
+        factor = control.derivative_factor * gains.proportional_gain
+        valve_signal = valve_signal + factor * gains.derivative_time * change
+    valve_signal = inner(circuit, valve_signal, measured)
     if gains.integral_time < inf:
-        part = system.state("integral part", 0.0, tolerance=1e-7 * full_signal)
-        wish = wish + part
+        integral = system.state("integral part", 0.0, tolerance=1e-7 * full_signal)
+        valve_signal = valve_signal + integral
         band = HOLD_BAND * full_signal
-        up = clip((full_signal - wish) / band, 0.0, 1.0)
-        down = clip((full_signal + wish) / band, 0.0, 1.0)
-        factor = stated.integral_factor * gains.proportional_gain
+        up = clip((full_signal - valve_signal) / band, 0.0, 1.0)
+        down = clip((full_signal + valve_signal) / band, 0.0, 1.0)
+        factor = control.integral_factor * gains.proportional_gain
         rate = factor / gains.integral_time * error
-        system.rate(part, where(rate > 0, rate * up, rate * down))
-    wish = clip(wish, -full_signal, full_signal)
-    if stated.rate_limit is None:
-        return wish
+        system.rate(integral, where(rate > 0, rate * up, rate * down))
+    valve_signal = clip(valve_signal, -full_signal, full_signal)
+    if control.rate_limit is None:
+        return valve_signal
     limited = system.state("limited signal", 0.0, tolerance=1e-7 * full_signal)
-    system.rate(limited, clip((wish - limited) / RATE_TIME, -stated.rate_limit, stated.rate_limit))
+    system.rate(
+        limited, clip((valve_signal - limited) / RATE_TIME, -control.rate_limit, control.rate_limit)
+    )
     return limited

@@ -30,6 +30,7 @@ from .parameters import PARAMETERS, Case, FitParameter, entries
 from .record import (
     FEWEST,
     AlignedRecord,
+    ChannelResidual,
     Overlay,
     SimulatedSignal,
     beside,
@@ -40,7 +41,7 @@ from .record import (
 )
 
 MOST: Final = 4000
-"""Maximum samples of a channel in a fit (a choice: denser records are thinned evenly)."""
+"""Maximum number of samples of a channel in a fit (a choice: denser records are thinned)."""
 
 
 FINE, LONGEST = 2, 5e-4
@@ -54,7 +55,7 @@ RELATIVE: Final = 1e-8
 
 STEPS: Final = (1e-3, 0.1)
 """Least and largest slope step relative to a parameter's size (choices: far above integration
-errors, yet local); between them, the step that moves the residuals by their noise."""
+errors, yet local). Between them, the step changes the residuals by their noise."""
 
 
 FIRST: Final = 1e-2
@@ -70,7 +71,7 @@ ASTRAY: Final = 5.0
 
 
 MARGIN: Final = 0.02
-"""Search range about the best trial lag, relative to the simulated time (a choice)."""
+"""Half the search range about the best trial lag, relative to the simulated time (a choice)."""
 
 
 LAGS: Final = 801
@@ -98,13 +99,13 @@ ROUGH, SHARP = 1e-4, 1e-8
 
 
 class RecordFitProblem:
-    """Weighted residuals as a function of the searched values, logarithms for positive parameters.
+    """Weighted residuals as a function of the searched values (logarithms of positive parameters).
 
     Parameters
     ----------
     scenario, plant, records, tuned : of the simulation
     measured : on the scenario's time
-    own : the parameters
+    parameters : searched parameters
     """
 
     def __init__(
@@ -114,91 +115,100 @@ class RecordFitProblem:
         records: Records,
         tuned: Tuned | None,
         measured: AlignedRecord,
-        own: Sequence[FitParameter],
+        parameters: Sequence[FitParameter],
     ) -> None:
         self.scenario, self.plant, self.records, self.tuned = scenario, plant, records, tuned
-        self.own, self.names = tuple(own), tuple(one.name for one in own)
-        self.late = self.names.index("lag") if "lag" in self.names else None
+        self.parameters, self.names = (
+            tuple(parameters),
+            tuple(parameter.name for parameter in parameters),
+        )
+        self.lag_index = self.names.index("lag") if "lag" in self.names else None
         self.start, self.low, self.high = (
-            np.array([_scaled(one, getattr(one, end)) for one in own])
+            np.array([_scaled(parameter, getattr(parameter, end)) for parameter in parameters])
             for end in ("start", "lower", "upper")
         )
-        apart = min(float(np.median(np.diff(t))) for t, _ in measured.channels.values())
-        self.sizes = np.array([1.0 if one.positive else one.near or apart for one in own])
+        spacing = min(float(np.median(np.diff(t))) for t, _ in measured.channels.values())
+        self.sizes = np.array(
+            [1.0 if parameter.positive else parameter.near or spacing for parameter in parameters]
+        )
         duration = scenario.duration
-        self.step = _step(apart, duration)
+        self.step = _step(spacing, duration)
         self.steps = FIRST * self.sizes
         self.runs = 0
-        self._known: tuple[bytes, Array, Mapping[str, Array]] | None = None
+        self._cached: tuple[bytes, Array, Mapping[str, Array]] | None = None
         self.noise = {name: noise(y) for name, (_, y) in measured.channels.items()}
-        still = [name for name, one in self.noise.items() if one == 0]
-        self.notes = [f"{name} is constant in the record: not used in the fit" for name in still]
-        moving = {name: one for name, one in measured.channels.items() if name not in still}
-        if not moving:
+        constant = [name for name, level in self.noise.items() if level == 0]
+        self.notes = [f"{name} is constant in the record: not used in the fit" for name in constant]
+        varying = {
+            name: channel for name, channel in measured.channels.items() if name not in constant
+        }
+        if not varying:
             raise measured.fault("every channel is constant", "fit to a record with motion")
-        self.weights = {name: 1 / self.noise[name] for name in moving}
+        self.weights = {name: 1 / self.noise[name] for name in varying}
         _, signals = self._simulated(self.start)
-        used = self._overlapping(replace(measured, channels=moving), signals)
-        self.used = {name: _thinned(*one) for name, one in used.items()}
-        self.notes += _told(used, self.used)
-        self.far = np.inf
-        self.far = FAR * float(np.max(np.abs(self.rest(self.start))))
+        overlap = self._overlapping(replace(measured, channels=varying), signals)
+        self.used = {name: _thinned(*channel) for name, channel in overlap.items()}
+        self.notes += _thinning_notes(overlap, self.used)
+        self.failed = np.inf
+        self.failed = FAR * float(np.max(np.abs(self.residuals(self.start))))
 
     def put(self, x: Array) -> Case:
-        """Scenario and plant with fitted values, in the order of the table."""
+        """Scenario and plant with fitted values, applied in the order of `PARAMETERS`."""
         scenario, plant = self.scenario, self.plant
         for name in PARAMETERS:
             if name in self.names:
                 k = self.names.index(name)
-                value = float(np.exp(x[k])) if self.own[k].positive else float(x[k])
-                scenario, plant = self.own[k].put(scenario, plant, value)
+                value = float(np.exp(x[k])) if self.parameters[k].positive else float(x[k])
+                scenario, plant = self.parameters[k].put(scenario, plant, value)
         return scenario, plant
 
     def lag(self, x: Array) -> float:
         """Time lag of the record [s]."""
-        return 0.0 if self.late is None else float(x[self.late])
+        return 0.0 if self.lag_index is None else float(x[self.lag_index])
 
     def _simulated(self, x: Array) -> tuple[Array, Mapping[str, Array]]:
         """Time and signals; the last run is cached, as a lag does not change it."""
-        own = np.array(x, dtype=float)
-        if self.late is not None:
-            own[self.late] = 0.0
-        key = own.tobytes()
-        if self._known is not None and self._known[0] == key:
-            return self._known[1:]
+        searched = np.array(x, dtype=float)
+        if self.lag_index is not None:
+            searched[self.lag_index] = 0.0
+        key = searched.tobytes()
+        if self._cached is not None and self._cached[0] == key:
+            return self._cached[1:]
         scenario, plant = self.put(x)
         gains = None if self.tuned is None else self.tuned.gains
         circuit = assemble(scenario, plant, self.records, gains)
-        idle = {id(flow[1]) for flow in circuit.audit.flows}
-        idle |= {id(one[2]) for one in circuit.audit.mass}
+        audited = {id(flow[1]) for flow in circuit.audit.flows}
+        audited |= {id(term[2]) for term in circuit.audit.mass}
         states = circuit.system.states
-        circuit.system.states = [state for state in states if id(state.symbol) not in idle]
+        circuit.system.states = [state for state in states if id(state.symbol) not in audited]
         compiled = circuit.system.compiled()
         self.runs += 1
         trajectory = integrate(
             compiled, duration=scenario.duration, sample_time=self.step, relative=RELATIVE
         )
         signals = compiled.signals(trajectory.time, trajectory.states, trajectory.flags)
-        self._known = key, trajectory.time, signals
+        self._cached = key, trajectory.time, signals
         return trajectory.time, signals
 
-    def apart(self, x: Array) -> dict[str, Array]:
+    def differences(self, x: Array) -> dict[str, Array]:
         """Simulated less measured, by channel."""
         time, signals = self._simulated(x)
-        late = self.lag(x)
+        lag = self.lag(x)
         return {
-            name: beside(t - late, y, time, signals[name]) - y for name, (t, y) in self.used.items()
+            name: beside(t - lag, y, time, signals[name]) - y for name, (t, y) in self.used.items()
         }
 
-    def rest(self, x: Array) -> Array:
+    def residuals(self, x: Array) -> Array:
         """Weighted residuals; very large ones if the run fails."""
         try:
-            found = self.apart(x)
+            differences = self.differences(x)
         except Unsolvable:
-            if not np.isfinite(self.far):
+            if not np.isfinite(self.failed):
                 raise
-            return np.full(sum(t.size for t, _ in self.used.values()), self.far)
-        return np.concatenate([self.weights[name] * one for name, one in found.items()])
+            return np.full(sum(t.size for t, _ in self.used.values()), self.failed)
+        return np.concatenate(
+            [self.weights[name] * difference for name, difference in differences.items()]
+        )
 
     def slopes(self, x: Array, steps: Array) -> Array:
         """Derivatives of the residuals by central differences, within the range."""
@@ -206,129 +216,131 @@ class RecordFitProblem:
         for k, step in enumerate(steps):
             up, down = x.copy(), x.copy()
             up[k], down[k] = min(x[k] + step, self.high[k]), max(x[k] - step, self.low[k])
-            columns.append((self.rest(up) - self.rest(down)) / (up[k] - down[k]))
+            columns.append((self.residuals(up) - self.residuals(down)) / (up[k] - down[k]))
         return np.stack(columns, axis=1)
 
-    def slopes_on_the_way(self, x: Array) -> Array:
-        """One-sided differences, with steps that follow the last ones."""
-        here, columns = self.rest(x), []
+    def search_slopes(self, x: Array) -> Array:
+        """One-sided differences; the next steps follow from these slopes."""
+        residuals, columns = self.residuals(x), []
         for k, step in enumerate(self.steps):
             row = x.copy()
             row[k] += step if x[k] + step < self.high[k] else -step
-            columns.append((self.rest(row) - here) / (row[k] - x[k]))
-        found = np.stack(columns, axis=1)
-        moved = np.maximum(np.linalg.norm(found, axis=0) * self.sizes, 1e-300)
-        self.steps = np.clip(1 / moved, *STEPS) * self.sizes
-        return found
+            columns.append((self.residuals(row) - residuals) / (row[k] - x[k]))
+        slopes = np.stack(columns, axis=1)
+        size = np.maximum(np.linalg.norm(slopes, axis=0) * self.sizes, 1e-300)
+        self.steps = np.clip(1 / size, *STEPS) * self.sizes
+        return slopes
 
     def solve(self) -> Array:
-        """The best values: trial starts, a search, then a precise one.
+        """The best values, from trial starts, a search and a final precise search.
 
         If the model misses the record by far, the search restarts once from the initial values.
         """
-        tried = self._guessed(self.start)
-        x = self._searched(tried)
-        if self._astray(x) and not np.array_equal(tried, self.start):
-            other = self._searched(self.start)
-            x = min((x, other), key=self._judged)
+        guess = self._best_guess(self.start)
+        x = self._reweighted(guess)
+        if self._misses(x) and not np.array_equal(guess, self.start):
+            restarted = self._reweighted(self.start)
+            x = min((x, restarted), key=self._likelihood_cost)
         self._weigh(x)
-        return self._descended(x, SHARP)
+        return self._least_squares(x, SHARP)
 
-    def _searched(self, x: Array) -> Array:
-        """Least squares with each channel weighted by its residual, until the weights settle."""
+    def _reweighted(self, x: Array) -> Array:
+        """Least squares with each channel weighted by its residual, until the weights converge."""
         self._weigh(x)
         for _ in range(ROUNDS):
-            x = self._descended(x, ROUGH)
+            x = self._least_squares(x, ROUGH)
             before = dict(self.weights)
             self._weigh(x)
-            if all(abs(self.weights[name] / one - 1) < SETTLED for name, one in before.items()):
+            if all(
+                abs(self.weights[name] / weight - 1) < SETTLED for name, weight in before.items()
+            ):
                 break
         return x
 
-    def left(self, x: Array) -> dict[str, float]:
+    def levels(self, x: Array) -> dict[str, float]:
         """Root mean square residual of every channel, at least its noise."""
         return {
-            name: max(self.noise[name], float(np.sqrt(np.mean(one**2))))
-            for name, one in self.apart(x).items()
+            name: max(self.noise[name], float(np.sqrt(np.mean(difference**2))))
+            for name, difference in self.differences(x).items()
         }
 
-    def _astray(self, x: Array) -> bool:
+    def _misses(self, x: Array) -> bool:
         """Whether some channel has residuals far above its noise."""
-        return any(one > ASTRAY * self.noise[name] for name, one in self.left(x).items())
+        return any(level > ASTRAY * self.noise[name] for name, level in self.levels(x).items())
 
     def _weigh(self, x: Array) -> None:
         """Weight the channels by their residuals."""
-        self.weights = {name: 1 / one for name, one in self.left(x).items()}
+        self.weights = {name: 1 / level for name, level in self.levels(x).items()}
 
-    def _judged(self, x: Array) -> float:
+    def _likelihood_cost(self, x: Array) -> float:
         """Negative log-likelihood: logarithm of the residuals, over all samples."""
         try:
-            left = self.left(x)
+            levels = self.levels(x)
         except Unsolvable:
             return np.inf
-        return float(sum(self.used[name][0].size * np.log(one) for name, one in left.items()))
+        return float(sum(self.used[name][0].size * np.log(level) for name, level in levels.items()))
 
     def _overlapping(
         self, measured: AlignedRecord, signals: Mapping[str, Array]
     ) -> dict[str, tuple[Array, Array]]:
         """The part of a record that overlaps the run at every searched lag."""
         duration = self.scenario.duration
-        if self.late is None:
+        if self.lag_index is None:
             return inside(measured, signals, duration, 0.0)
         middle = self._aligned(measured, signals)
-        self.start[self.late] = middle
+        self.start[self.lag_index] = middle
         low, high = middle - MARGIN * duration, middle + MARGIN * duration
-        self.low[self.late], self.high[self.late] = low, high
-        whole = inside(measured, signals, duration, middle)
-        ends = [(t >= high) & (t <= duration + low) for t, _ in whole.values()]
-        found = {
-            name: (t[kept], y[kept])
-            for kept, (name, (t, y)) in zip(ends, whole.items(), strict=True)
-            if np.count_nonzero(kept) >= FEWEST
+        self.low[self.lag_index], self.high[self.lag_index] = low, high
+        samples = inside(measured, signals, duration, middle)
+        ends = [(t >= high) & (t <= duration + low) for t, _ in samples.values()]
+        overlap = {
+            name: (t[inside_run], y[inside_run])
+            for inside_run, (name, (t, y)) in zip(ends, samples.items(), strict=True)
+            if np.count_nonzero(inside_run) >= FEWEST
         }
-        if not found:
+        if not overlap:
             message = "too little of the record overlaps the scenario to determine a lag"
             raise measured.fault(message, "measure longer, or state the lag")
-        return found
+        return overlap
 
     def _aligned(self, measured: AlignedRecord, signals: Mapping[str, Array]) -> float:
-        """The most likely lag of the first run, from the overlap."""
-        assert self.late is not None
+        """Most likely lag at the initial values, over the samples that overlap."""
+        assert self.lag_index is not None
         time, _ = self._simulated(self.start)
-        lags = np.linspace(self.low[self.late], self.high[self.late], LAGS)
-        judged, count = np.zeros(LAGS), np.zeros(LAGS)
+        lags = np.linspace(self.low[self.lag_index], self.high[self.lag_index], LAGS)
+        cost, count = np.zeros(LAGS), np.zeros(LAGS)
         for name, channel in measured.channels.items():
             if name not in signals:
                 continue
             t, y = _thinned(*channel)
-            course = SimulatedSignal(time, signals[name])
+            simulated = SimulatedSignal(time, signals[name])
             for k, lag in enumerate(lags):
                 within = (t >= lag) & (t <= lag + time[-1])
-                off = course(t[within] - lag) - y[within]
-                square = float(np.mean(off**2)) if off.size else np.inf
-                judged[k] += t.size * np.log(max(square, self.noise[name] ** 2))
-                count[k] += off.size
+                difference = simulated(t[within] - lag) - y[within]
+                square = float(np.mean(difference**2)) if difference.size else np.inf
+                cost[k] += t.size * np.log(max(square, self.noise[name] ** 2))
+                count[k] += difference.size
         enough = count >= max(0.5 * float(np.max(count)), 1.0)
-        return float(lags[int(np.argmin(np.where(enough, judged, np.inf)))])
+        return float(lags[int(np.argmin(np.where(enough, cost, np.inf)))])
 
-    def _guessed(self, x: Array) -> Array:
-        """Improve the starts of positive parameters by trial factors, one after the other."""
-        best, least = x, self._judged(x)
-        for k, one in enumerate(self.own):
-            for by in GUESSES if one.positive else ():
+    def _best_guess(self, x: Array) -> Array:
+        """Initial values of positive parameters, improved by trial factors one after the other."""
+        best, least = x, self._likelihood_cost(x)
+        for k, parameter in enumerate(self.parameters):
+            for factor in GUESSES if parameter.positive else ():
                 row = best.copy()
-                row[k] = np.clip(x[k] + np.log(by), self.low[k], self.high[k])
-                judged = self._judged(row)
-                best, least = (row, judged) if judged < least else (best, least)
+                row[k] = np.clip(x[k] + np.log(factor), self.low[k], self.high[k])
+                cost = self._likelihood_cost(row)
+                best, least = (row, cost) if cost < least else (best, least)
         return best
 
-    def _descended(self, x: Array, tolerance: float) -> Array:
-        """Least squares within the range."""
+    def _least_squares(self, x: Array, tolerance: float) -> Array:
+        """Solution of the least squares within the range."""
         return least_squares.solve(
-            self.rest,
+            self.residuals,
             x,
             (self.low, self.high),
-            slopes=self.slopes_on_the_way,
+            slopes=self.search_slopes,
             sizes=self.sizes,
             room=1e-6 * (self.high - self.low),
             cost_tolerance=tolerance,
@@ -341,22 +353,22 @@ def _scaled(entry: FitParameter, value: float) -> float:
     return float(np.log(value)) if entry.positive else float(value)
 
 
-def _step(apart: float, duration: float) -> float:
+def _step(spacing: float, duration: float) -> float:
     """Time between samples of a run: a whole fraction of the record's, unless too fine."""
-    longest = max(min(apart / FINE, LONGEST), duration / (FINE * MOST))
-    return apart / ceil(apart / longest) if longest < apart else longest
+    longest = max(min(spacing / FINE, LONGEST), duration / (FINE * MOST))
+    return spacing / ceil(spacing / longest) if longest < spacing else longest
 
 
-def _told(
-    whole: Mapping[str, tuple[Array, Array]], used: Mapping[str, tuple[Array, Array]]
+def _thinning_notes(
+    all_samples: Mapping[str, tuple[Array, Array]], used: Mapping[str, tuple[Array, Array]]
 ) -> Iterator[str]:
     """Notes on channels that the fit thins."""
     steps: dict[int, list[str]] = {}
-    for name, (time, _) in whole.items():
+    for name, (time, _) in all_samples.items():
         steps.setdefault(_every(time), []).append(name)
-    for every, names in sorted(steps.items()):
-        if every > 1:
-            yield f"{named(names, used)}: the fit uses one of {every} samples, {MOST} at most"
+    for step, names in sorted(steps.items()):
+        if step > 1:
+            yield f"{named(names, used)}: the fit uses one of {step} samples, {MOST} at most"
 
 
 def _every(time: Array) -> int:
@@ -364,9 +376,9 @@ def _every(time: Array) -> int:
 
 
 def _thinned(time: Array, values: Array) -> tuple[Array, Array]:
-    """Every n-th sample, within the fit's maximum."""
-    every = _every(time)
-    return time[::every], values[::every]
+    """Every n-th sample, at most `MOST` in total."""
+    step = _every(time)
+    return time[::step], values[::step]
 
 
 STEADIEST: Final = 0.97
@@ -391,21 +403,21 @@ def bounds(problem: RecordFitProblem, x: Array) -> FittedParameters:
     together. The degrees of freedom follow from that window, 3 n/(2 m) - p. The slopes are secants
     over a standard error.
     """
-    rest = problem.rest(x)
-    variance = float(np.sum(rest**2)) / max(rest.size - x.size, 1)
-    first = problem.slopes_on_the_way(x) * problem.sizes
+    residuals = problem.residuals(x)
+    variance = float(np.sum(residuals**2)) / max(residuals.size - x.size, 1)
+    first = problem.search_slopes(x) * problem.sizes
     errors = np.sqrt(variance * np.diag(np.linalg.pinv(first.T @ first, hermitian=True)))
     errors[np.linalg.norm(first, axis=0) == 0] = np.inf
     steps = np.clip(errors, *STEPS) * problem.sizes
     scaled = problem.slopes(x, steps) * problem.sizes
-    left, singular, right = np.linalg.svd(scaled, full_matrices=False)
-    moments = _by_time(problem, left * rest[:, None])
+    outputs, singular, right = np.linalg.svd(scaled, full_matrices=False)
+    moments = _by_time(problem, outputs * residuals[:, None])
     width = _bandwidth(moments)
-    inner = _larger(variance * np.eye(x.size), _coloured(problem, left, rest))
+    inner = _larger(variance * np.eye(x.size), _coloured(problem, outputs, residuals))
     inner = _larger(inner, _summed(moments, width))
     root = np.linalg.cholesky(inner)
     whitened = np.linalg.solve(root, singular[:, None] * right) / problem.sizes
-    points = min(float(rest.size), 1.5 * moments.shape[0] / width)
+    points = min(float(residuals.size), 1.5 * moments.shape[0] / width)
     return known(
         dict(zip(problem.names, x.tolist(), strict=True)),
         whitened,
@@ -417,22 +429,22 @@ def bounds(problem: RecordFitProblem, x: Array) -> FittedParameters:
 
 def _larger(first: Array, second: Array) -> Array:
     """A covariance at least as large as both: the first plus the excess of the second."""
-    values, turn = np.linalg.eigh(second - first)
-    found: Array = first + (turn * np.maximum(values, 0.0)) @ turn.T
-    return found
+    values, axes = np.linalg.eigh(second - first)
+    covariance: Array = first + (axes * np.maximum(values, 0.0)) @ axes.T
+    return covariance
 
 
 def _by_time(problem: RecordFitProblem, rows: Array) -> Array:
     """Rows of samples, summed per instant, in the order of time."""
     times = np.concatenate([t for t, _ in problem.used.values()])
-    instants, place = np.unique(times, return_inverse=True)
-    found = np.zeros((instants.size, rows.shape[1]))
-    np.add.at(found, place, rows)
-    return found
+    instants, instant = np.unique(times, return_inverse=True)
+    sums = np.zeros((instants.size, rows.shape[1]))
+    np.add.at(sums, instant, rows)
+    return sums
 
 
 def _bandwidth(moments: Array) -> float:
-    """Correlation length of the moments in samples, from neighbouring values."""
+    """Bandwidth in samples by Andrews' rule, from correlations of neighbouring moments."""
     before, after = moments[:-1], moments[1:]
     power = np.maximum(np.sum(before**2, axis=0), 1e-300)
     rho = np.clip(np.sum(before * after, axis=0) / power, -STEADIEST, STEADIEST)
@@ -452,25 +464,27 @@ def _summed(moments: Array, width: float) -> Array:
     return total
 
 
-def _coloured(problem: RecordFitProblem, left: Array, rest: Array) -> Array:
+def _coloured(problem: RecordFitProblem, outputs: Array, residuals: Array) -> Array:
     """Covariance of U^T r with every channel's residuals as an autoregression."""
     from scipy.linalg import matmul_toeplitz  # slow import, rarely used
 
-    total = np.zeros((left.shape[1], left.shape[1]))
+    total = np.zeros((outputs.shape[1], outputs.shape[1]))
     first = 0
     for t, _ in problem.used.values():
         part = slice(first, first + t.size)
         first += t.size
-        total += left[part].T @ matmul_toeplitz(_autocovariance(rest[part]), left[part])
+        total += outputs[part].T @ matmul_toeplitz(_autocovariance(residuals[part]), outputs[part])
     return total
 
 
-def _autocovariance(rest: Array) -> Array:
+def _autocovariance(residuals: Array) -> Array:
     """Autocovariance of the best autoregression of some residuals, by Levinson's recursion."""
-    count = rest.size
+    count = residuals.size
     orders = min(ORDERS, count // 4)
-    lags = np.array([float(rest[: count - k] @ rest[k:]) for k in range(orders + 1)]) / count
-    found, weights = np.empty(0), np.empty(0)
+    lags = (
+        np.array([float(residuals[: count - k] @ residuals[k:]) for k in range(orders + 1)]) / count
+    )
+    best, weights = np.empty(0), np.empty(0)
     variance = lags[0]
     least = np.inf
     for order in range(orders + 1):
@@ -480,11 +494,11 @@ def _autocovariance(rest: Array) -> Array:
             variance = max(variance * (1 - turn**2), 1e-12 * lags[0])
         cost = count * np.log(max(variance, 1e-300)) + 2 * order
         if cost < least:
-            least, found = cost, weights
+            least, best = cost, weights
     series = np.empty(count)
     series[: orders + 1] = lags
-    for k in range(found.size + 1, count):
-        series[k] = found @ series[k - found.size : k][::-1]
+    for k in range(best.size + 1, count):
+        series[k] = best @ series[k - best.size : k][::-1]
     return series
 
 
@@ -530,7 +544,7 @@ class Fit:
     correlations : of the errors of two parameters, by their names
     before, after : the record against the simulation with the first and the fitted values, the
         first with the best lag if a lag is fitted
-    doubts : caveats that the numbers do not show
+    doubts : reasons for doubt that the numbers do not show
     runs, seconds : number of runs, and time taken
     """
 
@@ -546,20 +560,19 @@ class Fit:
 
     @property
     def missed(self) -> tuple[str, ...]:
-        """Channels with residuals above their noise, where the model lacks something."""
-        found = self.after.residuals.items()
-        return tuple(name for name, one in found if one.span and one.rms > MISFIT * one.noise)
+        """Channels with residuals above their noise, for which the model is incomplete."""
+        return tuple(name for name, x in self.after.residuals.items() if _is_missed(x))
 
     @property
     def values(self) -> dict[str, float]:
         """Fitted values by name, SI."""
-        return {name: one.parameter.value for name, one in self.parameters.items()}
+        return {name: fitted.parameter.value for name, fitted in self.parameters.items()}
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data for JSON, SI."""
         return {
             "record": self.after.measured.name,
-            "parameters": {name: one.to_dict() for name, one in self.parameters.items()},
+            "parameters": {name: fitted.to_dict() for name, fitted in self.parameters.items()},
             "correlations": [
                 {"between": list(pair), "value": value} for pair, value in self.correlations.items()
             ],
@@ -608,23 +621,25 @@ def fit(
         the simulation fails at the initial values
     """
     begin = perf_counter()
-    own = entries(names, scenario, plant)
+    searched = entries(names, scenario, plant)
     gains = tune(scenario, plant, records) if tuned is None else tuned
-    problem = RecordFitProblem(scenario, plant, records, gains, measured, own)
+    problem = RecordFitProblem(scenario, plant, records, gains, measured, searched)
     first = problem.lag(problem.start)
     dense = {"sample_time": problem.step}
-    start = run(scenario.model_copy(update=dense), plant, records, gains, spec=spec)
-    before = overlay(start, measured, lag=first)
+    initial = run(scenario.model_copy(update=dense), plant, records, gains, spec=spec)
+    before = overlay(initial, measured, lag=first)
     with whole("fitting"):
         x = problem.solve()
-    told = bounds(problem, x)
+    uncertain = bounds(problem, x)
     fitted = {
-        one.name: Fitted(one, _natural(one, told, problem), _edge(problem, x, k))
-        for k, one in enumerate(own)
+        parameter.name: Fitted(
+            parameter, _natural(parameter, uncertain, problem), _edge(problem, x, k)
+        )
+        for k, parameter in enumerate(searched)
     }
-    correlations = _correlations(told)
+    correlations = _correlations(uncertain)
     new_scenario, new_plant = problem.put(x)
-    after_gains = tune(new_scenario, new_plant, records, held=gains)
+    after_gains = tune(new_scenario, new_plant, records, previous=gains)
     final = run(
         new_scenario.model_copy(update=dense), new_plant, records, after_gains,
         verify=verify, method=method, spec=spec,
@@ -632,10 +647,10 @@ def fit(
     after = overlay(final, measured, lag=problem.lag(x))
     doubts = (
         *problem.notes,
-        *_unknown(fitted),
-        *_parted(fitted, correlations),
-        *_missed(after, before),
-        *_loop(gains),
+        *_unidentified(fitted),
+        *_inseparable(fitted, correlations),
+        *_misfits(after, before),
+        *_controller_notes(gains),
     )
     return Fit(
         new_scenario, new_plant, fitted, correlations, before, after, doubts,
@@ -649,7 +664,7 @@ def _natural(
     """A parameter in its own unit from the searched value.
 
     Bounds apply to the parameter itself, not to its logarithm, as the effect of an air content or a
-    leakage is proportional. None is below zero.
+    leakage is proportional. No bound is below zero.
     """
     x = fitted_parameters.parameters[fit_parameter.name]
     half = x.upper - x.value
@@ -674,68 +689,77 @@ def _edge(problem: RecordFitProblem, x: Array, k: int) -> Literal["lower", "uppe
 
 def _correlations(fitted_parameters: FittedParameters) -> dict[tuple[str, str], float]:
     """Correlations between the errors of bounded parameters."""
-    found = {}
-    for (i, one), (k, other) in combinations(enumerate(fitted_parameters.parameters), 2):
+    correlations = {}
+    for (i, first), (k, second) in combinations(enumerate(fitted_parameters.parameters), 2):
         size = np.sqrt(fitted_parameters.covariance[i, i] * fitted_parameters.covariance[k, k])
         if np.isfinite(size) and size > 0:
-            found[one, other] = float(np.clip(fitted_parameters.covariance[i, k] / size, -1.0, 1.0))
-    return found
+            correlations[first, second] = float(
+                np.clip(fitted_parameters.covariance[i, k] / size, -1.0, 1.0)
+            )
+    return correlations
 
 
-def _unknown(fitted: Mapping[str, Fitted]) -> Iterator[str]:
+def _unidentified(fitted: Mapping[str, Fitted]) -> Iterator[str]:
     """Parameters that are not identified, and why."""
-    for name, one in fitted.items():
-        quantity, found = one.entry.quantity, one.parameter
-        if one.at_bound is not None:
-            low = one.at_bound == "lower"
-            end = one.entry.lower if low else one.entry.upper
+    for name, parameter in fitted.items():
+        quantity, value, side = parameter.entry.quantity, parameter.parameter, parameter.at_bound
+        if side is not None:
+            low = side == "lower"
+            end = parameter.entry.lower if low else parameter.entry.upper
             yield (
-                f"{name} is at the {one.at_bound} end of its range, {quantity.text(end)}: the "
+                f"{name} is at the {side} end of its range, {quantity.text(end)}: the "
                 f"record suggests {('less' if low else 'more')}, or the simulation lacks "
                 "something else"
             )
-        elif found.verdict == "identifiable":
+        elif value.verdict == "identifiable":
             continue
-        elif not np.isfinite(found.upper):
+        elif not np.isfinite(value.upper):
             yield (
                 f"{name} is not identifiable: no measured channel depends on it, or only in "
                 "combination with other fitted parameters"
             )
         else:
-            between = f"{quantity.text(found.lower, 3)} to {quantity.text(found.upper, 3)}"
-            yield f"{name} is {found.verdict}: the record allows {between}"
+            between = f"{quantity.text(value.lower, 3)} to {quantity.text(value.upper, 3)}"
+            yield f"{name} is {value.verdict}: the record allows {between}"
 
 
-def _parted(
+def _inseparable(
     fitted: Mapping[str, Fitted], correlations: Mapping[tuple[str, str], float]
 ) -> Iterator[str]:
     """Parameters that the fit cannot separate."""
-    found = [
-        f"{one} with {other} ({value:.2f})"
-        for (one, other), value in correlations.items()
+    pairs = [
+        f"{first} with {second} ({value:.2f})"
+        for (first, second), value in correlations.items()
         if abs(value) > ALIKE
-        and not all(fitted[name].parameter.identifiable for name in (one, other))
+        and not all(fitted[name].parameter.identifiable for name in (first, second))
     ]
-    if found:
+    if pairs:
         yield (
-            f"correlated errors: {', '.join(found)}; the pair is known better than each alone: "
+            f"correlated errors: {', '.join(pairs)}; the pair is known better than each alone: "
             "state one, or measure what separates them"
         )
 
 
-def _missed(after: Overlay, before: Overlay) -> Iterator[str]:
+def _is_missed(residual: ChannelResidual) -> bool:
+    """Whether the residual of a channel that moves exceeds its noise."""
+    return residual.span > 0 and residual.rms > MISFIT * residual.noise
+
+
+def _misfits(after: Overlay, before: Overlay) -> Iterator[str]:
     """Channels with residuals above the noise."""
-    missed = []
-    for name, one in after.residuals.items():
-        if one.span == 0 or one.rms <= MISFIT * one.noise:
+    misfits = []
+    for name, channel in after.residuals.items():
+        if not _is_missed(channel):
             continue
         quantity = after.simulation.told[name].quantity
-        missed.append(f"{name} {quantity.text(one.rms, 2)}, {_times(one.rms / one.noise)} times")
-        if one.rms > WORSE * before.residuals[name].rms:
+        misfits.append(
+            f"{name} {quantity.text(channel.rms, 2)}, {_times(channel.rms / channel.noise)} times"
+        )
+        if channel.rms > WORSE * before.residuals[name].rms:
             yield f"{name} fits worse than before: the channels contradict each other"
-    if missed:
+    if misfits:
         yield shown(
-            f"the simulation misses the record by more than its noise ({'; '.join(missed)}): the "
+            f"the simulation misses the record by more than its noise ({'; '.join(misfits)}): the "
             "model lacks something (or the record was smoothed), and the bounds do not include "
             "the resulting bias of the parameters",
             400,
@@ -746,7 +770,7 @@ def _times(ratio: float) -> str:
     return f"{ratio:.2g}" if ratio < 10 else f"{ratio:.0f}"
 
 
-def _loop(tuned: Tuned | None) -> Iterator[str]:
+def _controller_notes(tuned: Tuned | None) -> Iterator[str]:
     if tuned is not None and tuned.origin != "stated":
         yield (
             f"the controller's gain is not stated but comes from {tuned.origin}: state the test "

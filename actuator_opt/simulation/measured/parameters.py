@@ -17,12 +17,12 @@ Case: TypeAlias = tuple[Scenario, Plant]
 Put: TypeAlias = Callable[[Scenario, Plant, float], Case]
 
 SMALL = 0.01
-"""A small share of the full signal, or of the supply pressure's force (a choice): start of the
-search where a design states no friction, and accuracy required of an offset."""
+"""A small share of the full signal or of the supply pressure's force (a choice). Initial value of a
+friction that the design does not state, and accuracy needed of an offset."""
 BLEED = 1e-6 / 60 / 1e5
 """Initial leakage for a design without any (a choice): 1 ml/min/bar [m^3/s/Pa]."""
 RISE = 1.5
-"""Initial breakaway over Coulomb friction for a design with equal ones (a choice)."""
+"""Initial ratio of breakaway to Coulomb friction for a design with equal values (a choice)."""
 LATEST = 0.2
 """Largest lag of a record relative to the simulated time (a choice: a manually started logger)."""
 
@@ -39,7 +39,7 @@ class FitParameter:
     positive: bool
     """Whether its logarithm is searched."""
     near: float
-    """Acceptable half width of the bounds, even about 0; for signed parameters."""
+    """Half width of the bounds that is acceptable even about 0, for signed parameters."""
     put: Put
 
 
@@ -72,12 +72,12 @@ def entries(names: Sequence[str], scenario: Scenario, plant: Plant) -> tuple[Fit
 
 
 def _idle(name: str, scenario: Scenario, plant: Plant) -> str | None:
-    """Why a parameter has no effect here, or None."""
-    bench, motor = scenario.held_ports is not None, scenario.motor is not None
+    """Reason why a parameter has no effect here, or None."""
+    on_bench, motor = scenario.held_ports is not None, scenario.motor is not None
     if name in VALVE:
         if plant.valve is None:
             return "the design has no valve"
-        if not bench and not motor and ends_of(scenario, plant) != "valve":
+        if not on_bench and not motor and ends_of(scenario, plant) != "valve":
             return "the lines do not end at a valve"
         leaks = plant.valve.leakage_supply or plant.valve.leakage_tank
         if name == "valve_leakage" and not leaks:
@@ -85,7 +85,7 @@ def _idle(name: str, scenario: Scenario, plant: Plant) -> str | None:
         return None
     if name == "lag":
         return None
-    if bench:
+    if on_bench:
         return "the ports of the valve are blocked"
     if motor and name not in OIL:
         return "a motor replaces the cylinder"
@@ -97,10 +97,10 @@ def _idle(name: str, scenario: Scenario, plant: Plant) -> str | None:
 
 
 def _even(scenario: Scenario, plant: Plant) -> bool:
-    """Whether friction is independent of speed."""
-    own = scenario.friction
-    if own.coulomb is not None:
-        return (own.static or own.coulomb) <= own.coulomb
+    """Whether static friction does not exceed Coulomb friction."""
+    friction = scenario.friction
+    if friction.coulomb is not None:
+        return (friction.static or friction.coulomb) <= friction.coulomb
     return plant.seals.static == plant.seals.coulomb
 
 
@@ -108,8 +108,8 @@ def _entry(name: str, scenario: Scenario, plant: Plant) -> FitParameter:
     if name == "lag":
         most = LATEST * scenario.duration
         quantity = RECORDS["pressure_lag"]
-        late = replace(quantity, name="lag", label="time lag of the record")
-        return FitParameter(name, late, 0.0, -most, most, False, 0.0, lambda s, p, _: (s, p))
+        lag = replace(quantity, name="lag", label="time lag of the record")
+        return FitParameter(name, lag, 0.0, -most, most, False, 0.0, lambda s, p, _: (s, p))
     return PARAMETERS[name](scenario, plant)
 
 
@@ -121,8 +121,8 @@ def _force(plant: Plant) -> float:
 def _positive(
     name: str, quantity: Quantity, start: float, least: float, most: float, put: Put
 ) -> FitParameter:
-    begin = min(max(start, 1.001 * least), 0.999 * most)
-    return FitParameter(name, quantity, begin, least, most, True, 0.0, put)
+    guess = min(max(start, 1.001 * least), 0.999 * most)
+    return FitParameter(name, quantity, guess, least, most, True, 0.0, put)
 
 
 def _air(scenario: Scenario, plant: Plant) -> FitParameter:
@@ -188,8 +188,8 @@ def _leakage(scenario: Scenario, plant: Plant) -> FitParameter:
 
 def _level(plane: Plane, scenario: Scenario, plant: Plant) -> float:
     """Friction of a plane at the initial pressures."""
-    begin = start_of(scenario, plant, {})
-    return float(plane.at(begin.pressure_a, begin.pressure_b))
+    initial = start_of(scenario, plant, {})
+    return float(plane.at(initial.pressure_a, initial.pressure_b))
 
 
 def _scaled(plane: Plane, scenario: Scenario, plant: Plant, value: float) -> Plane:
@@ -197,11 +197,14 @@ def _scaled(plane: Plane, scenario: Scenario, plant: Plant, value: float) -> Pla
     level = _level(plane, scenario, plant)
     if level <= 0:
         return Plane(value)
-    by = value / level
+    factor = value / level
     return Plane(
-        by * plane.constant, by * plane.difference, by * plane.rod_side, by * plane.higher,
+        factor * plane.constant,
+        factor * plane.difference,
+        factor * plane.rod_side,
+        factor * plane.higher,
         plane.error,
-    )  # fmt: skip
+    )
 
 
 def _stated(scenario: Scenario, **values: float) -> Scenario:
@@ -221,8 +224,10 @@ def _coulomb(scenario: Scenario, plant: Plant) -> FitParameter:
         )
         return s, replace(p, seals=seals)
 
-    stated = scenario.friction.coulomb
-    level = _level(plant.seals.coulomb, scenario, plant) if stated is None else stated
+    scenario_level = scenario.friction.coulomb
+    level = (
+        _level(plant.seals.coulomb, scenario, plant) if scenario_level is None else scenario_level
+    )
     most = _force(plant)
     return _positive(
         "coulomb", SCENARIOS["coulomb_force"], level or SMALL * most, 1e-5 * most, most, put
@@ -235,15 +240,15 @@ def _static(scenario: Scenario, plant: Plant) -> FitParameter:
             return _stated(s, static=value), p
         return s, replace(p, seals=replace(p.seals, static=_scaled(p.seals.static, s, p, value)))
 
-    own = scenario.friction
-    if own.coulomb is None:
+    friction = scenario.friction
+    if friction.coulomb is None:
         level = _level(plant.seals.coulomb, scenario, plant)
         start = _level(plant.seals.static, scenario, plant)
     else:
-        level, start = own.coulomb, own.static or own.coulomb
+        level, start = friction.coulomb, friction.static or friction.coulomb
     most = _force(plant)
-    begin = max(start, RISE * level if start <= 1.01 * level else start, SMALL * most)
-    return _positive("static", SCENARIOS["static_force"], begin, 1e-5 * most, most, put)
+    guess = max(start, RISE * level if start <= 1.01 * level else start, SMALL * most)
+    return _positive("static", SCENARIOS["static_force"], guess, 1e-5 * most, most, put)
 
 
 def _stribeck_speed(scenario: Scenario, plant: Plant) -> FitParameter:
@@ -254,8 +259,10 @@ def _stribeck_speed(scenario: Scenario, plant: Plant) -> FitParameter:
             return _stated(s, stribeck_speed=value), p
         return s, replace(p, seals=replace(p.seals, stribeck_speed=value))
 
-    own = scenario.friction
-    start = plant.seals.stribeck_speed if own.coulomb is None else own.stribeck_speed or 5e-3
+    friction = scenario.friction
+    start = (
+        plant.seals.stribeck_speed if friction.coulomb is None else friction.stribeck_speed or 5e-3
+    )
     return _positive("stribeck_speed", quantity, start, quantity.lower, quantity.upper, put)
 
 
@@ -263,10 +270,10 @@ def _viscous(scenario: Scenario, plant: Plant) -> FitParameter:
     def put(s: Scenario, p: Plant, value: float) -> Case:
         return _stated(s, viscous=value), p
 
-    own = scenario.friction
-    start = own.viscous
+    friction = scenario.friction
+    start = friction.viscous
     if start is None:
-        start = 0.0 if own.coulomb is not None else plant.seals.viscous
+        start = 0.0 if friction.coulomb is not None else plant.seals.viscous
     size = _force(plant)  # at 1 m/s
     quantity = INPUTS["viscous_friction"]
     return _positive("viscous", quantity, start or SMALL * size, 1e-6 * size, 10 * size, put)
@@ -337,5 +344,5 @@ PARAMETERS: dict[str, Callable[[Scenario, Plant], FitParameter]] = {
     "dead_volume_b": _dead("b"),
     "load_offset": _offset,
 }
-"""Parameters by name; `lag`, which shifts the record, is separate.  Friction keeps its shape over
+"""Parameters by name, without `lag`, which shifts the record. Friction keeps its shape over
 the pressures: `coulomb` and `static` are its levels at the start."""

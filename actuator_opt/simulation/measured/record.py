@@ -15,7 +15,7 @@ from ...design.scenario.reader import WIDE, gap_words, gaps
 from ...identification.column_units import NONE, ColumnUnits
 from ...identification.record import CHANNELS, Channel, Record, parse_record
 from ...models.fluid import ATMOSPHERIC_PRESSURE
-from ..result import Simulation, Told
+from ..result import SignalLabel, Simulation
 
 COLUMNS = {name: CHANNELS[name] for name in ("t", "p1", "p2", "x", "v", "F_L", "T")} | {
     "U": Channel("voltage", "V", "signal of the valve", ("signal", "command")),
@@ -60,19 +60,19 @@ class AlignedRecord:
         time = _rising(record)
         channels: dict[str, tuple[Array, Array]] = {}
         notes, missing = [*record.notes], dict[str, list[str]]()
-        known = [column for column in SIGNALS if column in record]
-        for column in known:
+        recognised = [column for column in SIGNALS if column in record]
+        for column in recognised:
             values, signal = record[column], SIGNALS[column]
-            seen = np.isfinite(values)
-            count = int(np.count_nonzero(seen))
+            present = np.isfinite(values)
+            count = int(np.count_nonzero(present))
             if count < FEWEST:
                 notes.append(f"{signal}: {count} samples, left out: at least {FEWEST} are needed")
                 continue
-            channels[signal] = time[seen], values[seen]
-            if absent := gaps(time, values):
-                missing.setdefault(gap_words(absent), []).append(signal)
-        if known and not channels:
-            message = f"fewer than {FEWEST} numbers in {', '.join(known)}"
+            channels[signal] = time[present], values[present]
+            if gap_list := gaps(time, values):
+                missing.setdefault(gap_words(gap_list), []).append(signal)
+        if recognised and not channels:
+            message = f"fewer than {FEWEST} numbers in {', '.join(recognised)}"
             raise record.fault(
                 message, "give more samples: empty cells, nan, inf and 1e30 count as missing"
             )
@@ -82,9 +82,9 @@ class AlignedRecord:
         notes += [
             f"{named(names, channels)}: {words}, left out" for words, names in missing.items()
         ]
-        still = [signal for signal, (_, values) in channels.items() if np.ptp(values) == 0]
-        if still:
-            notes.append(f"{', '.join(still)}: constant throughout the record")
+        constant = [signal for signal, (_, values) in channels.items() if np.ptp(values) == 0]
+        if constant:
+            notes.append(f"{', '.join(constant)}: constant throughout the record")
         return cls(channels, record.name, tuple(notes))
 
     def fault(self, message: str, remedy: str) -> InputError:
@@ -123,20 +123,20 @@ def parse_measured(
     return AlignedRecord.of(replace(record, notes=tuple(notes)))
 
 
-def named(names: Collection[str], every: Collection[str]) -> str:
+def named(names: Collection[str], all_names: Collection[str]) -> str:
     """Name some channels, or "all channels"."""
-    return ", ".join(names) if len(names) < max(len(every), 2) else "all channels"
+    return ", ".join(names) if len(names) < max(len(all_names), 2) else "all channels"
 
 
 def _rising(record: Record) -> Array:
-    """The times of a record, checked."""
+    """The times of a record, checked to increase."""
     time = record.time
-    lost = np.flatnonzero(~np.isfinite(time))
-    if lost.size:
-        raise record.fault("missing time", "give a time for every sample", int(lost[0]))
-    back = np.flatnonzero(np.diff(time) <= 0)
-    if back.size:
-        at = int(back[0]) + 1
+    without_time = np.flatnonzero(~np.isfinite(time))
+    if without_time.size:
+        raise record.fault("missing time", "give a time for every sample", int(without_time[0]))
+    falling = np.flatnonzero(np.diff(time) <= 0)
+    if falling.size:
+        at = int(falling[0]) + 1
         message = f"time does not increase at {time[at]:.9g} s"
         raise record.fault(message, "sort the lines by time and remove repeated ones", at)
     return time
@@ -149,12 +149,13 @@ ORDERS = (3, 6)
 ROBUST = 1.4826
 """Ratio of standard deviation to median absolute deviation of a normal distribution."""
 APART = 0.02
-"""Offset at the start, as a share of a channel's span, above which it is reported (a choice)."""
+"""Largest offset at the start that is not reported, as a share of a channel's span (a choice)."""
 BEYOND = 5.0
-"""The same in standard deviations of the noise (a choice)."""
+"""Largest offset at the start that is not reported, in standard deviations of the noise (a
+choice)."""
 BESIDE = 2.0
-"""Plausible multiple of stroke or proof pressure in a record (a choice: bar and MPa differ by
-ten)."""
+"""Plausible multiple of stroke or proof pressure in a record (a choice: bar and MPa differ by a
+factor of ten)."""
 STARTS = ("position", "pressure_a", "pressure_b")
 """Signals with an initial value in the scenario."""
 
@@ -168,7 +169,7 @@ class ChannelResidual:
     largest: float
     """Largest |measured - simulated|."""
     time: float
-    """Its time [s]."""
+    """Time of that difference [s]."""
     bias: float
     """Mean difference."""
     span: float
@@ -181,11 +182,11 @@ class ChannelResidual:
         """Root mean square over the span; None for a constant channel."""
         return self.rms / self.span if self.span > 0 else None
 
-    def to_dict(self, told: Told) -> dict[str, Any]:
+    def to_dict(self, label: SignalLabel) -> dict[str, Any]:
         """As plain data for JSON, SI."""
         return {
-            "label": told.label,
-            "unit": told.quantity.si_unit,
+            "label": label.label,
+            "unit": label.quantity.si_unit,
             "count": self.count,
             "rms": self.rms,
             "max": self.largest,
@@ -210,11 +211,14 @@ class Overlay:
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data for JSON, SI; without the samples."""
-        told = self.simulation.told
+        labels = self.simulation.told
         return {
             "record": self.measured.name,
             "lag": self.lag,
-            "residuals": {name: one.to_dict(told[name]) for name, one in self.residuals.items()},
+            "residuals": {
+                name: channel_residual.to_dict(labels[name])
+                for name, channel_residual in self.residuals.items()
+            },
             "notes": list(self.notes),
         }
 
@@ -234,23 +238,23 @@ def overlay(simulation: Simulation, measured: AlignedRecord, *, lag: float = 0.0
     """
     time, signals = simulation.time, simulation.signals
     duration = float(time[-1])
-    used = inside(measured, signals, duration, lag)
-    found = {
+    samples = inside(measured, signals, duration, lag)
+    residuals = {
         name: residual(t, y, beside(t - lag, y, time, signals[name]))
-        for name, (t, y) in used.items()
+        for name, (t, y) in samples.items()
     }
     notes = [*measured.notes]
-    absent = [name for name in measured.channels if name not in signals]
-    if absent:
-        notes.append(f"not simulated here: {', '.join(absent)}")
-    short = [name for name in measured.channels if name in signals and name not in used]
-    if short:
-        notes.append(f"no overlap in time: {', '.join(short)}")
-    notes += _reach(used, measured, duration, lag)
-    notes += _sampling(simulation, used)
-    notes += _starts(simulation, used, found, lag)
-    notes += _absurd(simulation, used)
-    return Overlay(measured, simulation, lag, found, tuple(notes))
+    unsimulated = [name for name in measured.channels if name not in signals]
+    if unsimulated:
+        notes.append(f"not simulated here: {', '.join(unsimulated)}")
+    outside = [name for name in measured.channels if name in signals and name not in samples]
+    if outside:
+        notes.append(f"no overlap in time: {', '.join(outside)}")
+    notes += _partial_overlaps(samples, measured, duration, lag)
+    notes += _coarse_sampling(simulation, samples)
+    notes += _initial_values(simulation, samples, residuals, lag)
+    notes += _implausible(simulation, samples)
+    return Overlay(measured, simulation, lag, residuals, tuple(notes))
 
 
 def inside(
@@ -261,21 +265,21 @@ def inside(
     Raises
     ------
     InputError
-        there are none
+        no signal or too few samples in common
     """
-    common = {name: one for name, one in measured.channels.items() if name in signals}
+    common = {name: channel for name, channel in measured.channels.items() if name in signals}
     if not common:
         have = ", ".join(measured.channels) or "none"
         known = ", ".join(name for name in SIGNALS.values() if name in signals)
         message = f"none of its channels is simulated ({have})"
         raise measured.fault(message, shown(f"give some of {known}", 200))
-    found = {}
+    samples = {}
     for name, (t, y) in common.items():
         room = 1e-9 * duration
         within = (t - lag >= -room) & (t - lag <= duration + room)
         if np.count_nonzero(within) >= FEWEST:
-            found[name] = t[within], y[within]
-    if not found:
+            samples[name] = t[within], y[within]
+    if not samples:
         first = min(float(t[0]) for t, _ in common.values()) - lag
         last = max(float(t[-1]) for t, _ in common.values()) - lag
         raise measured.fault(
@@ -283,7 +287,7 @@ def inside(
             f"fewer than {FEWEST} common samples",
             "start the record's time at the scenario's start, or simulate longer",
         )
-    return found
+    return samples
 
 
 class SimulatedSignal:
@@ -299,8 +303,8 @@ class SimulatedSignal:
         before, after = np.append(0.0, step), np.append(step, 0.0)
         left, right = np.append(0.0, rise), np.append(rise, 0.0)
         inner = (before > 0) & (after > 0)
-        whole = np.where(inner, before + after, 1.0)
-        middle = (after * left + before * right) / whole
+        total_step = np.where(inner, before + after, 1.0)
+        middle = (after * left + before * right) / total_step
         self.slopes = np.where(inner, middle, left + right)
         begins = np.flatnonzero(~inner[:-1] & inner[1:] & (step > 0))
         finishes = np.flatnonzero(inner[:-1] & ~inner[1:] & (step > 0))
@@ -315,8 +319,8 @@ class SimulatedSignal:
         step = t[right] - t[left]
         s = np.clip((moment - t[left]) / np.where(step > 0, step, 1.0), 0.0, 1.0)
         a, b = y[left], y[right]
-        bent = (1 - s) * m[left] - s * m[right]
-        return a + s * (b - a) + s * (1 - s) * (step * bent - (1 - 2 * s) * (b - a))
+        slope_term = (1 - s) * m[left] - s * m[right]
+        return a + s * (b - a) + s * (1 - s) * (step * slope_term - (1 - 2 * s) * (b - a))
 
 
 def beside(moment: Array, measured: Array, time: Array, values: Array) -> Array:
@@ -324,24 +328,24 @@ def beside(moment: Array, measured: Array, time: Array, values: Array) -> Array:
 
     Close to a jump the simulated value may be that of either side, or any value between.
     """
-    found = SimulatedSignal(time, values)(moment)
+    simulated = SimulatedSignal(time, values)(moment)
     half = 0.5 * float(np.median(np.diff(moment)))
     for k in np.flatnonzero((np.diff(time) == 0) & (np.diff(values) != 0)):
         near = np.abs(moment - time[k]) <= 1.001 * half
-        found[near] = np.clip(measured[near], *sorted((values[k], values[k + 1])))
-    return found
+        simulated[near] = np.clip(measured[near], *sorted((values[k], values[k + 1])))
+    return simulated
 
 
 def residual(time: Array, measured: Array, simulated: Array) -> ChannelResidual:
     """The residual of one channel."""
-    rest = measured - simulated
-    worst = int(np.argmax(np.abs(rest)))
+    difference = measured - simulated
+    worst = int(np.argmax(np.abs(difference)))
     return ChannelResidual(
-        count=rest.size,
-        rms=float(np.sqrt(np.mean(rest**2))),
-        largest=float(np.abs(rest[worst])),
+        count=difference.size,
+        rms=float(np.sqrt(np.mean(difference**2))),
+        largest=float(np.abs(difference[worst])),
         time=float(time[worst]),
-        bias=float(np.mean(rest)),
+        bias=float(np.mean(difference)),
         span=float(np.ptp(measured)),
         noise=noise(measured),
     )
@@ -372,12 +376,12 @@ def noise(values: Array) -> float:
     return max(rough, float(grain / np.sqrt(12.0)), FINEST * span)
 
 
-def _reach(
-    used: Mapping[str, tuple[Array, Array]], measured: AlignedRecord, duration: float, lag: float
+def _partial_overlaps(
+    samples: Mapping[str, tuple[Array, Array]], measured: AlignedRecord, duration: float, lag: float
 ) -> Iterator[str]:
     """Channels that cover less or more time than the run."""
     spans: dict[tuple[str, str], list[str]] = {}
-    for name in used:
+    for name in samples:
         time = measured.channels[name][0] - lag
         room = WIDE * float(np.median(np.diff(time)))
         first = 0.0 if abs(time[0]) <= room else float(time[0])
@@ -386,61 +390,65 @@ def _reach(
             spans.setdefault((f"{first:.4g}", f"{last:.4g}"), []).append(name)
     for (begin, end), names in spans.items():
         yield (
-            f"{named(names, used)}: measured from {begin} to {end} s, simulated from 0 to "
+            f"{named(names, samples)}: measured from {begin} to {end} s, simulated from 0 to "
             f"{duration:.4g} s: only the overlap is compared"
         )
 
 
-def _sampling(simulation: Simulation, used: Mapping[str, tuple[Array, Array]]) -> Iterator[str]:
+def _coarse_sampling(
+    simulation: Simulation, samples: Mapping[str, tuple[Array, Array]]
+) -> Iterator[str]:
     """Whether the simulation is sampled more coarsely than the record."""
-    own = float(np.median(np.diff(simulation.time)))
-    theirs = min(float(np.median(np.diff(t))) for t, _ in used.values())
-    if own > WIDE * theirs:
+    simulated_step = float(np.median(np.diff(simulation.time)))
+    record_step = min(float(np.median(np.diff(t))) for t, _ in samples.values())
+    if simulated_step > WIDE * record_step:
         yield (
-            f"the simulation is sampled every {1000.0 * own:.3g} ms, the record every "
-            f"{1000.0 * theirs:.3g} ms, so peaks may be missed: state sample_time"
+            f"the simulation is sampled every {1000.0 * simulated_step:.3g} ms, the record every "
+            f"{1000.0 * record_step:.3g} ms, so peaks may be missed: state sample_time"
         )
 
 
-def _starts(
+def _initial_values(
     simulation: Simulation,
-    used: Mapping[str, tuple[Array, Array]],
-    found: Mapping[str, ChannelResidual],
+    samples: Mapping[str, tuple[Array, Array]],
+    residuals: Mapping[str, ChannelResidual],
     lag: float,
 ) -> Iterator[str]:
     """Channels whose initial value differs from the scenario's."""
     for name in STARTS:
-        if name not in used:
+        if name not in samples:
             continue
-        t, y = used[name]
+        t, y = samples[name]
         step = float(np.median(np.diff(t)))
         if t[0] - lag > 1.5 * step:
             continue
-        begun = float(simulation.signals[name][0])
-        apart = abs(float(y[0]) - begun)
-        if apart > max(APART * found[name].span, BEYOND * found[name].noise):
+        initial = float(simulation.signals[name][0])
+        offset = abs(float(y[0]) - initial)
+        if offset > max(APART * residuals[name].span, BEYOND * residuals[name].noise):
             quantity = simulation.told[name].quantity
             yield (
                 f"{name} starts at {quantity.text(float(y[0]))} in the record, but at "
-                f"{quantity.text(begun)} in the scenario: state initial.{name}"
+                f"{quantity.text(initial)} in the scenario: state initial.{name}"
             )
 
 
-def _absurd(simulation: Simulation, used: Mapping[str, tuple[Array, Array]]) -> Iterator[str]:
+def _implausible(
+    simulation: Simulation, samples: Mapping[str, tuple[Array, Array]]
+) -> Iterator[str]:
     """Positions and pressures outside the plausible range, which suggests a wrong unit or zero."""
     plant = simulation.plant
-    for name, low, high, what in (
+    for name, low, high, limit_name in (
         ("position", 0.0, plant.stroke, "the stroke"),
         ("pressure_a", -ATMOSPHERIC_PRESSURE, plant.proof_pressure, "the proof pressure"),
         ("pressure_b", -ATMOSPHERIC_PRESSURE, plant.proof_pressure, "the proof pressure"),
     ):
-        if name not in used:
+        if name not in samples:
             continue
         room = BESIDE * (high - low)
-        least, most = float(np.min(used[name][1])), float(np.max(used[name][1]))
+        least, most = float(np.min(samples[name][1])), float(np.max(samples[name][1]))
         if least < low - room or most > high + room:
-            say = simulation.told[name].quantity.text
+            text = simulation.told[name].quantity.text
             yield (
-                f"{name} ranges from {say(least)} to {say(most)} in the record, but {what} is "
-                f"{say(high)}: check its unit and zero"
+                f"{name} ranges from {text(least)} to {text(most)} in the record, but "
+                f"{limit_name} is {text(high)}: check its unit and zero"
             )

@@ -1,12 +1,9 @@
-"""Small simulated experiments that measure the figures of the linear tier, each with its own runs.
+"""Small simulated experiments that measure the figures of the linear tier, with separate runs.
 
-Amplitudes are small against stroke, signal and pressure, and stated with every figure, as with
-friction all figures depend on them.
-
-A design on a stand: held at a position under a force, for small experiments.
-
-Plant, friction, valve, supply and stops are those of the scenario; excitation and loop closure are
-the experiment's own.
+A stand holds the design at a position under a force. Plant, friction, valve, supply and stops are
+those of the scenario; each experiment has its excitation and its loop. Amplitudes are small against
+stroke, signal and pressure. They are stated with every figure, as friction makes figures depend on
+them.
 """
 
 from __future__ import annotations
@@ -40,7 +37,7 @@ from ..harmonic import dynamic_stiffness_of_record, harmonic_fit
 from ..integrate import integrate
 
 RELATIVE = 1e-7
-"""Relative tolerance of a step for a full-size oscillation; small ones need a smaller one."""
+"""Relative tolerance of a step at full amplitude; it falls with the amplitude."""
 FINEST = 1e-9
 """Least relative tolerance of a step: 0.1 nm beside a position of 100 mm."""
 SETTLED = 3.0
@@ -63,16 +60,16 @@ class RunRecord:
     last: Mapping[str, float]
 
     def within(self, begin: float, end: float = inf) -> RunRecord:
-        """The samples between two times; of a doubled instant the later one."""
+        """The samples between two times; an instant with two samples keeps the later."""
         later = np.append(np.diff(self.time) > 0, True)
-        kept = (self.time >= begin) & (self.time <= end) & later
-        signals = {name: values[kept] for name, values in self.signals.items()}
-        return RunRecord(self.time[kept], signals, self.last)
+        chosen = (self.time >= begin) & (self.time <= end) & later
+        signals = {name: values[chosen] for name, values in self.signals.items()}
+        return RunRecord(self.time[chosen], signals, self.last)
 
 
 @dataclass(frozen=True, slots=True)
 class Facts:
-    """Further facts about a record."""
+    """Evidence from a record for the causes of a difference."""
 
     swing: float
     """Amplitude of the position without drift [m]."""
@@ -94,7 +91,7 @@ class Facts:
 
 @dataclass(frozen=True, slots=True)
 class ExperimentResult:
-    """Results of an experiment, None with a reason if it gives none."""
+    """Results of an experiment; a missing result is None, with the reason in `why`."""
 
     values: Mapping[str, float | None]
     how: str
@@ -114,23 +111,25 @@ class Stand:
     gain: float = 0.0
     """Gain of the design's proportional position loop [V/m]; 0 without one."""
     steady_gain: float = 0.0
-    """Gain that brings the loop to rest where the design's own oscillates [V/m]."""
+    """Gain at which the loop comes to rest, even if it oscillates at `gain` [V/m]."""
     bandwidth: float = 1.0
     """Expected bandwidth of the loop, which sets its time to rest [Hz]."""
     scale: float = 1.0
     """Factor on all amplitudes."""
     tally: RunCounter = field(default_factory=RunCounter)
-    rested: dict[str, float] = field(default_factory=dict)
+    rest_states: dict[str, float] = field(default_factory=dict)
     """Equilibrium states of the loop, once computed."""
 
-    def but(self, **changes: Any) -> Stand:
+    def with_changes(self, **changes: Any) -> Stand:
         """A copy with some changes, whose equilibrium is not computed yet."""
-        return replace(self, rested={}, **changes)
+        return replace(self, rest_states={}, **changes)
 
-    def bare(self) -> Stand:
+    def frictionless(self) -> Stand:
         """A copy without sticking friction."""
-        free = self.scenario.friction.model_copy(update={"model": "none"})
-        return self.but(scenario=self.scenario.model_copy(update={"friction": free}))
+        frictionless = self.scenario.friction.model_copy(update={"model": "none"})
+        return self.with_changes(
+            scenario=self.scenario.model_copy(update={"friction": frictionless})
+        )
 
     @property
     def force(self) -> float:
@@ -154,13 +153,13 @@ class Stand:
         force: Sequence[ForceSignal] = (),
         start: Mapping[str, float] | None = None,
     ) -> RunRecord:
-        """One run: closed with a gain, or open with the ports terminated.
+        """A run: closed with a gain, or open with terminated ports.
 
         Parameters
         ----------
         duration, sample_time : [s]
         gain : of a proportional position loop [V/m]; None: no loop
-        ends : what the ports lead to; None: the valve
+        ends : termination of the ports; None: the valve
         signal : of the valve without a loop [V]
         reference : relative to the stand's position
         force : in addition to the balancing one
@@ -192,8 +191,8 @@ class Stand:
         compiled = system.compiled()
         names = [state.name for state in system.states]
         if start is not None:
-            own = dict(zip(names, compiled.initial.tolist(), strict=True))
-            begin = np.array([start.get(name, value) for name, value in own.items()])
+            initial = dict(zip(names, compiled.initial.tolist(), strict=True))
+            begin = np.array([start.get(name, value) for name, value in initial.items()])
             compiled = replace(compiled, initial=begin)
         relative = max(RELATIVE * min(self.scale, 1.0), FINEST)
         trajectory = integrate(
@@ -205,12 +204,12 @@ class Stand:
 
     def _control(self, gain: float, reference: Sequence[PositionSignal]) -> Controller:
         """A proportional position loop, with the rate limit of the scenario."""
-        stated = self.scenario.control
+        control = self.scenario.control
         return Controller(
             position=(*reference, PositionSignal(shape="constant", value=0.0)),
             tuning="stated",
             position_gain=gain,
-            rate_limit=None if stated is None else stated.rate_limit,
+            rate_limit=None if control is None else control.rate_limit,
         )
 
     @property
@@ -225,10 +224,10 @@ class Stand:
         The valve feeds its own leakage and the piston's. The first run, at mid-stroke, measures the
         resulting error, and the second one compensates it.
         """
-        if not self.rested:
+        if not self.rest_states:
             duration = SETTLED / self.bandwidth * self.gain / self.steady_gain
 
-            def held(stand: Stand, error: float) -> Mapping[str, float]:
+            def resting(stand: Stand, error: float) -> Mapping[str, float]:
                 part = PositionSignal(shape="constant", value=error)
                 return stand.run(
                     duration=duration,
@@ -237,9 +236,9 @@ class Stand:
                     reference=(part,),
                 ).last
 
-            middle = held(replace(self, position=0.5 * self.plant.stroke), 0.0)
-            self.rested.update(held(self, middle["spool"] / self.steady_gain))
-        return self.rested
+            middle = resting(replace(self, position=0.5 * self.plant.stroke), 0.0)
+            self.rest_states.update(resting(self, middle["spool"] / self.steady_gain))
+        return self.rest_states
 
     def held(
         self, *, ends: str, duration: float, sample_time: float, force: Sequence[ForceSignal] = ()
@@ -265,32 +264,32 @@ class Stand:
         reference: Sequence[PositionSignal] = (),
         force: Sequence[ForceSignal] = (),
     ) -> RunRecord:
-        """A closed-loop run from rest; a new gain is inserted without a jump of the signal."""
+        """A closed-loop run from rest; a shift of the reference keeps the signal from jumping."""
         state = self.rest()
         shift = state["position"] + state["spool"] / gain - self.position
-        held = PositionSignal(shape="constant", value=shift)
+        hold = PositionSignal(shape="constant", value=shift)
         return self.run(
             duration=duration,
             sample_time=sample_time,
             gain=gain,
-            reference=(held, *reference),
+            reference=(hold, *reference),
             force=force,
             start=state,
         )
 
     def facts(self, record: RunRecord) -> Facts:
-        """Further facts about a record."""
+        """Evidence from a record for the causes of a difference."""
         t, signals = record.time, record.signals
         position = signals["position"]
         straight = np.polynomial.polynomial.polyfit(t - t[0], position, 1)
-        swing = position - np.polynomial.polynomial.polyval(t - t[0], straight)
+        oscillation = position - np.polynomial.polynomial.polyval(t - t[0], straight)
         spool = signals.get("spool")
         signal = signals.get("signal")
         valve = self.plant.valve
         full = inf if valve is None else valve.signal
         chambers = signals["pressure_a"], signals["pressure_b"]
         return Facts(
-            swing=0.5 * float(np.ptp(swing)),
+            swing=0.5 * float(np.ptp(oscillation)),
             travel=self.travel if "bristles" in signals else 0.0,
             saturated=0.0 if signal is None else float(np.mean(np.abs(signal) > 0.999 * full)),
             spool=None if spool is None else (float(np.min(spool)), float(np.max(spool))),
@@ -330,7 +329,7 @@ MOST = 16.0
 LASTING = 1e-3
 """Decay per period below which an oscillation counts as sustained (a choice)."""
 FIRST, EARLY, LATE = (0.0, 4.0), (8.0, 12.0), (18.0, 22.0)
-"""Windows after a push, in periods, to compare for growth or decay."""
+"""Windows after a push, in periods, that are compared for growth or decay."""
 UNEVEN = 2.0
 """Ratio of half-period lengths above which the motion is not a decay (a choice)."""
 FADED = 0.01
@@ -342,10 +341,10 @@ RINGING = 20.0
 SHAPED = 0.6
 """Frequency relative to the resonance up to which a force is applied in parts (a choice)."""
 BESIDE = (0.7, 1.0, 1.4)
-"""Factors on a linear crossover among which the nonlinear one is searched."""
+"""Factors on a linear crossover between which the nonlinear crossover is searched."""
 SLIDING = (0.9, 1.0, 1.1)
 STICKING = (0.8, 0.9, 1.0, 1.1, 1.22, 1.35, 1.5)
-"""The same on a resonance; bristles of sticking seals add stiffness to the oil."""
+"""Factors on a resonance; bristles of sticking seals raise it, as they add stiffness."""
 HOW_PHASE = "position over error of the closed loop, at unit gain"
 Loop = Callable[[float], complex]
 """Open loop of the linear tier over frequency [Hz], its gain included."""
@@ -363,11 +362,11 @@ class Sine(NamedTuple):
     record: RunRecord
 
 
-def _inset(stand: Stand, room: float) -> Stand:
+def _inset(stand: Stand, clearance: float) -> Stand:
     """The stand with a clearance to both ends of the stroke."""
-    room = min(room, 0.45 * stand.plant.stroke)
-    place = min(max(stand.position, room), stand.plant.stroke - room)
-    return stand if place == stand.position else stand.but(position=place)
+    clearance = min(clearance, 0.45 * stand.plant.stroke)
+    place = min(max(stand.position, clearance), stand.plant.stroke - clearance)
+    return stand if place == stand.position else stand.with_changes(position=place)
 
 
 def placed(stand: Stand) -> Stand:
@@ -388,11 +387,11 @@ def amplitude(stand: Stand, frequency: float, opened: complex) -> float:
     """
     plant = stand.plant
     assert plant.valve is not None
-    errs = 1 / max(abs(1 + opened), 1e-3)
-    signal = SIGNAL_SHARE * plant.valve.signal / (stand.gain * errs)
+    error_ratio = 1 / max(abs(1 + opened), 1e-3)
+    signal = SIGNAL_SHARE * plant.valve.signal / (stand.gain * error_ratio)
     inertia = 2 * FORCE_SHARE * plant.supply_pressure * plant.area_b
-    moved = plant.moving_mass(stand.position)
-    swing = inertia / (moved * (2 * pi * frequency) ** 2 * abs(opened) * errs)
+    moving_mass = plant.moving_mass(stand.position)
+    swing = inertia / (moving_mass * (2 * pi * frequency) ** 2 * abs(opened) * error_ratio)
     return stand.scale * min(STROKE_SHARE * plant.stroke, signal, swing)
 
 
@@ -417,15 +416,15 @@ def sine(stand: Stand, frequency: float, size: float, cycles: float) -> Sine:
 
 def _fitted(record: RunRecord, frequency: float) -> Sine:
     """Ratios of a record of whole cycles."""
-    asked, found, error = (
+    reference, position, error = (
         harmonic_fit(time=record.time, values=record.signals[name], frequency=frequency)
         for name in ("reference", "position", "error")
     )
-    size = max(abs(found.amplitude), 1e-30)
+    size = max(abs(position.amplitude), 1e-30)
     return Sine(
-        found.amplitude / asked.amplitude,
-        found.amplitude / error.amplitude,
-        found.residual / size,
+        position.amplitude / reference.amplitude,
+        position.amplitude / error.amplitude,
+        position.residual / size,
         record,
     )
 
@@ -434,23 +433,23 @@ def bandwidth(stand: Stand, expected: float, loop: Loop) -> ExperimentResult:
     """Frequency at which the closed loop's fundamental falls to -3 dB, by secants."""
     size = amplitude(stand, expected, loop(expected))
     how = f"sine of {1e3 * size:.3g} mm"
-    seen: list[Sine] = []
+    sines: list[Sine] = []
 
     def above(share: float) -> float:
-        seen.append(sine(stand, expected * exp(share), size, 2.0))
-        return log(abs(seen[-1].closed) / HALF)
+        sines.append(sine(stand, expected * exp(share), size, 2.0))
+        return log(abs(sines[-1].closed) / HALF)
 
     share = _root(above, slope=-1.0)
-    facts = stand.facts(seen[-1].record)
-    why = _no_sine(seen[-1])
+    facts = stand.facts(sines[-1].record)
+    why = _no_sine(sines[-1])
     if share is None or why:
-        why = why or f"no -3 dB point within a factor of {MOST:g} of the linear one"
+        why = why or f"no -3 dB point within a factor of {MOST:g} of the linear bandwidth"
         return ExperimentResult({"bandwidth": None}, how, facts, why)
     return ExperimentResult({"bandwidth": expected * exp(share)}, how, facts)
 
 
-def _no_sine(one: Sine) -> str:
-    if one.distortion < 0.5:
+def _no_sine(response: Sine) -> str:
+    if response.distortion < 0.5:
         return ""
     return "the response is not sinusoidal: the loop oscillates by itself, or sticks"
 
@@ -485,38 +484,40 @@ def phase_margin(
     """
     from scipy.optimize import brentq
 
-    seen: dict[float, Sine] = {}
+    sines: dict[float, Sine] = {}
 
     def above(share: float) -> float:
         frequency = exp(share)
-        if share not in seen:
+        if share not in sines:
             size = amplitude(stand, frequency, loop(frequency))
             cycles = min(max(2.0, 3 * frequency / stand.bandwidth), RINGING)
-            seen[share] = sine(stand, frequency, size, cycles)
-        return log(abs(seen[share].opened))
+            sines[share] = sine(stand, frequency, size, cycles)
+        return log(abs(sines[share].opened))
 
     around = STICKING if "bristles" in stand.rest() else SLIDING
-    asked = [f * k for f in crossovers for k in BESIDE]
-    asked += [f * k for f in resonances for k in around]
-    grid = sorted(log(f) for f in set(asked))
+    frequencies = [f * k for f in crossovers for k in BESIDE]
+    frequencies += [f * k for f in resonances for k in around]
+    grid = sorted(log(f) for f in set(frequencies))
     while above(grid[0]) <= 0 and exp(grid[0]) > stand.bandwidth / MOST:
         grid.insert(0, grid[0] - log(BESIDE[-1]))
     values = [above(share) for share in grid]
-    found = [
+    crossings = [
         float(brentq(above, low, high, xtol=EXACT))
         for low, high, value, two in zip(grid, grid[1:], values, values[1:], strict=False)
         if (value > 0) != (two > 0)
     ]
-    one = next((seen[share] for share in found if _no_sine(seen[share])), seen[grid[0]])
-    why = _no_sine(one)
-    if why or not found:
+    doubtful = next((sines[share] for share in crossings if _no_sine(sines[share])), sines[grid[0]])
+    why = _no_sine(doubtful)
+    if why or not crossings:
         value = None if why else inf
-        return ExperimentResult({"phase_margin": value}, HOW_PHASE, stand.facts(one.record), why)
-    at = min(found, key=lambda share: abs(np.angle(-seen[share].opened)))
-    margin = abs(float(np.angle(-seen[at].opened)))
-    size = 0.5 * np.ptp(seen[at].record.signals["reference"])
+        return ExperimentResult(
+            {"phase_margin": value}, HOW_PHASE, stand.facts(doubtful.record), why
+        )
+    at = min(crossings, key=lambda share: abs(np.angle(-sines[share].opened)))
+    margin = abs(float(np.angle(-sines[at].opened)))
+    size = 0.5 * np.ptp(sines[at].record.signals["reference"])
     how = f"{HOW_PHASE}: {exp(at):.3g} Hz, sine of {1e3 * size:.3g} mm"
-    return ExperimentResult({"phase_margin": margin}, how, stand.facts(seen[at].record))
+    return ExperimentResult({"phase_margin": margin}, how, stand.facts(sines[at].record))
 
 
 def ultimate_gain(stand: Stand, expected: float, frequency: float) -> ExperimentResult:
@@ -525,26 +526,28 @@ def ultimate_gain(stand: Stand, expected: float, frequency: float) -> Experiment
 
     push = FORCE_SHARE * stand.full_force * stand.scale
     how = f"push of {push:.3g} N for {500 / frequency:.3g} ms"
-    seen: dict[float, RunRecord] = {}
+    records: dict[float, RunRecord] = {}
 
     def growth(share: float) -> float:
-        rate, seen[share] = _growth(stand, expected * exp(share), frequency, push)
+        rate, records[share] = _growth(stand, expected * exp(share), frequency, push)
         return rate + LASTING
 
     step, low, high, most = log(1.25), 0.0, 0.0, log(MOST)
     value = growth(0.0)
-    way = 1 if value < 0 else -1
-    while (value < 0) == (way > 0) and abs(high) < most:
-        low, high, step = high, way * min(abs(high) + step, most), 2 * step
+    direction = 1 if value < 0 else -1
+    while (value < 0) == (direction > 0) and abs(high) < most:
+        low, high, step = high, direction * min(abs(high) + step, most), 2 * step
         value = growth(high)
-    facts = stand.facts(seen[high])
-    if (value < 0) == (way > 0):
-        found = {"ultimate_gain": inf if way > 0 else 0.0}
-        words = "no oscillation up to" if way > 0 else "it oscillates down to 1 over"
-        return ExperimentResult(found, how, facts, f"{words} {MOST:g} times the linear one")
+    facts = stand.facts(records[high])
+    if (value < 0) == (direction > 0):
+        result = {"ultimate_gain": inf if direction > 0 else 0.0}
+        why = f"no oscillation up to {MOST:g} times the linear ultimate gain"
+        if direction < 0:
+            why = f"it oscillates even at 1/{MOST:g} of the linear ultimate gain"
+        return ExperimentResult(result, how, facts, why)
     share = float(brentq(growth, low, high, xtol=2 * EXACT))
-    near = min(seen, key=lambda one: abs(one - share))
-    facts = stand.facts(seen[near])
+    nearest = min(records, key=lambda candidate: abs(candidate - share))
+    facts = stand.facts(records[nearest])
     how += f", amplitude {1000.0 * facts.swing:.2g} mm"
     return ExperimentResult({"ultimate_gain": expected * exp(share)}, how, facts)
 
@@ -562,11 +565,11 @@ def _growth(stand: Stand, gain: float, frequency: float, push: float) -> tuple[f
         force=(ForceSignal(shape="pulse", value=push, start=0.0, end=0.5 * period),),
     )
     first, early, late = (record.within(a * period, b * period) for a, b in (FIRST, EARLY, LATE))
-    pushed, before, after = (
-        max(float(np.ptp(one.signals["speed"])), 1e-15) for one in (first, early, late)
+    first_span, early_span, late_span = (
+        max(float(np.ptp(window.signals["speed"])), 1e-15) for window in (first, early, late)
     )
-    rate = max(log(after / before) / (LATE[0] - EARLY[0]), -1.0)
-    return max(rate, LASTING) if after >= pushed else rate, early
+    rate = max(log(late_span / early_span) / (LATE[0] - EARLY[0]), -1.0)
+    return max(rate, LASTING) if late_span >= first_span else rate, early
 
 
 def dynamic_stiffness(
@@ -629,44 +632,44 @@ def decay(stand: Stand, ends: str, resonance: float) -> ExperimentResult:
     times, values = _extremes(record.time, record.signals["speed"])
     spans = np.abs(np.diff(values))
     faded = np.flatnonzero(spans < FADED * spans[:1])
-    kept = int(faded[0]) if faded.size else len(spans)
-    if kept < 2:
+    count = int(faded[0]) if faded.size else len(spans)
+    if count < 2:
         why = f"overdamped or stuck: it comes to rest after {len(spans)} half periods"
         return ExperimentResult(dict.fromkeys(names), how, facts, why)
-    halves = np.diff(times[: kept + 1])
+    halves = np.diff(times[: count + 1])
     if np.max(halves) > UNEVEN * np.min(halves):
         why = "stick-slip: half periods of uneven length, no decay"
         return ExperimentResult(dict.fromkeys(names), how, facts, why)
-    decrement = log(spans[0] / spans[kept - 1]) / (kept - 1)
+    decrement = log(spans[0] / spans[count - 1]) / (count - 1)
     ratio = decrement / sqrt(pi * pi + decrement * decrement)
-    damped = (kept - 1) / (2 * float(times[kept - 1] - times[0]))
-    found = damped / sqrt(1 - ratio * ratio), ratio
-    how += f", evaluated over {kept} half periods"
-    return ExperimentResult(dict(zip(names, found, strict=True)), how, facts)
+    damped = (count - 1) / (2 * float(times[count - 1] - times[0]))
+    figures = damped / sqrt(1 - ratio * ratio), ratio
+    how += f", evaluated over {count} half periods"
+    return ExperimentResult(dict(zip(names, figures, strict=True)), how, facts)
 
 
 def _extremes(time: Array, values: Array) -> tuple[Array, Array]:
     """Times and values of the extremes, by parabolas through three samples."""
     rising = np.diff(values) > 0
     at = np.flatnonzero(rising[1:] != rising[:-1]) + 1
-    left, here, right = values[at - 1], values[at], values[at + 1]
-    bend = left - 2 * here + right
-    off = np.where(bend != 0, 0.5 * (left - right) / np.where(bend != 0, bend, 1.0), 0.0)
+    before, peak, after = values[at - 1], values[at], values[at + 1]
+    bend = before - 2 * peak + after
+    offset = np.where(bend != 0, 0.5 * (before - after) / np.where(bend != 0, bend, 1.0), 0.0)
     step = time[at + 1] - time[at]
-    return time[at] + off * step, here - 0.25 * (left - right) * off
+    return time[at] + offset * step, peak - 0.25 * (before - after) * offset
 
 
 WEAKEST = "weakest position"
 STEADY_STEP = 0.4
-"""Gain relative to the ultimate one that brings an oscillating loop to rest (a choice)."""
+"""Gain relative to the ultimate gain that brings an oscillating loop to rest (a choice)."""
 SLOW = 0.05
-"""Bandwidth relative to the resonance if the loop's is unknown (a choice)."""
+"""Bandwidth relative to the resonance if the bandwidth of the loop is unknown (a choice)."""
 PEAK = 0.5
 """Magnitude above which an open-loop resonance may cause a crossover (a choice)."""
 
 
 class Spot(NamedTuple):
-    """Where a figure of the linear tier is the worst."""
+    """Point at which a figure of the linear tier is worst."""
 
     case: int
     position: float
@@ -694,7 +697,7 @@ class LinearTier:
 
     @classmethod
     def of(cls, subject: PreparedDesign) -> LinearTier:
-        """Build by one evaluation of the models."""
+        """Build from an evaluation of the models."""
         return cls(subject, compute(subject, subject.values()))
 
     def spot(self, row: Requirement) -> Spot:
@@ -703,28 +706,30 @@ class LinearTier:
         case = cases.index(row.case) if row.case in cases else 0
         place = row.place or WEAKEST
         extending: bool | None = None
-        words = [row.case or "", row.place or WEAKEST]
+        parts = [row.case or "", row.place or WEAKEST]
         if place.startswith(("extending, ", "retracting, ")):
-            way, _, place = place.partition(", ")
-            extending = way == "extending"
+            direction, _, place = place.partition(", ")
+            extending = direction == "extending"
         position = self.done.places.get(place, self.done.places[WEAKEST])
-        return Spot(case, of_case(position, case), extending, ", ".join(filter(None, words)))
+        return Spot(case, of_case(position, case), extending, ", ".join(filter(None, parts)))
 
     def plant(self, case: int) -> Plant:
         """The plant with the oil of a load case."""
         subject = self.subject
         order = [case, *(k for k in range(len(subject.cases)) if k != case)]
         cases = tuple(subject.design.load_cases[k] for k in order)
-        films = {(p, order.index(k), way): t for (p, k, way), t in subject.films.items()}
+        films = {
+            (p, order.index(k), direction): t for (p, k, direction), t in subject.films.items()
+        }
         design = subject.design.model_copy(update={"load_cases": cases})
         return plant(replace(subject, design=design, films=films))
 
     def stand(self, scenario: Scenario, spot: Spot, tally: RunCounter, scale: float) -> Stand:
         """The design held at a spot, with the pressures of the load case."""
-        own = self.plant(spot.case)
+        actuator = self.plant(spot.case)
         state = self.done.state
         stand = Stand(
-            plant=own,
+            plant=actuator,
             scenario=scenario,
             position=spot.position,
             pressure_a=of_case(state.holding_a, spot.case),
@@ -732,14 +737,16 @@ class LinearTier:
             tally=tally,
             scale=scale,
         )
-        if own.valve is None:
+        if actuator.valve is None:
             return stand
         gain = self._gain(spot.case)
-        both = [self.figures(spot.case, spot.position, way) for way in (True, False)]
-        least = min(one.ultimate_gain for one in both)
-        known = [one.bandwidth for one in both if one.bandwidth > 0]
-        slow = min(known, default=SLOW * self.resonance(spot.case, spot.position))
-        return stand.but(gain=gain, steady_gain=min(gain, STEADY_STEP * least), bandwidth=slow)
+        both = [self.figures(spot.case, spot.position, extending) for extending in (True, False)]
+        least = min(figures.ultimate_gain for figures in both)
+        bandwidths = [figures.bandwidth for figures in both if figures.bandwidth > 0]
+        slow = min(bandwidths, default=SLOW * self.resonance(spot.case, spot.position))
+        return stand.with_changes(
+            gain=gain, steady_gain=min(gain, STEADY_STEP * least), bandwidth=slow
+        )
 
     def _open_loop(self, position: float, extending: bool) -> loop.PositionOpenLoop:
         place = np.array([[position]])
@@ -750,25 +757,28 @@ class LinearTier:
 
     def figures(self, case: int, position: float, extending: bool) -> LoopFigures:
         """Figures of the position loop, with margins at the design's gain."""
-        one, gain = self._open_loop(position, extending), self._gain(case)
-        limit = loop.ultimate_gain(loop=one)
-        found = loop.margins(loop=one, gain=gain)
+        open_loop, gain = self._open_loop(position, extending), self._gain(case)
+        limit = loop.ultimate_gain(loop=open_loop)
+        margins = loop.margins(loop=open_loop, gain=gain)
         return LoopFigures(
             of_case(limit.gain, case),
             of_case(limit.frequency, case),
-            of_case(found.phase_margin, case),
-            of_case(found.bandwidth, case),
+            of_case(margins.phase_margin, case),
+            of_case(margins.bandwidth, case),
         )
 
     def response(
         self, case: int, position: float, extending: bool
     ) -> Callable[[float | Array], Array]:
         """The open loop over frequency [Hz], its gain included."""
-        one, gain = self._open_loop(position, extending), self._gain(case)
+        open_loop, gain = self._open_loop(position, extending), self._gain(case)
 
         def at(frequency: float | Array) -> Array:
             omega = 2 * pi * np.asarray(frequency, dtype=float).reshape(-1, 1, 1)
-            top, low = at_frequency(one.numerator, omega), at_frequency(one.denominator, omega)
+            top, low = (
+                at_frequency(open_loop.numerator, omega),
+                at_frequency(open_loop.denominator, omega),
+            )
             value = gain * np.asarray(top.complex / low.complex)
             value = value[:, min(case, value.shape[1] - 1), 0]
             return value if np.ndim(frequency) else complex(value[0])
@@ -798,16 +808,16 @@ class LinearTier:
         place = np.array([[position]])
         motion = self.done.motion
         model = motion.model(place)
-        found = {
+        figures = {
             "natural_frequency": self.resonance(case, position),
             "damping_ratio": of_case(motion.mode(model, place).damping_ratio, case),
         }
         frequency = self.subject.design.load_cases[case].frequency
         if frequency is None:
-            return found | dict.fromkeys(("dynamic_stiffness", "dynamic_phase"), nan)
+            return figures | dict.fromkeys(("dynamic_stiffness", "dynamic_phase"), nan)
         parts = linear.dynamic_stiffness(model=model, frequency=frequency)
         value = complex(of_case(parts.real, case), of_case(parts.imaginary, case))
-        return found | {
+        return figures | {
             "dynamic_stiffness": abs(value),
             "dynamic_phase": float(np.angle(value)),
         }
@@ -832,27 +842,29 @@ class LinearTier:
 
 
 MANY = 9.0
-"""Change above which a factor is clearer than per cent (a choice)."""
+"""Relative change from which a factor is clearer than per cent (a choice)."""
 STILL = 0.01
 """Spool motion, as a share of its opening, that counts as held (a choice)."""
 
 
-def apart(value: float | None, other: float | None) -> float | None:
-    """Relative difference, or None.
+def relative_difference(value: float | None, other: float | None) -> float | None:
+    """Relative difference of a value from another, or None.
 
-    >>> apart(1.5, 2.0), apart(None, 2.0), apart(1.0, 0.0)
-    (-0.25, None, None)
+    >>> relative_difference(1.5, 2.0), relative_difference(None, 2.0)
+    (-0.25, None)
+    >>> relative_difference(1.0, 0.0) is None
+    True
     """
     if value is None or other is None or not isfinite(value) or not isfinite(other) or not other:
         return None
     return value / other - 1
 
 
-def percent(share: float) -> str:
+def relative_change(share: float) -> str:
     """A relative change in per cent.
 
-    >>> percent(0.031), percent(-0.5), percent(19.0), percent(-1.2)
-    ('+3.1 %', '-50 %', 'x 20', 'changes its sign')
+    >>> [relative_change(share) for share in (0.031, -0.5, 19.0, -1.2)]
+    ['+3.1 %', '-50 %', 'x 20', 'changes its sign']
     """
     if share < -1:
         return "changes its sign"
@@ -861,8 +873,8 @@ def percent(share: float) -> str:
     return f"{100 * share:+.{0 if abs(share) >= 0.095 else 1}f} %"
 
 
-def seen(facts: Facts | None, cause: str) -> str:
-    """Evidence in a record for a cause: friction, or the size of the oscillation."""
+def evidence(facts: Facts | None, cause: str) -> str:
+    """Evidence for a cause, as words: friction, or the size of the oscillation."""
     if facts is None:
         return "no record"
     if cause == "friction":
@@ -886,12 +898,14 @@ def _seals(facts: Facts) -> str:
     return f"the seals {word}: amplitude {swing:.2g} mm, bristle travel {travel:.2g} mm"
 
 
-def point(facts: Facts | None, held: tuple[float, float]) -> str:
-    """Operating point of the loop, beside the pressures assumed by the linear tier."""
+def operating_point(facts: Facts | None, assumed: tuple[float, float]) -> str:
+    """Operating point of a record in words, with the pressures assumed by the linear tier."""
     if facts is None:
         return "no record"
-    (a, b), (taken_a, taken_b) = ([1e-5 * one for one in pair] for pair in (facts.pressures, held))
+    (a, b), (taken_a, taken_b) = (
+        [1e-5 * pressure for pressure in pair] for pair in (facts.pressures, assumed)
+    )
     words = f"chambers at {a:.0f} and {b:.0f} bar, linear tier {taken_a:.0f} and {taken_b:.0f}"
     if facts.spool is not None:
-        words += f"; spool about {0.5 * sum(facts.spool):.2g} V"
+        words += f"; spool at about {0.5 * sum(facts.spool):.2g} V"
     return words

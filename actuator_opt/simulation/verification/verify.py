@@ -33,10 +33,10 @@ from .experiments import (
     RunCounter,
     Spot,
     Stand,
-    apart,
-    percent,
-    point,
-    seen,
+    evidence,
+    operating_point,
+    relative_change,
+    relative_difference,
 )
 
 LOOPS = ("ultimate_gain", "gain_margin", "phase_margin", "bandwidth")
@@ -64,7 +64,7 @@ class VerifiedRequirement:
     stated: float | None
     """Value of the evaluation: the linear tier at its worst."""
     linear: float | None
-    """The same at the position of the experiment, for the direction in which its spool rests."""
+    """Value of the linear tier at the experiment's position and spool direction."""
     value: float | None
     """Value in time."""
     difference: float | None
@@ -74,7 +74,7 @@ class VerifiedRequirement:
     how: str = ""
     """The experiment, with its amplitude."""
     why: str = ""
-    """Cause of the difference; without a value, why it is missing."""
+    """Cause of the difference, or the reason for a missing value."""
     shares: Mapping[str, float] = field(default_factory=dict)
     """Relative change due to friction, amplitude and operating point."""
 
@@ -97,7 +97,7 @@ class Verification(Displayed):
         return all(row.met for row in self.rows)
 
     def to_dict(self) -> dict[str, Any]:
-        """As plain data for JSON, SI; None for what has no finite value."""
+        """As plain data for JSON, SI; None for a value that is not finite."""
         rows = [
             {name: _plain(getattr(row, name)) for name in VerifiedRequirement.__dataclass_fields__}
             for row in self.rows
@@ -114,7 +114,7 @@ class Verification(Displayed):
 
 def _plain(value: Any) -> Any:
     if isinstance(value, Mapping):
-        return {name: _plain(one) for name, one in value.items()}
+        return {name: _plain(item) for name, item in value.items()}
     return None if isinstance(value, float) and not isfinite(value) else value
 
 
@@ -130,7 +130,7 @@ def verify(
 
     Parameters
     ----------
-    scenario : what happens; the experiments use its friction, supply, stops and rate limit
+    scenario : inputs over time; the experiments use its friction, supply, stops and rate limit
     subject : the design to verify, such as an optimum
     records : columns of the files that the scenario's signals name
     result : the scenario already simulated with this design
@@ -144,17 +144,17 @@ def verify(
         an integration fails
     """
     begin = perf_counter()
-    tally = RunCounter()
+    counter = RunCounter()
     if result is None:
-        tally.runs += 1
+        counter.runs += 1
         result = simulate(scenario, subject, records=records)
-    bench = _Bench(scenario, LinearTier.of(subject), tally, scale)
-    asked = [
+    bench = _Bench(scenario, LinearTier.of(subject), counter, scale)
+    requirements = [
         requirement
         for requirement in evaluate(subject).requirements
         if requirement.metric in DYNAMIC
     ]
-    rows = [bench.row(step) for step in steps("verifying each requirement", asked)]
+    rows = [bench.row(step) for step in steps("verifying each requirement", requirements)]
     rows += [
         VerifiedRequirement(
             "scenario", requirement.metric, requirement.sense, requirement.limit, None, None,
@@ -166,44 +166,44 @@ def verify(
         subject.design.name,
         tuple(rows),
         result,
-        tally.runs,
+        counter.runs,
         perf_counter() - begin,
-        _notes(scenario, bool(asked)),
+        _notes(scenario, bool(requirements)),
     )
 
 
-def _notes(scenario: Scenario, asked: bool) -> tuple[str, ...]:
-    if not asked:
+def _notes(scenario: Scenario, any_requirement: bool) -> tuple[str, ...]:
+    if not any_requirement:
         return ("the design has no dynamic requirement",)
     notes = ["each experiment is made only where the linear tier is worst"]
     control = scenario.control
-    own = control is not None and (
+    own_controller = control is not None and (
         loop_of(control) != "position"
         or control.law != "p"
         or bool(control.speed_feedback or control.pressure_feedback)
     )
-    if own:
+    if own_controller:
         notes.append(
             "the scenario has its own controller, but requirements of the design refer to its "
             "proportional position loop"
         )
-    left = _left_out(scenario.load)
-    if left:
-        notes.append(f"the experiments load the rod with a constant force and omit: {left}")
+    omitted = _left_out(scenario.load)
+    if omitted:
+        notes.append(f"the experiments load the rod with a constant force and omit: {omitted}")
     return tuple(notes)
 
 
 def _left_out(load: ScenarioLoad) -> str:
     """Parts of the scenario's load that the experiments omit."""
-    stated = {
-        "force of the load": any(one.shape == "record" or one.value for one in load.force),
-        "torque on the joint": any(one.shape == "record" or one.value for one in load.torque),
+    parts = {
+        "force of the load": any(part.shape == "record" or part.value for part in load.force),
+        "torque on the joint": any(part.shape == "record" or part.value for part in load.torque),
         "spring": load.stiffness,
         "damper": load.damping,
         "external machine": load.drive is not None,
         "load cylinder": load.cylinder is not None,
     }
-    return ", ".join(name for name, there in stated.items() if there)
+    return ", ".join(name for name, acts in parts.items() if acts)
 
 
 @dataclass(slots=True)
@@ -217,59 +217,71 @@ class _Bench:
     stands: dict[Spot, Stand] = field(default_factory=dict)
     made: dict[tuple[str, Spot, bool, bool], ExperimentResult] = field(default_factory=dict)
 
-    def row(self, asked: Requirement) -> VerifiedRequirement:
+    def row(self, requirement: Requirement) -> VerifiedRequirement:
         """One requirement of the design in both tiers."""
-        spot = self.tier.spot(asked)
-        why = self._impossible(asked.metric, spot)
-        full = ExperimentResult({}, "", why=why) if why else self.measured(asked.metric, spot)
-        value = full.values.get(asked.metric)
-        linear = None if why else self.linear(asked.metric, spot)
-        difference = apart(value, linear)
+        spot = self.tier.spot(requirement)
+        why = self._impossible(requirement.metric, spot)
+        full = ExperimentResult({}, "", why=why) if why else self.measured(requirement.metric, spot)
+        value = full.values.get(requirement.metric)
+        linear = None if why else self.linear(requirement.metric, spot)
+        difference = relative_difference(value, linear)
         shares: dict[str, float] = {}
-        said = [full.why] if full.why else []
+        reasons = [full.why] if full.why else []
         if difference is not None and abs(difference) > AGREE:
-            shares, more = self._reasons(asked.metric, spot, full)
-            said += [*more, *self._by_friction(asked, spot, value)]
+            shares, more = self._reasons(requirement.metric, spot, full)
+            reasons += [*more, *self._by_friction(requirement, spot, value)]
         elif difference is not None:
-            said.append("both agree")
-        moved = apart(linear, asked.value)
-        if moved is not None and abs(moved) > AGREE:
-            said.append(self._compared(asked.metric, spot))
+            reasons.append("both agree")
+        spot_difference = relative_difference(linear, requirement.value)
+        if spot_difference is not None and abs(spot_difference) > AGREE:
+            reasons.append(self._compared(requirement.metric, spot))
         return VerifiedRequirement(
             "design",
-            asked.metric,
-            asked.sense,
-            asked.limit,
-            asked.value,
+            requirement.metric,
+            requirement.sense,
+            requirement.limit,
+            requirement.value,
             linear,
             value,
             difference,
-            _holds(value, asked.sense, asked.limit),
+            _holds(value, requirement.sense, requirement.limit),
             where=spot.words,
             how=full.how,
-            why="; ".join(said),
+            why="; ".join(reasons),
             shares=shares,
         )
 
-    def _by_friction(self, asked: Requirement, spot: Spot, value: float | None) -> list[str]:
+    def _by_friction(self, requirement: Requirement, spot: Spot, value: float | None) -> list[str]:
         """A warning if a requirement is met only because the seals stick."""
         if self.scenario.friction.model == "none":
             return []
-        bare = self.measured(asked.metric, spot, bare=True).values.get(asked.metric)
-        held = _holds(value, asked.sense, asked.limit)
-        if bare is None or not held or _holds(bare, asked.sense, asked.limit):
+        frictionless = self.measured(requirement.metric, spot, frictionless=True).values.get(
+            requirement.metric
+        )
+        is_met = _holds(value, requirement.sense, requirement.limit)
+        if (
+            frictionless is None
+            or not is_met
+            or _holds(frictionless, requirement.sense, requirement.limit)
+        ):
             return []
-        return [f"met only due to friction: without it {METRICS[asked.metric].text(bare)}"]
+        return [
+            f"met only due to friction: without it {METRICS[requirement.metric].text(frictionless)}"
+        ]
 
     def _impossible(self, metric: str, spot: Spot) -> str:
-        """Why an experiment is impossible; empty if it is possible."""
+        """Reason why an experiment is impossible; empty if it is possible."""
         left_out = self.tier.unsimulated()
         if left_out:
             return left_out
         if metric not in LOOPS:
-            shakes = self.tier.subject.design.load_cases[spot.case].frequency is not None
-            asked = metric in ("dynamic_stiffness", "dynamic_phase")
-            return "no load case has an oscillating load" if asked and not shakes else ""
+            oscillates = self.tier.subject.design.load_cases[spot.case].frequency is not None
+            needs_oscillation = metric in ("dynamic_stiffness", "dynamic_phase")
+            return (
+                "no load case has an oscillating load"
+                if needs_oscillation and not oscillates
+                else ""
+            )
         stand = self.stand(spot)
         if stand.plant.valve is None:
             return "the design has no valve"
@@ -288,15 +300,15 @@ class _Bench:
         return experiments.placed(stand) if metric in LOOPS else experiments.held_place(stand)
 
     def measured(
-        self, metric: str, spot: Spot, *, bare: bool = False, small: bool = False
+        self, metric: str, spot: Spot, *, frictionless: bool = False, small: bool = False
     ) -> ExperimentResult:
         """The experiment that measures a metric."""
         name = _EXPERIMENTS[metric]
-        key = name, spot, bare, small
+        key = name, spot, frictionless, small
         if key not in self.made:
             stand = self._placed(metric, spot)
-            stand = stand.bare() if bare else stand
-            stand = stand.but(scale=SMALL * stand.scale) if small else stand
+            stand = stand.frictionless() if frictionless else stand
+            stand = stand.with_changes(scale=SMALL * stand.scale) if small else stand
             try:
                 self.made[key] = self._made(name, spot, stand)
             except (InputError, Unsolvable) as error:
@@ -315,23 +327,23 @@ class _Bench:
             frequency = design.load_cases[spot.case].frequency
             assert frequency is not None
             return experiments.dynamic_stiffness(stand, design.ports.end, frequency, resonance)
-        way = self._way(spot, stand)
-        figures = tier.figures(spot.case, at, way)
-        response = tier.response(spot.case, at, way)
+        rests_extending = self._way(spot, stand)
+        figures = tier.figures(spot.case, at, rests_extending)
+        response = tier.response(spot.case, at, rests_extending)
         if name == "bandwidth":
             return experiments.bandwidth(stand, figures.bandwidth or stand.bandwidth, response)
         if name == "phase":
-            both = [tier.crossings(spot.case, at, one) for one in (True, False)]
+            both = [tier.crossings(spot.case, at, extending) for extending in (True, False)]
             crossed, peaks = (sum(parts, ()) for parts in zip(*both, strict=True))
             return experiments.phase_margin(stand, crossed, peaks, response)
         limit, frequency = figures.ultimate_gain, figures.frequency
         if not isfinite(limit):
             limit, frequency = stand.gain, resonance
-        found = experiments.ultimate_gain(stand, limit, frequency)
-        gain = found.values["ultimate_gain"]
+        swinging = experiments.ultimate_gain(stand, limit, frequency)
+        gain = swinging.values["ultimate_gain"]
         margin = None if gain is None else gain / stand.gain
         values = {"ultimate_gain": gain, "gain_margin": margin}
-        return ExperimentResult(values, found.how, found.facts, found.why)
+        return ExperimentResult(values, swinging.how, swinging.facts, swinging.why)
 
     def _way(self, spot: Spot, stand: Stand) -> bool:
         """Whether the spool rests on the extending side; if centred, as in the linear tier."""
@@ -345,44 +357,44 @@ class _Bench:
         stand = self._placed(metric, spot)
         if metric in HELD:
             return self.tier.held(spot.case, stand.position)[metric]
-        way = self._way(spot, stand)
-        return self.tier.closed(metric, spot.case, stand.position, way)
+        extending = self._way(spot, stand)
+        return self.tier.closed(metric, spot.case, stand.position, extending)
 
     def _reasons(
         self, metric: str, spot: Spot, full: ExperimentResult
     ) -> tuple[dict[str, float], list[str]]:
         """Shares of friction, amplitude and operating point in a difference, with the evidence."""
-        steps = [("size of the swing", self.measured(metric, spot, bare=True, small=True))]
+        steps = [("size of the swing", self.measured(metric, spot, frictionless=True, small=True))]
         if self.scenario.friction.model != "none":
-            steps.insert(0, ("friction", self.measured(metric, spot, bare=True)))
+            steps.insert(0, ("friction", self.measured(metric, spot, frictionless=True)))
         shares: dict[str, float] = {}
-        said: list[str] = []
+        reasons: list[str] = []
         before = full
         for name, without in steps:
-            value, rest = before.values.get(metric), without.values.get(metric)
-            if rest is None or not isfinite(rest):
+            value, remaining = before.values.get(metric), without.values.get(metric)
+            if remaining is None or not isfinite(remaining):
                 words = without.why or "there is no limit"
-                return shares, [*said, f"{name} decides: without it {words}"]
-            share = apart(value, rest)
+                return shares, [*reasons, f"{name} decides: without it {words}"]
+            share = relative_difference(value, remaining)
             if share is not None and abs(share) > AGREE / 2:
                 shares[name] = share
-                said.append(f"{name} {percent(share)} ({seen(before.facts, name)})")
+                reasons.append(f"{name} {relative_change(share)} ({evidence(before.facts, name)})")
             before = without
-        share = apart(before.values.get(metric), self.linear(metric, spot))
+        share = relative_difference(before.values.get(metric), self.linear(metric, spot))
         if share is not None and abs(share) > AGREE / 2:
             shares["operating point"] = share
-            held = self.tier.stated(spot.case)
-            said.append(f"operating point {percent(share)} ({point(before.facts, held)})")
-        return shares, said
+            pressures = operating_point(before.facts, self.tier.stated(spot.case))
+            reasons.append(f"operating point {relative_change(share)} ({pressures})")
+        return shares, reasons
 
     def _compared(self, metric: str, spot: Spot) -> str:
-        """Where the linear tier is evaluated, if not where it is worst."""
+        """Words for the point at which the linear tier is compared, if not its worst."""
         stand = self._placed(metric, spot)
         words = f"compared at {1e3 * stand.position:.3g} mm"
         if metric in HELD:
             return f"{words}, off the stop"
-        way = "extending" if self._way(spot, stand) else "retracting"
-        return f"{words}, {way}: the spool rests {stand.opening:.2g} V off its centre"
+        direction = "extending" if self._way(spot, stand) else "retracting"
+        return f"{words}, {direction}: the spool rests {stand.opening:.2g} V off its centre"
 
 
 _EXPERIMENTS = {
