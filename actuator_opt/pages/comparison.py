@@ -13,8 +13,8 @@ from ..rendering import text
 from ..rendering.axes import AREAS
 from ..rendering.blocks import (
     Block,
+    Chart,
     Column,
-    Drawing,
     Notes,
     Page,
     Table,
@@ -23,11 +23,12 @@ from ..rendering.blocks import (
     short,
     tile,
 )
+from ..rendering.chart_ink import titled
 from ..rendering.heights import wrap
 from ..rendering.ink import BLACK, GREY, Ink, text_width
-from ..rendering.text import DASH, limit_text, number, pretty
+from ..rendering.text import DASH, number, pretty, trimmed
 from .stiffness import fills
-from .sweep_figures.ucurves import MOST, STYLES, Required, curves_drawn, has_points
+from .sweep_figures.ucurves import MOST, Required, has_points, stiffness_panels
 
 _WORST = {"lighter": "light", "stiffer": "stiff", "smoother": "smooth"}
 _NAMED = {"lighter": "mass", "stiffer": "stiffness", "smoother": "running friction"}
@@ -87,9 +88,7 @@ def _blocks(comparison: Comparison) -> Iterator[Block]:
     yield Notes("Designs", designs, headless=True, style="bold")
     yield Notes("Which is better", [pretty(said) for said in sentences(comparison)], headless=True)
     if _with_curves(comparison):
-        ink = Ink(_WIDTH, 400.0)
-        ink.height = _curves(ink, 6.0, comparison)
-        yield Drawing("Stiffness over the stroke", ink)
+        yield _curves(comparison)
     changes = [
         [change.path, *(short(shown(change, value), _LONGEST) for value in change.values)]
         for change in comparison.changes
@@ -352,22 +351,9 @@ def comparison_ucurves(comparison: Comparison) -> Ink | None:
     """Stiffness over the stroke of the first `MOST` designs; None where none has any."""
     if not _with_curves(comparison):
         return None
-    ink = Ink(_WIDTH, 400.0)
-    ink.text(4.0, 4.0, "Stiffness over the stroke", size=9.0, bold=True)
-    top = _TOP
-    for words in optimality(comparison):
-        for line in _wrapped(words):
-            ink.text(4.0, top, line, color=GREY)
-            top += _SMALL
-    top += 1.0
-    for k, (label, style) in enumerate(zip(comparison.labels, STYLES, strict=False)):
-        ink.line((4.0, top), (9.0, top), **style)
-        ink.text(10.5, top, label, size=7.5, bold=True)
-        for line in wrap(named(comparison, k), _WIDTH - 18.0, 7.0):
-            ink.text(15.5, top, line, size=7.0)
-            top += _LINE
-    ink.height = _curves(ink, top + 7.0, comparison)
-    return ink
+    names = [f"{label}: {named(comparison, k)}" for k, label in enumerate(comparison.labels[:MOST])]
+    notes = [pretty(words[:1].upper() + words[1:]) for words in optimality(comparison)]
+    return titled(_curves(comparison), [*notes, *names])
 
 
 def _with_curves(comparison: Comparison) -> bool:
@@ -375,15 +361,16 @@ def _with_curves(comparison: Comparison) -> bool:
     return any(has_points(evaluation.curve) for evaluation in comparison.evaluations[:MOST])
 
 
-def _curves(ink: Ink, top: float, comparison: Comparison) -> float:
-    """Draw the curves of the first `MOST` designs; the height they end at."""
+def _curves(comparison: Comparison) -> Chart:
+    """Stiffness over the stroke of the first `MOST` designs."""
     labels = []
-    some = comparison.evaluations[:MOST]
-    for label, evaluation in zip(comparison.labels, some, strict=False):
+    evaluations = comparison.evaluations[:MOST]
+    for label, evaluation in zip(comparison.labels, evaluations, strict=False):
         least = evaluation.metrics["stiffness_min"].value
-        labels.append(label if least is None else f"{label}: least {number(least / 1e6, 4)} kN/mm")
-    curves = [evaluation.curve for evaluation in some]
-    return curves_drawn(ink, top, curves, labels, _required(comparison), "A")
+        labels.append(label if least is None else f"{label}: least {number(least / 1e6, 4)}")
+    curves = [evaluation.curve for evaluation in evaluations]
+    panels = stiffness_panels(curves, labels, _required(comparison), "A")
+    return Chart("Stiffness over the stroke", [panels], height=140.0)
 
 
 def _required(comparison: Comparison) -> list[Required]:
@@ -397,10 +384,10 @@ def _required(comparison: Comparison) -> list[Required]:
     return [
         Required(
             value,
-            f"required {limit_text(METRICS['stiffness_min'], 'min', value)}"
-            + (f" of {', '.join(who)}" if len(who) < every else ""),
+            f"≥ {trimmed(METRICS['stiffness_min'].to_display(value))}"
+            + (f" of {', '.join(labels)}" if len(labels) < every else ""),
         )
-        for value, who in required.items()
+        for value, labels in required.items()
     ]
 
 

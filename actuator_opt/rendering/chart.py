@@ -20,6 +20,7 @@ from .text import MINUS, number
 
 Values: TypeAlias = Sequence[float] | Array
 Weight: TypeAlias = Literal["normal", "thin", "guide"]
+PointWeight: TypeAlias = Literal["normal", "guide", "strong"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +86,7 @@ class Points:
     small : small dots and crosses in the colours of the curves
     across : error bars along x
     shades : values that fill the points with the shade of the panel's surface
+    weight : "guide" for pale dots in the background, "strong" for a ring around a chosen point
     """
 
     words: str
@@ -96,19 +98,23 @@ class Points:
     small: bool = False
     across: bool = False
     shades: Values = ()
+    weight: PointWeight = "normal"
 
 
 @dataclass(frozen=True, slots=True)
 class Level:
-    """A horizontal line at a value of y.
+    """A horizontal line at a value of y, or an upright line at a value of x.
 
     Parameters
     ----------
-    value : of y
+    value : of y, or of x where `upright`
     words : its name
-    sense : of a limit, "min" or "max": red, the forbidden side hatched, named at the right
+    sense : of a limit, "min" or "max": red, the forbidden side hatched, named at the right, an
+        upright limit above the frame
     style : of any other line: colour and dash by number
-    between : ends along x; its name then stands beside it; default: the whole frame
+    between : ends along x of a horizontal line, which then has its name beside it; default: the
+        whole frame
+    upright : a line at a value of x
     """
 
     value: float
@@ -116,11 +122,25 @@ class Level:
     sense: Literal["", "min", "max"] = ""
     style: int = 2
     between: tuple[float, float] | None = None
+    upright: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """A shaded stretch of x; each line of its words stands above the frame where it fits."""
+
+    start: float
+    end: float
+    words: str = ""
+    shade: int = 0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShadedMap:
-    """A quantity above zero over x (columns) and y (rows), shaded between round levels."""
+    """A quantity above zero over x (columns) and y (rows), shaded between round levels.
+
+    Where a value is missing the map is hatched.
+    """
 
     xs: Values
     ys: Values
@@ -135,7 +155,7 @@ class Panel:
     ----------
     title : quantity and unit of y
     x, y : axes
-    curves, points, levels, surface : what it shows
+    curves, points, levels, surface, stretches : what it shows
     note : below the title, or inside an empty frame, why it is empty
     share : of the height, among the panels of a column
     """
@@ -149,6 +169,7 @@ class Panel:
     surface: ShadedMap | None = None
     note: str = ""
     share: float = 1.0
+    stretches: Sequence[Stretch] = ()
 
 
 CORE = 0.35
