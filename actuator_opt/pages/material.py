@@ -264,14 +264,14 @@ def fluid_figure(material: Material) -> Ink:
 
 
 def _sources(material: Material) -> Iterator[str]:
-    """Where the values of the figure come from, with their confidence."""
-    said: dict[str, list[str]] = {}
+    """Sources of the values of the figure, with their confidence."""
+    properties: dict[str, list[str]] = {}
     for key in ("kinematic_viscosity", "pressure_viscosity", "density", "bulk_modulus"):
         entry = material.properties.get(key)
         if entry is not None:
             words = f"{entry.source} ({entry.confidence})"
-            said.setdefault(words, []).append(key.replace("_", " "))
-    for words, keys in said.items():
+            properties.setdefault(words, []).append(key.replace("_", " "))
+    for words, keys in properties.items():
         yield _sentence(f"{', '.join(keys)}: {words}")
 
 

@@ -344,7 +344,7 @@ def _limit(entry: Mapping[str, Any]) -> list[Cell]:
 
 
 def _cure(entry: Mapping[str, Any]) -> list[Cell]:
-    """What is enough alone."""
+    """A relaxation that suffices alone."""
     return [
         str(entry["parameter"]),
         soft(_KINDS.get(entry["kind"], entry["kind"])),

@@ -43,7 +43,7 @@ ROOM = 0.06
 
 
 def page(front: ParetoFront) -> Page:
-    """The page of a Pareto front; without designs it says why there is none."""
+    """The page of a Pareto front; without designs it gives the reason."""
     if not front.points:
         state: State = "infeasible" if front.status == "infeasible" else "missed"
         return Page(
@@ -85,7 +85,7 @@ def series(front: ParetoFront) -> list[Series]:
 
 
 def front_outcome(front: ParetoFront) -> dict[str, Any]:
-    """The numbers that say whether a front repeats (SI): the objectives of every design."""
+    """The numbers that must repeat in a second run (SI): the objectives of every design."""
     values = {
         f"{objective.metric} of design {k}": point.metrics[objective.metric]
         for k, point in enumerate(front.points, 1)
@@ -95,7 +95,7 @@ def front_outcome(front: ParetoFront) -> dict[str, Any]:
 
 
 def verdict(front: ParetoFront) -> Verdict:
-    """That requirements are met, and what to doubt of the design that was evaluated in full."""
+    """The badge, with the doubts about the design that was evaluated in full."""
     tight = len(front.evaluation.tight)
     plain, cautions = doubts(front.evaluation)
     if tight:
@@ -216,7 +216,7 @@ def _blocks(front: ParetoFront) -> Iterator[Block]:
 
 
 def remarks(front: ParetoFront) -> list[str]:
-    """How even the front is, its knee, and what to doubt."""
+    """Evenness of the front, its knee, and doubts."""
     lines = []
     if front.evenness is not None and len(front.points) > 2:
         lines.append(
@@ -239,7 +239,7 @@ def remarks(front: ParetoFront) -> list[str]:
 
 
 def _wide(front: ParetoFront) -> Iterator[str]:
-    """Which gaps are wide, and why."""
+    """Wide gaps and their reasons."""
 
     def between(gaps: Sequence[FrontGap]) -> str:
         return ", ".join(f"{gap.after + 1} and {gap.after + 2}" for gap in gaps)
@@ -258,7 +258,7 @@ def _wide(front: ParetoFront) -> Iterator[str]:
 
 
 def front_chart(front: ParetoFront) -> Chart:
-    """The first objective over every other one, side by side."""
+    """Every other objective over the first, side by side."""
     first, *others = front.objectives
     panels = [_panel(front, (first, 0), (other, k)) for k, other in enumerate(others, 1)]
     return Chart("Pareto front", panels, height=HEIGHT)

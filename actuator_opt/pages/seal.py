@@ -352,7 +352,7 @@ def contact_rows(study: SealStudy) -> list[tuple[str, ...]]:
 
 
 def _contact_model(point: RingPoint) -> str:
-    """Which model the contact of a ring is from."""
+    """The model behind the contact of a ring."""
     element = point.ring.element
     if element.contact:
         return "stated profiles"
@@ -430,7 +430,7 @@ def elements_sentence(study: SealStudy) -> str:
 
 
 def stress_note(study: SealStudy) -> str:
-    """What the sections show, and what they leave out."""
+    """Contents and limits of the sections."""
     words = "Deformed to scale, sealed side left; red: the contact. "
     if study.out.rings[0].ring.element.back_ups:
         words += "The groove is what the back-up rings leave. "
@@ -441,7 +441,7 @@ def stress_note(study: SealStudy) -> str:
 
 
 def contact_note(study: SealStudy) -> str:
-    """How far to trust the curves."""
+    """Limits of the curves."""
     words = (
         "Pressures above the outer side's; both without the bore's growth. Between the points of"
         " the elements the line is straight, and so are contacts taken between two pressures."
@@ -496,7 +496,7 @@ def _map(study: SealStudy, film_map: FilmMap) -> Chart:
 
 
 def missing(film_map: FilmMap) -> str:
-    """How many points of a map have no film, and why; empty where all have a film."""
+    """Number and reasons of the points of a map without a film; empty where all have a film."""
     if not film_map.why:
         return ""
     reasons: dict[str, int] = {}
@@ -521,7 +521,7 @@ def _is_number(word: str) -> bool:
 
 
 def why(study: SealStudy) -> str:
-    """Why the operating point has no film; empty where both strokes have a film."""
+    """Reason of a missing film at the operating point; empty where both strokes have a film."""
     names = stroke_names(study)
     if study.place == "rod":
         names = (f"on the {names[0]}", f"on the {names[1]}")
@@ -534,7 +534,7 @@ def why(study: SealStudy) -> str:
 
 
 def strokes(study: SealStudy) -> str:
-    """What the two strokes of the place are, and the pressure that its seal withstands."""
+    """Meaning of the two strokes of the place, and the pressure that its seal withstands."""
     pressure = f"The seal withstands {bars(study.drive.pressure)}"
     if study.place == "rod":
         return f"{pressure} above the atmosphere."
@@ -571,7 +571,7 @@ def _across(value: float, chamber: str) -> str:
 
 
 def notes(study: SealStudy) -> list[str]:
-    """What is model, what is input, and how far either can be trusted."""
+    """Models, inputs and their limits, for the reader to judge."""
     scatter = f"hardness ±{trimmed(HARDNESS_SCATTER)} Shore A"
     if any("hardness" not in point.ring.numbers for point in study.drive.rings):
         scatter += f", a stated modulus × or ÷ {trimmed(STATED_FACTOR)}"

@@ -42,12 +42,12 @@ from ..studies.seal import SealStudy
 from .section import OUTLINE, THIN, choose_scale, scale_bar
 
 WIDTH = 180.0
-"""Of every figure [mm]."""
+"""Width of every figure [mm]."""
 METAL, HATCHING = "#eef1f3", "#9aa3ab"
 
 
 def stroke_names(study: SealStudy) -> tuple[str, str]:
-    """Names of the driven stroke and of the other one.
+    """Names of the driven stroke and of its return.
 
     A load that overruns the piston drives it against the pressure it seals.
     """
@@ -73,7 +73,7 @@ _LINE = 3.1
 
 @dataclass(frozen=True, slots=True)
 class FilledGroove:
-    """A groove with what lies in it; x from its left side, r from the counterface, in m."""
+    """A groove and the bodies in it; x from its left side, r from the counterface, in m."""
 
     groove: Groove
     element: SealElement | None
@@ -92,7 +92,7 @@ class GlandDrawing:
 
 
 def filled_grooves(design: Design, place: Place) -> tuple[FilledGroove, ...]:
-    """Every groove of a place, from the pressure outwards, with what lies in it."""
+    """Every groove of a place, from the pressure outwards, with the bodies in it."""
     seal: Seal = getattr(design.seals, place)
     elements = seal.elements()
     filled: list[FilledGroove] = []
@@ -122,7 +122,7 @@ def tolerance_text(value: float, tolerance: float = 0.0) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _Gland:
-    """Where everything lies on paper; `side` is -1 where the grooves lie above the surface."""
+    """Places on paper; `side` is -1 where the grooves lie above the surface."""
 
     study: SealStudy
     grooves: tuple[FilledGroove, ...]
@@ -149,7 +149,7 @@ class _Gland:
 
 
 def gland_drawing(study: SealStudy, *, width: float = 180.0) -> GlandDrawing:
-    """Grooves, rings, counterface and gap of a place, dimensioned."""
+    """Grooves, rings, counterface and gap of a place, dimensioned: a section, drawn to scale."""
     grooves = filled_grooves(study.design, study.place)
     deepest, wide = max(filled.depth for filled in grooves), sum(filled.width for filled in grooves)
     room = width - sum(_BESIDE) - (len(grooves) + 1) * _LAND
@@ -246,7 +246,7 @@ def _rectangle(left: float, right: float, low: float, high: float) -> list[Point
 
 
 def _rings(frame: _Gland, filled: FilledGroove, left: float) -> None:
-    """What lies in a groove: bodies, then what is pressed back, dashed."""
+    """Bodies in a groove; free sections dashed."""
     for shape in filled.shapes:
         points = [(left + x * frame.factor, frame.y(r)) for x, r in shape.points]
         if shape.kind == "free":
@@ -402,7 +402,7 @@ def _foot(ink: Ink, factor: float, scale: str) -> None:
 
 
 def element_shapes(element: SealElement, *, depth: float, width: float) -> tuple[Shape, ...]:
-    """What lies in a groove `depth` deep and `width` wide, back-up rings included."""
+    """Bodies in a groove `depth` deep and `width` wide, back-up rings included."""
     back = element.back_up_thickness or 0.0
     start = back if element.back_up == "both" else 0.0
     end = width - (back if element.back_ups else 0.0)
@@ -489,7 +489,7 @@ def stress_scale(study: SealStudy) -> tuple[int, int]:
 
 
 def stress_figure(study: SealStudy) -> Ink:
-    """Von Mises stress of the section at every pressure, its contact in red."""
+    """Von Mises stress of the section at every pressure, its contact in red; drawn to scale."""
     wide, deep = gland_sizes(study.out.rings[0].ring)
     paper, real = stress_scale(study)
     factor, rod = 1000.0 * paper / real, study.place == "rod"

@@ -19,13 +19,13 @@ from ..rendering.ink import BLACK, BLUE, GREY, PALE, Ink, spread_within, text_wi
 from ..rendering.text import number, sentence, unit_text
 
 LEAST_ABOVE = 1e-4
-"""Per cent above the optimum that count as none."""
+"""Excess over the optimum that counts as none [%]."""
 
 NEAR = 1e-3
 """Relative difference of objectives up to which two starts reached the same optimum."""
 
 WIDTH = 180.0
-"""Of the figures (mm)."""
+"""Width of the scale (mm)."""
 
 
 def trust_blocks(optimisation: Optimisation) -> list[Block]:
@@ -58,23 +58,25 @@ def proof(optimisation: Optimisation, *, shortened: bool = False) -> list[str]:
         if optimisation.infeasibility is not None or not optimisation.variables:
             return []
         return ["Not proven: `optimise --certify` computes how far this is from the best possible."]
-    said = [sentence(certificate.sentence), *_of_sizes(optimisation)]
+    lines = [sentence(certificate.sentence), *_of_sizes(optimisation)]
     if certificate.covers and not shortened:
         names = ", ".join(certificate.covers)
-        said.append(f"The proof covers, by the models or by what none of them can beat: {names}.")
+        lines.append(f"The proof covers, by the models or by what none of them can beat: {names}.")
     if certificate.dropped:
         shown = [
             name if shortened else f"{name} ({why})" for name, why in certificate.dropped.items()
         ]
         covered = f"It covers {len(certificate.covers)} limits and does" if shortened else "It does"
-        said.append(f"{covered} without these, which can only lower the bound: {'; '.join(shown)}.")
+        lines.append(
+            f"{covered} without these, which can only lower the bound: {'; '.join(shown)}."
+        )
     if certificate.evidence:
-        said.append(sentence(certificate.evidence))
-    return said
+        lines.append(sentence(certificate.evidence))
+    return lines
 
 
 def _of_sizes(optimisation: Optimisation) -> list[str]:
-    """How far the design of sizes is from the bound, which holds for it too."""
+    """Distance of the design of sizes from the bound, which holds for it too."""
     bound, made = _bound(optimisation), optimisation.made
     if made is None or bound is None or not made.objective_after:
         return []
@@ -90,36 +92,36 @@ def _quantity(optimisation: Optimisation) -> Quantity:
 
 
 def _marks(optimisation: Optimisation) -> list[tuple[float, str]]:
-    """Objectives beside the optimum worth showing: designs of sizes, the start, other optima."""
-    best, found = optimisation.objective_value, []
+    """Objectives to show beside the optimum: designs of sizes, the start, other optima."""
+    best, marks = optimisation.objective_value, []
     rounding = optimisation.rounding
     if rounding is not None and rounding.objective_after is not None:
-        found.append((rounding.objective_after, "of the sizes asked for"))
+        marks.append((rounding.objective_after, "of the requested sizes"))
         for row in rounding.runners_up[:2]:
-            found.append((row.objective, "runner-up"))
+            marks.append((row.objective, "runner-up"))
     if optimisation.choices is not None:
-        for one in optimisation.choices.combinations[1:4]:
-            if one.feasible and one.objective is not None:
-                found.append((one.objective, "other choices"))
+        for combination in optimisation.choices.combinations[1:4]:
+            if combination.feasible and combination.objective is not None:
+                marks.append((combination.objective, "other choices"))
     known = [best]
     reached = (value for value in optimisation.starts if value is not None)
-    for value in sorted(reached, key=lambda one: abs(one - best)):
+    for value in sorted(reached, key=lambda value: abs(value - best)):
         if all(abs(value - other) > NEAR * abs(other) for other in known):
             known.append(value)
-    found += [(value, "other local optimum") for value in known[1:3]]
+    marks += [(value, "other local optimum") for value in known[1:3]]
     start = optimisation.start.metrics.get(optimisation.objective_metric)
     if start is not None and start.value is not None and optimisation.start.met:
-        found.append((start.value, "design as given"))
-    return found
+        marks.append((start.value, "design as given"))
+    return marks
 
 
 def _scale_block(optimisation: Optimisation) -> list[Block]:
-    """What is proven, the optimum and what comes near, with a title."""
+    """The scale of bound, optimum and other designs, with its title and note."""
     bound = _bound(optimisation)
     if bound is None and not _marks(optimisation):
         return []
-    note = "Left of the bound no design meets the covered limits; right of it a better one may."
-    title = "Proven, found, and what comes near"
+    note = "Left of the bound no design meets the covered limits; right of it a better design may."
+    title = "Proven bound, optimum, and other designs"
     return [Drawing(title, scale(optimisation), "" if bound is None else note)]
 
 
@@ -231,13 +233,13 @@ def convergence(optimisation: Optimisation) -> list[str]:
     elif optimisation.starts:
         best = optimisation.objective_value
         same = sum(v is not None and abs(v - best) <= 1e-3 * abs(best) for v in optimisation.starts)
-        found = ", ".join(
+        values = ", ".join(
             "none" if v is None else text.value_text(objective, v) for v in optimisation.starts[:8]
         )
         more = ", …" if len(optimisation.starts) > 8 else ""
         lines.append(
             f"{same} of {len(optimisation.starts)} starts reached the same optimum within 0.1 %:"
-            f" {found}{more}."
+            f" {values}{more}."
         )
     if optimisation.trace:
         steps = optimisation.trace
@@ -255,7 +257,7 @@ def convergence(optimisation: Optimisation) -> list[str]:
 
 
 def _missed(violation: float) -> str:
-    """How far a design misses its limits, in words."""
+    """Violation of the limits in words."""
     return "all met" if violation <= 1e-6 else f"missed by {text.number(100 * violation, 2)} %"
 
 

@@ -513,8 +513,8 @@ def _thicknesses(study: WallStudy) -> Block:
     if settling.radius_ratio < 5:
         shell += ", below 5: a rough figure"
     note = (
-        f"Only layer {study.main_layer + 1} is changed, the one that carries most of the hoop"
-        f" force. Beside the pressure step under the piston seal the growth settles over"
+        f"Only layer {study.main_layer + 1} is changed, which carries most of the hoop force."
+        f" Beside the pressure step under the piston seal the growth settles over"
         f" 1/β = {text.number(1e3 * settling.decay_length, 3)} mm ({shell}):"
         f" {text.trimmed(100 * settling.at_seal, 3)} % of it acts at the seal, {shares} into the"
         " pressure."

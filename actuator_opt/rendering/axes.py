@@ -63,7 +63,7 @@ def ticks(low: float, high: float, count: int = 5) -> list[float]:
 
 
 class Axes:
-    """A plot frame on ink; its axes are linear in what they are given (a logarithm, say)."""
+    """A plot frame on ink; its axes are linear in the values given (which may be logarithms)."""
 
     def __init__(
         self,
@@ -234,8 +234,8 @@ def level_ticks(low: float, high: float) -> Ticks:
     powers = range(math.floor(low), math.ceil(high) + 1)
     every = max(1, math.ceil((high - low) / 7))
     steps = (1, 2, 5) if high - low < 2.2 else (1,)
-    found = [(step, power) for power in powers for step in steps if power % every == 0]
-    places = [(math.log10(step) + power, step * 10.0**power) for step, power in found]
+    pairs = [(step, power) for power in powers for step in steps if power % every == 0]
+    places = [(math.log10(step) + power, step * 10.0**power) for step, power in pairs]
     return [(at, level_words(v)) for at, v in places if low - 1e-9 <= at <= high + 1e-9]
 
 

@@ -106,12 +106,7 @@ def titled(chart: Chart, notes: Sequence[str] = (), *, width: float = 180.0) -> 
     for words in (words for note in notes for words in wrap(note, room, SIZE)):
         ink.text(2.0, top, words, size=SIZE, color=GREY)
         top += 3.3
-    picture = drawn(chart, width=room)
-    for mark in picture.marks:
-        points = [at for line in mark["path"] for at in line] if "path" in mark else [mark["at"]]
-        for at in points:
-            at[0], at[1] = round(at[0] + 2.0, 3), round(at[1] + top, 3)
-    ink.marks += picture.marks
+    ink.paste(drawn(chart, width=room), 2.0, top)
     ink.height = top + chart.height + 2.0
     below = chart.note.split("\n") if chart.note else []
     for words in (words for part in below for words in wrap(part, room, SMALL)):
@@ -439,7 +434,7 @@ def _draw(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
     taken = [p for part in lines for line in part for p in _dotted(line)]
     taken += [spot for part in spots for spot in part]
     for level in panel.levels:
-        if level.between is not None and level.words:
+        if level.between is not None and level.words and not level.upright:
             _beside(axes, level, frame.y, x, taken)
 
 
@@ -673,9 +668,10 @@ def _stretches(axes: Axes, stretches: Sequence[Stretch], x: Scale) -> None:
         fill = STRETCHES[part.shade % len(STRETCHES)]
         axes.ink.box(left, axes.top, right - left, axes.height, fill=fill, stroke=None)
     ends = {part.end for part in stretches}
-    for at in (x.place(part.start) for part in stretches if part.start in ends):
-        top, bottom = axes.top, axes.top + axes.height
-        axes.ink.line((axes.x(at), top), (axes.x(at), bottom), stroke=WHITE, pen=0.35)
+    for place in (x.place(part.start) for part in stretches if part.start in ends):
+        if axes.x_range[0] <= place <= axes.x_range[1]:
+            at, bottom = axes.x(place), axes.top + axes.height
+            axes.ink.line((at, axes.top), (at, bottom), stroke=WHITE, pen=0.35)
 
 
 def _words_over(axes: Axes, panel: Panel, x: Scale) -> None:
