@@ -23,7 +23,7 @@ AREAS = (
 )  # fmt: skip
 """Fills of stacked areas: distinct in hue for colour-blind eyes, in lightness on a grey print."""
 Ticks: TypeAlias = Sequence[tuple[float, str]]
-"""Places on an axis with what is written there."""
+"""Values on an axis with their words."""
 Box: TypeAlias = tuple[float, float, float, float]
 """Left, top, width and height on the paper [mm]."""
 THINNED = 640
@@ -40,7 +40,7 @@ SIZE = 6.2
 _DENSE = 8
 """Values of a thinned curve per mm (a choice: four pairs, finer than the pen)."""
 _MOST_JUMPS = 500
-"""Most instants with two samples that a thinned curve keeps."""
+"""Maximum number of times with two samples that a thinned curve keeps."""
 _MILLISECONDS = 0.1
 """Time below which an axis counts milliseconds [s]."""
 
@@ -63,7 +63,7 @@ def ticks(low: float, high: float, count: int = 5) -> list[float]:
 
 
 class Axes:
-    """A plot frame on ink; its axes are linear in the values given (which may be logarithms)."""
+    """A plot frame on ink; its axes are linear in their values, which may be logarithms."""
 
     def __init__(
         self,
@@ -87,7 +87,7 @@ class Axes:
         return self.top + (high - value) / (high - low) * self.height
 
     def frame(self, title: str, x_label: str) -> None:
-        """Grid, ticks, axis labels; the y label stands as the title above the axis."""
+        """Grid, ticks and axis labels; the y label is the title above the axis."""
         self.frame_at(
             title,
             x_label,
@@ -98,9 +98,9 @@ class Axes:
     def frame_at(
         self, title: str, x_label: str, x_ticks: Ticks, y_ticks: Ticks, *, upright: bool = False
     ) -> None:
-        """The same with ticks at stated places; `upright` draws their grid lines too.
+        """The same with stated ticks; `upright` also draws vertical grid lines.
 
-        Without an x label the ticks stay without their numbers: another frame stands below.
+        Without an x label the x ticks have no numbers, as another frame follows below.
         """
         bottom = self.top + self.height
         for value, words in y_ticks:
@@ -124,16 +124,16 @@ class Axes:
             self.ink.text(self.left - 1.4, self.top - 3.6, title, size=7.0, bold=True)
 
     def clipped(self, xs: Sequence[float], ys: Sequence[float]) -> list[list[Point]]:
-        """Polyline on paper, cut where it leaves the top or the bottom of the frame."""
+        """Polyline on paper, cut where it leaves the frame at the top or the bottom."""
         low, high = self.y_range
         lines: list[list[Point]] = [[]]
         for index, (x, y) in enumerate(zip(xs, ys, strict=True)):
-            before = ys[index - 1] if index else y
-            for level, beyond in ((low, y < low), (high, y > high))[:: 1 if y > before else -1]:
-                outside = before > level if level == high else before < level
+            previous = ys[index - 1] if index else y
+            for level, beyond in ((low, y < low), (high, y > high))[:: 1 if y > previous else -1]:
+                outside = previous > level if level == high else previous < level
                 if outside == beyond:
                     continue
-                share = (level - before) / (y - before)
+                share = (level - previous) / (y - previous)
                 edge = xs[index - 1] + share * (x - xs[index - 1])
                 lines[-1].append((self.x(edge), self.y(level)))
                 if beyond:
@@ -144,7 +144,7 @@ class Axes:
 
 
 def fitted(words: str, room: float, size: float = 6.5) -> str:
-    """Words cut with an ellipsis to what fits into `room` mm.
+    """Words that fit into `room` mm, cut with an ellipsis if too long.
 
     >>> fitted("weakest position", 12.0)
     'weakest…'
@@ -164,7 +164,7 @@ def legend(
     *,
     ends: bool = True,
 ) -> None:
-    """Names of curves in one line that ends at `x`, or starts there, each after its line."""
+    """Names of curves in a row that ends or starts at `x`; a sample of its line precedes each."""
     if ends:
         x -= sum(text_width(words, 6.5) + 11.0 for words, _ in entries) - 3.5
     for words, style in entries:
@@ -174,7 +174,7 @@ def legend(
 
 
 def lowest(axes: Axes, place: float, value: float, limits: Sequence[float]) -> None:
-    """The lowest point of a curve (place in mm) with its words below it, clear of the limits."""
+    """The lowest point of a curve (place in mm), with its label below and clear of the limits."""
     x, y = axes.x(place), axes.y(value)
     axes.ink.circle(x, y, 0.8, fill=BLUE, stroke="#ffffff", pen=0.2)
     label = f"minimum {number(value)} at {trimmed(place, 3)} mm"
@@ -191,7 +191,7 @@ def lowest(axes: Axes, place: float, value: float, limits: Sequence[float]) -> N
 
 
 def required(axes: Axes, level: float, words: str) -> None:
-    """A limit over the whole frame, named to its right; left out where it is off the frame."""
+    """A limit over the whole frame, with its name to the right; omitted outside the frame."""
     if axes.y_range[0] <= level <= axes.y_range[1]:
         right, y = axes.left + axes.width, axes.y(level)
         axes.ink.line((axes.left, y), (right, y), stroke=RED, pen=0.25, dash=(1.8, 1.0))
@@ -212,7 +212,7 @@ def per_cent(share: float) -> str:
 
 
 def level_words(value: float) -> str:
-    """A power of ten or a step between, short enough for an axis.
+    """A power of ten, or a step between two powers, short enough for an axis.
 
     >>> level_words(0.01), level_words(2000.0), level_words(1e5), level_words(5e-7)
     ('0.01', '2000', '10⁵', '5×10⁻⁷')
@@ -221,26 +221,30 @@ def level_words(value: float) -> str:
         return trimmed(value)
     power = math.floor(math.log10(value) + 1e-9)
     step = round(value / 10.0**power)
-    raised = f"10{str(power).translate(SUPERSCRIPTS)}"
-    return raised if step == 1 else f"{step}×{raised}"
+    power_text = f"10{str(power).translate(SUPERSCRIPTS)}"
+    return power_text if step == 1 else f"{step}×{power_text}"
 
 
 def level_ticks(low: float, high: float) -> Ticks:
-    """Ticks of a logarithmic axis (log10): decades, or 1, 2, 5 where there are few of them.
+    """Ticks of a logarithmic axis (log10): decades, or 1, 2, 5 on a short axis.
 
     >>> level_ticks(0.0, 0.8)
     [(0.0, '1'), (0.3010299956639812, '2'), (0.6989700043360189, '5')]
     """
     powers = range(math.floor(low), math.ceil(high) + 1)
-    every = max(1, math.ceil((high - low) / 7))
+    interval = max(1, math.ceil((high - low) / 7))
     steps = (1, 2, 5) if high - low < 2.2 else (1,)
-    pairs = [(step, power) for power in powers for step in steps if power % every == 0]
-    places = [(math.log10(step) + power, step * 10.0**power) for step, power in pairs]
+    places = [
+        (math.log10(step) + power, step * 10.0**power)
+        for power in powers
+        for step in steps
+        if power % interval == 0
+    ]
     return [(at, level_words(v)) for at, v in places if low - 1e-9 <= at <= high + 1e-9]
 
 
 def dot(axes: Axes, x: float, y: float, color: str = BLUE, fill: str = WHITE) -> None:
-    """A value at one place."""
+    """A single value as a dot."""
     axes.ink.circle(axes.x(x), axes.y(y), 0.75, fill=fill, stroke=color, pen=0.3)
 
 
@@ -261,15 +265,15 @@ def even_ticks(low: float, high: float, count: int) -> Ticks:
     return [(v, fixed(v, places) if places else trimmed(v, 7)) for v in values]
 
 
-def spaced(found: Iterable[tuple[float, str, int]], axes: Axes) -> Ticks:
-    """Ticks of an x axis (place, words, rank) whose words do not touch; the least rank stays."""
-    kept: list[tuple[float, str]] = []
-    for value, words, _ in sorted(found, key=lambda one: (one[2], abs(one[0]))):
+def spaced(candidates: Iterable[tuple[float, str, int]], axes: Axes) -> Ticks:
+    """Ticks of an x axis (value, words, rank) whose words do not touch; low ranks come first."""
+    labels: list[tuple[float, str]] = []
+    for value, words, _ in sorted(candidates, key=lambda tick: (tick[2], abs(tick[0]))):
         half = text_width(words, 6.5) / 2
         x = axes.x(value)
-        if all(abs(x - axes.x(v)) > half + text_width(w, 6.5) / 2 + 1.0 for v, w in kept):
-            kept.append((value, words))
-    return sorted(kept)
+        if all(abs(x - axes.x(v)) > half + text_width(w, 6.5) / 2 + 1.0 for v, w in labels):
+            labels.append((value, words))
+    return sorted(labels)
 
 
 def log_range(values: Sequence[float], least: float = 0.5) -> tuple[float, float]:
@@ -280,7 +284,7 @@ def log_range(values: Sequence[float], least: float = 0.5) -> tuple[float, float
 
 
 def even_range(values: Sequence[float], *, zero: bool = False) -> tuple[float, float]:
-    """Range of a straight axis with a little room; never empty."""
+    """Range of a straight axis, slightly wider than the values; never empty."""
     known = [v for v in values if math.isfinite(v)] or [0.0]
     low, high = min(known), max(known)
     if zero:
@@ -295,7 +299,7 @@ def even_range(values: Sequence[float], *, zero: bool = False) -> tuple[float, f
 
 
 def error_bar(axes: Axes, x: float, low: float, high: float, color: str) -> None:
-    """A bar from low to high, cut at the frame, with feet where it ends inside."""
+    """A bar from low to high, cut at the frame, with feet at ends inside the frame."""
     bottom, top = axes.y_range
     if high < bottom or low > top:
         return
@@ -310,7 +314,7 @@ def error_bar(axes: Axes, x: float, low: float, high: float, color: str) -> None
 
 
 def band(axes: Axes, xs: Sequence[float], low: Sequence[float], high: Sequence[float]) -> None:
-    """The area between two curves, cut at the frame; nothing where a bound has no value."""
+    """The area between two curves, cut at the frame; empty where a bound has no value."""
     bottom, top = axes.y_range
     runs: list[list[tuple[float, float, float]]] = [[]]
     for x, below, above in zip(xs, low, high, strict=True):
@@ -326,7 +330,7 @@ def band(axes: Axes, xs: Sequence[float], low: Sequence[float], high: Sequence[f
 
 
 def thinned(values: Array, most: int = THINNED) -> Array:
-    """Samples that hold the least and the greatest value of every stretch, in order.
+    """Indices of samples with the least and greatest value of every interval, in order.
 
     >>> thinned(np.array([0.0, 5.0, 1.0, 2.0, -3.0, 3.0]), 4)
     array([0, 1, 4, 5])
@@ -335,15 +339,15 @@ def thinned(values: Array, most: int = THINNED) -> Array:
     if size <= most:
         return np.arange(size)
     edges = np.linspace(0, size, max(most // 2, 1) + 1).round().astype(int)
-    found = {0, size - 1}
+    indices = {0, size - 1}
     for first, last in pairwise(edges.tolist()):
-        found |= {first + int(np.argmin(values[first:last]))}
-        found |= {first + int(np.argmax(values[first:last]))}
-    return np.array(sorted(found))
+        indices |= {first + int(np.argmin(values[first:last]))}
+        indices |= {first + int(np.argmax(values[first:last]))}
+    return np.array(sorted(indices))
 
 
 def time_words(span: float, words: str = "time") -> tuple[str, float]:
-    """Label of a time axis, and what is shown over seconds.
+    """Label of a time axis, and its unit per second.
 
     >>> time_words(5.0), time_words(0.02)
     (('time, s', 1.0), ('time, ms', 1000.0))
@@ -363,28 +367,28 @@ def steady_range(ends: Sequence[float], *, zero: bool = False) -> tuple[float, f
 
 
 def lines(axes: Axes, time: Array, values: Array) -> list[list[Point]]:
-    """A curve on paper, thinned, cut where it leaves the frame or has no value."""
+    """A curve on paper, thinned, and interrupted outside the frame and where it has no value."""
     inside = (time >= axes.x_range[0]) & (time <= axes.x_range[1]) & np.isfinite(values)
     known = np.flatnonzero(inside)
-    jumps = np.flatnonzero(np.diff(time) == 0)  # two samples at an instant: an upright line
+    jumps = np.flatnonzero(np.diff(time) == 0)  # two samples at the same time: a vertical line
     jumps = np.union1d(jumps, jumps + 1) if jumps.size < _MOST_JUMPS else jumps[:0]
-    drawn: list[list[Point]] = []
+    polylines: list[list[Point]] = []
     for run in np.split(known, np.flatnonzero(np.diff(known) > 1) + 1):
         if run.size > 1:
             at = run[thinned(values[run], max(int(_DENSE * axes.width), 16))]
             at = np.union1d(at, np.intersect1d(run, jumps))
-            drawn += axes.clipped([float(t) for t in time[at]], [float(v) for v in values[at]])
-    return drawn
+            polylines += axes.clipped([float(t) for t in time[at]], [float(v) for v in values[at]])
+    return polylines
 
 
 def time_axis(axes: Axes, words: str = "time") -> None:
-    """Ticks, numbers and the name of the time below a frame, whose range is in seconds."""
+    """Ticks, numbers and label of the time axis below a frame with a range in seconds."""
     label, scale = time_words(axes.x_range[1] - axes.x_range[0], words)
     x_axis(axes, label, scale)
 
 
 def x_axis(axes: Axes, label: str, scale: float = 1.0) -> None:
-    """Ticks of an x axis that shows its values times `scale`; their numbers only with a label."""
+    """Ticks of an x axis that shows its values times `scale`; numbers only with a label."""
     bottom = axes.top + axes.height
     low, high = (scale * v for v in axes.x_range)
     ticks = even_ticks(low, high, max(2, int(axes.width / 11)))
@@ -401,7 +405,7 @@ def x_axis(axes: Axes, label: str, scale: float = 1.0) -> None:
 def names(
     ink: Ink, right: float, y: float, entries: Sequence[tuple[str, dict[str, Any]]], room: float
 ) -> None:
-    """Names of curves in one line that ends at `right`, each after its line, cut to the room."""
+    """Names of curves in a row that ends at `right`, cut to the room; their lines precede them."""
     if not entries:
         return
     words = [name for name, _ in entries]

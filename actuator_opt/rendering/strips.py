@@ -34,14 +34,14 @@ LIMIT: dict[str, Any] = {"stroke": RED, "pen": 0.2, "dash": (1.8, 0.8)}
 MEASURED: dict[str, Any] = {"stroke": "#a9b4bc", "pen": 0.7}
 _EVENT: dict[str, Any] = {"stroke": RED, "pen": 0.13, "dash": (0.4, 0.5)}
 _HEAD, _FOOT = 5.2, 7.5
-"""Height of the words above a strip and below the last one [mm]."""
+"""Height of the words above every strip and below the last strip [mm]."""
 _LEAST = 10.0
-"""Least height of the frame of a strip [mm] (a choice: three numbers beside it)."""
+"""Minimum height of the frame of a strip [mm] (a choice: room for three numbers beside it)."""
 
 
 @dataclass(frozen=True, slots=True)
 class StripCurve:
-    """Values over time, in the unit shown; without words it is not named."""
+    """Values over time, in display units; without words it has no name."""
 
     words: str
     time: Array
@@ -51,7 +51,7 @@ class StripCurve:
 
 @dataclass(frozen=True, slots=True)
 class ConstantLevel:
-    """A value that holds all the time; without words it is not named."""
+    """A constant value; without words it has no name."""
 
     words: str
     value: float
@@ -60,13 +60,13 @@ class ConstantLevel:
 
 @dataclass(frozen=True, slots=True)
 class Strip:
-    """A frame of curves over time; the strips of highest rank go where there is no room."""
+    """A frame of curves over time; if the height is too small, high ranks are dropped first."""
 
     title: str
     curves: tuple[StripCurve, ...]
     levels: tuple[ConstantLevel, ...] = ()
     zero: bool = False
-    """Whether zero belongs to the axis."""
+    """Whether the axis includes zero."""
     rank: int = 1
 
 
@@ -78,7 +78,7 @@ def stack(
     *,
     marks: Sequence[float] = (),
 ) -> None:
-    """Strips over the same time, one above the other; `marks` are instants [s] in all of them."""
+    """Strips over the same time, one above the other; every strip has `marks` at times [s]."""
     left, top, width, height = box
     shown = _chosen(strips, height)
     if not shown:
@@ -95,14 +95,14 @@ def stack(
 
 
 def _chosen(strips: Sequence[Strip], height: float) -> list[Strip]:
-    """The strips that have room in a height [mm], in their order."""
+    """The strips that fit into a height [mm], in their order."""
     most = max(2, int((height - _FOOT) / (_HEAD + _LEAST)))
     order = sorted(range(len(strips)), key=lambda k: (strips[k].rank, k))[:most]
     return [strips[k] for k in sorted(order)]
 
 
 def _drawn(ink: Ink, box: Box, strip: Strip, across: tuple[float, float]) -> Axes:
-    """A strip with its title and the names of its curves; its time axis is drawn apart."""
+    """Draw a strip with its title and the names of its curves, but without its time axis."""
     span = _range(strip, across)
     axes = Axes(ink, box, across, span)
     axes.frame_at("", "", [], even_ticks(*span, 2 if box[3] < 9 else 3 if box[3] < 20 else 5))
@@ -117,8 +117,8 @@ def _drawn(ink: Ink, box: Box, strip: Strip, across: tuple[float, float]) -> Axe
     for curve in strip.curves:
         ink.path(lines(axes, curve.time, curve.values), **curve.style)
     entries: dict[str, dict[str, Any]] = {}
-    named: list[StripCurve | ConstantLevel] = [*strip.curves, *levels]
-    for mark in named:
+    marks: list[StripCurve | ConstantLevel] = [*strip.curves, *levels]
+    for mark in marks:
         if mark.words:
             entries.setdefault(mark.words, mark.style)
     room = box[2] - text_width(strip.title, 6.5, bold=True) - 2.0
@@ -127,7 +127,7 @@ def _drawn(ink: Ink, box: Box, strip: Strip, across: tuple[float, float]) -> Axe
 
 
 def _range(strip: Strip, across: tuple[float, float]) -> tuple[float, float]:
-    """Range of the values within the time, and of the levels where the axis includes zero."""
+    """Range of the values within the time, and of the levels if the axis includes zero."""
     ends: list[float] = []
     for curve in strip.curves:
         inside = curve.values[(curve.time >= across[0]) & (curve.time <= across[1])]
