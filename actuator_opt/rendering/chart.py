@@ -20,6 +20,7 @@ from .text import MINUS, number
 
 Values: TypeAlias = Sequence[float] | Array
 Weight: TypeAlias = Literal["normal", "thin", "guide"]
+PointWeight: TypeAlias = Literal["normal", "guide", "strong"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +86,7 @@ class Points:
     small : small dots and crosses in the colours of the curves
     across : error bars are along x instead of y
     shades : values of the panel's surface, whose shades fill the points
+    weight : "guide" for pale dots in the background, "strong" for a ring around a chosen point
     """
 
     words: str
@@ -96,19 +98,22 @@ class Points:
     small: bool = False
     across: bool = False
     shades: Values = ()
+    weight: PointWeight = "normal"
 
 
 @dataclass(frozen=True, slots=True)
 class Level:
-    """A horizontal line at a value of y.
+    """A horizontal line at a value of y, or an upright line at a value of x.
 
     Parameters
     ----------
-    value : of y
+    value : of y, or of x where `upright`
     words : its name
-    sense : of a limit, "min" or "max": red, forbidden side hatched, name at the right
+    sense : of a limit, "min" or "max": red, forbidden side hatched, name at the right, of an
+        upright limit above the frame
     style : of any other line: colour and dash by number
-    between : ends along x, with its name beside it; default: the whole frame
+    between : ends along x of a horizontal line, with its name beside it; default: the whole frame
+    upright : a line at a value of x
     """
 
     value: float
@@ -116,11 +121,25 @@ class Level:
     sense: Literal["", "min", "max"] = ""
     style: int = 2
     between: tuple[float, float] | None = None
+    upright: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """A shaded stretch of x; each line of its words stands above the frame where it fits."""
+
+    start: float
+    end: float
+    words: str = ""
+    shade: int = 0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShadedMap:
-    """A positive quantity over x (columns) and y (rows), shaded between round levels."""
+    """A positive quantity over x (columns) and y (rows), shaded between round levels.
+
+    The map is hatched where values are missing.
+    """
 
     xs: Values
     ys: Values
@@ -135,7 +154,7 @@ class Panel:
     ----------
     title : quantity and unit of y
     x, y : axes
-    curves, points, levels, surface : its content
+    curves, points, levels, surface, stretches : its content
     note : below the title; inside an empty frame, the reason
     share : of the height among the panels of a column
     """
@@ -149,6 +168,7 @@ class Panel:
     surface: ShadedMap | None = None
     note: str = ""
     share: float = 1.0
+    stretches: Sequence[Stretch] = ()
 
 
 CORE = 0.35

@@ -46,6 +46,8 @@ def bars(
 ) -> Ink:
     """Bars of changes about a centre, dark for the upper end and light for the lower end.
 
+    Drawn, not a chart: each bar has its name and both changes in figures beside it.
+
     Parameters
     ----------
     rows : from top to bottom

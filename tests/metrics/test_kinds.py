@@ -35,7 +35,7 @@ from actuator_opt.friction.kinds import LAWS as FRICTION_LAWS
 from actuator_opt.friction.law import FrictionLaw
 from actuator_opt.models.elastomer import MODULUS_LAWS
 from actuator_opt.models.seals import LAWS as CONTACT_LAWS
-from actuator_opt.pages.seal_figures import filled_grooves
+from actuator_opt.pages.seal_sections import filled_grooves
 from actuator_opt.seals import o_ring
 from actuator_opt.seals.contact import GROOVE_WIDTH
 from actuator_opt.seals.kinds import SIZES, TYPES
