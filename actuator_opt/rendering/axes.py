@@ -309,7 +309,13 @@ def error_bar(axes: Axes, x: float, low: float, high: float, color: str) -> None
             axes.ink.line((at - 0.7, y), (at + 0.7, y), pen=0.2, stroke=color)
 
 
-def band(axes: Axes, xs: Sequence[float], low: Sequence[float], high: Sequence[float]) -> None:
+def band(
+    axes: Axes,
+    xs: Sequence[float],
+    low: Sequence[float],
+    high: Sequence[float],
+    fill: str = "#d5e6f0",
+) -> None:
     """The area between two curves, cut at the frame; nothing where a bound has no value."""
     bottom, top = axes.y_range
     runs: list[list[tuple[float, float, float]]] = [[]]
@@ -322,7 +328,7 @@ def band(axes: Axes, xs: Sequence[float], low: Sequence[float], high: Sequence[f
         upper = [(axes.x(x), axes.y(y)) for x, _, y in run]
         lower = [(axes.x(x), axes.y(y)) for x, y, _ in run]
         if len(run) > 1:
-            axes.ink.path([[*upper, *lower[::-1]]], fill="#d5e6f0", stroke=None, closed=True)
+            axes.ink.path([[*upper, *lower[::-1]]], fill=fill, stroke=None, closed=True)
 
 
 def thinned(values: Array, most: int = THINNED) -> Array:

@@ -19,7 +19,7 @@ from .ink import text_width
 from .text import MINUS, number
 
 Values: TypeAlias = Sequence[float] | Array
-Weight: TypeAlias = Literal["normal", "thin", "guide"]
+Weight: TypeAlias = Literal["normal", "thin", "guide", "broad"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,8 +58,10 @@ class Curve:
     xs, ys : values
     low, high : bounds of a band around it
     style : colour and dash by number; default: its place among the curves of the panel
-    weight : "thin" for a record over time, "guide" for a grey hairline
+    weight : "thin" for a record over time, "guide" for a grey hairline, "broad" for a pale line
+        under the other curves
     end : words at its right end
+    dash : dash by number; default: the dash of its style
     """
 
     words: str
@@ -70,6 +72,7 @@ class Curve:
     style: int | None = None
     weight: Weight = "normal"
     end: str = ""
+    dash: int | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -85,6 +88,7 @@ class Points:
     small : small dots and crosses in the colours of the curves
     across : error bars along x
     shades : values that fill the points with the shade of the panel's surface
+    labels : words beside each point
     """
 
     words: str
@@ -96,19 +100,23 @@ class Points:
     small: bool = False
     across: bool = False
     shades: Values = ()
+    labels: Sequence[str] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Level:
-    """A horizontal line at a value of y.
+    """A horizontal line at a value of y, or an upright line at a value of x.
 
     Parameters
     ----------
-    value : of y
+    value : of y, or of x where `upright`
     words : its name
-    sense : of a limit, "min" or "max": red, the forbidden side hatched, named at the right
+    sense : of a limit, "min" or "max": red, the forbidden side hatched, named at the right, an
+        upright limit above the frame
     style : of any other line: colour and dash by number
-    between : ends along x; its name then stands beside it; default: the whole frame
+    between : ends along x of a horizontal line, which then has its name beside it; default: the
+        whole frame
+    upright : a line at a value of x
     """
 
     value: float
@@ -116,6 +124,25 @@ class Level:
     sense: Literal["", "min", "max"] = ""
     style: int = 2
     between: tuple[float, float] | None = None
+    upright: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Area:
+    """The area between two curves over x, named at the right of the frame.
+
+    Parameters
+    ----------
+    words : its name
+    xs, low, high : values
+    fill : by number
+    """
+
+    words: str
+    xs: Values
+    low: Values
+    high: Values
+    fill: int = 0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -138,6 +165,7 @@ class Panel:
     curves, points, levels, surface : what it shows
     note : below the title, or inside an empty frame, why it is empty
     share : of the height, among the panels of a column
+    areas : filled areas
     """
 
     title: str
@@ -149,6 +177,7 @@ class Panel:
     surface: ShadedMap | None = None
     note: str = ""
     share: float = 1.0
+    areas: Sequence[Area] = ()
 
 
 CORE = 0.35

@@ -280,6 +280,17 @@ class Ink:
             )
         )
 
+    def paste(self, other: Ink, x: float, y: float) -> None:
+        """Another drawing with its top left corner at a place."""
+        for mark in other.marks:
+            if "text" in mark:
+                at = [round(mark["at"][0] + x, 3), round(mark["at"][1] + y, 3)]
+                self.marks.append(TextMark(**mark | {"at": at}))
+            else:
+                path = [[[round(a + x, 3), round(b + y, 3)] for a, b in line]
+                        for line in mark["path"]]  # fmt: skip
+                self.marks.append(PathMark(**mark | {"path": path}))
+
     def data(self) -> dict[str, object]:
         """The drawing as plain data for the template."""
         return {"width": self.width, "height": self.height, "marks": self.marks}
