@@ -113,7 +113,7 @@ def page(
         kind="Simulation in time",
         design=simulation.plant.design.name,
         verdict=verdict(simulation),
-        sentence=tied(what(simulation)),
+        sentence=tied(description(simulation)),
         tiles=tiles(simulation),
         hero=lambda room: simulation_figure(
             simulation, min(room, MOST), measured=measured, static=static
@@ -158,7 +158,7 @@ def tied(words: str) -> str:
     return _TIED.sub("\N{NO-BREAK SPACE}", words)
 
 
-def what(simulation: Simulation) -> str:
+def description(simulation: Simulation) -> str:
     """Machine, duration, reference and load in a few sentences."""
     scenario, plant = simulation.scenario, simulation.plant
     control = scenario.control

@@ -35,7 +35,7 @@ from ..rendering.text import DASH, number, pretty, sentence, unit_text, value_te
 from ..simulation.components.circuit import LOOPS
 from ..simulation.linear import BAND, Tuned
 from ..simulation.result import Servo, Simulation
-from .simulation import known, label, remarks, share_words, sound, tied, what
+from .simulation import description, known, label, remarks, share_words, sound, tied
 from .simulation_energy import ENERGY
 from .simulation_figures import (
     CONSTANT,
@@ -487,7 +487,7 @@ def _sentence(comparison: RunComparison, designs: Sequence[str]) -> str:
     named = " and ".join(designs) if len(designs) < 3 else f"{len(designs)} designs"
     count = "1 run" if len(comparison.runs) == 1 else f"{len(comparison.runs)} runs"
     first = f"{count} of {named}."
-    scenarios = {what(run).partition(": ")[2] for _, run in comparison.runs}
+    scenarios = {description(run).partition(": ")[2] for _, run in comparison.runs}
     return f"{first} {sentence(scenarios.pop())}" if len(scenarios) == 1 else first
 
 

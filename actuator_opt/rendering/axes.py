@@ -15,7 +15,7 @@ import numpy as np
 
 from ..base.numeric import Array
 from .ink import BLACK, BLUE, GREEN, GREY, OCHRE, PALE, RED, WHITE, Ink, Point, text_width
-from .text import MINUS, SUPERSCRIPTS, fixed, number, trimmed
+from .text import MINUS, SUPERSCRIPTS, fixed, trimmed
 
 AREAS = (
     "#0b3c5d", "#9ec3da", "#d5e6f0", "#4f86a8", "#f0e2b6", "#b98b3e",
@@ -33,14 +33,8 @@ DASHES: tuple[tuple[float, ...], ...] = (
     (), (1.6, 0.8), (2.4, 0.7, 0.4, 0.7), (0.8, 0.5), (3.2, 0.8), (0.4, 0.5),
 )  # fmt: skip
 """Colours and dashes of curves."""
-ZERO: dict[str, Any] = {"stroke": GREY, "pen": 0.13}
-"""Ink of a line at zero."""
 SIZE = 6.2
 """Type of the names of curves [pt]."""
-_DENSE = 8
-"""Values of a thinned curve per mm (a choice: four pairs, finer than the pen)."""
-_MOST_JUMPS = 500
-"""Most instants with two samples that a thinned curve keeps."""
 _MILLISECONDS = 0.1
 """Time below which an axis counts milliseconds [s]."""
 
@@ -173,31 +167,6 @@ def legend(
         x += 11.0 + text_width(words, 6.5)
 
 
-def lowest(axes: Axes, place: float, value: float, limits: Sequence[float]) -> None:
-    """The lowest point of a curve (place in mm) with its words below it, clear of the limits."""
-    x, y = axes.x(place), axes.y(value)
-    axes.ink.circle(x, y, 0.8, fill=BLUE, stroke="#ffffff", pen=0.2)
-    label = f"minimum {number(value)} at {trimmed(place, 3)} mm"
-    half = text_width(label, 6.5) / 2
-    text_x = min(max(x, axes.left + half + 1.0), axes.left + axes.width - half - 1.0)
-    text_y = y + 4.0
-    for limit in limits:
-        level = axes.y(limit)
-        if level > y:
-            text_y = max(text_y, level + 3.0) if level - y < 6.5 else y + 3.0
-    if text_y > axes.top + axes.height - 1.8:
-        text_y = y - 3.4
-    axes.ink.text(text_x, text_y, label, anchor="center", halo=True, color=BLUE)
-
-
-def required(axes: Axes, level: float, words: str) -> None:
-    """A limit over the whole frame, named to its right; left out where it is off the frame."""
-    if axes.y_range[0] <= level <= axes.y_range[1]:
-        right, y = axes.left + axes.width, axes.y(level)
-        axes.ink.line((axes.left, y), (right, y), stroke=RED, pen=0.25, dash=(1.8, 1.0))
-        axes.ink.text(right + 1.0, y, words, color=RED, anchor="left")
-
-
 def per_cent(share: float) -> str:
     """A share in whole per cent, small ones with a decimal.
 
@@ -234,8 +203,8 @@ def level_ticks(low: float, high: float) -> Ticks:
     powers = range(math.floor(low), math.ceil(high) + 1)
     every = max(1, math.ceil((high - low) / 7))
     steps = (1, 2, 5) if high - low < 2.2 else (1,)
-    found = [(step, power) for power in powers for step in steps if power % every == 0]
-    places = [(math.log10(step) + power, step * 10.0**power) for step, power in found]
+    digits = [(step, power) for power in powers for step in steps if power % every == 0]
+    places = [(math.log10(step) + power, step * 10.0**power) for step, power in digits]
     return [(at, level_words(v)) for at, v in places if low - 1e-9 <= at <= high + 1e-9]
 
 
@@ -261,10 +230,10 @@ def even_ticks(low: float, high: float, count: int) -> Ticks:
     return [(v, fixed(v, places) if places else trimmed(v, 7)) for v in values]
 
 
-def spaced(found: Iterable[tuple[float, str, int]], axes: Axes) -> Ticks:
+def spaced(candidates: Iterable[tuple[float, str, int]], axes: Axes) -> Ticks:
     """Ticks of an x axis (place, words, rank) whose words do not touch; the least rank stays."""
     kept: list[tuple[float, str]] = []
-    for value, words, _ in sorted(found, key=lambda one: (one[2], abs(one[0]))):
+    for value, words, _ in sorted(candidates, key=lambda tick: (tick[2], abs(tick[0]))):
         half = text_width(words, 6.5) / 2
         x = axes.x(value)
         if all(abs(x - axes.x(v)) > half + text_width(w, 6.5) / 2 + 1.0 for v, w in kept):
@@ -292,21 +261,6 @@ def even_range(values: Sequence[float], *, zero: bool = False) -> tuple[float, f
     below = 0.0 if zero and low == 0 and not (flat and high < 0) else spare
     above = 0.0 if zero and high == 0 and not flat else spare
     return low - below, high + above
-
-
-def error_bar(axes: Axes, x: float, low: float, high: float, color: str) -> None:
-    """A bar from low to high, cut at the frame, with feet where it ends inside."""
-    bottom, top = axes.y_range
-    if high < bottom or low > top:
-        return
-    at = axes.x(x)
-    axes.ink.line(
-        (at, axes.y(max(low, bottom))), (at, axes.y(min(high, top))), pen=0.2, stroke=color
-    )
-    for level in (low, high):
-        if bottom <= level <= top:
-            y = axes.y(level)
-            axes.ink.line((at - 0.7, y), (at + 0.7, y), pen=0.2, stroke=color)
 
 
 def band(
@@ -341,11 +295,11 @@ def thinned(values: Array, most: int = THINNED) -> Array:
     if size <= most:
         return np.arange(size)
     edges = np.linspace(0, size, max(most // 2, 1) + 1).round().astype(int)
-    found = {0, size - 1}
+    kept = {0, size - 1}
     for first, last in pairwise(edges.tolist()):
-        found |= {first + int(np.argmin(values[first:last]))}
-        found |= {first + int(np.argmax(values[first:last]))}
-    return np.array(sorted(found))
+        kept |= {first + int(np.argmin(values[first:last]))}
+        kept |= {first + int(np.argmax(values[first:last]))}
+    return np.array(sorted(kept))
 
 
 def time_words(span: float, words: str = "time") -> tuple[str, float]:
@@ -366,42 +320,6 @@ def steady_range(ends: Sequence[float], *, zero: bool = False) -> tuple[float, f
         return low, high
     middle = (low + high) / 2
     return middle - 0.05 * max(size, 1e-9), middle + 0.05 * max(size, 1e-9)
-
-
-def lines(axes: Axes, time: Array, values: Array) -> list[list[Point]]:
-    """A curve on paper, thinned, cut where it leaves the frame or has no value."""
-    inside = (time >= axes.x_range[0]) & (time <= axes.x_range[1]) & np.isfinite(values)
-    known = np.flatnonzero(inside)
-    jumps = np.flatnonzero(np.diff(time) == 0)  # two samples at an instant: an upright line
-    jumps = np.union1d(jumps, jumps + 1) if jumps.size < _MOST_JUMPS else jumps[:0]
-    drawn: list[list[Point]] = []
-    for run in np.split(known, np.flatnonzero(np.diff(known) > 1) + 1):
-        if run.size > 1:
-            at = run[thinned(values[run], max(int(_DENSE * axes.width), 16))]
-            at = np.union1d(at, np.intersect1d(run, jumps))
-            drawn += axes.clipped([float(t) for t in time[at]], [float(v) for v in values[at]])
-    return drawn
-
-
-def time_axis(axes: Axes, words: str = "time") -> None:
-    """Ticks, numbers and the name of the time below a frame, whose range is in seconds."""
-    label, scale = time_words(axes.x_range[1] - axes.x_range[0], words)
-    x_axis(axes, label, scale)
-
-
-def x_axis(axes: Axes, label: str, scale: float = 1.0) -> None:
-    """Ticks of an x axis that shows its values times `scale`; their numbers only with a label."""
-    bottom = axes.top + axes.height
-    low, high = (scale * v for v in axes.x_range)
-    ticks = even_ticks(low, high, max(2, int(axes.width / 11)))
-    for value, number_words in spaced([(v / scale, w, 1) for v, w in ticks], axes):
-        x = axes.x(value)
-        axes.ink.line((x, bottom), (x, bottom + 1.0), pen=0.13)
-        if label:
-            axes.ink.text(x, bottom + 2.8, number_words, anchor="center")
-    if label:
-        middle = axes.left + axes.width / 2
-        axes.ink.text(middle, bottom + 6.0, label, anchor="center", color=GREY)
 
 
 def names(

@@ -205,8 +205,8 @@ def known(values: Iterable[float], *, log: bool = False) -> list[float]:
     array = np.asarray(list(values), dtype=float)
     array = _sized(array)
     good = array > 0 if log else np.isfinite(array)
-    found: list[float] = array[good].tolist()
-    return found
+    shown: list[float] = array[good].tolist()
+    return shown
 
 
 def _sized(values: Array) -> Array:
@@ -235,10 +235,10 @@ class Scale:
         """Ticks for an axis of so many millimetres whose words do not touch."""
         count = min(max(2, int(room / 9.0)), 10) if across else min(max(2, round(room / 8.0)), 6)
         low, high = self.range
-        found = [tick for tick in self.candidates(count) if low - 1e-9 <= tick[0] <= high + 1e-9]
-        kept = self._spaced(sorted(found, key=lambda tick: (tick[2], abs(tick[0]))), room, across)
+        inside = [tick for tick in self.candidates(count) if low - 1e-9 <= tick[0] <= high + 1e-9]
+        kept = self._spaced(sorted(inside, key=lambda tick: (tick[2], abs(tick[0]))), room, across)
         if len(kept) < 2:  # both ends rather than zero alone
-            kept = self._spaced(sorted(found, key=lambda tick: -abs(tick[0])), room, across)
+            kept = self._spaced(sorted(inside, key=lambda tick: -abs(tick[0])), room, across)
         return kept
 
     def _spaced(self, ranked: Ranked, room: float, across: bool) -> Ticks:
@@ -328,11 +328,11 @@ def _logarithmic(axis: Axis, shown: Sequence[float], exact: bool) -> Scale:
     def candidates(count: int) -> Ranked:
         if axis.ticks is not None:
             return _stated(axis, math.log10)
-        found = level_ticks(*ends)
-        if len(found) < 2:
+        marks = level_ticks(*ends)
+        if len(marks) < 2:
             even = _even(10.0 ** ends[0], 10.0 ** ends[1], 3)
-            found = [(math.log10(value), words) for value, words in even if value > 0]
-        return [(place, words, int(abs(place - round(place)) > 1e-9)) for place, words in found]
+            marks = [(math.log10(value), words) for value, words in even if value > 0]
+        return [(place, words, int(abs(place - round(place)) > 1e-9)) for place, words in marks]
 
     return Scale(at, ends, candidates)
 

@@ -352,15 +352,15 @@ def _fit_head(frame: _Frame, wide: float, right: float) -> None:
 
 def _entries(frame: _Frame, wide: float) -> Iterator[_Entry]:
     """Names of points, curves and whole levels, each once."""
-    panel, found = frame.panel, dict[str, _Entry]()
+    panel, entries = frame.panel, dict[str, _Entry]()
 
     def add(words: str, **sketch: Any) -> None:
         if words:
-            before = found.get(words)
+            before = entries.get(words)
             line = sketch.get("line") or (before.line if before else None)
             point = sketch.get("point") or (before.point if before else None)
             room = wide - (SKETCH + 1.3 if line else 2.8)
-            found[words] = _Entry(fitted(words, room, SIZE), line, point, sketch.get("small"))
+            entries[words] = _Entry(fitted(words, room, SIZE), line, point, sketch.get("small"))
 
     for k, points in enumerate(panel.points):
         style = k if points.style is None else points.style
@@ -376,7 +376,7 @@ def _entries(frame: _Frame, wide: float) -> Iterator[_Entry]:
     for level in panel.levels:
         if not level.sense and level.between is None:
             add(level.words, line=_level_style(level))
-    yield from found.values()
+    yield from entries.values()
 
 
 def _line(curve: Curve, index: int) -> dict[str, Any]:

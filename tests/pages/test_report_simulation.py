@@ -310,18 +310,18 @@ def test_no_words_are_lost_and_none_are_nan(kind):
 
 def test_scenarios_are_told_in_words():
     """Start, steps, load and supply of a servo; parts beyond three are counted."""
-    said = subject.what(case.simulated("step"))
+    said = subject.description(case.simulated("step"))
     assert "Position from 55 mm: step of 20 mm at 0.1 s, step of −30 mm at 0.6 s." in said
     assert "constant supply 210 bar, return 5 bar, LuGre friction, 1 s." in said
     assert "Load: 2000 N." in said
-    bench = subject.what(case.simulated("bench"))
+    bench = subject.description(case.simulated("bench"))
     assert "the valve alone, ports at 35 bar and 35 bar" in bench
     assert "Valve signal: −10 V, ramp of 20 V from 0 to 2 s." in bench
     found = case.simulated("open")
     pulse = found.scenario.signal[0]
     many = found.scenario.model_copy(update={"signal": (pulse,) * 7})
-    assert subject.what(replace(found, scenario=many)).endswith("and 4 more.")
-    assert "ports closed" in subject.what(case.simulated("closed"))
+    assert subject.description(replace(found, scenario=many)).endswith("and 4 more.")
+    assert "ports closed" in subject.description(case.simulated("closed"))
 
 
 def test_blocked_ports_and_a_load_cylinder_are_told():
@@ -342,7 +342,7 @@ def test_blocked_ports_and_a_load_cylinder_are_told():
         (cylinder | {"signal": []}, "and rod 36 mm, no signal at its valve."),
     ):
         scenario = Scenario.model_validate(stated | {"load": {"cylinder": own}})
-        said = subject.what(replace(found, scenario=scenario))
+        said = subject.description(replace(found, scenario=scenario))
         assert "ports blocked" in said
         assert words in said
 
