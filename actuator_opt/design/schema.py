@@ -180,7 +180,8 @@ def section_schema(section: type[Section], materials: MaterialLookup | None) -> 
     if required:
         schema["required"] = required
         body = {name: _snippet(entry) for name, entry in known.items() if entry.required}
-        schema["defaultSnippets"] = [{"label": section.__name__.lower(), "body": body}]
+        label = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", section.__name__).lower()
+        schema["defaultSnippets"] = [{"label": label, "body": body}]
     return _with_notation(schema) if section is Ply else schema
 
 

@@ -83,14 +83,14 @@ def _blocks(bending: BendingResult) -> Iterator[Block]:
         Column("verdict"),
     ]
     yield Table("Slope and modulus, 95 % bounds", columns, rows, on="paper")
-    said = [
+    lines = [
         sentence(f"{words}: {value} ({low} to {high}), {verdict}")
         for words, value, low, high, verdict in rows
     ]
-    yield Notes("Slope and modulus, 95 % bounds", said, on="terminal")
-    said = [*_basis(bending), *bending.record.notes]
+    yield Notes("Slope and modulus, 95 % bounds", lines, on="terminal")
+    lines = [*_basis(bending), *bending.record.notes]
     yield Notes(
-        "Basis of these results", [sentence(text.pretty(words)) for words in said], headless=True
+        "Basis of these results", [sentence(text.pretty(words)) for words in lines], headless=True
     )
     if bending.doubts:
         yield Notes("Doubts", [sentence(text.pretty(words)) for words in bending.doubts])

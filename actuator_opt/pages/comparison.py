@@ -1,4 +1,4 @@
-"""The page of a comparison: which design is better and why, bars part by part, U-curves, tables."""
+"""The page of a comparison: the better design and the reasons, bars, U-curves, tables."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from ..rendering import text
 from ..rendering.axes import AREAS
 from ..rendering.blocks import (
     Block,
+    Chart,
     Column,
-    Drawing,
     Notes,
     Page,
     Table,
@@ -23,11 +23,12 @@ from ..rendering.blocks import (
     short,
     tile,
 )
+from ..rendering.chart_ink import titled
 from ..rendering.heights import wrap
 from ..rendering.ink import BLACK, GREY, Ink, text_width
-from ..rendering.text import DASH, limit_text, number, pretty
+from ..rendering.text import DASH, number, pretty, trimmed
 from .stiffness import fills
-from .sweep_figures.ucurves import MOST, STYLES, Required, curves_drawn, has_points
+from .sweep_figures.ucurves import MOST, Required, has_points, stiffness_panels
 
 _WORST = {"lighter": "light", "stiffer": "stiff", "smoother": "smooth"}
 _NAMED = {"lighter": "mass", "stiffer": "stiffness", "smoother": "running friction"}
@@ -41,7 +42,7 @@ PART_TITLES = {
 _MOST_PARTS = 4
 """Most parts in a sentence."""
 _LONGEST = 18
-"""Letters of an input's value: a longer word would hide the paths."""
+"""Most letters of the value of an input (a longer value would leave the paths no room)."""
 
 _WIDTH, _RIGHT = 180.0, 20.0
 _STEP, _LEAST_STEP, _SHARE, _LINE = 7.6, 3.8, 5.6 / 7.6, 4.2
@@ -65,7 +66,7 @@ def page(comparison: Comparison) -> Page:
 
 
 def _verdict(comparison: Comparison) -> Verdict:
-    """How many designs meet their requirements."""
+    """The number of designs that meet their requirements."""
     every = len(comparison.labels)
     met = sum(evaluation.met for evaluation in comparison.evaluations)
     words = f"{met} OF {every} MEET THEIR REQUIREMENTS"
@@ -85,11 +86,9 @@ def _tiles(comparison: Comparison) -> Iterator[Tile]:
 def _blocks(comparison: Comparison) -> Iterator[Block]:
     designs = [f"{label}  {named(comparison, k)}" for k, label in enumerate(comparison.labels)]
     yield Notes("Designs", designs, headless=True, style="bold")
-    yield Notes("Which is better", [pretty(said) for said in sentences(comparison)], headless=True)
+    yield Notes("Which is better", [pretty(line) for line in sentences(comparison)], headless=True)
     if _with_curves(comparison):
-        ink = Ink(_WIDTH, 400.0)
-        ink.height = _curves(ink, 6.0, comparison)
-        yield Drawing("Stiffness over the stroke", ink)
+        yield _curves(comparison)
     changes = [
         [change.path, *(short(shown(change, value), _LONGEST) for value in change.values)]
         for change in comparison.changes
@@ -125,56 +124,56 @@ def _table(
 
 
 def sentences(comparison: Comparison) -> list[str]:
-    """The answer to each question, then what to know before believing it."""
-    said = [answer(comparison, question) for question in comparison.questions]
+    """The answer to each question, then its reservations."""
+    lines = [answer(comparison, question) for question in comparison.questions]
     damping = [e.metrics["damping_ratio"].value for e in comparison.evaluations]
     if len(set(damping)) > 1:
         values = ", ".join(
             f"{x} {number(v, 3)}" for x, v in zip(comparison.labels, damping, strict=True)
         )
-        said.append(f"damping ratio: {values}")
+        lines.append(f"damping ratio: {values}")
     for label, evaluation in zip(comparison.labels, comparison.evaluations, strict=True):
         missed = [row.name for row in evaluation.requirements if not row.met]
         if missed:
-            said.append(f"{label} misses {len(missed)} of its requirements: {', '.join(missed)}")
-    return [*said, *optimality(comparison, remedy=True), *unlike(comparison), *duties(comparison)]
+            lines.append(f"{label} misses {len(missed)} of its requirements: {', '.join(missed)}")
+    return [*lines, *optimality(comparison, remedy=True), *unlike(comparison), *duties(comparison)]
 
 
 def unlike(comparison: Comparison) -> list[str]:
     """Metrics whose values are not of the same kind, and why."""
-    said = []
+    lines = []
     for metric, senses in comparison.unlike.items():
         least, most = (
             ", ".join(x for x, own in zip(comparison.labels, senses, strict=True) if own == sense)
             for sense in ("min", "max")
         )
-        said.append(
+        lines.append(
             f"{metric}: the smallest value of {least} and the largest of {most} govern, so that "
             f"they cannot be compared"
         )
-    return said
+    return lines
 
 
 def optimality(comparison: Comparison, *, remedy: bool = False) -> list[str]:
-    """Which designs are not known to be optima, and with `remedy` how to optimise them."""
+    """The designs not known to be optima; with `remedy` the option that optimises them."""
     labels = [comparison.labels[k] for k in comparison.not_optimised]
     if not labels:
         return []
     many = len(labels) > 1
-    who = f"{', '.join(labels[:-1])} and {labels[-1]}" if many else labels[0]
-    said = (
-        f"{who} {'are' if many else 'is'} not known to be {'optima' if many else 'an optimum'}: "
+    names = f"{', '.join(labels[:-1])} and {labels[-1]}" if many else labels[0]
+    words = (
+        f"{names} {'are' if many else 'is'} not known to be {'optima' if many else 'an optimum'}: "
         "the differences may not be those of the best designs"
     )
     can = any(
         comparison.states[k].status is None and comparison.evaluations[k].design.variables
         for k in comparison.not_optimised
     )
-    return [f"{said}; --optimise optimises each design first" if remedy and can else said]
+    return [f"{words}; --optimise optimises each design first" if remedy and can else words]
 
 
 def duties(comparison: Comparison) -> list[str]:
-    """That designs do not do the same work, where they do not."""
+    """A remark on different duties; empty where all are equal."""
     paths = comparison.duties_differ
     if not paths:
         return []
@@ -292,11 +291,14 @@ def _metric(quantity: Quantity, value: float | None) -> str:
 
 
 def comparison_figure(comparison: Comparison) -> Ink:
-    """A bar for every design and question; equal parts have equal fills; lengths are to scale."""
+    """A bar to scale for every design and question; equal parts have equal fills.
+
+    Drawn, not a chart: stacked bars with their sums and a key of the parts.
+    """
     questions = _with_bars(comparison)
     heads = [wrap(named(comparison, k), _WIDTH - 12.0, 7.0) for k in range(len(comparison.labels))]
-    said = (_NOTE, *duties(comparison), *optimality(comparison))
-    notes = [line for words in said for line in _wrapped(words)]
+    remarks = (_NOTE, *duties(comparison), *optimality(comparison))
+    notes = [line for words in remarks for line in _wrapped(words)]
     answers = [_wrapped(answer(comparison, question)) for question in questions]
     above = _TOP + 1.0 + _LINE * sum(map(len, heads)) + _SMALL * len(notes) + 4.0
     ink = Ink(_WIDTH, 400.0)
@@ -352,22 +354,9 @@ def comparison_ucurves(comparison: Comparison) -> Ink | None:
     """Stiffness over the stroke of the first `MOST` designs; None where none has any."""
     if not _with_curves(comparison):
         return None
-    ink = Ink(_WIDTH, 400.0)
-    ink.text(4.0, 4.0, "Stiffness over the stroke", size=9.0, bold=True)
-    top = _TOP
-    for words in optimality(comparison):
-        for line in _wrapped(words):
-            ink.text(4.0, top, line, color=GREY)
-            top += _SMALL
-    top += 1.0
-    for k, (label, style) in enumerate(zip(comparison.labels, STYLES, strict=False)):
-        ink.line((4.0, top), (9.0, top), **style)
-        ink.text(10.5, top, label, size=7.5, bold=True)
-        for line in wrap(named(comparison, k), _WIDTH - 18.0, 7.0):
-            ink.text(15.5, top, line, size=7.0)
-            top += _LINE
-    ink.height = _curves(ink, top + 7.0, comparison)
-    return ink
+    names = [f"{label}: {named(comparison, k)}" for k, label in enumerate(comparison.labels[:MOST])]
+    notes = [pretty(words[:1].upper() + words[1:]) for words in optimality(comparison)]
+    return titled(_curves(comparison), [*notes, *names])
 
 
 def _with_curves(comparison: Comparison) -> bool:
@@ -375,15 +364,16 @@ def _with_curves(comparison: Comparison) -> bool:
     return any(has_points(evaluation.curve) for evaluation in comparison.evaluations[:MOST])
 
 
-def _curves(ink: Ink, top: float, comparison: Comparison) -> float:
-    """Draw the curves of the first `MOST` designs; the height they end at."""
+def _curves(comparison: Comparison) -> Chart:
+    """Stiffness over the stroke of the first `MOST` designs."""
     labels = []
-    some = comparison.evaluations[:MOST]
-    for label, evaluation in zip(comparison.labels, some, strict=False):
+    evaluations = comparison.evaluations[:MOST]
+    for label, evaluation in zip(comparison.labels, evaluations, strict=False):
         least = evaluation.metrics["stiffness_min"].value
-        labels.append(label if least is None else f"{label}: least {number(least / 1e6, 4)} kN/mm")
-    curves = [evaluation.curve for evaluation in some]
-    return curves_drawn(ink, top, curves, labels, _required(comparison), "A")
+        labels.append(label if least is None else f"{label}: least {number(least / 1e6, 4)}")
+    curves = [evaluation.curve for evaluation in evaluations]
+    panels = stiffness_panels(curves, labels, _required(comparison), "A")
+    return Chart("Stiffness over the stroke", [panels], height=140.0)
 
 
 def _required(comparison: Comparison) -> list[Required]:
@@ -397,10 +387,10 @@ def _required(comparison: Comparison) -> list[Required]:
     return [
         Required(
             value,
-            f"required {limit_text(METRICS['stiffness_min'], 'min', value)}"
-            + (f" of {', '.join(who)}" if len(who) < every else ""),
+            f"≥ {trimmed(METRICS['stiffness_min'].to_display(value))}"
+            + (f" of {', '.join(labels)}" if len(labels) < every else ""),
         )
-        for value, who in required.items()
+        for value, labels in required.items()
     ]
 
 

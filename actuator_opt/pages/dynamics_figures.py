@@ -8,16 +8,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
 from ..base.numeric import Array
 from ..evaluation.dynamics_study import DynamicsStudy, LoopStudy, Response
 from ..evaluation.result import Requirement
-from ..rendering.axes import Axes
 from ..rendering.chart import Axis, Curve, Level, Panel, Points
-from ..rendering.ink import BLUE, GREEN, OCHRE
 from ..rendering.text import MINUS, SENSES, SUPERSCRIPTS, number, trimmed
 
 DEEPEST = 1000.0
@@ -443,23 +440,3 @@ def closed_panel(study: DynamicsStudy, loops: Sequence[LoopStudy], limits: LoopL
 
 def _signed(value: float) -> str:
     return f"{value:.1f}".replace("-", MINUS)
-
-
-# ---- for the figures of seals, which draw their axes themselves ----
-
-STYLES: tuple[dict[str, Any], ...] = (
-    {"stroke": BLUE, "pen": 0.4},
-    {"stroke": OCHRE, "pen": 0.4, "dash": (1.6, 0.8)},
-    {"stroke": GREEN, "pen": 0.4, "dash": (2.4, 0.7, 0.4, 0.7)},
-)
-"""Pens of curves."""
-
-
-def logs(values: Array) -> list[float]:
-    """Logarithms to ten; zero and less become very small."""
-    return [math.log10(v) if v > 1e-200 else -200.0 for v in map(float, values)]
-
-
-def inside(axes: Axes, x: float) -> bool:
-    """Whether a place lies on the x axis."""
-    return axes.x_range[0] <= x <= axes.x_range[1]

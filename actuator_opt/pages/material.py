@@ -1,7 +1,7 @@
-"""Materials: the library as a list, an entry with its sources, entries side by side, an oil.
+"""Pages of materials: the library as a list, an entry with its sources, a comparison, an oil.
 
 An oil is also shown over temperature and pressure, by the laws that an evaluation uses where a
-design names none. Curves differ in dash as well as in colour and carry their own label.
+design names none.
 """
 
 from __future__ import annotations
@@ -9,20 +9,21 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias
 
 import numpy as np
 
+from ..base.numeric import Array
 from ..base.quantities import MATERIAL_PROPERTIES
 from ..design.material import Material, Property, bulk_modulus_law, viscosity_law
 from ..design.materials import Library
 from ..evaluation import state
 from ..models.fluid import LEAST_VISCOSITY
 from ..models.oil_laws import VISCOSITY_LAWS
-from ..rendering.axes import Axes, Ticks, ticks
-from ..rendering.blocks import Block, Column, Notes, Table
-from ..rendering.heights import wrap
-from ..rendering.ink import BLUE, GREY, PALE, RED, WHITE, Ink, spread_within, text_width
+from ..rendering.axes import Ticks, ticks
+from ..rendering.blocks import Block, Chart, Column, Notes, Table
+from ..rendering.chart import Axis, Curve, Level, Panel, Points, Stretch
+from ..rendering.chart_ink import titled
+from ..rendering.ink import Ink
 from ..rendering.text import DASH, MINUS, number, pretty, trimmed
 
 SHOWN = {
@@ -163,17 +164,9 @@ PRESSURES = (0.0, 200e5, 350e5)
 AIR = (0.0, 0.005, 0.01, 0.03)
 """Entrained air of the curves, by volume at atmospheric pressure."""
 _LOW, _HIGH = 1e5, 350e5
-_STYLES: tuple[dict[str, Any], ...] = (
-    {"stroke": BLUE, "pen": 0.4},
-    {"stroke": "#9a6a12", "pen": 0.4, "dash": (2.2, 0.8)},
-    {"stroke": "#00654a", "pen": 0.4, "dash": (2.4, 0.7, 0.4, 0.7)},
-    {"stroke": GREY, "pen": 0.4, "dash": (0.5, 0.6)},
-)
-_SERVICE = "#e9eef2"
-_WIDTH, _PANEL, _TALL, _LABELS = 180.0, 58.0, 50.0, 18.0
 _ZERO = 273.15
-Curves: TypeAlias = Mapping[str, tuple[Any, Any]]
-"""Label of each curve, with its x and y."""
+ROOM = 10.0
+"""Room of an axis beyond the coldest and the hottest temperature [K]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -252,92 +245,38 @@ def _oil_row(material: Material, temperature: float) -> tuple[str, ...]:
     )
 
 
-def fluid_figure(material: Material) -> Ink:
+def fluid_chart(material: Material) -> Chart:
     """Viscosity, bulk modulus and density of an oil over temperature and pressure."""
     over = _range(material)
-    notes = [line for text in _sources(material) for line in wrap(text, _WIDTH - 4, 6.0)]
-    rows = 16.0, 16.0 + _TALL + 19.0
-    ink = Ink(_WIDTH, rows[1] + _TALL + 17.0 + 2.8 * len(notes))
-    ink.text(
-        2.0, 3.0, _cut(f"{material.name}  {material.label}", 9.0, bold=True), size=9.0, bold=True
-    )
+    panels = [
+        [_viscosity_panel(material, over), _density_panel(material, over)],
+        [_air_panel(material, over), _modulus_panel(material, over)],
+    ]
+    title = f"{material.name}  {material.label}"
+    return Chart(title, panels, "\n".join(_sources(material)), height=142.0)
+
+
+def fluid_figure(material: Material) -> Ink:
+    """The chart of an oil as a picture of its own."""
+    over = _range(material)
     words = f"{laws_text(material)}; shaded: service range {_degrees(over.low)} to "
-    words = _sentence(f"{words}{_degrees(over.high)} °C; circles: library values")
-    ink.text(2.0, 7.6, words, size=6.5, color=GREY)
-    columns = 12.0, 12.0 + _PANEL + _LABELS + 13.0
-    _viscosity_panel(ink, (columns[0], rows[0], _PANEL, _TALL), material, over)
-    _air_panel(ink, (columns[1], rows[0], _PANEL, _TALL), material, over)
-    _density_panel(ink, (columns[0], rows[1], _PANEL, _TALL), material, over)
-    _modulus_panel(ink, (columns[1], rows[1], _PANEL, _TALL), material, over)
-    for index, line in enumerate(notes):
-        y = rows[1] + _TALL + 14.0 + 2.8 * index
-        ink.text(2.0, y, line, size=6.0, color=GREY)
-    return ink
-
-
-def _cut(text: str, size: float, *, bold: bool) -> str:
-    while text_width(text, size, bold=bold) > _WIDTH - 4:
-        text = text.rstrip("…")[:-1] + "…"
-    return text
+    return titled(fluid_chart(material), [_sentence(f"{words}{_degrees(over.high)} °C")])
 
 
 def _sources(material: Material) -> Iterator[str]:
-    """Where the values of the figure come from, with their confidence."""
-    said: dict[str, list[str]] = {}
+    """Sources of the values of the figure, with their confidence."""
+    properties: dict[str, list[str]] = {}
     for key in ("kinematic_viscosity", "pressure_viscosity", "density", "bulk_modulus"):
         entry = material.properties.get(key)
         if entry is not None:
             words = f"{entry.source} ({entry.confidence})"
-            said.setdefault(words, []).append(key.replace("_", " "))
-    for words, keys in said.items():
+            properties.setdefault(words, []).append(key.replace("_", " "))
+    for words, keys in properties.items():
         yield _sentence(f"{', '.join(keys)}: {words}")
 
 
 def _sentence(text: str) -> str:
     return text[:1].upper() + text[1:]
-
-
-def _frame(axes: Axes, title: str, x_label: str, x_ticks: Ticks, y_ticks: Ticks) -> None:
-    """Grid and labels at stated places, for axes that are not linear."""
-    ink, bottom, right = axes.ink, axes.top + axes.height, axes.left + axes.width
-    for value, words in y_ticks:
-        ink.line((axes.left, axes.y(value)), (right, axes.y(value)), stroke=PALE, pen=0.1)
-        ink.text(axes.left - 1.4, axes.y(value), words, size=6.5, anchor="right")
-    for value, words in x_ticks:
-        x = axes.x(value)
-        ink.line((x, axes.top), (x, bottom), stroke=PALE, pen=0.1)
-        ink.line((x, bottom), (x, bottom + 1.0), pen=0.13)
-        ink.text(x, bottom + 3.0, words, size=6.5, anchor="center")
-    ink.line((axes.left, axes.top), (axes.left, bottom), (right, bottom), pen=0.18)
-    middle = axes.left + axes.width / 2
-    ink.text(middle, bottom + 7.0, x_label, size=6.5, anchor="center", color=GREY)
-    ink.text(axes.left - 1.4, axes.top - 3.6, title, size=7.0, bold=True)
-
-
-def _curves(axes: Axes, curves: Curves) -> None:
-    """Curves with their label at the right end, spread where they come close."""
-    right = axes.left + axes.width
-    ends = []
-    for style, (words, (xs, ys)) in zip(_STYLES, curves.items(), strict=False):
-        points = [(axes.x(x), axes.y(y)) for x, y in zip(xs, ys, strict=True)]
-        axes.ink.line(*points, **style)
-        ends.append((points[-1], words, style))
-    ends.sort(key=lambda end: end[0][1])
-    places = spread_within(
-        [end[0][1] for end in ends], [3.4] * len(ends), axes.top + 1.0, axes.top + axes.height - 1.0
-    )
-    for (end, words, style), y in zip(ends, places, strict=True):
-        axes.ink.line(end, (right + 1.0, end[1]), (right + 3.0, y), pen=0.13, stroke=GREY)
-        axes.ink.text(right + 3.6, y, words, size=6.5, color=style["stroke"])
-
-
-def _spaced(values: Ticks, place: Any, gap: float) -> Ticks:
-    """Ticks at least `gap` mm apart on paper."""
-    kept: list[tuple[float, str]] = []
-    for tick in values:
-        if not kept or abs(place(tick[0]) - place(kept[-1][0])) >= gap:
-            kept.append(tick)
-    return kept
 
 
 def _decades(low: float, high: float) -> list[float]:
@@ -347,133 +286,101 @@ def _decades(low: float, high: float) -> list[float]:
     return [step for step in steps if low <= step * (1 + 1e-9) and step <= high * (1 + 1e-9)]
 
 
-def _celsius(over: _Range) -> list[float]:
-    """Round temperatures (degC) along an axis."""
-    return ticks(over.coldest - 10 - _ZERO, over.hottest + 10 - _ZERO, 6)
-
-
-def _shade(axes: Axes, low: float, high: float) -> None:
-    left, right = axes.x(low), axes.x(high)
-    axes.ink.box(left, axes.top, right - left, axes.height, fill=_SERVICE, stroke=None)
+def _temperatures(over: _Range) -> Array:
+    return np.linspace(over.coldest, over.hottest, 121)
 
 
 def _pressure(pressure: float) -> str:
     return f"{pressure / 1e5:.0f} bar"
 
 
-def _temperatures(over: _Range) -> Any:
-    return np.linspace(over.coldest, over.hottest, 121)
-
-
-def _viscosity_panel(
-    ink: Ink, box: tuple[float, float, float, float], material: Material, over: _Range
-) -> None:
+def _viscosity_panel(material: Material, over: _Range) -> Panel:
     """Kinematic viscosity on the axes of ASTM D341, where a mineral oil is a straight line."""
     given, temperature = state.alone(material), _temperatures(over)
-
-    def bent(viscosity: Any) -> Any:
-        return np.log(np.log(1e6 * np.asarray(viscosity) + 0.7))
-
-    curves = {}
+    viscosities = []
     for pressure in PRESSURES:
         eta = state.dynamic_viscosity(*given, temperature, pressure)
-        nu = eta / state.oil_density(*given, temperature, pressure)
-        curves[_pressure(pressure)] = (np.log(temperature), bent(nu), nu)
-    found = np.concatenate([nu for _, _, nu in curves.values()])
-    low, high = float(found.min()) / 1.15, float(found.max()) * 1.3
-    low, high = min(low, found[0] / 2.6), max(high, found[0] * 2.6)
-    ends = over.coldest - 10, over.hottest + 10
-    axes = Axes(
-        ink, box, (math.log(ends[0]), math.log(ends[1])), (float(bent(low)), float(bent(high)))
+        viscosities.append(eta / state.oil_density(*given, temperature, pressure))
+    every = np.concatenate(viscosities)
+    low, high = float(every.min()) / 1.15, float(every.max()) * 1.3
+    low, high = min(low, every[0] / 2.6), max(high, every[0] * 2.6)
+    curves = [
+        Curve("", np.log(temperature), _bent(viscosity), end=_pressure(pressure))
+        for pressure, viscosity in zip(PRESSURES, viscosities, strict=True)
+    ]
+    library = Points(
+        "library",
+        [math.log(at) for at, _ in material.viscosity_points],
+        [float(_bent(value)) for _, value in material.viscosity_points],
     )
-    _shade(axes, math.log(over.low), math.log(over.high))
-    levels = [(float(bent(1e-6 * x)), trimmed(x)) for x in _decades(1e6 * low, 1e6 * high)]
-    degrees = [(math.log(t + _ZERO), _degrees(t + _ZERO)) for t in _celsius(over)]
-    _frame(
-        axes,
-        "Kinematic viscosity, mm²/s",
-        "temperature, °C",
-        _spaced(degrees, axes.x, 6.0),
-        _spaced(levels, axes.y, 3.2),
-    )
+    levels = []
     if low < LEAST_VISCOSITY:
-        y = axes.y(float(bent(LEAST_VISCOSITY)))
-        ink.line((box[0], y), (box[0] + box[2], y), stroke=RED, pen=0.25, dash=(1.8, 1.0))
-        ink.text(box[0] + 1.5, y + 2.2, "ASTM D341 ends at 2 mm²/s", size=6.0, color=RED)
-    _curves(axes, {words: (xs, ys) for words, (xs, ys, _) in curves.items()})
-    for at, value in material.viscosity_points:
-        x, y = axes.x(math.log(at)), axes.y(float(bent(value)))
-        ink.circle(x, y, 0.8, fill=WHITE, stroke=BLUE, pen=0.25)
+        end = float(_bent(LEAST_VISCOSITY))
+        levels.append(Level(end, "ASTM D341 ends at 2 mm²/s", style=4))
+    ends = over.coldest - ROOM, over.hottest + ROOM
+    degrees = [(math.log(at), words) for at, words in _degree_ticks(over)]
+    marks = [(float(_bent(1e-6 * x)), trimmed(x)) for x in _decades(1e6 * low, 1e6 * high)]
+    return Panel(
+        "Kinematic viscosity, mm²/s",
+        Axis("temperature, °C", range=(math.log(ends[0]), math.log(ends[1])), ticks=degrees),
+        Axis(range=(float(_bent(low)), float(_bent(high))), ticks=marks),
+        curves,
+        [library],
+        levels,
+        stretches=[Stretch(math.log(over.low), math.log(over.high))],
+    )
 
 
-def _air_panel(
-    ink: Ink, box: tuple[float, float, float, float], material: Material, over: _Range
-) -> None:
+def _bent(viscosity: float | Array) -> Array:
+    """Place of a kinematic viscosity [m²/s] on an axis of ASTM D341."""
+    return np.asarray(np.log(np.log(1e6 * np.asarray(viscosity) + 0.7)))
+
+
+def _degree_ticks(over: _Range) -> Ticks:
+    """Temperatures [K] at round degrees Celsius."""
+    ends = over.coldest - ROOM - _ZERO, over.hottest + ROOM - _ZERO
+    return [(value + _ZERO, _degrees(value + _ZERO)) for value in ticks(*ends, 6)]
+
+
+def _air_panel(material: Material, over: _Range) -> Panel:
     """Bulk modulus over pressure with entrained air."""
     temperature = min(max(313.15, over.low), over.high)
     pressure = np.geomspace(_LOW, _HIGH, 121)
-    curves = {}
+    curves = []
     for air in AIR:
         given = state.alone(material, air_content=air)
         modulus = state.bulk_modulus(*given, temperature, pressure) / 1e6
-        curves[f"{100 * air:g} % air"] = (np.log(pressure), modulus)
-    top = 1.06 * max(float(np.max(ys)) for _, ys in curves.values())
-    axes = Axes(ink, box, (math.log(_LOW), math.log(_HIGH)), (0.0, top))
-    stops = (*_decades(1.0, 200.0), 350.0)
-    _frame(
-        axes,
+        curves.append(Curve("", pressure / 1e5, modulus, end=f"{100 * air:g} % air"))
+    stops = [(stop, trimmed(stop)) for stop in (*_decades(1.0, 200.0), 350.0)]
+    return Panel(
         f"Bulk modulus with air at {_degrees(temperature)} °C, MPa",
-        "gauge pressure, bar",
-        _spaced([(math.log(1e5 * p), trimmed(p)) for p in stops], axes.x, 4.5),
-        [(x, trimmed(x)) for x in ticks(0.0, top, 6)],
+        Axis("gauge pressure, bar", log=True, ticks=stops),
+        Axis(zero=True),
+        curves,
     )
-    _curves(axes, curves)
 
 
-def _over_temperature(
-    ink: Ink,
-    box: tuple[float, float, float, float],
-    title: str,
-    over: _Range,
-    curves: Curves,
-) -> None:
-    """Curves over temperature (degC) on linear axes."""
-    found = np.concatenate([np.asarray(ys) for _, ys in curves.values()])
-    low, high = float(found.min()), float(found.max())
-    room = 0.06 * ((high - low) or high)
-    ends = over.coldest - 10 - _ZERO, over.hottest + 10 - _ZERO
-    axes = Axes(ink, box, ends, (low - room, high + room))
-    _shade(axes, over.low - _ZERO, over.high - _ZERO)
-    _frame(
-        axes,
-        title,
-        "temperature, °C",
-        [(t, _degrees(t + _ZERO)) for t in _celsius(over)],
-        [(x, trimmed(x)) for x in ticks(low - room, high + room, 6)],
-    )
-    _curves(axes, curves)
-
-
-def _density_panel(
-    ink: Ink, box: tuple[float, float, float, float], material: Material, over: _Range
-) -> None:
+def _density_panel(material: Material, over: _Range) -> Panel:
     given, temperature = state.alone(material), _temperatures(over)
-    curves = {
-        _pressure(p): (
-            temperature - _ZERO,
-            state.oil_density(*given, temperature, p) + 0 * temperature,
-        )
-        for p in PRESSURES
-    }
-    _over_temperature(ink, box, "Density, kg/m³", over, curves)
+    densities = [state.oil_density(*given, temperature, pressure) for pressure in PRESSURES]
+    return _over_temperature("Density, kg/m³", over, densities)
 
 
-def _modulus_panel(
-    ink: Ink, box: tuple[float, float, float, float], material: Material, over: _Range
-) -> None:
+def _modulus_panel(material: Material, over: _Range) -> Panel:
     given, temperature = state.alone(material), _temperatures(over)
-    curves = {}
-    for p in PRESSURES:
-        modulus = state.pure_bulk_modulus(*given, temperature, p) + 0 * temperature
-        curves[_pressure(p)] = (temperature - _ZERO, modulus / 1e6)
-    _over_temperature(ink, box, "Bulk modulus without air, MPa", over, curves)
+    moduli = [
+        state.pure_bulk_modulus(*given, temperature, pressure) / 1e6 for pressure in PRESSURES
+    ]
+    return _over_temperature("Bulk modulus without air, MPa", over, moduli)
+
+
+def _over_temperature(title: str, over: _Range, values: Sequence[float | Array]) -> Panel:
+    """A curve over temperature for each of the pressures."""
+    temperature = _temperatures(over)
+    curves = [
+        Curve("", temperature, own + 0 * temperature, end=_pressure(pressure))
+        for pressure, own in zip(PRESSURES, values, strict=True)
+    ]
+    ends = over.coldest - ROOM, over.hottest + ROOM
+    x = Axis("temperature, °C", range=ends, ticks=_degree_ticks(over))
+    return Panel(title, x, Axis(), curves, stretches=[Stretch(over.low, over.high)])

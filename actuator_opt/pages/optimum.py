@@ -1,4 +1,4 @@
-"""An optimum: its variables, choices and sizes, why nothing fits, the way to a yield."""
+"""Blocks of an optimum: variables, choices and sizes, infeasibility, the way to a yield."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ MOST_ROWS = 20
 MOST_COLUMNS = 4
 """PATHs that get a column each; of more, the values share a column."""
 WORTH = 10.0
-"""Reserves beyond this many times the limit say only that the limit is far away."""
-_STANDS_FOR = {"dimension": "fixed dimension", "safety factor": "safety: not advised"}
-"""Words of a kind of cure, where they say more."""
+"""Larger reserves, relative to their limit, are left out: the limit is far away."""
+_KINDS = {"dimension": "fixed dimension", "safety factor": "safety: not advised"}
+"""Kinds of a cure in clearer words."""
 
 
 # ---- variables ----
@@ -72,7 +72,7 @@ def variables(optimisation: Optimisation) -> Table:
 
 
 def _place(row: VariableResult) -> float:
-    """Where a value lies between its bounds, from zero to one."""
+    """Place of a value between its bounds, from zero to one."""
     return (row.value - row.lower) / (row.upper - row.lower) if row.upper > row.lower else 0.0
 
 
@@ -95,22 +95,22 @@ def best_values(optimisation: Optimisation, room: float) -> list[Block]:
         quantity = text.input_quantity(row.quantity)
         value, unit = text.number(quantity.to_display(row.value)), text.unit_text(quantity.unit)
         rows.append([row.path, value, unit, Slot(_place(row), row.at_bound or "")])
-    rest = len(best) - 2 * fit
-    note = f"{rest} more, starts and bounds" if rest > 0 else "Starts and bounds"
+    more = len(best) - 2 * fit
+    note = f"{more} more, starts and bounds" if more > 0 else "Starts and bounds"
     left = Table("Best values", columns, rows[:fit], note=f"{note}: Design variables.", on="paper")
     right = Table("Best values, continued", columns, rows[fit : 2 * fit], on="paper")
     return [Pair([[left], [right]] if right.rows else [[left]])]
 
 
 def heading(optimisation: Optimisation) -> str:
-    """What the values shown are: the optimum, or the sizes asked for."""
+    """Name of the values shown: of the optimum, or of the requested sizes."""
     if optimisation.rounding is None:
         return "optimum"
     return "continuous" if optimisation.made is None else optimisation.made.name
 
 
 def sizes_and_choices(optimisation: Optimisation) -> Iterator[Block]:
-    """What was rounded and what was chosen, where either was asked for."""
+    """Tables of rounding and of choices, as far as requested."""
     if optimisation.rounding is not None:
         yield _rounding_table(optimisation, optimisation.rounding)
     if optimisation.choices is not None:
@@ -137,7 +137,7 @@ def heads(paths: Sequence[str]) -> list[str]:
 
 
 def choice_notes(optimisation: Optimisation) -> list[str]:
-    """How the combinations were compared, and what the table leaves out, in sentences."""
+    """The comparison of the combinations, and the omissions of the table, in sentences."""
     choices = optimisation.choices
     if choices is None:
         return []
@@ -150,7 +150,7 @@ def choice_notes(optimisation: Optimisation) -> list[str]:
 
 
 def _choices_table(optimisation: Optimisation, choices: Choices) -> Block:
-    """Every combination tried, the best first, and what the others cost."""
+    """Every combination tried, the best first, and the cost of the others."""
     paths, objective = _varied(choices), text.metric(optimisation.objective_metric)
     names = heads(paths)
     sized = any(tried.rounded is not None for tried in choices.combinations)
@@ -242,7 +242,7 @@ def _rounding_title(optimisation: Optimisation, rounding: Rounding) -> str:
 
 
 def _cost(objective: Quantity, rounding: Rounding) -> str:
-    """What rounding costs, in the unit of the objective and in per cent."""
+    """Cost of rounding in the unit of the objective and in per cent."""
     if not rounding.cost:
         return "rounding costs nothing"
     per_display = objective.to_display(1.0) - objective.to_display(0.0)
@@ -290,7 +290,7 @@ def _sizes(optimisation: Optimisation, sizes: Mapping[str, float]) -> str:
 
 
 def infeasibility_blocks(card: Infeasibility) -> list[Block]:
-    """The card of an infeasible design: what conflicts, by how much, what would repair it."""
+    """The card of an infeasible design: the conflict, its size, possible repairs."""
     conflict = text.pretty(sentence(card.sentence)).replace("->", "→")
     blocks: list[Block] = [Notes("Why nothing fits", [conflict])]
     if card.joint:
@@ -344,10 +344,10 @@ def _limit(entry: Mapping[str, Any]) -> list[Cell]:
 
 
 def _cure(entry: Mapping[str, Any]) -> list[Cell]:
-    """What is enough alone."""
+    """A relaxation that suffices alone."""
     return [
         str(entry["parameter"]),
-        soft(_STANDS_FOR.get(entry["kind"], entry["kind"])),
+        soft(_KINDS.get(entry["kind"], entry["kind"])),
         text.pretty(entry["limit_text"]),
         text.pretty(entry["needed_text"]),
         _change(entry["change"]),

@@ -1,4 +1,4 @@
-"""The page of a Pareto front: its designs, the knee, what was checked, and its figure."""
+"""The page of a Pareto front: its designs, the knee, the checks, and its chart."""
 
 from __future__ import annotations
 
@@ -7,13 +7,26 @@ from typing import Any, NamedTuple
 
 from ..base.quantities import Quantity
 from ..design import quantity_of
-from ..evaluation.result import count_words
+from ..evaluation.result import Requirement, count_words
 from ..optimisation.front.plane import FrontGap
 from ..optimisation.pareto import ParetoFront, Wish
 from ..rendering import text
-from ..rendering.axes import Axes, even_ticks
-from ..rendering.blocks import Block, Column, Notes, Page, State, Table, Tile, Verdict, short, tile
-from ..rendering.ink import BLUE, GREY, PALE, RED, WHITE, Ink, text_width
+from ..rendering.blocks import (
+    Block,
+    Chart,
+    Column,
+    Notes,
+    Page,
+    State,
+    Table,
+    Tile,
+    Verdict,
+    short,
+    tile,
+)
+from ..rendering.chart import Axis, Curve, Level, Panel, Points
+from ..rendering.chart_ink import drawn, titled
+from ..rendering.ink import Ink
 from ..rendering.series import Series, heading
 from ..rendering.text import trimmed, unit_text, value_text
 from .report import doubts
@@ -24,13 +37,13 @@ MOVING = 5
 """Most variables in the table."""
 
 WIDTH, HEIGHT = 180.0, 82.0
-"""Size of the figure [mm]."""
+"""Size of the chart [mm]."""
 ROOM = 0.06
 """Share of the range left free around the designs."""
 
 
 def page(front: ParetoFront) -> Page:
-    """The page of a Pareto front; without designs it says why there is none."""
+    """The page of a Pareto front; without designs it gives the reason."""
     if not front.points:
         state: State = "infeasible" if front.status == "infeasible" else "missed"
         return Page(
@@ -47,7 +60,7 @@ def page(front: ParetoFront) -> Page:
         verdict=verdict(front),
         sentence=text.pretty(front.sentence),
         tiles=list(_tiles(front)),
-        hero=lambda room: front_figure(front),
+        hero=lambda room: drawn(front_chart(front)),
         blocks=list(_blocks(front)),
     )
 
@@ -72,7 +85,7 @@ def series(front: ParetoFront) -> list[Series]:
 
 
 def front_outcome(front: ParetoFront) -> dict[str, Any]:
-    """The numbers that say whether a front repeats (SI): the objectives of every design."""
+    """The numbers that must repeat in a second run (SI): the objectives of every design."""
     values = {
         f"{objective.metric} of design {k}": point.metrics[objective.metric]
         for k, point in enumerate(front.points, 1)
@@ -82,7 +95,7 @@ def front_outcome(front: ParetoFront) -> dict[str, Any]:
 
 
 def verdict(front: ParetoFront) -> Verdict:
-    """That requirements are met, and what to doubt of the design that was evaluated in full."""
+    """The badge, with the doubts about the design that was evaluated in full."""
     tight = len(front.evaluation.tight)
     plain, cautions = doubts(front.evaluation)
     if tight:
@@ -203,30 +216,30 @@ def _blocks(front: ParetoFront) -> Iterator[Block]:
 
 
 def remarks(front: ParetoFront) -> list[str]:
-    """How even the front is, its knee, and what to doubt."""
-    said = []
+    """Evenness of the front, its knee, and doubts."""
+    lines = []
     if front.evenness is not None and len(front.points) > 2:
-        said.append(
+        lines.append(
             f"largest gap between neighbours {text.number(front.evenness, 3)} times the median, "
             f"in objectives over their range" + (", jumps left out" if front.jumps else "")
         )
-    said += _wide(front)
+    lines += _wide(front)
     if front.knee is not None:
-        said.append(f"knee: design {front.knee.index + 1}, where the front bends most")
+        lines.append(f"knee: design {front.knee.index + 1}, where the front bends most")
     elif len(front.points) > 1:
-        said.append("no knee: the front nowhere bends towards the ideal")
+        lines.append("no knee: the front nowhere bends towards the ideal")
     worst = max(point.kkt_residual for point in front.points)
-    said.append(f"optimality conditions hold to {text.number(worst, 2)} at every design")
+    lines.append(f"optimality conditions hold to {text.number(worst, 2)} at every design")
     if tight := len(front.evaluation.tight):
-        said.append(
+        lines.append(
             f"{_evaluated(front)}: {count_words(tight)}; `actuator-opt uncertainty` gives the "
             "yield of a design"
         )
-    return [*said, *front.warnings]
+    return [*lines, *front.warnings]
 
 
 def _wide(front: ParetoFront) -> Iterator[str]:
-    """Which gaps are wide, and why."""
+    """Wide gaps and their reasons."""
 
     def between(gaps: Sequence[FrontGap]) -> str:
         return ", ".join(f"{gap.after + 1} and {gap.after + 2}" for gap in gaps)
@@ -237,58 +250,57 @@ def _wide(front: ParetoFront) -> Iterator[str]:
             f"the front jumps between designs {between(jumps)}: by the designs at levels on both "
             f"sides at most {most} % of such a gap can hold more of it"
         )
-    if rest := [gap for gap in front.wide if not gap.jump]:
-        yield f"wide gap between designs {between(rest)}: no design found there"
+    if gaps := [gap for gap in front.wide if not gap.jump]:
+        yield f"wide gap between designs {between(gaps)}: no design found there"
 
 
 # ---- figure ----
 
 
-def front_figure(front: ParetoFront) -> Ink:
-    """The first objective over every other one, side by side."""
-    ink = Ink(WIDTH, HEIGHT)
+def front_chart(front: ParetoFront) -> Chart:
+    """Every other objective over the first, side by side."""
     first, *others = front.objectives
-    wide = (WIDTH - 4.0) / len(others)
-    for k, other in enumerate(others):
-        box = (16.0 + k * wide, 12.0, wide - 18.0, HEIGHT - 24.0)
-        _panel(ink, box, front, (first, 0), (other, k + 1))
-    if any(mark.get("fill") == PALE for mark in ink.marks):
-        words = "grey: dominated designs that the search visited"
-        ink.text(WIDTH - 2.0, HEIGHT - 1.6, words, size=6.0, anchor="right", color=GREY)
-    return ink
+    panels = [_panel(front, (first, 0), (other, k)) for k, other in enumerate(others, 1)]
+    return Chart("Pareto front", panels, height=HEIGHT)
 
 
-def _panel(
-    ink: Ink,
-    box: tuple[float, float, float, float],
-    front: ParetoFront,
-    across: tuple[Wish, int],
-    up: tuple[Wish, int],
-) -> None:
+def front_figure(front: ParetoFront) -> Ink:
+    """The chart of a front as a picture of its own."""
+    return titled(front_chart(front))
+
+
+def _panel(front: ParetoFront, across: tuple[Wish, int], up: tuple[Wish, int]) -> Panel:
+    """The designs of the front, those that they dominate, the knee and the limits."""
     (x_wish, i), (y_wish, j) = across, up
     xs, ys = _along(front, x_wish), _along(front, y_wish)
-    axes = Axes(ink, box, _range(xs, x_wish, front), _range(ys, y_wish, front))
-    axes.frame_at(
-        "",
-        f"{_label(x_wish)}, {unit_text(x_wish.quantity.unit)}".rstrip(", "),
-        even_ticks(*axes.x_range, max(3, int(box[2] / 18.0))),
-        even_ticks(*axes.y_range, 5),
-        upright=True,
-    )
-    title = f"{_label(y_wish)}, {unit_text(y_wish.quantity.unit)}".rstrip(", ")
-    ink.text(box[0] - 12.0, box[1] - 6.0, title, size=7.0, bold=True)
-    for values in front.passed:
-        x, y = x_wish.quantity.to_display(values[i]), y_wish.quantity.to_display(values[j])
-        if _inside(axes, x, y):
-            ink.circle(axes.x(x), axes.y(y), 0.7, fill=PALE, stroke=None)
-    _limits(axes, front, x_wish, y_wish)
-    if len(front.objectives) == 2:
-        line = [(axes.x(x), axes.y(y)) for x, y in zip(xs, ys, strict=True)]
-        ink.path([line], stroke=BLUE, pen=0.2)
-    for x, y in zip(xs, ys, strict=True):
-        ink.circle(axes.x(x), axes.y(y), 0.65, fill=BLUE, stroke=WHITE, pen=0.08)
+    x_range, y_range = _range(xs, x_wish, front), _range(ys, y_wish, front)
+    passed = [
+        (x_wish.quantity.to_display(values[i]), y_wish.quantity.to_display(values[j]))
+        for values in front.passed
+    ]
+    inside = [
+        (x, y) for x, y in passed if x_range[0] <= x <= x_range[1] and y_range[0] <= y <= y_range[1]
+    ]
+    points = [Points("front", xs, ys, small=True, style=0)]
+    if inside:
+        words = "dominated designs that the search visited"
+        pale = Points(words, [x for x, _ in inside], [y for _, y in inside], weight="guide")
+        points.insert(0, pale)
     if front.knee is not None:
-        _knee(axes, front, xs, ys, (x_wish, y_wish))
+        k = front.knee.index
+        metrics = front.points[k].metrics
+        values = (value_text(wish.quantity, metrics[wish.metric]) for wish in (x_wish, y_wish))
+        words = f"knee: {', '.join(values)}"
+        points.append(Points(words, xs[k : k + 1], ys[k : k + 1], weight="strong"))
+    line = [Curve("", xs, ys, weight="thin")] if len(front.objectives) == 2 else []
+    return Panel(
+        f"{_label(y_wish)}, {unit_text(y_wish.quantity.unit)}".rstrip(", "),
+        Axis(f"{_label(x_wish)}, {unit_text(x_wish.quantity.unit)}".rstrip(", "), range=x_range),
+        Axis(range=y_range),
+        line,
+        points,
+        [*_limits(front, y_wish, y_range), *_limits(front, x_wish, x_range, upright=True)],
+    )
 
 
 def _along(front: ParetoFront, wish: Wish) -> list[float]:
@@ -304,68 +316,25 @@ def _range(values: list[float], wish: Wish, front: ParetoFront) -> tuple[float, 
     """The designs' own range with room, and a limit of the objective that is near it."""
     low, high = min(values), max(values)
     span = (high - low) or abs(high) or 1.0
-    for limit in _required(front, wish):
-        level = wish.quantity.to_display(limit)
+    for row in _required(front, wish):
+        level = wish.quantity.to_display(row.limit)
         if low - 0.5 * span <= level <= high + 0.5 * span:
             low, high = min(low, level), max(high, level)
     return low - ROOM * span, high + ROOM * span
 
 
-def _required(front: ParetoFront, wish: Wish) -> list[float]:
-    """Limits on an objective (SI)."""
-    return [row.limit for row in front.evaluation.requirements if row.metric == wish.metric]
+def _required(front: ParetoFront, wish: Wish) -> list[Requirement]:
+    """Requirements on an objective."""
+    return [row for row in front.evaluation.requirements if row.metric == wish.metric]
 
 
-def _inside(axes: Axes, x: float, y: float) -> bool:
-    (left, right), (low, high) = axes.x_range, axes.y_range
-    return left <= x <= right and low <= y <= high
-
-
-def _limits(axes: Axes, front: ParetoFront, x_wish: Wish, y_wish: Wish) -> None:
-    """Limits of the requirements on both objectives, dashed, their words inside the frame."""
-    right, bottom = axes.left + axes.width, axes.top + axes.height
-    for limit in sorted(set(_required(front, y_wish))):
-        level = y_wish.quantity.to_display(limit)
-        if axes.y_range[0] <= level <= axes.y_range[1]:
-            y = axes.y(level)
-            axes.ink.line((axes.left, y), (right, y), stroke=RED, pen=0.25, dash=(1.8, 1.0))
-            words = f"required {trimmed(level)}"
-            above = y - 2.0 if y - axes.top > 5.0 else y + 2.4
-            axes.ink.text(right - 1.0, above, words, color=RED, anchor="right", halo=True)
-    for limit in sorted(set(_required(front, x_wish))):
-        level = x_wish.quantity.to_display(limit)
-        if axes.x_range[0] <= level <= axes.x_range[1]:
-            x = axes.x(level)
-            axes.ink.line((x, axes.top), (x, bottom), stroke=RED, pen=0.25, dash=(1.8, 1.0))
-            words = f"required {trimmed(level)}"
-            left = x - axes.left < axes.width / 2
-            axes.ink.text(
-                x + (1.0 if left else -1.0), axes.top + 2.4, words, color=RED,
-                anchor="left" if left else "right", halo=True,
-            )  # fmt: skip
-
-
-def _knee(
-    axes: Axes, front: ParetoFront, xs: list[float], ys: list[float], wished: tuple[Wish, Wish]
-) -> None:
-    """The knee, larger, with its numbers on the side of the front that is empty."""
-    assert front.knee is not None
-    k = front.knee.index
-    x, y = axes.x(xs[k]), axes.y(ys[k])
-    axes.ink.circle(x, y, 1.5, fill=WHITE, stroke=RED, pen=0.4)
-    axes.ink.circle(x, y, 0.65, fill=RED, stroke=None)
-    metrics = front.points[k].metrics
-    words = ", ".join(value_text(wish.quantity, metrics[wish.metric]) for wish in wished)
-    words = f"knee: {words}"
-    right = axes.left + axes.width
-    if len(front.objectives) > 2:  # designs all around: above the frame
-        axes.ink.text(right, axes.top - 2.0, words, anchor="right", color=GREY)
-        return
-    inside = wished[0].sense == "min"  # the ideal lies left: the right is free
-    room = text_width(words, 6.5) + 4.0
-    leftward = not inside if right - x > room else True
-    down = 3.4 if wished[1].sense == "max" else -3.4
-    place = x - 3.0 if leftward else x + 3.0
-    axes.ink.text(
-        place, y + down, words, anchor="right" if leftward else "left", halo=True, color=GREY
-    )
+def _limits(
+    front: ParetoFront, wish: Wish, ends: tuple[float, float], *, upright: bool = False
+) -> list[Level]:
+    """Limits on an objective within its axis."""
+    limits = {(wish.quantity.to_display(row.limit), row.sense) for row in _required(front, wish)}
+    return [
+        Level(level, f"required {trimmed(level)}", sense, upright=upright)
+        for level, sense in sorted(limits)
+        if ends[0] <= level <= ends[1]
+    ]

@@ -1,4 +1,4 @@
-"""What each requirement and parameter costs: the tornado, the prices, which dimensions move."""
+"""Prices of requirements and parameters: tornado, table, movements of the dimensions."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ MOVING = 3
 MOST_MOVES = 8
 """Most rows of that table: those that change the most."""
 LEAST_MOVE = 1e-4
-"""Relative movement per +1 % below which a dimension stays where it is."""
+"""Relative movement per +1 % below which a dimension counts as unmoved."""
 LEAST_EFFECT = 1e-5
-"""Share of the objective below which a row changes nothing worth drawing."""
+"""Least change drawn, a share of the objective."""
 NO_DESIGN = "no design"
-"""Words at an end that has none."""
+"""Words at an end without a design."""
 
 
 def price_blocks(optimisation: Optimisation, *, moving: bool = False) -> list[Block]:
-    """The tornado of re-solved ends, the prices, what buys the most, which dimensions move.
+    """The tornado of re-solved ends, the prices, the best trades, the movements of dimensions.
 
     `moving`: the terminal shows the movements too.
     """
@@ -93,7 +93,7 @@ def _margin(limit: Requirement) -> str:
 
 
 def _price(optimisation: Optimisation, row: Sensitivity, objective: Quantity) -> Cell:
-    """The price per unit shown, both sides of a kink, marked where its line does not hold."""
+    """The price per unit shown, both sides of a kink; "~" where it is not linear to ±10 %."""
     factor = row.scale * (objective.to_display(1.0) - objective.to_display(0.0))
 
     def shown(price: float | None) -> str:
@@ -160,7 +160,7 @@ def quality(optimisation: Optimisation) -> str:
 
 
 def moves(optimisation: Optimisation, *, shown: bool = False) -> Block | None:
-    """Which dimensions the optimum moves, per +1 % of each requirement or parameter.
+    """Movements of the dimensions of the optimum per +1 % of each requirement or parameter.
 
     `shown`: on the terminal too.
     """
@@ -217,7 +217,7 @@ def moves(optimisation: Optimisation, *, shown: bool = False) -> Block | None:
 
 
 def drawn(optimisation: Optimisation) -> list[Sensitivity]:
-    """The rows worth drawing: ranked as in the table, those without any effect left out."""
+    """The rows with an effect, ranked as in the table."""
     objective = optimisation.objective_value
     least = LEAST_EFFECT * abs(objective)
     rows = [
@@ -234,10 +234,10 @@ def _tornado_block(optimisation: Optimisation) -> Block | None:
     if not rows:
         return None
     left = len(optimisation.sensitivities) - len(rows)
-    rest = f" {left} more change less or nothing." if left else ""
+    more = f" {left} more change less or nothing." if left else ""
     note = (
         "Bars are solved again, each an optimum of its own; strokes are what the price predicts."
-        f" Ranked by the larger bar.{rest}"
+        f" Ranked by the larger bar.{more}"
     )
     return Drawing(f"What ±{PER_CENT} % of each changes", tornado(optimisation), note)
 
@@ -267,23 +267,23 @@ def _bar(row: Sensitivity, objective: float, factor: float) -> TornadoBar:
     """A price row as a bar."""
     limit = text.with_unit(text.trimmed(display_of(row, row.limit)), text.unit_text(row.unit))
     changes: dict[bool, float | None] = {}
-    foreseen: dict[bool, float | None] = {}
+    predictions: dict[bool, float | None] = {}
     words: dict[bool, str] = {}
     for sign, predicted, solved in row.ends:
         changes[sign > 0] = None if solved is None else factor * (solved - objective)
         seen = predicted is not None and abs(predicted - objective) > LEAST_EFFECT * abs(objective)
-        foreseen[sign > 0] = (
+        predictions[sign > 0] = (
             factor * (predicted - objective) if seen and predicted is not None else None
         )
         if solved is None:
             words[sign > 0] = NO_DESIGN
             continue
         share = 100 * (solved - objective) / abs(objective) if objective else None
-        said = "" if share is None else f"{text.number(share, 2, signed=True)} %"
-        words[sign > 0] = "0" if share is not None and abs(share) < 100 * LEAST_EFFECT else said
+        percent = "" if share is None else f"{text.number(share, 2, signed=True)} %"
+        words[sign > 0] = "0" if share is not None and abs(share) < 100 * LEAST_EFFECT else percent
     return TornadoBar(
         f"{short_name(row)}  {limit}",
         (changes.get(True), changes.get(False)),
         (words.get(True, ""), words.get(False, "")),
-        (foreseen.get(True), foreseen.get(False)),
+        (predictions.get(True), predictions.get(False)),
     )

@@ -1,4 +1,4 @@
-"""The page of an evaluation or an optimisation: verdict, requirements, and what stands behind."""
+"""The page of an evaluation or an optimisation: verdict, requirements, and their basis."""
 
 from __future__ import annotations
 
@@ -50,15 +50,15 @@ KEY_FIGURES = (
     "pull_force",
     "closed_length",
 )
-"""Five of these, in this order, after the objective; those without a value are passed over."""
+"""Key figures in order: the first five with a value, after the objective."""
 
 NO_RESERVE = f"No reserve: met, with a margin below {100 * result.NO_RESERVE:g} %"
 FLAG = " (!)"
-"""Behind the name of a quantity whose value rests on a model outside its valid range."""
+"""Mark of a quantity by a model outside its valid range."""
 FLAGGED = "(!) EXTRAPOLATED: a model was used outside its valid range"
 
 _SHORT_OF = ("missed", "infeasible")
-"""States in which an optimum lacks the yield asked for."""
+"""States in which an optimum lacks the required yield."""
 _MET = ("met", "checks")
 """States in which every requirement is met: green, and amber."""
 _BAR = Column("", "left", "22mm", drop=2)
@@ -120,7 +120,7 @@ def page(
 
 
 def prices_page(optimisation: Optimisation) -> Page:
-    """The prices of an optimum alone: what `sensitivity` shows."""
+    """The page of the command `sensitivity`: the prices of an optimum alone."""
     blocks = prices.price_blocks(optimisation, moving=True)
     if not blocks and optimisation.infeasibility is not None:
         blocks = optimum.infeasibility_blocks(optimisation.infeasibility)
@@ -138,7 +138,7 @@ def prices_page(optimisation: Optimisation) -> Page:
 def parts_of(subject: Evaluation | Optimisation) -> tuple[Evaluation, Optimisation | None]:
     """The evaluation to show and, if there is one, the optimisation it came from.
 
-    An optimisation with sizes shows the design of these sizes: it is the one to build.
+    An optimisation with sizes shows the design of these sizes: the design to build.
     """
     if isinstance(subject, Optimisation):
         return subject.best_evaluation, subject
@@ -146,7 +146,7 @@ def parts_of(subject: Evaluation | Optimisation) -> tuple[Evaluation, Optimisati
 
 
 def outcome(subject: Evaluation | Optimisation) -> dict[str, Any]:
-    """The numbers that say whether a result repeats: SI, by metric and by PATH."""
+    """The numbers that must repeat in a second run: SI, by metric and by PATH."""
     evaluation, optimisation = parts_of(subject)
     numbers: dict[str, Any] = {
         "metrics": {metric.name: metric.value for metric in evaluation.metrics.values()},
@@ -163,11 +163,11 @@ def outcome(subject: Evaluation | Optimisation) -> dict[str, Any]:
 def _opening(
     evaluation: Evaluation, optimisation: Optimisation | None, *, labelled: bool = True
 ) -> Iterator[Block]:
-    """What comes first: limits missed, why nothing fits, the requirements."""
+    """The first blocks: limits missed, the reason of infeasibility, the requirements."""
     missed = [row.name for row in evaluation.requirements if not row.met]
     if missed:
-        said = [f"missed: {', '.join(missed)}"]
-        yield Notes("Missed", said, headless=True, style="red", on="terminal")
+        words = [f"missed: {', '.join(missed)}"]
+        yield Notes("Missed", words, headless=True, style="red", on="terminal")
     if optimisation is not None and optimisation.infeasibility is not None:
         yield from optimum.infeasibility_blocks(optimisation.infeasibility)
     yield requirements(evaluation, shown=optimisation is not None, labelled=labelled)
@@ -196,36 +196,36 @@ def _with_variables(
 
 
 def sentences(optimisation: Optimisation) -> list[str]:
-    """Which design is shown where sizes are asked for, the outcome, what to do about it."""
-    said, rounding = [optimisation.shown], optimisation.rounding
+    """The design shown, the outcome of the search, and the remedy."""
+    parts, rounding = [optimisation.shown], optimisation.rounding
     if rounding is None or rounding.design is not None:
-        said.append(optimisation.sentence)
+        parts.append(optimisation.sentence)
     if optimisation.robust is not None:
-        said.append(optimisation.robust.sentence)
-    said.append(optimisation.remedy or ("" if rounding is None else rounding.remedy))
-    return [text.pretty(text.sentence(part)) for part in said if part]
+        parts.append(optimisation.robust.sentence)
+    parts.append(optimisation.remedy or ("" if rounding is None else rounding.remedy))
+    return [text.pretty(text.sentence(part)) for part in parts if part]
 
 
 def reserve_sentences(subject: Evaluation | Optimisation) -> list[str]:
-    """Limits without reserve and the yield, where requirements are met and nothing said it."""
+    """Limits without reserve and the yield, where requirements are met without a robust search."""
     evaluation, optimisation = parts_of(subject)
-    said = optimisation is not None and optimisation.robust is not None
-    if said or verdict(subject).state not in _MET:
+    robust = optimisation is not None and optimisation.robust is not None
+    if robust or verdict(subject).state not in _MET:
         return []
     return [text.pretty(part) for part in evaluation.reserve_sentences]
 
 
 def _sentence(subject: Evaluation | Optimisation) -> str:
     optimisation = parts_of(subject)[1]
-    said = [] if optimisation is None else sentences(optimisation)
-    return " ".join([*said, *reserve_sentences(subject)])
+    parts = [] if optimisation is None else sentences(optimisation)
+    return " ".join([*parts, *reserve_sentences(subject)])
 
 
 def verdict(subject: Evaluation | Optimisation) -> Verdict:
-    """The badge: state, words, how many rows and checks stand behind it, and what to doubt.
+    """The badge: state, words, counts of requirements and checks, doubts.
 
-    `cautions` are lines in amber: limits without reserve, values nobody has verified, values
-    outside a model's range.
+    `cautions` are lines in amber: limits without reserve, unverified values, values outside a
+    model's range.
     """
     evaluation, optimisation = parts_of(subject)
     missed = sum(not row.met for row in evaluation.requirements)
@@ -272,7 +272,7 @@ def verdict(subject: Evaluation | Optimisation) -> Verdict:
 
 
 def doubts(evaluation: Evaluation) -> tuple[list[str], list[str]]:
-    """Plain lines and cautions: values nobody has verified, results that are extrapolated."""
+    """Plain lines and cautions: unverified values, extrapolated results."""
     counts = evaluation.counts
     results, models = counts["extrapolated"], counts["extrapolated_models"]
     words = f"{results} result{'' if results == 1 else 's'}"
@@ -282,7 +282,7 @@ def doubts(evaluation: Evaluation) -> tuple[list[str], list[str]]:
         (counts["unverified"], f"values not verified: {counts['unverified']}"),
         (results + models, f"EXTRAPOLATED: {words}"),
     )
-    return [said for number, said in known if not number], [said for n, said in known if n]
+    return [line for count, line in known if not count], [line for count, line in known if count]
 
 
 def _counts(evaluation: Evaluation) -> dict[str, int]:
@@ -294,16 +294,16 @@ def _counts(evaluation: Evaluation) -> dict[str, int]:
 
 
 def _misfit(optimisation: Optimisation | None) -> str:
-    """The geometry that does not fit, where no limit need be missed for that."""
-    why = None if optimisation is None else optimisation.infeasibility
-    return f"; the geometry does not fit: {', '.join(why.laws)}" if why and why.laws else ""
+    """The laws of geometry that no design meets."""
+    card = None if optimisation is None else optimisation.infeasibility
+    return f"; the geometry does not fit: {', '.join(card.laws)}" if card and card.laws else ""
 
 
 # ---- key figures ----
 
 
 def key_figures(subject: Evaluation | Optimisation) -> list[Tile]:
-    """Five numbers to remember, the objective first, each with its limit or where it came from."""
+    """Five key figures, the objective first, each with its limit or its origin."""
     evaluation, optimisation = parts_of(subject)
     first = () if optimisation is None else (optimisation.objective_metric,)
     names = [n for n in dict.fromkeys((*first, *KEY_FIGURES)) if n in evaluation.metrics]
@@ -340,7 +340,7 @@ def key_figures(subject: Evaluation | Optimisation) -> list[Tile]:
 
 
 def _short_label(name: str, quantity: Quantity) -> str:
-    """The words of a metric where there is little room."""
+    """A short label of a metric."""
     row = ROWS.get(name)
     return (row.short if row else "") or quantity.label
 
@@ -352,7 +352,7 @@ def _limited(evaluation: Evaluation, name: str) -> Requirement | None:
 
 
 def _before(optimisation: Optimisation | None, name: str) -> tuple[str, float, int] | None:
-    """What a figure is compared with, and digits: the optimum before rounding, else the start."""
+    """Reference of a figure, and digits: the optimum before rounding, else the start."""
     if optimisation is None:
         return None
     words, origin, digits = "start", optimisation.start, 3
@@ -366,7 +366,7 @@ def _before(optimisation: Optimisation | None, name: str) -> tuple[str, float, i
 
 
 def flag(evaluation: Evaluation, name: str | None) -> str:
-    """`FLAG`, where a metric rests on a model outside its valid range; else nothing."""
+    """`FLAG` for a metric by a model outside its valid range; else nothing."""
     known = evaluation.metrics.get(name or "")
     return "" if known is None or known.in_range else FLAG
 
@@ -394,8 +394,7 @@ def requirements(evaluation: Evaluation, *, shown: bool = True, labelled: bool =
         ]
         rows.append(Row(cells, row.state))
     if not rows:
-        said = ["The design states no requirement."]
-        return Notes("Requirements", said, on=on)
+        return Notes("Requirements", ["The design states no requirement."], on=on)
     columns = [
         _MARK,
         Column("requirement", "left", 1.0 if labelled else 1.2, breaks=22, mono=True, least=16),
@@ -420,10 +419,10 @@ def requirements(evaluation: Evaluation, *, shown: bool = True, labelled: bool =
 
 
 def _row_notes(evaluation: Evaluation) -> list[str]:
-    """What the states and marks of requirements mean, where some have them."""
+    """Meaning of the states and marks that some requirement has."""
     rows = evaluation.requirements
-    said = [NO_RESERVE] if any(row.state == "no_reserve" for row in rows) else []
-    return said + ([FLAGGED] if any(flag(evaluation, row.metric) for row in rows) else [])
+    notes = [NO_RESERVE] if any(row.state == "no_reserve" for row in rows) else []
+    return notes + ([FLAGGED] if any(flag(evaluation, row.metric) for row in rows) else [])
 
 
 def _result(evaluation: Evaluation, row: Requirement) -> Cell:
@@ -481,8 +480,8 @@ def quantities(evaluation: Evaluation) -> Iterator[Block]:
     note = FLAGGED if any(not metric.in_range for metric in evaluation.metrics.values()) else ""
     yield Table("Quantities", columns, rows, note=note, headless=True, on="terminal")
     if missing:
-        said = [f"{', '.join(names)}: {why}" for why, names in missing.items()]
-        yield Notes("Not computed", said, on="terminal")
+        lines = [f"{', '.join(names)}: {why}" for why, names in missing.items()]
+        yield Notes("Not computed", lines, on="terminal")
 
 
 # ---- masses ----
@@ -529,14 +528,14 @@ def masses(evaluation: Evaluation) -> Block:
 
 
 def checks(evaluation: Evaluation) -> Iterator[Block]:
-    """The check list: every line on paper; those not met, without reserve, unchecked elsewhere."""
+    """The check list: on paper every line, on the terminal the open lines."""
     if not evaluation.checks:
         yield Notes("Check list", ["No check list."], on="paper")
         return
     counts = _counts(evaluation)
     note = (
         f"{counts['met']} met, {counts['missed']} missed, {counts['not_checked']} not checked;"
-        " a line that was not checked is no statement that it holds."
+        " a line without a check does not claim that its limit is met."
     )
     columns = [
         Column("check", "left", 1.25),
@@ -601,7 +600,7 @@ def _open_checks(evaluation: Evaluation, title: str) -> Block:
 
 
 def warnings(subject: Evaluation | Optimisation) -> list[str]:
-    """What the evaluation warns of, then the optimiser."""
+    """Warnings of the evaluation, then of the optimiser."""
     evaluation, optimisation = parts_of(subject)
     return [*evaluation.warnings, *(() if optimisation is None else optimisation.warnings)]
 
@@ -610,25 +609,25 @@ def _remarks(evaluation: Evaluation, optimisation: Optimisation | None) -> Itera
     """Warnings; on the terminal also what paper lists in the appendix, in few words."""
     if lines := warnings(optimisation or evaluation):
         yield Notes("Warnings", [text.pretty(line) for line in lines], style="yellow")
-    said = []
+    data = []
     if evaluation.extrapolated:
-        said.append(f"extrapolated: {', '.join(evaluation.extrapolated)}")
+        data.append(f"extrapolated: {', '.join(evaluation.extrapolated)}")
     if evaluation.unverified:
         counts: dict[str, int] = {}
         for value in evaluation.unverified:
             counts[value.material] = counts.get(value.material, 0) + 1
         listed = ", ".join(f"{material} {count}" for material, count in counts.items())
-        said.append(f"unverified library values used: {len(evaluation.unverified)} ({listed})")
-    if said:
-        yield Notes("Data", said, headless=True, style="yellow", on="terminal")
+        data.append(f"unverified library values used: {len(evaluation.unverified)} ({listed})")
+    if data:
+        yield Notes("Data", data, headless=True, style="yellow", on="terminal")
     if optimisation is not None:
         yield from trust.brief(optimisation)
 
 
 def _appendix(evaluation: Evaluation) -> Iterator[Block]:
-    """Values nobody has verified, models, notes of the author: where the numbers come from."""
-    said = ["Values that nobody has verified, models with their valid ranges, and the input."]
-    yield Notes("Appendix", said, on="paper")
+    """The origin of the numbers: unverified values, models, notes of the author."""
+    contents = ["Unverified values, models with their valid ranges, and the input."]
+    yield Notes("Appendix", contents, on="paper")
     yield assumptions(evaluation)
     yield models(evaluation)
     if evaluation.design.notes:
@@ -665,7 +664,7 @@ def models(evaluation: Evaluation) -> Block:
 
 
 def assumptions(evaluation: Evaluation) -> Block:
-    """Library values that nobody checked, values of test records, checks the author took out."""
+    """Unverified library values, values of test records, waived checks."""
     title = "Assumptions and unverified data"
     groups: dict[tuple[str, str, str], list[str]] = {}
     for row in evaluation.unverified:
@@ -687,8 +686,8 @@ def assumptions(evaluation: Evaluation) -> Block:
         for metric, reason in evaluation.design.waivers.items()
     ]
     if not rows:
-        said = ["Every library value used is marked as checked; no check is waived."]
-        return Notes(title, said, on="paper")
+        note = "Every library value used is marked as checked; no check is waived."
+        return Notes(title, [note], on="paper")
     columns = [
         Column("material", "left", 1.05),
         Column("values", "left", 2.0),
@@ -696,7 +695,7 @@ def assumptions(evaluation: Evaluation) -> Block:
         Column("note", "left", 1.3),
     ]
     note = (
-        f"{len(evaluation.unverified)} library values are used that nobody has compared with their"
+        f"{len(evaluation.unverified)} of the library values used were never compared with their"
         " primary source; see the materials files."
     )
     return Table(title, columns, rows, note=note, on="paper")

@@ -1,4 +1,4 @@
-"""Recorded runs: the list, and one run with its request, result and search; results of `doctor`.
+"""Recorded runs: the list, a run with its request, result and search; results of `doctor`.
 
 The table of `doctor` is never cut, so that paths can be copied.
 """
@@ -51,7 +51,7 @@ def listing(runs: Iterable[tuple[str, Mapping[str, Any]]]) -> Table:
 
 
 def outcome(head: Mapping[str, Any]) -> str:
-    """How a run ended, in a few words."""
+    """Outcome of a run in a few words."""
     status = str(head.get("status", DASH))
     if head.get("kind") == "sweep" and "requested" in head:
         count = head["feasible"]
@@ -79,7 +79,7 @@ def objective(head: Mapping[str, Any]) -> str:
 
 
 def blocks(name: str, head: Mapping[str, Any], body: Mapping[str, Any]) -> list[Block]:
-    """A run: its request, its result, and the course of the search."""
+    """A run: its request, its result, and the convergence of the search."""
     columns = [Column("", style="dim"), Column("", width=1.0, breaks=30, wraps=True, least=24)]
     shown: list[Block] = [Table(f"run {name}", columns, _facts(head, body))]
     variables = body.get("state", {}).get("result", {}).get("variables", [])

@@ -9,12 +9,30 @@ from typing import Any
 from ..design.seals import SealElement
 from ..evaluation.sealing import closed_form
 from ..metrics import METRICS
-from ..rendering.blocks import Block, Column, Drawing, Notes, Page, Row, Table, Tile, Verdict, tile
+from ..rendering.blocks import (
+    Block,
+    Chart,
+    Column,
+    Drawing,
+    Notes,
+    Page,
+    Row,
+    Table,
+    Tile,
+    Verdict,
+    tile,
+)
 from ..rendering.series import Series
 from ..rendering.text import DASH, bars, degrees, number, speed_words, trimmed, value_text
 from ..studies.seal import HARDNESS_SCATTER, STATED_FACTOR, FilmMap, RingPoint, SealPoint, SealStudy
 from . import seal_figures as figures
-from .seal_figures import stroke_names, tolerance_text
+from .seal_sections import (
+    filled_grooves,
+    gland_drawing,
+    stress_figure,
+    stroke_names,
+    tolerance_text,
+)
 
 SPEEDS = (1e-4, 1e-3, 1e-2, 1e-1, 1.0)
 """Speeds of the curves that the terminal shows [m/s]."""
@@ -22,7 +40,7 @@ SPEEDS = (1e-4, 1e-3, 1e-2, 1e-1, 1.0)
 
 def page(study: SealStudy) -> Page:
     """The seals of one place, as a page of their own."""
-    gland = figures.gland_drawing(study)
+    gland = gland_drawing(study)
     return Page(
         name=study.design.name,
         kind=f"Seal sheet: {study.place}",
@@ -40,7 +58,7 @@ def blocks(study: SealStudy) -> list[Block]:
     note = "Dashed: free sections. Lands between grooves are cut where they are long."
     if study.place == "piston":
         note += " The bore is drawn at its size without pressure."
-    ink = figures.gland_drawing(study).ink
+    ink = gland_drawing(study).ink
     sentences = [strokes(study), why(study), leakage(study)]
     return [
         Drawing(f"{_seals(study)}: gland", ink, note),
@@ -136,7 +154,7 @@ def _gland(study: SealStudy) -> Table:
 def gland_rows(study: SealStudy) -> list[tuple[str, ...]]:
     """Sizes of every groove and ring with their tolerances, mm."""
     rows: list[tuple[str, ...]] = []
-    for filled in figures.filled_grooves(study.design, study.place):
+    for filled in filled_grooves(study.design, study.place):
         groove, element, width = filled.groove, filled.element, trimmed(1e3 * filled.width)
         if element is None:
             material = (groove.place, groove.role, groove.material, DASH, DASH)
@@ -334,7 +352,7 @@ def contact_rows(study: SealStudy) -> list[tuple[str, ...]]:
 
 
 def _contact_model(point: RingPoint) -> str:
-    """Which model the contact of a ring is from."""
+    """The model behind the contact of a ring."""
     element = point.ring.element
     if element.contact:
         return "stated profiles"
@@ -347,14 +365,14 @@ def _modulus(point: RingPoint) -> str:
     return f"{low} {DASH} {value} {DASH} {high}"
 
 
-def _film(study: SealStudy, index: int) -> Drawing:
+def _film(study: SealStudy, index: int) -> Chart:
     label = study.drive.rings[index].ring.label
     note = (
         f"At {operating_point(study)}. Static: the contact without oil; oil and asperities share"
         " it. The film is the distance of the mean planes of both rough surfaces."
     )
     title = f"{label.capitalize()}: contact pressure and oil film"
-    return Drawing(title, figures.contact_figure(study, index), note)
+    return Chart(title, figures.contact_panels(study, index), note, height=54.0)
 
 
 # ---- finite elements ----
@@ -372,11 +390,11 @@ def _elements(study: SealStudy) -> list[Block]:
         Column("von Mises", "right", drop=1),
     ]
     table = Table(title, columns, _element_rows(study), note=elements_sentence(study))
-    stress = figures.stress_figure(study)
+    stress = stress_figure(study)
     note = f"{elements_sentence(study)} {contact_note(study)}"
     return [
         Drawing(f"{label}: stress by finite elements", stress, stress_note(study)),
-        Drawing(title, figures.elements_figure(study), note, instead=table),
+        Chart(title, figures.elements_panels(study), note, instead=table, height=115.0),
     ]
 
 
@@ -412,7 +430,7 @@ def elements_sentence(study: SealStudy) -> str:
 
 
 def stress_note(study: SealStudy) -> str:
-    """What the sections show, and what they leave out."""
+    """Contents and limits of the sections."""
     words = "Deformed to scale, sealed side left; red: the contact. "
     if study.out.rings[0].ring.element.back_ups:
         words += "The groove is what the back-up rings leave. "
@@ -423,7 +441,7 @@ def stress_note(study: SealStudy) -> str:
 
 
 def contact_note(study: SealStudy) -> str:
-    """How far to trust the curves."""
+    """Limits of the curves."""
     words = (
         "Pressures above the outer side's; both without the bore's growth. Between the points of"
         " the elements the line is straight, and so are contacts taken between two pressures."
@@ -435,7 +453,7 @@ def contact_note(study: SealStudy) -> str:
 # ---- friction and damping over speed ----
 
 
-def _speeds(study: SealStudy, curves: FilmMap) -> Drawing:
+def _speeds(study: SealStudy, curves: FilmMap) -> Chart:
     point, note = study.drive, ""
     if point.converged:
         note = (
@@ -448,7 +466,8 @@ def _speeds(study: SealStudy, curves: FilmMap) -> Drawing:
         f" breakaway {_force(point.breakaway)}.{missing(curves)}"
     )
     title = f"{_seals(study)}: friction and damping over speed"
-    return Drawing(title, figures.speed_figure(study), note, instead=_speed_table(study, curves))
+    table = _speed_table(study, curves)
+    return Chart(title, figures.speed_panels(study, curves), note, instead=table, height=64.0)
 
 
 def _speed_table(study: SealStudy, curves: FilmMap) -> Table:
@@ -467,17 +486,17 @@ def _speed_table(study: SealStudy, curves: FilmMap) -> Table:
     return Table(title, columns, rows, note=missing(curves).strip())
 
 
-def _map(study: SealStudy, film_map: FilmMap) -> Drawing:
+def _map(study: SealStudy, film_map: FilmMap) -> Chart:
     driven = stroke_names(study)[0].capitalize()
-    note = f"{driven}; circle: the operating point, where it lies in the map.{missing(film_map)}"
+    note = f"{driven}.{missing(film_map)}"
     if film_map.why:
-        note += " Crosses: points without a film; hatched: not known between them."
+        note += " Hatched: not known beside points without a film."
     title = f"{_seals(study)}: friction and damping over speed and pressure"
-    return Drawing(title, figures.map_figure(study), note)
+    return Chart(title, figures.map_panels(study, film_map), note, height=62.0)
 
 
 def missing(film_map: FilmMap) -> str:
-    """How many points of a map have no film, and why; empty where all have a film."""
+    """Number and reasons of the points of a map without a film; empty where all have a film."""
     if not film_map.why:
         return ""
     reasons: dict[str, int] = {}
@@ -502,7 +521,7 @@ def _is_number(word: str) -> bool:
 
 
 def why(study: SealStudy) -> str:
-    """Why the operating point has no film; empty where both strokes have a film."""
+    """Reason of a missing film at the operating point; empty where both strokes have a film."""
     names = stroke_names(study)
     if study.place == "rod":
         names = (f"on the {names[0]}", f"on the {names[1]}")
@@ -515,7 +534,7 @@ def why(study: SealStudy) -> str:
 
 
 def strokes(study: SealStudy) -> str:
-    """What the two strokes of the place are, and the pressure that its seal withstands."""
+    """Meaning of the two strokes of the place, and the pressure that its seal withstands."""
     pressure = f"The seal withstands {bars(study.drive.pressure)}"
     if study.place == "rod":
         return f"{pressure} above the atmosphere."
@@ -552,7 +571,7 @@ def _across(value: float, chamber: str) -> str:
 
 
 def notes(study: SealStudy) -> list[str]:
-    """What is model, what is input, and how far either can be trusted."""
+    """Models, inputs and their limits, for the reader to judge."""
     scatter = f"hardness ±{trimmed(HARDNESS_SCATTER)} Shore A"
     if any("hardness" not in point.ring.numbers for point in study.drive.rings):
         scatter += f", a stated modulus × or ÷ {trimmed(STATED_FACTOR)}"

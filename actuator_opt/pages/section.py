@@ -1,7 +1,7 @@
 """The longitudinal section: true to an ISO 5455 scale at print width, hatched and dimensioned.
 
 Layout by rule: item balloons in a row above the parts, diameters in a row below, lengths below
-those; every label gets its place from `ink.spread_within`, so none meets another.
+those. `ink.spread_within` places every label, so that no two touch.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class SectionDrawing:
 
 @dataclass(frozen=True, slots=True)
 class _Frame:
-    """Where real coordinates (m) fall on the paper (mm)."""
+    """Places on the paper (mm) of real coordinates (m)."""
 
     factor: float
     left: float
@@ -183,7 +183,7 @@ def _edges(outline: Outline, frame: _Frame) -> list[list[Point]]:
 def _uncovered(
     a: Point, b: Point, others: Sequence[tuple[Point, Point]]
 ) -> list[tuple[Point, Point]]:
-    """The parts of an axis-parallel edge that no edge of another polygon lies on."""
+    """The parts of an axis-parallel edge outside the edges of all other polygons."""
     axis = next((k for k in (0, 1) if abs(a[k] - b[k]) < 1e-9), None)
     if axis is None:
         return [(a, b)]
@@ -211,15 +211,15 @@ def _balloon_rows(count: int, width: float) -> int:
 
 def _spans(outline: Outline, position: float) -> list[tuple[float, float]]:
     """Radial intervals of a part at an axial position."""
-    found = []
+    spans = []
     for polygon in outline.polygons:
         hits = []
         for (x1, r1), (x2, r2) in zip(polygon, [*polygon[1:], polygon[0]], strict=True):
             if (x1 <= position) != (x2 <= position):
                 hits.append(r1 + (position - x1) * (r2 - r1) / (x2 - x1))
         hits.sort()
-        found += list(zip(hits[::2], hits[1::2], strict=False))
-    return found
+        spans += list(zip(hits[::2], hits[1::2], strict=False))
+    return spans
 
 
 def _area(polygon: Polygon) -> float:
@@ -381,7 +381,7 @@ def _dimension(ink: Ink, start: float, end: float, y: float, origin: float, text
 
 
 def scale_bar(ink: Ink, factor: float, y: float) -> None:
-    """A ruler of a round length, to see whether a print kept its size."""
+    """A ruler of a round length, to check the size of a print."""
     for millimetres in (5000, 2000, 1000, 500, 200, 100, 50, 20, 10, 5, 2, 1):
         if millimetres * factor / 1000 <= 50.0:
             break

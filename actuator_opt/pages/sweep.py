@@ -1,4 +1,4 @@
-"""The page of a sweep: counts, the best designs, why designs failed; its rows as columns."""
+"""The page of a sweep: counts, the best designs, reasons of failures; its rows as columns."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ AXES = 7
 
 def page(swept: Swept) -> Page:
     """The page of a sweep."""
-    said = [f"{swept.requested} variants: {counts(swept)}."]
+    sentences = [f"{swept.requested} variants: {counts(swept)}."]
     if not swept.best:
-        said.append(_nothing(swept))
+        sentences.append(_nothing(swept))
     return Page(
         name=swept.study.design.name,
         kind="Sweep",
         verdict=_verdict(swept),
-        sentence=" ".join(said),
+        sentence=" ".join(sentences),
         tiles=list(_tiles(swept)),
         hero=lambda room: _hero(swept),
         blocks=list(_blocks(swept)),
@@ -48,7 +48,7 @@ def page(swept: Swept) -> Page:
 
 
 def counts(swept: Swept) -> str:
-    """How many designs were computed, failed, are feasible; of the best alone, how many in full."""
+    """Numbers of designs computed, failed and feasible; of a reduced sweep those ruled out."""
     if swept.feasible is None:
         full = swept.computed - swept.screened
         return f"{swept.screened} ruled out early, {full} evaluated in full"
@@ -68,7 +68,7 @@ def _verdict(swept: Swept) -> Verdict:
 
 
 def _nothing(swept: Swept) -> str:
-    """Why there is no best design."""
+    """Reason of a missing best design."""
     if swept.feasible:
         return f"None of the {swept.feasible} feasible designs has a value of the objective."
     missed = sorted(swept.missed.items(), key=lambda item: (-item[1], item[0]))
@@ -97,7 +97,7 @@ def _tiles(swept: Swept) -> Iterator[Tile]:
 
 
 def _hero(swept: Swept) -> Ink:
-    """Parallel axes, where the sweep has what they show."""
+    """Parallel axes of a full sweep with a feasible design."""
     study = swept.study
     if swept.best and study.full:
         metrics = chosen(study, ())[: max(1, AXES - len(study.plan.axes))]
@@ -111,23 +111,23 @@ def _hero(swept: Swept) -> Ink:
 def _blocks(swept: Swept) -> Iterator[Block]:
     if swept.best:
         yield _best(swept)
-    said = []
+    remarks = []
     if swept.damaged:
         rows = "1 row" if swept.damaged == 1 else f"{swept.damaged} rows"
-        said.append(f"{rows} in the store were damaged and computed again.")
+        remarks.append(f"{rows} in the store were damaged and computed again.")
     reasons = sorted(swept.failures.items(), key=lambda item: (-item[1], item[0]))
-    said += [f"failed: {times} times {reason}" for reason, times in reasons[:FAILURES]]
+    remarks += [f"failed: {times} times {reason}" for reason, times in reasons[:FAILURES]]
     if len(reasons) > FAILURES:
-        said.append(f"and {len(reasons) - FAILURES} more reasons")
-    if said:
-        yield Notes("Failures", said, headless=True)
+        remarks.append(f"and {len(reasons) - FAILURES} more reasons")
+    if remarks:
+        yield Notes("Failures", remarks, headless=True)
     rate = swept.computed / swept.seconds if swept.seconds > 0 else 0.0
     time = f"computing time ({swept.seconds:.1f} s, {rate:.0f}/s)"
     yield Notes("", [time], headless=True, style="dim", on="terminal")
 
 
 def _best(swept: Swept) -> Table:
-    """The best designs: what varies, the objective, the least margin."""
+    """The best designs: varied inputs, the objective, the least margin."""
     study = swept.study
     goal = list(study.goal.weights)
     paths = [axis.path for axis in study.plan.axes]
@@ -181,10 +181,10 @@ def _cell(value: float | str, quantity: Quantity | None) -> str:
 
 
 class SweepColumns:
-    """The rows of a study as columns of files, in the units people read.
+    """The rows of a study as columns of files, in display units.
 
-    A design's number, what varies, its metrics, the least margin; the limit of that margin,
-    whether all limits are met, and why a design failed.
+    The number of a design, varied inputs, metrics, the least margin; the limit of that margin,
+    whether all limits are met, and the reason of a failure.
     """
 
     def __init__(self, study: Study) -> None:
@@ -238,7 +238,7 @@ class SweepColumns:
             yield Coded(codes[which], axis.texts)
 
     def _numbers(self, chunk: Chunk) -> Iterator[Array]:
-        """The numbers; NaN where there is none."""
+        """The numbers; NaN for a missing number."""
         for k, quantity in enumerate(self._quantities):
             column = chunk.rows.numbers[:, k]
             yield column if quantity is None else quantity.to_display(column)
@@ -250,7 +250,7 @@ def _number(name: str, label: str, quantity: Quantity | None) -> FileColumn:
 
 
 def about(study: Study) -> dict[str, str]:
-    """What the rows of a sweep rest on, under keys of a file."""
+    """Design, plan and version of a sweep, under keys of a file."""
     plan = study.plan
     points = {
         "method": plan.method,
@@ -258,7 +258,7 @@ def about(study: Study) -> dict[str, str]:
         "seed": plan.seed,
         "vary": {axis.path: _axis(axis) for axis in plan.axes},
     }
-    rest = {
+    origin = {
         "name": study.design.name,
         "version": VERSION,
         "spec_hash": spec_hash(prepare(study.design, plugins=study.plugins)),
@@ -266,7 +266,7 @@ def about(study: Study) -> dict[str, str]:
         "plan": encoded(points, ensure_ascii=False),
         "design": study.text,
     }
-    return {f"actuator_opt.{key}": value for key, value in rest.items()}
+    return {f"actuator_opt.{key}": value for key, value in origin.items()}
 
 
 def _axis(axis: SweepAxis) -> object:

@@ -1,4 +1,4 @@
-"""How good is this: the proven bound, what the starts say, runners-up, how the search went."""
+"""Trust in an optimum: the proven bound, the ends of the starts, runners-up, convergence."""
 
 from __future__ import annotations
 
@@ -11,25 +11,27 @@ from ..metrics import of_metric
 from ..optimisation.actuator import MET
 from ..optimisation.result import Optimisation
 from ..rendering import text
-from ..rendering.axes import Axes, Ticks, fitted, ticks
-from ..rendering.blocks import Block, Drawing, Notes
-from ..rendering.ink import BLACK, BLUE, GREY, PALE, RED, Ink, spread_within, text_width
-from ..rendering.text import number, sentence, trimmed, unit_text
+from ..rendering.axes import Axes, ticks
+from ..rendering.blocks import Block, Chart, Drawing, Notes
+from ..rendering.chart import Axis, Curve, Panel, Points
+from ..rendering.chart_ink import titled
+from ..rendering.ink import BLACK, BLUE, GREY, PALE, Ink, spread_within, text_width
+from ..rendering.text import number, sentence, unit_text
 
 LEAST_ABOVE = 1e-4
-"""Per cent above the optimum that count as none."""
+"""Excess over the optimum that counts as none [%]."""
 
 NEAR = 1e-3
-"""Relative difference of objectives up to which two starts found one optimum."""
+"""Relative difference of objectives up to which two starts reached the same optimum."""
 
 WIDTH = 180.0
-"""Of the figures (mm)."""
+"""Width of the scale (mm)."""
 
 
 def trust_blocks(optimisation: Optimisation) -> list[Block]:
-    """The statement, the scale of what is proven and found, and the course of the search."""
-    said = [*proof(optimisation), *convergence(optimisation)]
-    blocks: list[Block] = [Notes("How good is this?", said, on="paper")]
+    """The statement, the scale of bound and optimum, and the convergence of the search."""
+    sentences = [*proof(optimisation), *convergence(optimisation)]
+    blocks: list[Block] = [Notes("How good is this?", sentences, on="paper")]
     if optimisation.infeasibility is None:
         blocks += _scale_block(optimisation)
         blocks += _course_block(optimisation)
@@ -38,41 +40,43 @@ def trust_blocks(optimisation: Optimisation) -> list[Block]:
 
 def brief(optimisation: Optimisation) -> Iterator[Block]:
     """The same for the terminal, without the limits that the proof covers."""
-    for said, style in (
+    for sentences, style in (
         (proof(optimisation, shortened=True), ""),
         (convergence(optimisation), "dim"),
     ):
-        if said:
-            yield Notes("Trust", said, headless=True, style=style, on="terminal")
+        if sentences:
+            yield Notes("Trust", sentences, headless=True, style=style, on="terminal")
 
 
 def proof(optimisation: Optimisation, *, shortened: bool = False) -> list[str]:
-    """What the certificate says; without a certificate, how to get it.
+    """The statement of the certificate; without a certificate, how to get it.
 
-    `shortened`: the limits that it covers are counted, not named.
+    `shortened`: the covered limits are counted, not named.
     """
     certificate = optimisation.certificate
     if certificate is None:
         if optimisation.infeasibility is not None or not optimisation.variables:
             return []
         return ["Not proven: `optimise --certify` computes how far this is from the best possible."]
-    said = [sentence(certificate.sentence), *_of_sizes(optimisation)]
+    lines = [sentence(certificate.sentence), *_of_sizes(optimisation)]
     if certificate.covers and not shortened:
         names = ", ".join(certificate.covers)
-        said.append(f"The proof covers, by the models or by what none of them can beat: {names}.")
+        lines.append(f"The proof covers, by the models or by what none of them can beat: {names}.")
     if certificate.dropped:
         shown = [
             name if shortened else f"{name} ({why})" for name, why in certificate.dropped.items()
         ]
         covered = f"It covers {len(certificate.covers)} limits and does" if shortened else "It does"
-        said.append(f"{covered} without these, which can only lower the bound: {'; '.join(shown)}.")
+        lines.append(
+            f"{covered} without these, which can only lower the bound: {'; '.join(shown)}."
+        )
     if certificate.evidence:
-        said.append(sentence(certificate.evidence))
-    return said
+        lines.append(sentence(certificate.evidence))
+    return lines
 
 
 def _of_sizes(optimisation: Optimisation) -> list[str]:
-    """How far the design of sizes is from the bound, which holds for it too."""
+    """Distance of the design of sizes from the bound, which holds for it too."""
     bound, made = _bound(optimisation), optimisation.made
     if made is None or bound is None or not made.objective_after:
         return []
@@ -88,36 +92,36 @@ def _quantity(optimisation: Optimisation) -> Quantity:
 
 
 def _marks(optimisation: Optimisation) -> list[tuple[float, str]]:
-    """Objectives beside the optimum worth showing: designs of sizes, the start, other optima."""
-    best, found = optimisation.objective_value, []
+    """Objectives to show beside the optimum: designs of sizes, the start, other optima."""
+    best, marks = optimisation.objective_value, []
     rounding = optimisation.rounding
     if rounding is not None and rounding.objective_after is not None:
-        found.append((rounding.objective_after, "of the sizes asked for"))
+        marks.append((rounding.objective_after, "of the requested sizes"))
         for row in rounding.runners_up[:2]:
-            found.append((row.objective, "runner-up"))
+            marks.append((row.objective, "runner-up"))
     if optimisation.choices is not None:
-        for one in optimisation.choices.combinations[1:4]:
-            if one.feasible and one.objective is not None:
-                found.append((one.objective, "other choices"))
+        for combination in optimisation.choices.combinations[1:4]:
+            if combination.feasible and combination.objective is not None:
+                marks.append((combination.objective, "other choices"))
     known = [best]
     reached = (value for value in optimisation.starts if value is not None)
-    for value in sorted(reached, key=lambda one: abs(one - best)):
+    for value in sorted(reached, key=lambda value: abs(value - best)):
         if all(abs(value - other) > NEAR * abs(other) for other in known):
             known.append(value)
-    found += [(value, "other local optimum") for value in known[1:3]]
+    marks += [(value, "other local optimum") for value in known[1:3]]
     start = optimisation.start.metrics.get(optimisation.objective_metric)
     if start is not None and start.value is not None and optimisation.start.met:
-        found.append((start.value, "design as given"))
-    return found
+        marks.append((start.value, "design as given"))
+    return marks
 
 
 def _scale_block(optimisation: Optimisation) -> list[Block]:
-    """What is proven, the optimum and what comes near, with a title."""
+    """The scale of bound, optimum and other designs, with its title and note."""
     bound = _bound(optimisation)
     if bound is None and not _marks(optimisation):
         return []
-    note = "Left of the bound no design meets the covered limits; right of it a better one may."
-    title = "Proven, found, and what comes near"
+    note = "Left of the bound no design meets the covered limits; right of it a better design may."
+    title = "Proven bound, optimum, and other designs"
     return [Drawing(title, scale(optimisation), "" if bound is None else note)]
 
 
@@ -127,7 +131,10 @@ def _bound(optimisation: Optimisation) -> float | None:
 
 
 def scale(optimisation: Optimisation) -> Ink:
-    """What is proven, the optimum and what comes near, on one scale."""
+    """The bound, the optimum and other designs on one scale.
+
+    Drawn, not a chart: every value has its name above the scale.
+    """
     quantity, bound = _quantity(optimisation), _bound(optimisation)
     names = [(quantity.to_display(optimisation.objective_value), "optimum found", True)]
     names += [(quantity.to_display(value), words, False) for value, words in _marks(optimisation)]
@@ -164,56 +171,53 @@ def _labelled(ink: Ink, axes: Axes, names: Sequence[tuple[float, str, bool]]) ->
 
 
 def _course_block(optimisation: Optimisation) -> list[Block]:
-    """How far above the optimum the best design was over the evaluations, and where starts led."""
+    """Excess over the optimum of the best design so far, and of the end of every start."""
     best = optimisation.objective_value
     steps = [step for step in optimisation.trace if step[0] > 0 and step[2] <= MET]
     if len(steps) < 2 or not best:
         return []
     counts = [float(count) for count, _, _ in steps]
     last = max(float(optimisation.evaluations), counts[-1])
-    ink = Ink(WIDTH, 52.0)
-    heads = f"best design so far, above {text.value_text(_quantity(optimisation), best)}"
-    values = [_above(value, best) for _, value, _ in steps]
-    axes = _decades(ink, (14.0, 8.0, 88.0, 32.0), (0.0, last), values, heads, "evaluations")
-    xs = [x for pair in zip(counts, [*counts[1:], last], strict=True) for x in pair]
-    ys = [y for value in values for y in (value, value)]
-    for line in axes.clipped(xs, ys):
-        ink.line(*line, pen=0.35, stroke=BLUE)
-    ends = [(k, start) for k, start in enumerate(optimisation.starts, start=1) if start is not None]
+    heights = [_above(value, best) for _, value, _ in steps]
+    title = f"Best design so far, above {text.value_text(_quantity(optimisation), best)}"
+    x = Axis("evaluations", range=(0.0, last))
+    panels = [Panel(title, x, _decades(heights), [Curve("", *_stairs(counts, heights, last))])]
+    ends = [(k, start) for k, start in enumerate(optimisation.starts, 1) if start is not None]
     if ends:
-        span = (0.5, len(optimisation.starts) + 0.5)
-        heights = [_above(one, best) for _, one in ends]
-        box = (122.0, 8.0, 54.0, 32.0)
-        axes = _decades(ink, box, span, heights, "where each start led", "start")
-        for (number, _), height in zip(ends, heights, strict=True):
-            ink.circle(axes.x(number), axes.y(height), 0.9, fill=BLUE)
+        heights = [_above(start, best) for _, start in ends]
+        numbers = [float(k) for k, _ in ends]
+        count = len(optimisation.starts)
+        marks = [(k, text.trimmed(k)) for k in ticks(0.5, count + 0.5, 6) if k == int(k)]
+        x = Axis("start", range=(0.5, count + 0.5), ticks=marks)
+        points = [Points("", numbers, heights, style=3)]
+        panels.append(Panel("End of each start", x, _decades(heights), points=points))
     note = (
         "Designs that meet every limit, over the evaluations of all starts; none: below 0.0001 %."
     )
-    return [Drawing("How the search went", ink, note)]
+    return [Chart("How the search went", panels, note, height=52.0, widths=(98.0, 64.0))]
 
 
 def _above(value: float, best: float) -> float:
-    """Decimal logarithm of the per cent that an objective lies above the best."""
-    return math.log10(max(100 * abs(value - best) / abs(best), LEAST_ABOVE))
+    """Per cent that an objective lies above the best."""
+    return max(100 * abs(value - best) / abs(best), LEAST_ABOVE)
 
 
-def _decades(
-    ink: Ink,
-    box: tuple[float, float, float, float],
-    x_range: tuple[float, float],
-    values: Sequence[float],
-    title: str,
-    x_label: str,
-) -> Axes:
-    """A frame whose upright axis is per cent in decades."""
-    low, high = math.log10(LEAST_ABOVE), max(math.ceil(max(values)), 1)
-    axes = Axes(ink, box, x_range, (low - 0.3, high + 0.3))
-    marks = range(round(low), high + 1, 2)
-    whole = [(x, text.trimmed(x)) for x in ticks(*x_range, 6) if x == int(x)]
-    names = [(float(k), f"{text.trimmed(10.0**k)} %" if k > low else "none") for k in marks]
-    axes.frame_at(title, x_label, whole, names)
-    return axes
+def _decades(values: Sequence[float]) -> Axis:
+    """An axis of per cent in decades."""
+    low, high = math.log10(LEAST_ABOVE), max(math.ceil(math.log10(max(values))), 1)
+    marks = [
+        (10.0**k, f"{text.trimmed(10.0**k)} %" if k > low else "none")
+        for k in range(round(low), high + 1, 2)
+    ]
+    return Axis(log=True, range=(10.0 ** (low - 0.3), 10.0 ** (high + 0.3)), ticks=marks)
+
+
+def _stairs(
+    counts: Sequence[float], values: Sequence[float], last: float
+) -> tuple[list[float], list[float]]:
+    """A staircase: each value remains until the next improvement."""
+    xs = [x for pair in zip(counts, [*counts[1:], last], strict=True) for x in pair]
+    return xs, [value for value in values for _ in range(2)]
 
 
 def convergence(optimisation: Optimisation) -> list[str]:
@@ -229,13 +233,13 @@ def convergence(optimisation: Optimisation) -> list[str]:
     elif optimisation.starts:
         best = optimisation.objective_value
         same = sum(v is not None and abs(v - best) <= 1e-3 * abs(best) for v in optimisation.starts)
-        found = ", ".join(
+        values = ", ".join(
             "none" if v is None else text.value_text(objective, v) for v in optimisation.starts[:8]
         )
         more = ", …" if len(optimisation.starts) > 8 else ""
         lines.append(
             f"{same} of {len(optimisation.starts)} starts reached the same optimum within 0.1 %:"
-            f" {found}{more}."
+            f" {values}{more}."
         )
     if optimisation.trace:
         steps = optimisation.trace
@@ -253,84 +257,55 @@ def convergence(optimisation: Optimisation) -> list[str]:
 
 
 def _missed(violation: float) -> str:
-    """How far a design misses its limits, in words."""
+    """Violation of the limits in words."""
     return "all met" if violation <= 1e-6 else f"missed by {text.number(100 * violation, 2)} %"
 
 
-_WIDTH, _HEIGHT, _PANEL, _TALL = 180.0, 70.0, 66.0, 44.0
-_LOWEST = -6.0
-"""Decade at which a limit counts as met, the bottom of the right panel."""
+LOWEST = 1e-6
+"""Violation at which a limit counts as met, the bottom of the right panel."""
 
 
 def convergence_figure(
     trace: Sequence[Sequence[float]], metric: str, evaluations: int, title: str
 ) -> Ink:
-    """Improvements (evaluation, objective in SI, worst violation) over the evaluations made.
-
-    Open circles miss a limit, filled ones meet all; the line goes on to the last evaluation.
-    """
-    ink = Ink(_WIDTH, _HEIGHT)
-    ink.text(4.0, 3.0, fitted(title, 116.0, 8.0), size=8.0, bold=True)
+    """Improvements (evaluation, objective in SI, worst violation) over the evaluations made."""
     if not trace:
-        ink.text(4.0, 12.0, "No search: nothing could move.", size=7.0, color=GREY)
-        return ink
-    ink.text(_WIDTH - 4.0, 3.0, "open: a limit is missed, filled: all are met", anchor="right",
-             color=GREY)  # fmt: skip
+        return titled(Chart(title, [], height=0.0), ["No search: nothing could move."])
     quantity = of_metric(metric)
     counts = [max(float(row[0]), 1.0) for row in trace]
     values = [quantity.to_display(float(row[1])) for row in trace]
     missed = [float(row[2]) for row in trace]
+    violations = [100 * max(value, LOWEST) for value in missed]
     last = max(float(evaluations), counts[-1], 2.0)
-    across = (0.0, math.log10(last))
-    low, high = min(values), max(values)
-    room = 0.08 * (high - low) or 0.08 * abs(high) or 1.0
     unit = unit_text(quantity.unit)
     name = f"{quantity.label}, {unit}" if unit else quantity.label
-    box = (20.0, 15.0, _PANEL, _TALL)
-    axes = Axes(ink, box, across, (low - room, high + room))
-    axes.frame_at(
-        fitted(name[:1].upper() + name[1:], _PANEL, 7.0), "evaluations", _counts(last),
-        [(y, trimmed(y)) for y in ticks(low - room, high + room, 5)], upright=True,
-    )  # fmt: skip
-    _steps(axes, counts, values, missed, last)
-    _end(axes, values[-1], number(values[-1], 5), BLUE)
-    heights = [max(math.log10(m), _LOWEST) if m > 0 else _LOWEST for m in missed]
-    top = max(math.ceil(max(heights)), -1)
-    right = Axes(ink, (112.0, 15.0, 62.0, _TALL), across, (_LOWEST, float(top)))
-    decades = range(int(_LOWEST), top + 1, 1 if top <= 0 else 2)
-    words = [(float(k), "met" if k == _LOWEST else f"{100 * 10.0**k:g} %") for k in decades]
-    right.frame_at("Worst limit missed by", "evaluations", _counts(last), words, upright=True)
-    _steps(right, counts, heights, missed, last)
-    return ink
+    top = max(math.ceil(math.log10(max(violations) / 100)), -1)
+    low = round(math.log10(LOWEST))
+    marks = [
+        (100 * 10.0**k, "met" if k == low else f"{100 * 10.0**k:g} %")
+        for k in range(low, top + 1, 1 if top <= 0 else 2)
+    ]
+    violation = Axis(log=True, range=(100 * LOWEST, 100 * 10.0**top), ticks=marks)
+    x = Axis("evaluations", log=True, range=(1.0, last))
+    shown = [
+        (sentence(name).rstrip("."), values, Axis()),
+        ("Worst limit missed by", violations, violation),
+    ]
+    panels = []
+    for words, ys, y in shown:
+        curve = Curve("", *_stairs(counts, ys, last), end=number(ys[-1], 5) if ys is values else "")
+        panels.append(Panel(words, x, y, [curve], _improvements(counts, ys, missed)))
+    return titled(Chart(title, panels, height=64.0))
 
 
-def _counts(last: float) -> Ticks:
-    """Ticks of a logarithmic axis from 1 to `last` evaluations: 1, 2, 5 of few decades."""
-    decades = math.ceil(math.log10(last)) + 1
-    steps = (1, 2, 5) if decades <= 4 else (1,)
-    found = [m * 10**k for k in range(decades) for m in steps if m * 10**k <= last]
-    return [(math.log10(n), f"{n:g}") for n in found]
-
-
-def _steps(
-    axes: Axes, counts: Sequence[float], ys: Sequence[float], missed: Sequence[float], last: float
-) -> None:
-    """A staircase: each value holds until the next improvement."""
-    points = []
-    for k, (count, y) in enumerate(zip(counts, ys, strict=True)):
-        after = counts[k + 1] if k + 1 < len(counts) else last
-        points += [(axes.x(math.log10(count)), axes.y(y)), (axes.x(math.log10(after)), axes.y(y))]
-    axes.ink.line(*points, stroke=BLUE, pen=0.35)
-    for count, y, miss in zip(counts, ys, missed, strict=True):
-        met = miss <= MET
-        place = (axes.x(math.log10(count)), axes.y(y))
-        axes.ink.circle(*place, 0.8, fill=BLUE if met else "#ffffff", stroke=BLUE if met else RED,
-                        pen=0.25)  # fmt: skip
-
-
-def _end(axes: Axes, value: float, words: str, color: str) -> None:
-    """The last value in words over the end of its line, clear of the frame's top."""
-    x, y = axes.left + axes.width, axes.y(value)
-    above = y - 3.0 if y - 3.0 > axes.top + 1.5 else y + 3.0
-    left = x - text_width(words, 6.5)
-    axes.ink.text(max(left, axes.left + 1.0), above, words, color=color, halo=True)
+def _improvements(
+    counts: Sequence[float], values: Sequence[float], missed: Sequence[float]
+) -> list[Points]:
+    """Improvements that miss a limit, and those that meet all."""
+    groups = []
+    for words, style, met in (("a limit is missed", 2, False), ("all limits are met", 3, True)):
+        own = [k for k, miss in enumerate(missed) if (miss <= MET) == met]
+        if own:
+            xs, ys = ([column[k] for k in own] for column in (counts, values))
+            groups.append(Points(words, xs, ys, style=style))
+    return groups

@@ -40,7 +40,7 @@ LEAST_SHARE = 0.005
 ROW, NAMES, HOLDS = 5.4, 46.0, 22.0
 """Height of a row, room for names at the left and for probabilities at the right (mm)."""
 LOWEST, HIGHEST = -0.6, 1.0
-"""Margins drawn at most; what lies beyond ends at the frame with an arrow."""
+"""Ends of the axis of margins; a strip beyond them ends at the frame with an arrow."""
 
 
 def page(study: Uncertainty) -> Page:
@@ -131,8 +131,8 @@ def weakest(study: Uncertainty) -> str:
     failing = [limit for limit in study.required if limit.rate.value < 1]
     if not failing:
         low = worst.margins[0]
-        said = "" if low is None else f": {_margin(worst, low)} at the 1 % point"
-        return f"No draw missed a requirement; {worst.name} has the smallest margin{said}."
+        margin = "" if low is None else f": {_margin(worst, low)} at the 1 % point"
+        return f"No draw missed a requirement; {worst.name} has the smallest margin{margin}."
     words = f"{worst.name} is missed most often: by {percent(1 - worst.rate.value)} of the draws"
     if len(failing) > 1:
         others = ", ".join(f"{x.name} {percent(1 - x.rate.value)}" for x in failing[1:4])
@@ -146,10 +146,10 @@ def _with_checks(study: Uncertainty) -> str:
     if not failing:
         return ""
     named = ", ".join(f"{x.name} {percent(1 - x.rate.value)}" for x in failing[:4])
-    rest = f" and {len(failing) - 4} more" if len(failing) > 4 else ""
+    more = f" and {len(failing) - 4} more" if len(failing) > 4 else ""
     return (
         f"{percent(study.rate_checks.value)} meet the requirements and the check list "
-        f"({between(study.rate_checks)}); missed checks: {named}{rest}."
+        f"({between(study.rate_checks)}); missed checks: {named}{more}."
     )
 
 
@@ -158,7 +158,7 @@ def _margin(limit: LimitYield, margin: float | None) -> str:
 
 
 def value_words(study: Uncertainty, output: str, number: float | None) -> str:
-    """An output as people read it: a metric in its unit, a margin in per cent."""
+    """An output in words: a metric in its unit, a margin in per cent."""
     if output in study.units:
         return text.value_text(text.metric(output), number)
     limit = next((x for x in study.limits if x.name == output), None)
@@ -205,11 +205,11 @@ def _blocks(study: Uncertainty) -> Iterator[Block]:
     for output in followed(study):
         yield from _causes(study, output)
     yield _inputs(study)
-    said = [_with_checks(study), *study.notes]
+    notes = [_with_checks(study), *study.notes]
     if study.dropped > 0:
         share = percent(study.dropped)
-        said.append(f"{share} of the rows of the sensitivity indices are not computable: left out")
-    remarks = [sentence(text.pretty(words)) for words in said if words]
+        notes.append(f"{share} of the rows of the sensitivity indices are not computable: left out")
+    remarks = [sentence(text.pretty(words)) for words in notes if words]
     yield Notes("What the yield means", remarks, style="dim", headless=True)
 
 
@@ -311,7 +311,10 @@ def shown(uncertainty: Uncertainty) -> list[LimitYield]:
 
 
 def margins_figure(uncertainty: Uncertainty, *, width: float = 180.0) -> Ink:
-    """A strip per requirement: 1 to 99 % as a line, 5 to 95 % as a box, median, design."""
+    """A strip per requirement: 1 to 99 % as a line, 5 to 95 % as a box, median, design.
+
+    Drawn, not a chart: a strip shows five percentiles and has its probability beside it.
+    """
     lines = shown(uncertainty)
     top = 9.0
     ink = Ink(width, top + ROW * max(len(lines), 1) + 10.0)
@@ -334,7 +337,7 @@ def margins_figure(uncertainty: Uncertainty, *, width: float = 180.0) -> Ink:
 
 
 def _key(ink: Ink, top: float) -> None:
-    """What box, line and circle mean."""
+    """Names of box, line and circle."""
     y = top - 6.4
     ink.line((0.0, y), (8.0, y), pen=0.3)
     ink.box(2.0, y - 1.1, 4.0, 2.2, fill=LIGHT, pen=0.15)
@@ -382,27 +385,26 @@ def _above(margin: float | None, axes: Axes) -> bool:
 
 
 def tornado(uncertainty: Uncertainty, output: str, *, width: float = 180.0) -> Ink | None:
-    """Bars of one output at the 95 % (dark) and 5 % (light) points of every input that matters."""
-    ranked, _ = uncertainty.of_output(output)
-    ends = {one.path: one for one in uncertainty.of_output(output)[1]}
+    """Bars of an output at the 95 % (dark) and 5 % (light) points of its main inputs."""
+    ranked, swings = uncertainty.of_output(output)
+    ends = {swing.path: swing for swing in swings}
     centre = uncertainty.nominal[output]
     if centre is None:
         return None
     metric = output in uncertainty.units
     quantity = text.metric(output) if metric else None
     factor = 100.0 if quantity is None else quantity.to_display(1.0) - quantity.to_display(0.0)
-    matter = [x for x in ranked if (x.total or 0.0) >= LEAST_SHARE][:SHOWN]
-    lines = []
-    for one in matter:
-        shares = (_percent(one.first), _percent(one.total))
-        changes = _changes(ends[one.path], centre, factor)
-        lines.append(TornadoBar(one.path, changes, shares))
-    if not lines or all(change is None for line in lines for change in line.changes):
+    rows = []
+    for index in [index for index in ranked if (index.total or 0.0) >= LEAST_SHARE][:SHOWN]:
+        shares = (_percent(index.first), _percent(index.total))
+        changes = _changes(ends[index.path], centre, factor)
+        rows.append(TornadoBar(index.path, changes, shares))
+    if not rows or all(change is None for row in rows for change in row.changes):
         return None
     unit = "% of the limit" if quantity is None else text.unit_text(quantity.unit)
     label = f"change of the margin of {output}" if quantity is None else quantity.label
     return bars(
-        lines,
+        rows,
         axis=f"{label}, {unit}" if quantity is None else f"change of {label}, {unit}",
         centre=f"nominal {value_words(uncertainty, output, centre)}",
         ends=("95 %", "5 %"),

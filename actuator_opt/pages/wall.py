@@ -1,7 +1,6 @@
-"""The barrel's wall on paper: layers, stresses, criteria, the way to burst, alternatives.
+"""The barrel wall in a report: layers, stresses, criteria, the way to burst, alternatives.
 
-Layers are bands with their number, the bore at the left. Curves differ in dash as well as in colour
-and are named in the legend above the frames, so no text crosses a curve.
+Layers are shaded, with their number above the frame; the bore lies left.
 """
 
 from __future__ import annotations
@@ -10,191 +9,135 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
+import numpy as np
+
+from ..base.numeric import Array
 from ..evaluation.result import Evaluation
-from ..evaluation.wall_study import YIELD, Difference, Ratio, WallProfile, WallStudy
+from ..evaluation.wall_study import YIELD, Difference, Ratio, WallStudy
 from ..models.strength import CRITERIA
 from ..rendering import text
-from ..rendering.axes import Axes, fitted, legend
-from ..rendering.blocks import Block, Cell, Column, Drawing, Table, clean, short, soft
+from ..rendering.axes import fitted
+from ..rendering.blocks import Block, Cell, Chart, Column, Drawing, Table, clean, short, soft
+from ..rendering.chart import Axis, Curve, Level, Panel, Stretch
 from ..rendering.ink import (
-    BLACK,
-    BLUE,
-    GREEN,
     GREY,
-    OCHRE,
     RED,
     WHITE,
     Ink,
-    Point,
     hatch,
     spread_within,
-    text_width,
 )
 from ..rendering.text import DASH, number, trimmed
 
 STEEL = "#4f86a8"
-
-
-BANDS = {"metal": "#f1f3f5", "composite": "#e2e7eb", "polymer": "#f6efdc"}
-
-
-_STYLES: tuple[dict[str, Any], ...] = (
-    {"stroke": BLUE, "pen": 0.4},
-    {"stroke": OCHRE, "pen": 0.4, "dash": (1.6, 0.8)},
-    {"stroke": GREEN, "pen": 0.4, "dash": (2.4, 0.7, 0.4, 0.7)},
-)
-
-
-_REST: dict[str, Any] = {"stroke": GREY, "pen": 0.35, "dash": (0.4, 0.6)}
-
-
-_MISES: dict[str, Any] = {"stroke": BLACK, "pen": 0.4}
-
-
+SHADES = {"composite": 0, "metal": 1, "polymer": 2}
+"""Shade of a layer by its kind."""
+AT_REST = 5
+"""Style of the stress without pressure: dotted."""
 _AT_REST = {"cold": "no pressure, coldest", "hot": "no pressure, hottest", "": "no pressure"}
-
-
 _NEAR = 0.6
-"""Share of a limit from which on it is drawn."""
-
-
-_NUMBERS, _SHARES = 4.2, 8.0
-"""Room (mm) inside a frame, above the curves, for layer numbers, and for strength ratios too."""
-
-
-@dataclass(frozen=True, slots=True)
-class LayerCurve:
-    """Values of every layer, (layers, points), with the ink they are drawn in."""
-
-    values: Any
-    style: dict[str, Any]
+"""Share of a limit above which a limit is drawn."""
 
 
 @dataclass(frozen=True, slots=True)
 class Rung:
-    """A line of the ladder: what, its pressure (Pa), the colour of its bar, a remark, its limit."""
+    """A bar of the ladder: name, pressure [Pa], fill, remark, required pressure [Pa]."""
 
-    what: str
+    name: str
     pressure: float
     color: str
     remark: str = ""
     required: float | None = None
 
 
+def stress_panels(study: WallStudy) -> list[Panel]:
+    """Hoop, axial and radial stress through the wall at supply pressure, for every load path."""
+    profiles = [(profile, profile.name, k) for k, profile in enumerate(study.profiles)]
+    if study.rest:
+        at_rest = max(study.rest, key=lambda profile: float(abs(profile.hoop).max()))
+        profiles.append((at_rest, _AT_REST.get(at_rest.name, at_rest.name), AT_REST))
+    return [
+        _panel(
+            f"{part.capitalize()} stress, MPa",
+            study,
+            [
+                _curve(name, study, getattr(profile, part) / 1e6, style)
+                for profile, name, style in profiles
+            ],
+        )
+        for part in ("hoop", "axial", "radial")
+    ]
+
+
+def strength_panels(study: WallStudy) -> list[Panel]:
+    """Strength used at supply pressure by the design's criterion, and stress over strength."""
+    used = [(profile.name, profile.used, k) for k, profile in enumerate(study.profiles)]
+    known = [(name, values, k) for name, values, k in used if values is not None]
+    ratios = []
+    for index in range(len(study.layers)):
+        shares = [float(v) for _, values, _ in known for v in values[index] if not math.isnan(v)]
+        highest = max(shares, default=0.0)
+        ratios.append(f"SR {number(1 / highest, 3)}" if highest > 0 else "")
+    curves = [_curve(name, study, values, k) for name, values, k in known]
+    panels = [_panel("Strength used, 1/SR", study, curves, (1.0,), ratios)]
+    if study.shares is None:
+        return panels
+    named = [
+        ("fibre σ₁/X", study.shares.along, 0),
+        ("across σ₂/Y", study.shares.across, 1),
+        ("shear τ₁₂/S", study.shares.shear, 2),
+        ("von Mises", study.shares.mises, 4),
+    ]
+    curves = [
+        _curve(name, study, values, style)
+        for name, values, style in named
+        if np.isfinite(values).any()
+    ]
+    return [*panels, _panel("Stress over strength", study, curves, (1.0, -1.0))]
+
+
 def _panel(
-    ink: Ink,
-    box: tuple[float, float, float, float],
     title: str,
     study: WallStudy,
-    curves: Sequence[LayerCurve],
-    room: float,
+    curves: Sequence[Curve],
     limits: Sequence[float] = (),
-) -> Axes:
-    """A frame over the wall with its layers as bands, the curves in it, and limits they near."""
-    found = [float(v) for c in curves for row in c.values for v in row if math.isfinite(v)]
-    shown = [level for level in limits if any(v / level > _NEAR for v in found)]
-    low, high = min([0.0, *found, *shown]), max([0.0, *found, *shown])
-    span = high - low or 1.0
-    low -= 0.04 * span if low < 0 else 0.0
-    high += (0.03 * span + span * room / (box[3] - room)) if high > 0 or low == 0 else 0.0
-    if high <= 0:
-        high = (high - low) * room / (box[3] - room)
-    radii = [[1000.0 * float(r) for r in row] for row in study.radius]
-    axes = Axes(ink, box, (radii[0][0], radii[-1][-1]), (low, high))
-    bottom = box[1] + box[3]
-    for row, layer in zip(radii, study.layers, strict=True):
-        left, right = axes.x(row[0]), axes.x(row[-1])
-        ink.box(left, box[1], right - left, box[3], fill=BANDS[layer.kind], stroke=None)
-    for row in radii[1:]:
-        ink.line((axes.x(row[0]), box[1]), (axes.x(row[0]), bottom), stroke=WHITE, pen=0.35)
-    axes.frame(title, "radius, mm")
-    if low < 0 < high:
-        ink.line((box[0], axes.y(0.0)), (box[0] + box[2], axes.y(0.0)), pen=0.13)
-    for level in shown:
-        y = axes.y(level)
-        ink.line((box[0], y), (box[0] + box[2], y), stroke=RED, pen=0.25, dash=(1.8, 1.0))
-    free = box[0]
-    for index, row in enumerate(radii):
-        half = text_width(str(index + 1), 6.0, bold=True) / 2
-        middle = (axes.x(row[0]) + axes.x(row[-1])) / 2
-        if middle - half >= free:
-            ink.text(
-                middle,
-                box[1] + 2.0,
-                str(index + 1),
-                size=6.0,
-                anchor="center",
-                color=GREY,
-                bold=True,
-            )
-            free = middle + half + 0.8
-    for curve in curves:
-        lines: list[list[Point]] = [
-            [(axes.x(r), axes.y(float(v))) for r, v in zip(row, values, strict=True)]
-            for row, values in zip(radii, curve.values, strict=True)
-            if all(math.isfinite(float(v)) for v in values)
-        ]
-        ink.path(lines, **curve.style)
-    return axes
-
-
-def stress_figure(study: WallStudy, *, width: float = 180.0, height: float = 52.0) -> Ink:
-    """Hoop, axial and radial stress through the wall at supply pressure, for every load path."""
-    ink = Ink(width, height)
-    rest = max(study.rest, key=lambda one: abs(one.hoop).max(), default=None)
-    loads: list[tuple[WallProfile, dict[str, Any]]] = list(
-        zip(study.profiles, _STYLES, strict=False)
-    )
-    entries = [(profile.name, style) for profile, style in loads]
-    if rest is not None:
-        loads.append((rest, _REST))
-        entries.append((_AT_REST.get(rest.name, rest.name), _REST))
-    legend(ink, width, 1.8, entries, ends=True)
-    panel = (width - 3 * 12.5) / 3
-    for k, part in enumerate(("hoop", "axial", "radial")):
-        box = (11.0 + k * (panel + 12.0), 12.0, panel, height - 22.0)
-        curves = [LayerCurve(getattr(profile, part) / 1e6, style) for profile, style in loads]
-        _panel(ink, box, f"{part.capitalize()} stress, MPa", study, curves, _NUMBERS)
-    return ink
-
-
-def strength_figure(study: WallStudy, *, width: float = 180.0, height: float = 58.0) -> Ink:
-    """Strength used at supply pressure by the design's criterion, and stress over strength."""
-    ink = Ink(width, height)
-    panel = (width - 2 * 13.0) / 2
-    box = (11.0, 12.0, panel, height - 22.0)
-    paths = list(zip(study.profiles, _STYLES, strict=False))
-    curves = [LayerCurve(one.used, style) for one, style in paths if one.used is not None]
-    axes = _panel(ink, box, "Strength used, 1/SR", study, curves, _SHARES, (1.0,))
-    legend(ink, box[0] - 9.6, 1.8, [(one.name, style) for one, style in paths], ends=False)
-    for index, row in enumerate(study.radius):
-        found = [float(v) for one, _ in paths if one.used is not None for v in one.used[index]]
-        worst = max((v for v in found if not math.isnan(v)), default=0.0)
-        words = f"SR {number(1 / worst, 3)}" if worst > 0 else ""
-        left, right = axes.x(1000.0 * float(row[0])), axes.x(1000.0 * float(row[-1]))
-        if words and text_width(words, 6.0) + 0.6 < right - left:
-            ink.text((left + right) / 2, box[1] + 5.4, words, size=6.0, anchor="center")
-    shares = study.shares
-    if shares is None:
-        return ink
-    box = (box[0] + panel + 12.5, box[1], panel, box[3])
-    named = [
-        ("fibre σ₁/X", shares.along, _STYLES[0]),
-        ("across σ₂/Y", shares.across, _STYLES[1]),
-        ("shear τ₁₂/S", shares.shear, _STYLES[2]),
-        ("von Mises", shares.mises, _MISES),
+    remarks: Sequence[str] = (),
+) -> Panel:
+    """Curves over the wall, its layers shaded and numbered, and the limits that a curve nears."""
+    layers = [
+        Stretch(
+            1e3 * float(radii[0]),
+            1e3 * float(radii[-1]),
+            f"{k + 1}\n{remarks[k]}" if remarks else str(k + 1),
+            SHADES[layer.kind],
+        )
+        for k, (radii, layer) in enumerate(zip(study.radius, study.layers, strict=True))
     ]
-    named = [one for one in named if any(math.isfinite(float(v)) for row in one[1] for v in row)]
-    curves = [LayerCurve(values, style) for _, values, style in named]
-    _panel(ink, box, "Stress over strength", study, curves, _NUMBERS, (1.0, -1.0))
-    legend(ink, width, 1.8, [(words, style) for words, _, style in named], ends=True)
-    return ink
+    shown = [float(value) for curve in curves for value in curve.ys if math.isfinite(value)]
+    levels = [
+        Level(limit, "limit", "max" if limit > 0 else "min")
+        for limit in limits
+        if any(value / limit > _NEAR for value in shown)
+    ]
+    return Panel(
+        title, Axis("radius, mm"), Axis(zero=True), curves, levels=levels, stretches=layers
+    )
+
+
+def _curve(words: str, study: WallStudy, values: Array, style: int) -> Curve:
+    """Values of every layer, with a break between the layers."""
+    radii = 1e3 * np.asarray(study.radius)
+    breaks = np.full((len(radii), 1), np.nan)
+    xs, ys = (np.hstack([part, breaks]).ravel() for part in (radii, values))
+    return Curve(words, xs, ys, style=style)
 
 
 def ladder_figure(rungs: Sequence[Rung], working: float, *, width: float = 180.0) -> Ink:
-    """Pressures on the way to burst as bars; a red tick is what a check or requirement asks for."""
+    """Pressures on the way to burst as bars; a red tick is the pressure required.
+
+    Drawn, not a chart: each bar has its numbers and a remark beside it.
+    """
     step, top = 4.8, 5.0
     ink = Ink(width, top + step * len(rungs) + 1.5)
     left, room = 40.0, 48.0
@@ -205,7 +148,7 @@ def ladder_figure(rungs: Sequence[Rung], working: float, *, width: float = 180.0
     ink.text(values + 28.0, 1.6, "× working", size=6.0, anchor="right", color=GREY)
     for k, rung in enumerate(rungs):
         y = top + step * (k + 0.5)
-        ink.text(left - 1.5, y, rung.what, size=6.5, anchor="right")
+        ink.text(left - 1.5, y, rung.name, size=6.5, anchor="right")
         ink.box(left, y - 1.5, rung.pressure * scale, 3.0, fill=rung.color, pen=0.13)
         if rung.required is not None:
             x = left + rung.required * scale
@@ -222,7 +165,7 @@ def ladder_figure(rungs: Sequence[Rung], working: float, *, width: float = 180.0
 def wall_figure(layers: Sequence[tuple[str, float, str]], *, width: float = 180.0) -> Ink:
     """The barrel wall enlarged to an ISO scale, layer by layer from the bore (below) outwards.
 
-    `layers` holds (text, thickness in m, kind).
+    A section, drawn. `layers` holds (text, thickness in m, kind).
     """
     total = 1000.0 * sum(thickness for _, thickness, _ in layers)
     paper, real = next(
@@ -282,17 +225,17 @@ _DIFFERENCES = {
 def wall_blocks(evaluation: Evaluation) -> list[Block]:
     """Every block of the wall; the drawing alone where there is no study."""
     study = evaluation.wall
-    found = [_drawing(evaluation)]
+    blocks = [_drawing(evaluation)]
     if study is None:
-        return found
-    found += [_layers(study), _stresses(study)]
+        return blocks
+    blocks += [_layers(study), _stresses(study)]
     if any(row.criterion != YIELD for row in study.ratios):
-        found += [_strength(study), _criteria(study)]
-    found.append(_ladder(evaluation, study))
+        blocks += [_strength(study), _criteria(study)]
+    blocks.append(_ladder(evaluation, study))
     if study.differences:
-        found.append(_differences(evaluation, study))
-    found += [_thicknesses(study), _metals(study)]
-    return found
+        blocks.append(_differences(evaluation, study))
+    blocks += [_thicknesses(study), _metals(study)]
+    return blocks
 
 
 def named(criterion: str) -> str:
@@ -370,14 +313,15 @@ def _layers(study: WallStudy) -> Block:
 
 
 def _stresses(study: WallStudy) -> Block:
-    rest = ""
+    at_rest = ""
     if study.rest:
-        rest = " Dotted: what stands without pressure, to be added (cure, clamp, autofrettage)."
+        at_rest = " Dotted: stress without pressure, to be added (cure, clamp, autofrettage)."
     note = (
         f"At supply pressure, {text.trimmed(study.ladder.working / 1e5)} bar, by the exact tube,"
-        f" far from the ends; numbers are the layers.{rest}"
+        f" far from the ends; numbers are the layers.{at_rest}"
     )
-    return Drawing("Barrel wall: stress through the wall", stress_figure(study), note)
+    title = "Barrel wall: stress through the wall"
+    return Chart(title, stress_panels(study), note, height=60.0)
 
 
 def _strength(study: WallStudy) -> Block:
@@ -393,7 +337,8 @@ def _strength(study: WallStudy) -> Block:
         f"Left: plies by {criterion}, metals by von Mises, the worst climate; SR is the factor on"
         f" the supply pressure to first failure.{right}"
     )
-    return Drawing("Barrel wall: strength used through the wall", strength_figure(study), note)
+    title = "Barrel wall: strength used through the wall"
+    return Chart(title, strength_panels(study), note, height=60.0)
 
 
 def _criteria(study: WallStudy) -> Block:
@@ -403,16 +348,16 @@ def _criteria(study: WallStudy) -> Block:
         if row is None or row.ratio is None:
             return DASH
         place = row.face if row.face != "inside" else f"r {1e3 * row.radius:.2f} mm"
-        when = ", ".join(one for one in (letters.get(row.path, ""), row.climate) if one)
+        when = ", ".join(word for word in (letters.get(row.path, ""), row.climate) if word)
         return soft(f"{text.number(row.ratio, 3)}  {row.mode}, {place} ({when})")
 
-    found = {(row.layer, row.criterion): row for row in study.ratios}
+    by_criterion = {(row.layer, row.criterion): row for row in study.ratios}
     rows: list[list[Cell]] = []
     for layer in dict.fromkeys(row.layer for row in study.ratios if row.criterion != YIELD):
-        own = [found.get((layer, name)) for name in CRITERIA]
-        known = [one.ratio for one in own if one is not None and one.ratio is not None]
+        ratios = [by_criterion.get((layer, name)) for name in CRITERIA]
+        known = [row.ratio for row in ratios if row is not None and row.ratio is not None]
         spread = text.number(max(known) / min(known), 3) if known and min(known) > 0 else DASH
-        rows.append([str(layer + 1), *(cell(one) for one in own), spread])
+        rows.append([str(layer + 1), *(cell(row) for row in ratios), spread])
     heads = [f"{named(name)}{' ●' if name == study.criterion else ''}" for name in CRITERIA]
     columns = [
         Column(""),
@@ -425,10 +370,10 @@ def _criteria(study: WallStudy) -> Block:
         for row in study.ratios
         if row.criterion == YIELD and row.ratio is not None
     ]
-    said = "; ".join(f"{letter} {name}" for name, letter in letters.items())
+    key = "; ".join(f"{letter} {name}" for name, letter in letters.items())
     note = (
         "Strength ratio: factor on the supply pressure to the first failure of the ply, with mode"
-        f" and face, cure stress included; {said}; cold and hot are the climates. ● the design's"
+        f" and face, cure stress included; {key}; cold and hot are the climates. ● the design's"
         " criterion; spread is the largest over the smallest of the row."
     )
     if any(row.ratio == 0.0 for row in study.ratios):
@@ -457,7 +402,7 @@ def _place(label: str) -> str:
 
 def _ladder(evaluation: Evaluation, study: WallStudy) -> Block:
     ladder = study.ladder
-    asked = {
+    limits = {
         check.metric: check.limit * ladder.working
         for check in evaluation.checks
         if check.limit is not None and check.sense == "min"
@@ -470,9 +415,9 @@ def _ladder(evaluation: Evaluation, study: WallStudy) -> Block:
         place = _place(ladder.metal_yield_place)
         rungs.append(Rung("first yield", ladder.metal_yield, "#d9bd7e", place))
     if ladder.first_ply is not None:
-        place, what = _place(ladder.first_ply_place), f"first ply, {named(ladder.criterion)}"
-        required = asked.get("first_ply_factor")
-        rungs.append(Rung(what, ladder.first_ply, "#d9bd7e", place, required))
+        place, name = _place(ladder.first_ply_place), f"first ply, {named(ladder.criterion)}"
+        required = limits.get("first_ply_factor")
+        rungs.append(Rung(name, ladder.first_ply, "#d9bd7e", place, required))
     rungs.sort(key=lambda rung: rung.pressure)
     steps = list(enumerate(ladder.steps, 1))
     left_out = max(0, len(steps) - MOST_STEPS)
@@ -487,10 +432,10 @@ def _ladder(evaluation: Evaluation, study: WallStudy) -> Block:
         )
     if ladder.burst is not None:
         place = f"the highest load carried; {_place(ladder.path)}"
-        rungs.append(Rung("burst", ladder.burst, STEEL, place, asked.get("burst_factor")))
+        rungs.append(Rung("burst", ladder.burst, STEEL, place, limits.get("burst_factor")))
     note = ""
     if any(rung.required is not None for rung in rungs):
-        note = "Red: what the check or the requirement asks for. "
+        note = "Red: required by the check or the requirement. "
     if steps:
         note += (
             "Steps: maximum stress, starting from the cure stress; failed plies lose their matrix,"
@@ -505,12 +450,13 @@ def _ladder(evaluation: Evaluation, study: WallStudy) -> Block:
 def _differences(evaluation: Evaluation, study: WallStudy) -> Block:
     thin = evaluation.design.barrel.model == "thin_laminate"
 
-    def row(one: Difference) -> list[Cell]:
-        name, scale, unit = _DIFFERENCES[one.name]
+    def row(difference: Difference) -> list[Cell]:
+        name, scale, unit = _DIFFERENCES[difference.name]
+        exact, thin_laminate = difference.exact, difference.thin
         change = DASH
-        if one.exact and one.thin:
-            change = text.margin_text(one.thin / one.exact - 1)
-        values = [None if v is None else scale * v for v in (one.exact, one.thin)]
+        if exact and thin_laminate:
+            change = text.margin_text(thin_laminate / exact - 1)
+        values = [None if v is None else scale * v for v in (exact, thin_laminate)]
         return [f"{name}, {unit}", *(text.number(value) for value in values), change]
 
     columns = [
@@ -558,26 +504,27 @@ def _thicknesses(study: WallStudy) -> Block:
         Column("wall, g/m", "right", 0.8),
         Column("change, g/m", "right", 0.8),
     ]
-    s = study.settling
+    settling = study.settling
     shares = " and ".join(
         f"{text.trimmed(100 * share, 3)} % at {text.trimmed(1e3 * at, 2)} mm"
-        for at, share in s.shares
+        for at, share in settling.shares
     )
-    shell = f"thin shell of radius over thickness {text.number(s.radius_ratio, 2)}"
-    if s.radius_ratio < 5:
+    shell = f"thin shell of radius over thickness {text.number(settling.radius_ratio, 2)}"
+    if settling.radius_ratio < 5:
         shell += ", below 5: a rough figure"
     note = (
-        f"Only layer {study.main_layer + 1} is changed, the one that carries most of the hoop"
-        f" force. Beside the pressure step under the piston seal the growth settles over"
-        f" 1/β = {text.number(1e3 * s.decay_length, 3)} mm ({shell}):"
-        f" {text.trimmed(100 * s.at_seal, 3)} % of it acts at the seal, {shares} into the pressure."
+        f"Only layer {study.main_layer + 1} is changed, which carries most of the hoop force."
+        f" Beside the pressure step under the piston seal the growth settles over"
+        f" 1/β = {text.number(1e3 * settling.decay_length, 3)} mm ({shell}):"
+        f" {text.trimmed(100 * settling.at_seal, 3)} % of it acts at the seal, {shares} into the"
+        " pressure."
     )
     title = "Barrel wall: thickness for another bore growth"
     return Table(title, columns, rows, note=note, on="paper")
 
 
 def _metals(study: WallStudy) -> Block:
-    own, *others = study.metals
+    own = study.metals[0]
     working = study.ladder.working
 
     def millimetres(value: float | None) -> str:
@@ -587,21 +534,21 @@ def _metals(study: WallStudy) -> Block:
         return text.number(None if value is None else value / working, 3)
 
     rows: list[list[Cell]] = []
-    for one in (own, *others):
-        mass, against = one.mass_per_length, DASH
+    for metal in study.metals:
+        mass, against = metal.mass_per_length, DASH
         if mass is not None and own.mass_per_length:
             against = f"× {text.number(mass / own.mass_per_length, 3)}"
         rows.append(
             [
-                soft(one.material) if one.material else "this design",
-                millimetres(one.for_growth),
-                millimetres(one.for_burst),
-                "out of reach" if one.thickness is None else millimetres(one.thickness),
-                text.number(None if one.growth is None else 1e6 * one.growth),
-                factor(one.burst_pressure),
-                factor(one.yield_pressure),
+                soft(metal.material) if metal.material else "this design",
+                millimetres(metal.for_growth),
+                millimetres(metal.for_burst),
+                "out of reach" if metal.thickness is None else millimetres(metal.thickness),
+                text.number(None if metal.growth is None else 1e6 * metal.growth),
+                factor(metal.burst_pressure),
+                factor(metal.yield_pressure),
                 text.number(None if mass is None else 1e3 * mass),
-                against if one.material else "",
+                against if metal.material else "",
             ]
         )
     columns = [
@@ -617,7 +564,7 @@ def _metals(study: WallStudy) -> Block:
     ]
     note = (
         "The thinnest tube of each metal of the library for the same bore, with this design's bore"
-        " growth (no axial load) and the burst pressure it is asked for (its own where that is"
+        " growth (no axial load) and the required burst pressure (its own where that is"
         " lower), by Lamé and Faupel, under the same axial forces; no least wall for turning."
     )
     return Table(

@@ -14,7 +14,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from ..base.numeric import Array
-from .ink import BLACK, BLUE, GREEN, GREY, OCHRE, PALE, RED, WHITE, Ink, Point, text_width
+from .ink import GREY, PALE, Ink, Point, text_width
 from .text import MINUS, SUPERSCRIPTS, fixed, trimmed
 
 AREAS = (
@@ -28,11 +28,6 @@ Box: TypeAlias = tuple[float, float, float, float]
 """Left, top, width and height on the paper [mm]."""
 THINNED = 640
 """Values of a thinned curve (a choice: two per 0.3 mm of paper)."""
-COLOURS = (BLUE, OCHRE, GREEN, "#7a5a8c", RED, "#4f86a8", BLACK, "#b98b3e")
-DASHES: tuple[tuple[float, ...], ...] = (
-    (), (1.6, 0.8), (2.4, 0.7, 0.4, 0.7), (0.8, 0.5), (3.2, 0.8), (0.4, 0.5),
-)  # fmt: skip
-"""Colours and dashes of curves."""
 SIZE = 6.2
 """Type of the names of curves [pt]."""
 _MILLISECONDS = 0.1
@@ -57,7 +52,7 @@ def ticks(low: float, high: float, count: int = 5) -> list[float]:
 
 
 class Axes:
-    """A plot frame on ink; its axes are linear in what they are given (a logarithm, say)."""
+    """A plot frame on ink; its axes are linear in the values given (which may be logarithms)."""
 
     def __init__(
         self,
@@ -150,23 +145,6 @@ def fitted(words: str, room: float, size: float = 6.5) -> str:
     return words.rstrip() + "…"
 
 
-def legend(
-    ink: Ink,
-    x: float,
-    y: float,
-    entries: Sequence[tuple[str, dict[str, Any]]],
-    *,
-    ends: bool = True,
-) -> None:
-    """Names of curves in one line that ends at `x`, or starts there, each after its line."""
-    if ends:
-        x -= sum(text_width(words, 6.5) + 11.0 for words, _ in entries) - 3.5
-    for words, style in entries:
-        ink.line((x, y), (x + 6.0, y), **style)
-        ink.text(x + 7.5, y, words, size=6.5)
-        x += 11.0 + text_width(words, 6.5)
-
-
 def per_cent(share: float) -> str:
     """A share in whole per cent, small ones with a decimal.
 
@@ -203,14 +181,9 @@ def level_ticks(low: float, high: float) -> Ticks:
     powers = range(math.floor(low), math.ceil(high) + 1)
     every = max(1, math.ceil((high - low) / 7))
     steps = (1, 2, 5) if high - low < 2.2 else (1,)
-    digits = [(step, power) for power in powers for step in steps if power % every == 0]
-    places = [(math.log10(step) + power, step * 10.0**power) for step, power in digits]
+    pairs = [(step, power) for power in powers for step in steps if power % every == 0]
+    places = [(math.log10(step) + power, step * 10.0**power) for step, power in pairs]
     return [(at, level_words(v)) for at, v in places if low - 1e-9 <= at <= high + 1e-9]
-
-
-def dot(axes: Axes, x: float, y: float, color: str = BLUE, fill: str = WHITE) -> None:
-    """A value at one place."""
-    axes.ink.circle(axes.x(x), axes.y(y), 0.75, fill=fill, stroke=color, pen=0.3)
 
 
 def even_ticks(low: float, high: float, count: int) -> Ticks:

@@ -20,6 +20,7 @@ from .text import MINUS, number
 
 Values: TypeAlias = Sequence[float] | Array
 Weight: TypeAlias = Literal["normal", "thin", "guide", "broad"]
+PointWeight: TypeAlias = Literal["normal", "guide", "strong"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +90,7 @@ class Points:
     across : error bars along x
     shades : values that fill the points with the shade of the panel's surface
     labels : words beside each point
+    weight : "guide" for pale dots in the background, "strong" for a ring around a chosen point
     """
 
     words: str
@@ -101,6 +103,7 @@ class Points:
     across: bool = False
     shades: Values = ()
     labels: Sequence[str] = ()
+    weight: PointWeight = "normal"
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,9 +148,22 @@ class Area:
     fill: int = 0
 
 
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """A shaded stretch of x; each line of its words stands above the frame where it fits."""
+
+    start: float
+    end: float
+    words: str = ""
+    shade: int = 0
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class ShadedMap:
-    """A quantity above zero over x (columns) and y (rows), shaded between round levels."""
+    """A quantity above zero over x (columns) and y (rows), shaded between round levels.
+
+    Where a value is missing the map is hatched.
+    """
 
     xs: Values
     ys: Values
@@ -162,7 +178,7 @@ class Panel:
     ----------
     title : quantity and unit of y
     x, y : axes
-    curves, points, levels, surface : what it shows
+    curves, points, levels, surface, stretches : what it shows
     note : below the title, or inside an empty frame, why it is empty
     share : of the height, among the panels of a column
     areas : filled areas
@@ -178,6 +194,7 @@ class Panel:
     note: str = ""
     share: float = 1.0
     areas: Sequence[Area] = ()
+    stretches: Sequence[Stretch] = ()
 
 
 CORE = 0.35

@@ -19,7 +19,19 @@ from ..base.numeric import Array
 from . import contours
 from .axes import AREAS, Axes, Box, Ticks, band, fitted, thinned
 from .blocks import Chart
-from .chart import Area, Curve, Level, Panel, Points, Scale, Values, known, scale
+from .chart import (
+    Area,
+    Curve,
+    Level,
+    Panel,
+    Points,
+    PointWeight,
+    Scale,
+    Stretch,
+    Values,
+    known,
+    scale,
+)
 from .heights import wrap
 from .ink import (
     BLACK,
@@ -52,9 +64,13 @@ MARKS = (
     ("#7a5a8c", "#d9c9e3"),
 )  # fmt: skip
 """Edge and fill of points."""
+STRETCHES = ("#e2e7eb", "#f1f3f5", "#f6efdc")
+"""Fills of stretches of x."""
 THIN, GUIDE = 0.2, {"stroke": GREY, "pen": 0.18}
 BROAD: dict[str, Any] = {"stroke": "#a9b4bc", "pen": 0.7}
 LIMIT: dict[str, Any] = {"stroke": RED, "pen": 0.25, "dash": (1.8, 1.0)}
+DOTS = {"normal": (0.75, 0.3), "guide": (0.55, 0.1), "strong": (1.15, 0.45)}
+"""Radius and pen of points by weight [mm]."""
 SKETCH, BETWEEN = 4.6, 2.6
 """Length of a line in the legend, room between its entries [mm]."""
 GAP, ROW, BELOW = 6.0, 3.7, 2.2
@@ -117,6 +133,24 @@ def _key(ink: Ink, curves: Sequence[Curve]) -> float:
     return ROW * -(-len(entries) // columns) + 2.0
 
 
+def titled(chart: Chart, notes: Sequence[str] = (), *, width: float = 180.0) -> Ink:
+    """The chart as a picture of its own: its title and notes above, its note below."""
+    ink = Ink(width, 0.0)
+    room = width - 4.0
+    ink.text(2.0, 3.0, fitted(chart.title, 0.88 * room, 9.0), size=9.0, bold=True)
+    top = 7.6
+    for words in (words for note in notes for words in wrap(note, room, SIZE)):
+        ink.text(2.0, top, words, size=SIZE, color=GREY)
+        top += 3.3
+    ink.paste(drawn(chart, width=room), 2.0, top)
+    ink.height = top + chart.height + 2.0
+    below = chart.note.split("\n") if chart.note else []
+    for words in (words for part in below for words in wrap(part, room, SMALL)):
+        ink.text(2.0, ink.height, words, size=SMALL, color=GREY)
+        ink.height += 3.1
+    return ink
+
+
 # ---- layout ----
 
 
@@ -128,11 +162,12 @@ class _Entry:
     line: dict[str, Any] | None = None
     point: tuple[str, str] | None = None
     small: int | None = None
+    weight: PointWeight = "normal"
 
     @property
     def sketch(self) -> float:
         """Width of what stands before the words."""
-        return SKETCH + 1.3 if self.line else 2.8
+        return SKETCH + 1.3 if self.line else 2.0 + DOTS[self.weight][0]
 
     def width(self) -> float:
         """With the gap after it."""
@@ -166,7 +201,11 @@ class _Frame:
     @property
     def over(self) -> int:
         """Lines of words that name places of x."""
-        return 0 if self.why else any(level.words for level in _upright_limits(self.panel))
+        if self.why:
+            return 0
+        named = (part.words for part in self.panel.stretches if part.words)
+        stretches = max((words.count("\n") + 1 for words in named), default=0)
+        return stretches + any(level.words for level in _upright_limits(self.panel))
 
 
 class _Column:
@@ -360,14 +399,15 @@ def _entries(frame: _Frame, wide: float) -> Iterator[_Entry]:
             line = sketch.get("line") or (before.line if before else None)
             point = sketch.get("point") or (before.point if before else None)
             room = wide - (SKETCH + 1.3 if line else 2.8)
-            entries[words] = _Entry(fitted(words, room, SIZE), line, point, sketch.get("small"))
+            small, weight = sketch.get("small"), sketch.get("weight", "normal")
+            entries[words] = _Entry(fitted(words, room, SIZE), line, point, small, weight)
 
     for k, points in enumerate(panel.points):
         style = k if points.style is None else points.style
         if points.small:
             add(points.words, small=style)
         else:
-            add(points.words, point=MARKS[style % len(MARKS)])
+            add(points.words, point=_mark(points, style), weight=points.weight)
     for k, curve in enumerate(panel.curves):
         words = curve.words or ("" if curve in _at_end(frame) else curve.end)
         if words:
@@ -433,6 +473,7 @@ def _draw(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
         _outside_ticks(axes, x_ticks, y_ticks, label)
     else:
         bounds = []
+        _stretches(axes, panel.stretches, x)
         for curve in panel.curves:
             if len(curve.low):
                 _band(axes, curve, frame.y, x)
@@ -452,7 +493,7 @@ def _draw(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
     taken = [p for part in lines for line in part for p in _dotted(line)]
     taken += [spot for part in spots for spot in part]
     for level in panel.levels:
-        if level.between is not None and level.words and not level.sense:
+        if level.between is not None and level.words and not (level.sense or level.upright):
             _beside(axes, level, frame.y, x, taken)
     if any(points.labels for points in panel.points):
         taken += [spot for line in _level_lines(axes, frame, x) for spot in _dotted(line)]
@@ -504,7 +545,8 @@ def _legend(ink: Ink, x: float, y: float, row: Sequence[_Entry]) -> None:
             ink.line((x, y), (x + SKETCH, y), **entry.line)
         middle = x + (SKETCH / 2 if entry.line else 1.0)
         if entry.point is not None:
-            ink.circle(middle, y, 0.75, fill=entry.point[1], stroke=entry.point[0], pen=0.3)
+            radius, pen = DOTS[entry.weight]
+            ink.circle(middle, y, radius, fill=entry.point[1], stroke=entry.point[0], pen=pen)
         if entry.small is not None:
             _small(ink, middle, y, entry.small)
         ink.text(x + entry.sketch, y, entry.words, size=SIZE)
@@ -597,7 +639,8 @@ def _spots(
 ) -> list[Point]:
     """Points with their error bars; of many in a place only one is drawn."""
     style = index if points.style is None else points.style
-    edge, fill = MARKS[style % len(MARKS)]
+    edge, fill = _mark(points, style)
+    radius, pen = DOTS[points.weight]
     color = str(LINES[style % len(LINES)]["stroke"]) if points.small else edge
     xs, ys = x.at(points.xs), y.at(points.ys)
     good = np.flatnonzero(np.isfinite(xs) & np.isfinite(ys))
@@ -619,8 +662,17 @@ def _spots(
             axes.ink.circle(*at, 1.15, fill=WHITE, stroke=None)
             axes.ink.circle(*at, 0.9, fill=paints[shade], stroke=BLACK, pen=0.18)
         else:
-            axes.ink.circle(*at, 0.75, fill=fill, stroke=edge, pen=0.3)
+            axes.ink.circle(*at, radius, fill=fill, stroke=edge, pen=pen)
     return [*(places[n] for n in inside), *bars]
+
+
+def _mark(points: Points, style: int) -> tuple[str, str]:
+    """Edge and fill of points."""
+    if points.weight == "guide":
+        return PALE, PALE
+    if points.weight == "strong":
+        return RED, WHITE
+    return MARKS[style % len(MARKS)]
 
 
 def _bar(axes: Axes, points: Points, k: int, at: Point, y: Scale, x: Scale, color: str) -> Line:
@@ -676,13 +728,6 @@ def _level(axes: Axes, level: Level, y: Scale, x: Scale) -> None:
         axes.ink.path(hatch([strip], angle=45.0, spacing=0.9), pen=0.1, stroke=RED)
 
 
-def _ends(axes: Axes, between: tuple[float, float], x: Scale) -> tuple[float, float]:
-    """Ends of a short level inside the frame [mm]; one without a place lies at the left."""
-    low, high = axes.x_range
-    start, end = np.clip(np.nan_to_num(x.at(between), nan=low), low, high)
-    return axes.x(float(start)), axes.x(float(end))
-
-
 def _upright_limits(panel: Panel) -> list[Level]:
     return [level for level in panel.levels if level.upright and level.sense]
 
@@ -701,8 +746,28 @@ def _upright(axes: Axes, level: Level, x: Scale) -> None:
         axes.ink.path(hatch([strip], angle=45.0, spacing=0.9), pen=0.1, stroke=RED)
 
 
+def _stretches(axes: Axes, stretches: Sequence[Stretch], x: Scale) -> None:
+    """Shaded stretches of x, with a white line between neighbours."""
+    for part in stretches:
+        left, right = sorted(_ends(axes, (part.start, part.end), x))
+        fill = STRETCHES[part.shade % len(STRETCHES)]
+        axes.ink.box(left, axes.top, right - left, axes.height, fill=fill, stroke=None)
+    ends = {part.end for part in stretches}
+    for place in (x.place(part.start) for part in stretches if part.start in ends):
+        if axes.x_range[0] <= place <= axes.x_range[1]:
+            at, bottom = axes.x(place), axes.top + axes.height
+            axes.ink.line((at, axes.top), (at, bottom), stroke=WHITE, pen=0.35)
+
+
+def _ends(axes: Axes, between: tuple[float, float], x: Scale) -> tuple[float, float]:
+    """Ends of a short level inside the frame [mm]; one without a place lies at the left."""
+    low, high = axes.x_range
+    start, end = np.clip(np.nan_to_num(x.at(between), nan=low), low, high)
+    return axes.x(float(start)), axes.x(float(end))
+
+
 def _words_over(axes: Axes, panel: Panel, x: Scale) -> None:
-    """Names of upright limits above the frame."""
+    """Names of stretches and of upright limits above the frame, where they fit."""
     y, right = axes.top - 1.7, axes.left + axes.width
     limits = [level for level in _upright_limits(panel) if level.words]
     limits = sorted((level for level in limits if math.isfinite(x.place(level.value))),
@@ -716,6 +781,21 @@ def _words_over(axes: Axes, panel: Panel, x: Scale) -> None:
         places = spread_within(wanted, gaps, axes.left + widths[0] / 2, right - widths[-1] / 2)
         for name, at in zip(names, places, strict=True):
             axes.ink.text(at, y, name, size=SIZE, anchor="center", color=RED)
+        y -= OVER
+    lines = [part.words.split("\n") for part in panel.stretches]
+    count = max(map(len, lines), default=0)
+    for k in range(count):
+        free = axes.left
+        for part, words in zip(panel.stretches, lines, strict=True):
+            if k >= len(words) or not words[k]:
+                continue
+            start, end = sorted(_ends(axes, (part.start, part.end), x))
+            middle, half = (start + end) / 2, text_width(words[k], SMALL) / 2
+            fits = 2 * half <= end - start + 1.0
+            if fits and middle - half >= free and middle + half <= right:
+                level = y - OVER * (count - 1 - k)
+                axes.ink.text(middle, level, words[k], size=SMALL, anchor="center", color=GREY)
+                free = middle + half + 0.8
 
 
 def _right_words(axes: Axes, frame: _Frame, lines: Sequence[Sequence[Line]]) -> None:
@@ -873,6 +953,12 @@ def _shaded(axes: Axes, frame: _Frame, x: Scale) -> list[float]:
         xs, ys = (along.at(values) for along, values in ((x, surface.xs), (frame.y, surface.ys)))
         with np.errstate(invalid="ignore", divide="ignore"):
             logs = np.ma.masked_invalid(np.log10(np.where(table > 0, table, np.nan)))
+        if np.ma.getmaskarray(logs).any():
+            right, bottom = axes.left + axes.width, axes.top + axes.height
+            frame_corners = (
+                (axes.left, axes.top), (right, axes.top), (right, bottom), (axes.left, bottom)
+            )  # fmt: skip
+            axes.ink.path(hatch([frame_corners], angle=45.0, spacing=1.6), pen=0.1, stroke=PALE)
         contours.bands(axes, xs.tolist(), ys.tolist(), logs, bounds)
     contours.scale(axes.ink, (axes.left, axes.top, axes.width, axes.height), bounds)
     return bounds

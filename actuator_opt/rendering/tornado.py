@@ -1,4 +1,4 @@
-"""A tornado: bars of what the two ends of each input change, the largest first."""
+"""A tornado: bars of the changes by both ends of each input, the largest first."""
 
 from __future__ import annotations
 
@@ -47,6 +47,8 @@ def bars(
 ) -> Ink:
     """Bars of changes about a centre, those of the upper end dark, of the lower end light.
 
+    Drawn, not a chart: each bar has its name and both changes in figures beside it.
+
     Parameters
     ----------
     rows : from top to bottom
@@ -56,8 +58,8 @@ def bars(
     predicted : whether strokes of predictions are in the key
     """
     solved = [change for row in rows for change in row.changes if change is not None]
-    told = [change for row in rows for change in row.predicted if change is not None]
-    low, high = _frame(solved, told)
+    predictions = [change for row in rows for change in row.predicted if change is not None]
+    low, high = _frame(solved, predictions)
     top = 11.0
     ink = Ink(width, top + ROW * len(rows) + 10.0)
     box = (LABELS, top, width - LABELS - FIGURES, ROW * len(rows))
@@ -75,7 +77,7 @@ def bars(
 
 
 def _frame(solved: list[float], predicted: list[float]) -> tuple[float, float]:
-    """The range of changes drawn: all that was solved, and predictions as far as they are near."""
+    """The range of changes drawn: every solved change, and predictions close to them."""
     low, high = min([0.0, *solved]), max([0.0, *solved])
     span = (high - low) or max(map(abs, predicted), default=0.0) or 1.0
     room = (BEYOND - 1.0) * span / 2

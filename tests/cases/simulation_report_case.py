@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from functools import cache
 from pathlib import Path
 
@@ -161,3 +162,19 @@ def tuned() -> tuple[tuple[str, Simulation], ...]:
         stated["requirements"] = {"overshoot": {"max": 0.05}}
         found.append((name, simulate(Scenario.model_validate(stated), subject)))
     return tuple(found)
+
+
+def boxes_collide(ink):
+    """Pairs of texts that overlap, texts and lines that leave the paper."""
+    bad = []
+    boxes = ink.text_boxes()
+    for words, left, top, right, bottom in boxes:
+        if min(left, ink.width - right, top, ink.height - bottom) < -0.5:
+            bad.append(words)
+    for box, other in itertools.combinations(boxes, 2):
+        apart = box[3] <= other[1] or other[3] <= box[1]
+        if not (apart or box[4] <= other[2] or other[4] <= box[2]):
+            bad.append((box[0], other[0]))
+    points = [p for mark in ink.marks if "path" in mark for line in mark["path"] for p in line]
+    outside = [(x, y) for x, y in points if not (-0.01 <= x <= ink.width + 0.01)]
+    return bad + outside + [(x, y) for x, y in points if not (-0.01 <= y <= ink.height + 0.01)]

@@ -27,7 +27,7 @@ from actuator_opt.base.numeric import STEP
 from actuator_opt.base.quantities import INPUTS
 from actuator_opt.design.kinds import Of
 from actuator_opt.design.schema import json_schema
-from actuator_opt.design.seals import TandemSeal
+from actuator_opt.design.seals import SealElement
 from actuator_opt.design.writer import init_text
 from actuator_opt.evaluation import prepare
 from actuator_opt.friction import coefficient
@@ -35,7 +35,7 @@ from actuator_opt.friction.kinds import LAWS as FRICTION_LAWS
 from actuator_opt.friction.law import FrictionLaw
 from actuator_opt.models.elastomer import MODULUS_LAWS
 from actuator_opt.models.seals import LAWS as CONTACT_LAWS
-from actuator_opt.pages.seal_figures import filled_grooves
+from actuator_opt.pages.seal_sections import filled_grooves
 from actuator_opt.seals import o_ring
 from actuator_opt.seals.contact import GROOVE_WIDTH
 from actuator_opt.seals.kinds import SIZES, TYPES
@@ -133,7 +133,7 @@ def test_an_unknown_name_is_an_error_that_suggests(registry):
     with pytest.raises(UnknownKind, match=f'did you mean "{name}"') as raised:
         registry[name[:-1]]
     assert isinstance(raised.value, KeyError)
-    element = TandemSeal(compound="nbr_90", section=SECTION, squeeze=SQUEEZE)
+    element = SealElement(compound="nbr_90", section=SECTION, squeeze=SQUEEZE)
     with pytest.raises(UnknownKind, match="no friction law"):
         element.model_copy(update={"friction": "filn"}).friction_law  # noqa: B018
 
@@ -310,7 +310,7 @@ def test_every_size_is_a_field_of_a_design():
     """With the quantity the type states."""
     element = json_schema()["properties"]["seals"]["properties"]["rod"]["properties"]
     for size in SIZES:
-        assert size.key in TandemSeal.model_fields
+        assert size.key in SealElement.model_fields
         assert size.help in element[size.key]["description"]
         assert Of(size.quantity).validate(size.example) > 0
 

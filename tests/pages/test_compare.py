@@ -151,8 +151,8 @@ def test_stiffness_over_the_stroke_of_designs(shipped):
     _require_clear(ink)
     said = [mark["text"] for mark in ink.marks if "text" in mark]
     least = stiffer.metrics["stiffness_min"].value / 1e6
-    assert f"B: least {least:.4g} kN/mm" in said
-    assert any(one.startswith("required") and one.endswith("11 kN/mm of B") for one in said)
+    assert f"B: least {least:.4g}" in said
+    assert "≥ 11 of B" in said
     assert sum(": least " in one for one in said) == 6
 
 

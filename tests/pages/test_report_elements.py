@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import json
 import math
 from dataclasses import replace
@@ -11,7 +10,7 @@ from functools import cache
 import numpy as np
 import pytest
 from report_fixture import overlaps
-from test_finite_elements_step_ring import SECTION, SHAPE, SQUEEZE, seal as step_seal
+from step_ring_case import SECTION, SHAPE, SQUEEZE, seal as step_seal
 from test_report_seal import TEXTS, area, blocks, ink_of, shown
 
 import actuator_opt as ao
@@ -20,12 +19,9 @@ from actuator_opt.evaluation.sealing import closed_form, room
 from actuator_opt.finite_elements.material import MooneyRivlin
 from actuator_opt.finite_elements.o_ring import squeezed_ring
 from actuator_opt.finite_elements.result import StressField
-from actuator_opt.pages import seal, seal_figures as drawn
-from actuator_opt.rendering import contours
+from actuator_opt.pages import seal, seal_figures, seal_sections as drawn
+from actuator_opt.rendering import contours, text
 from actuator_opt.studies.seal import study
-
-COLUMNS = ((11.0, 66.0), (103.0, 66.0))
-"""Left end and width of the frames of the lower figure."""
 
 
 def with_ring(one, ring):
@@ -208,47 +204,30 @@ def test_back_up_rings_take_their_room():
 
 @pytest.mark.parametrize("name", BOTH)
 def test_contact_curves_are_those_of_elements_and_closed_form(name):
-    """Highest points of all curves, by the frames' own ticks, are both solutions' peaks."""
+    """A curve per pressure on equal axes; their highest points are both solutions' peaks."""
     one = solved(name)
-    ink = drawn.elements_figure(one)
-    marks = [m for m in ink.marks if m.get("anchor") == "right" and m["at"][1] < 50]
-    scale = sorted((float(m["text"]), m["at"][1]) for m in marks if m["at"][0] < 11)
-    slope = (scale[-1][1] - scale[0][1]) / (scale[-1][0] - scale[0][0])
+    elements, closed = (column[0] for column in seal_figures.elements_panels(one))
+    assert (elements.x.range, elements.y.range) == (closed.x.range, closed.y.range)
     ring = one.out.rings[0].ring
-    for k, (contact, style) in enumerate(
-        zip(one.elements, itertools.cycle(drawn.ELEMENT_CURVES), strict=False)
-    ):
-        dash = list(style.get("dash", ()))
-        lines = [path for path in paths(ink, stroke=style["stroke"], dash=dash) if len(path[0]) > 2]
-        assert len(lines) >= 2, k
-        tops = [
-            (min(y for part in path for _, y in part) - scale[0][1]) / slope for path in lines[:2]
-        ]
+    for contact, solution, form in zip(one.elements, elements.curves, closed.curves, strict=True):
+        assert solution.words == form.words == text.bars(contact.pressure)
         law = closed_form(ring.at(pressure=contact.pressure))
         profile = float(np.max(law.profile(np.linspace(0, 1, 121)))) / 1e6
+        tops = [float(np.max(curve.ys)) for curve in (solution, form)]
         assert tops == pytest.approx([contact.peak_pressure / 1e6, profile], rel=2e-3, abs=2e-3)
+        assert max(tops) < elements.y.range[1]
+        assert max(solution.xs[-1], form.xs[-1]) <= elements.x.range[1]
 
 
 @pytest.mark.parametrize("name", BOTH)
 def test_circles_are_the_peaks_and_widths(name):
-    """Each circle stands at its pressure and the solution's peak or width, by the ticks."""
+    """Each circle stands at its pressure and the solution's peak or width."""
     one = solved(name)
-    ink = drawn.elements_figure(one)
-    circles = [np.mean(m["path"][0], axis=0) for m in ink.marks if m.get("fill") == drawn.WHITE]
-    assert len(circles) == 2 * len(one.elements)
     values = [[c.peak_pressure / 1e6 for c in one.elements], [1e3 * c.width for c in one.elements]]
-    for (left, width), wanted in zip(COLUMNS, values, strict=True):
-        ticks = sorted(
-            (float(m["text"]), m["at"][1])
-            for m in ink.marks
-            if m.get("anchor") == "right" and m["at"][1] > 60 and left - 5 < m["at"][0] < left
-        )
-        slope = (ticks[-1][1] - ticks[0][1]) / (ticks[-1][0] - ticks[0][0])
-        own = [c for c in circles if left - 1 <= c[0] <= left + width + 1]
-        most = one.elements[-1].pressure
-        for (x, y), contact, value in zip(own, one.elements, wanted, strict=True):
-            assert x == pytest.approx(left + width * contact.pressure / most, abs=2e-3)
-            assert (y - ticks[0][1]) / slope == pytest.approx(value, rel=2e-3, abs=2e-3)
+    for (_, panel), wanted in zip(seal_figures.elements_panels(one), values, strict=True):
+        (circles,) = panel.points
+        assert list(circles.xs) == pytest.approx([c.pressure / 1e5 for c in one.elements])
+        assert list(circles.ys) == pytest.approx(wanted)
 
 
 # ---- sheet and terminal ----

@@ -16,10 +16,10 @@ from test_through_wall import text_of
 
 import actuator_opt as ao
 from actuator_opt.evaluation import compute
-from actuator_opt.pages import seal, seal_figures
+from actuator_opt.pages import seal, seal_figures, seal_sections
 from actuator_opt.pages.report import page
 from actuator_opt.rendering import contours, paper, paper_plain as fallback, terminal, text
-from actuator_opt.rendering.ink import Ink
+from actuator_opt.rendering.ink import PALE, Ink
 from actuator_opt.rendering.origin import Origin
 from actuator_opt.studies.seal import study
 
@@ -163,10 +163,10 @@ def area(points):
 def test_the_gland_is_true_to_scale(name, place):
     """Width and depth of every groove on paper are those of the design by one factor."""
     one = studied(name, place)
-    drawing = seal_figures.gland_drawing(one)
+    drawing = seal_sections.gland_drawing(one)
     paper, real = map(int, drawing.scale.split(":"))
     assert drawing.millimetres_per_metre == 1000 * paper / real
-    slots = seal_figures.filled_grooves(one.design, place)
+    slots = seal_sections.filled_grooves(one.design, place)
     edges = [m["path"][0] for m in drawing.ink.marks if "path" in m and not m["closed"]]
     edge = next(line for line in edges if len(line) == 4 * len(slots) + 2)
     surface = next(m["path"][1] for m in drawing.ink.marks if "path" in m and m["path"][0] == edge)
@@ -188,13 +188,13 @@ def test_a_round_ring_keeps_its_section():
     for name, place in (("rings", "rod"), ("tandem", "rod")):
         (ring,) = [
             shape
-            for slot in seal_figures.filled_grooves(studied(name, place).design, place)
+            for slot in seal_sections.filled_grooves(studied(name, place).design, place)
             if slot.groove.place == "rod seal"
             for shape in slot.shapes
             if shape.kind == "elastomer"
         ]
         assert area(ring.points) == pytest.approx(math.pi / 4 * 1.78e-3**2, rel=3e-3)
-    slot = seal_figures.filled_grooves(studied("rings", "rod").design, "rod")[0]
+    slot = seal_sections.filled_grooves(studied("rings", "rod").design, "rod")[0]
     heights = [r for _, r in slot.shapes[0].points]
     assert (min(heights), max(heights)) == pytest.approx((0.0, 0.86 * 1.78e-3), abs=1e-9)
 
@@ -202,7 +202,7 @@ def test_a_round_ring_keeps_its_section():
 def test_rings_touch_the_surface_and_stay_in_their_groove():
     """What is mounted lies between surface and floor and between the walls of its groove."""
     for name, place in EVERY:
-        for slot in seal_figures.filled_grooves(studied(name, place).design, place):
+        for slot in seal_sections.filled_grooves(studied(name, place).design, place):
             mounted = [shape for shape in slot.shapes if shape.kind != "free"]
             points = [p for shape in mounted for p in shape.points]
             assert min(r for _, r in points) == pytest.approx(0.0, abs=1e-9)
@@ -213,7 +213,7 @@ def test_rings_touch_the_surface_and_stay_in_their_groove():
 
 def test_back_up_rings_stand_on_both_sides():
     """The ring lies between its two back-up rings, each as thick as stated."""
-    slot = seal_figures.filled_grooves(studied("rings", "piston").design, "piston")[0]
+    slot = seal_sections.filled_grooves(studied("rings", "piston").design, "piston")[0]
     backs = [shape.points for shape in slot.shapes if shape.kind == "back-up"]
     ends = sorted((min(x for x, _ in p), max(x for x, _ in p)) for p in backs)
     assert ends[0] == pytest.approx((0.0, 1.1e-3))
@@ -225,12 +225,12 @@ def test_back_up_rings_stand_on_both_sides():
 
 def test_sizes_carry_their_tolerances():
     """Gland depth and section are printed with what the design allows them."""
-    ink = seal_figures.gland_drawing(studied("rings", "rod")).ink
+    ink = seal_sections.gland_drawing(studied("rings", "rod")).ink
     words = {mark["text"] for mark in ink.marks if "text" in mark}
     assert {"1.531 ±0.05", "section 1.78 ±0.08", "rod ⌀13", "radial gap 0.03", "210 bar"} <= words
     (row,) = seal.gland_rows(studied("rings", "rod"))
     assert row[3:6] == ("1.78 ±0.08", "14 %", "1.531 ±0.05")
-    piston = seal_figures.gland_drawing(studied("rings", "piston"))
+    piston = seal_sections.gland_drawing(studied("rings", "piston"))
     growth = studied("rings", "piston").growth
     said = next(m["text"] for m in piston.ink.marks if m.get("text", "").startswith("+ growth"))
     assert float(said.split()[-1]) == pytest.approx(1e3 * growth, rel=0.01)
@@ -239,10 +239,10 @@ def test_sizes_carry_their_tolerances():
 def test_both_rings_of_a_pair_stand_in_their_order():
     """Guide, step ring, lip seal, wiper, from the sealed side on the left; pressures beside."""
     one = studied("tandem", "rod")
-    assert [slot.groove.role for slot in seal_figures.filled_grooves(one.design, "rod")] == [
+    assert [slot.groove.role for slot in seal_sections.filled_grooves(one.design, "rod")] == [
         "guide", "element", "element", "wiper",
     ]  # fmt: skip
-    ink = seal_figures.gland_drawing(one).ink
+    ink = seal_sections.gland_drawing(one).ink
     at = {mark["text"]: mark["at"][0] for mark in ink.marks if "text" in mark}
     order = ["sealed side", "guide", "seal: step ring", "secondary seal: u cup", "wiper"]
     places = [at[words] for words in [*order, "outer side"]]
@@ -301,29 +301,59 @@ def test_a_lost_contact_is_red_and_said():
 
 
 def test_contact_curves_are_those_of_the_study():
-    """The static curve reaches its largest value where the axis' labels put it."""
+    """Static contact, oil and asperities of both strokes in MPa over the width in mm."""
     one = studied("rings", "rod")
-    ink = seal_figures.contact_figure(one, 0)
-    static = next(m for m in ink.marks if m.get("dash") == [0.5, 0.6] and len(m["path"][0]) > 20)
-    marks = [m for m in ink.marks if m.get("anchor") == "right"]
-    zero, ten = (next(m["at"][1] for m in marks if m["text"] == w) for w in ("0", "10"))
-    top = min(y for _, y in static["path"][0])
-    assert (zero - top) / (zero - ten) * 10 == pytest.approx(
-        float(one.drive.rings[0].static.max()) / 1e6, rel=1e-3
-    )
+    panels = seal_figures.contact_panels(one, 0)
+    for panel, point in zip(panels[:2], (one.drive.rings[0], one.other.rings[0]), strict=True):
+        curves = {curve.words: curve for curve in panel.curves}
+        assert panel.y.range[1] > 1e-6 * point.static.max()
+        for words in ("static", "oil", "asperities"):
+            own = point.asperity if words == "asperities" else getattr(point, words)
+            assert curves[words].ys == pytest.approx(1e-6 * own)
+            assert curves[words].xs == pytest.approx(1e3 * point.x)
+    films = [curve.ys for curve in panels[2].curves]
+    assert films[0] == pytest.approx(1e6 * one.drive.rings[0].film)
+    assert films[1] == pytest.approx(1e6 * one.other.rings[0].film)
+
+
+def test_curves_over_speed_and_their_marks_lie_inside():
+    """A curve per pressure in N and kN s/m; every value above zero lies within its axis."""
+    for name, place in CASES:
+        one = studied(name, place)
+        friction, damping = seal_figures.speed_panels(one, one.curves)
+        assert [curve.end for curve in friction.curves] == [
+            text.bars(float(pressure)) for pressure in one.curves.pressures
+        ]
+        for panel, rows in ((friction, one.curves.friction), (damping, one.curves.damping / 1e3)):
+            for curve, row in zip(panel.curves, rows, strict=True):
+                assert curve.ys == pytest.approx(row, nan_ok=True)
+            low, high = panel.y.range
+            shown = [*rows.ravel(), *(y for marks in panel.points for y in marks.ys)]
+            assert all(low < y < high for y in shown if y > 0)
+        marks = {marks.words.split(",")[0]: marks for marks in friction.points}
+        assert marks["operating point"].ys == [one.drive.friction]
+        assert marks["by the coefficient of friction"].ys == [one.drive.coefficient_friction]
 
 
 def test_a_gap_in_the_map_stays_white():
-    """Points without a film carry a cross and are counted; all bands lie beside them."""
+    """Points without a film carry a cross and are counted; the map is hatched there."""
     one = studied("tandem", "rod")
     parts = one.map.parts.copy()
     parts[0, -2:] = np.nan
     why = ((1.0, 1.0, "9e5 Pa: no"), (1.0, 2.0, "no film at 3 mm"))
     gap = replace(one, map=replace(one.map, parts=parts, why=why))
-    crosses = [m for m in seal_figures.map_figure(gap).marks if m.get("pen") == 0.2]
     missing = int(np.sum(~np.isfinite(gap.map.friction)))
-    assert len(crosses) == 2 * 2 * missing
-    assert f"{len(why)} of 78 points" in by_title(gap, "speed and pressure")["note"]
+    for panel in seal_figures.map_panels(gap, gap.map):
+        (crosses,) = [marks for marks in panel.points if marks.words == "no film"]
+        assert len(crosses.xs) == len(crosses.ys) == missing
+    block = by_title(gap, "speed and pressure")
+    assert f"{len(why)} of 78 points" in block["note"]
+    whole = by_title(one, "speed and pressure")
+    hatched = [
+        [m for m in ink_of(b).marks if m.get("stroke") == PALE and m["pen"] == 0.1]
+        for b in (block, whole)
+    ]
+    assert [len(marks) for marks in hatched] == [2, 0]
 
 
 def test_contours_lie_where_the_values_are():
@@ -331,11 +361,12 @@ def test_contours_lie_where_the_values_are():
     one = studied("rings", "rod")
     pressures = np.linspace(1e6, 11e6, 6)
     table = np.outer(pressures / 1e5, np.ones(len(one.map.speeds)))
-    found = replace(one.map, pressures=pressures, parts=table[:, :, None])
-    ink = seal_figures.map_figure(replace(one, map=found))
+    found = replace(one, map=replace(one.map, pressures=pressures, parts=table[:, :, None]))
+    ink = ink_of(by_title(found, "speed and pressure"))
     lines = [m["path"][0] for m in ink.marks if m.get("stroke") == "#ffffff" and "path" in m]
-    left = [line for line in lines if line[0][0] < 100]
-    ticks = {m["text"]: m["at"][1] for m in ink.marks if m.get("anchor") == "right"}
+    left = [line for line in lines if line[0][0] < 90]
+    marks = [m for m in ink.marks if m.get("anchor") == "right" and m["at"][0] < 90]
+    ticks = {m["text"]: m["at"][1] for m in marks}
     wanted = ticks["20"] + (ticks["100"] - ticks["20"]) * (50 - 20) / 80
     nearest = min(abs(line[0][1] - wanted) for line in left)
     assert nearest < 0.5  # bilinear in the logarithm between 30 and 50 bar nodes
@@ -556,7 +587,7 @@ def test_the_report_carries_the_sheets(tmp_path):
     assert files[0].pages > 3
 
 
-@pytest.mark.parametrize("module", [contours, seal, seal_figures, text])
+@pytest.mark.parametrize("module", [contours, seal, seal_figures, seal_sections, text])
 def test_examples_in_docstrings(module):
     """The worked examples hold."""
     assert doctest.testmod(module).failed == 0

@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import simulation_report_case as case
+from simulation_report_case import boxes_collide
 from test_report_identification import agrees, printed
 
 from actuator_opt.base.errors import InputError
@@ -100,22 +101,6 @@ def alone(kind, **more):
         height = max(60.0 * len(part.panels), part.least)
         made[part.name] = drawn(Chart("t", [part.panels], height=height), width=90.0)
     return made
-
-
-def boxes_collide(ink):
-    """Pairs of texts that overlap, texts and lines that leave the paper."""
-    bad = []
-    boxes = ink.text_boxes()
-    for words, left, top, right, bottom in boxes:
-        if min(left, ink.width - right, top, ink.height - bottom) < -0.5:
-            bad.append(words)
-    for one, other in itertools.combinations(boxes, 2):
-        apart = one[3] <= other[1] or other[3] <= one[1]
-        if not (apart or one[4] <= other[2] or other[4] <= one[2]):
-            bad.append((one[0], other[0]))
-    points = [p for mark in ink.marks if "path" in mark for line in mark["path"] for p in line]
-    outside = [(x, y) for x, y in points if not (-0.01 <= x <= ink.width + 0.01)]
-    return bad + outside + [(x, y) for x, y in points if not (-0.01 <= y <= ink.height + 0.01)]
 
 
 def titles(kind):

@@ -138,3 +138,13 @@ def test_public_names_load_and_are_known_to_type_checkers():
     assert all(getattr(actuator_opt, name) is not None for name in actuator_opt.__all__)
     with pytest.raises(AttributeError, match="no attribute 'evaluat'"):
         actuator_opt.evaluat  # noqa: B018
+
+
+def test_a_class_name_has_one_meaning():
+    """No two public classes of the package share a name, so that a search finds the right class."""
+    places = {}
+    for name, (tree, _) in modules().items():
+        for node in tree.body:
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                places.setdefault(node.name, []).append(name)
+    assert {name: where for name, where in places.items() if len(where) > 1} == {}

@@ -25,7 +25,7 @@ FUNCTIONS = public_functions()
 SECTIONS = ["Parameters", "Returns", "Notes", "References", "Examples"]
 UNITLESS = {
     "bool", "Ends", "PlyStrength", "Sequence[WallLayer]", "tuple[str, str]", "Sequence[TubeLayer]",
-    "LayeredTube", "TubeState", "LineEnd", "Side", "LinearActuator", "OpenLoop",
+    "LayeredTube", "TubeState", "LineEnd", "Side", "LinearActuator", "PositionOpenLoop",
     "Chamber",
 }  # fmt: skip
 """Annotations of arguments that carry no unit of their own."""
@@ -144,7 +144,7 @@ def equation_table():
     """Rows of source, function, test files: the value tests that name the function."""
     tests = {
         path.name: names_used(path.read_text("utf-8"))
-        for path in sorted((ROOT / "tests").glob("test_*.py"))
+        for path in sorted((ROOT / "tests").rglob("test_*.py"))
         if path.name not in WALKS
     }
     return [

@@ -12,8 +12,17 @@ from hypothesis import given, settings, strategies as st
 
 from actuator_opt.rendering import heights, html, paper, terminal
 from actuator_opt.rendering.blocks import Chart, Column, Table
-from actuator_opt.rendering.chart import Axis, Curve, Level, Panel, Points, ShadedMap, scale
-from actuator_opt.rendering.chart_ink import drawn
+from actuator_opt.rendering.chart import (
+    Axis,
+    Curve,
+    Level,
+    Panel,
+    Points,
+    ShadedMap,
+    Stretch,
+    scale,
+)
+from actuator_opt.rendering.chart_ink import drawn, titled
 from actuator_opt.rendering.console import Console
 
 ANY = st.floats(allow_nan=True, allow_infinity=True)
@@ -36,7 +45,15 @@ def panels(draw, values):
         for xs, ys in draw(st.lists(pairs(values), max_size=4))
     ]
     points = [
-        Points(draw(WORDS), xs, ys, [y - 1 for y in ys], ys, small=draw(st.booleans()))
+        Points(
+            draw(WORDS),
+            xs,
+            ys,
+            [y - 1 for y in ys],
+            ys,
+            small=draw(st.booleans()),
+            weight=draw(st.sampled_from(["normal", "guide", "strong"])),
+        )
         for xs, ys in draw(st.lists(pairs(values), max_size=3))
     ]
     levels = draw(
@@ -47,15 +64,21 @@ def panels(draw, values):
                 WORDS,
                 st.sampled_from(["", "min", "max"]),
                 between=st.none() | st.tuples(REAL, REAL),
+                upright=st.booleans(),
             ),
             max_size=5,
         )
     )
+    ends = sorted(draw(st.lists(REAL, max_size=4, unique=True)))
+    stretches = [
+        Stretch(start, end, draw(st.sampled_from(["", "1", "12\nSR 2.5", "a long name"])), k)
+        for k, (start, end) in enumerate(itertools.pairwise(ends))
+    ]
     axes = [
         Axis(draw(st.sampled_from(["", "speed, mm/s"])), *draw(st.tuples(*[st.booleans()] * 3)))
         for _ in range(2)
     ]
-    return Panel("Force, N", axes[0], axes[1], curves, points, levels, note=draw(WORDS))
+    return Panel("Force, N", *axes, curves, points, levels, note=draw(WORDS), stretches=stretches)
 
 
 def touching(ink):
@@ -165,6 +188,42 @@ def test_a_limit_is_named_and_hatched_on_its_forbidden_side():
         assert "limit 2 N" in words(ink)
     far = Panel("F, N", curves=[curve], levels=[Level(900.0, "limit 900 N", "max")])
     assert "limit 900 N ↑" in words(drawn(Chart("t", [far])))
+
+
+def test_places_of_x_are_named_above_the_frame():
+    """Upright limits are hatched on their forbidden side; stretches are shaded and named."""
+    curve = Curve("", [0, 4], [1, 3])
+    stretches = [Stretch(0.0, 2.0, "1\nSR 2.5"), Stretch(2.0, 4.0, "2", 1)]
+    limit = Level(3.0, "limit 3 mm", "max", upright=True)
+    panel = Panel("F, N", curves=[curve], levels=[limit], stretches=stretches)
+    ink = drawn(Chart("t", [panel]))
+    assert list(touching(ink)) == []
+    (line,) = [m["path"][0] for m in ink.marks if "path" in m and m["dash"] == [1.8, 1.0]]
+    assert line[0][0] == line[1][0]
+    hatched = [m for m in ink.marks if "path" in m and m["stroke"] == "#a8321a" and not m["dash"]]
+    assert all(x >= line[0][0] - 0.01 for m in hatched for part in m["path"] for x, _ in part)
+    at = {m["text"]: m["at"] for m in ink.marks if "text" in m}
+    top = min(y for _, y in line)
+    assert at["1"][1] < at["SR 2.5"][1] < at["limit 3 mm"][1] < top
+    assert at["1"][0] == at["SR 2.5"][0] < at["2"][0]
+    fills = [m for m in ink.marks if "path" in m and m["fill"] and len(m["path"][0]) == 4]
+    assert len({m["fill"] for m in fills}) == 2
+
+
+def test_a_chart_alone_has_its_title_and_notes():
+    """Title and notes above the panels, each line of the note below; nothing off the paper."""
+    chart = Chart(
+        "A long title " * 20, [Panel("F, N", curves=[Curve("a", [0, 1], [1, 2])])], "x\ny"
+    )
+    ink = titled(chart, ["a remark"])
+    order = [
+        m["text"] for m in sorted((m for m in ink.marks if "text" in m), key=lambda m: m["at"][1])
+    ]
+    assert order[0].startswith("A long title")
+    assert order[1] == "a remark"
+    assert order[-2:] == ["x", "y"]
+    assert list(touching(ink)) == []
+    assert all(b[1] >= 0 and b[3] <= ink.width and b[4] <= ink.height for b in ink.text_boxes())
 
 
 def test_panels_of_a_column_share_the_axis_below():

@@ -12,7 +12,7 @@ import pytest
 import simulation_report_case as case
 from cli_runner import DESIGNS, run
 from simulation_case import scenario
-from test_report_simulation import boxes_collide
+from simulation_report_case import boxes_collide
 
 import actuator_opt as ao
 from actuator_opt.base.errors import InputError

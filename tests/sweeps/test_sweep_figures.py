@@ -27,9 +27,8 @@ from actuator_opt.pages.sweep_figures.shared import (
     fits,
     sweep_figures,
 )
-from actuator_opt.pages.sweep_figures.ucurves import STYLES, differences_drawn
+from actuator_opt.pages.sweep_figures.ucurves import differences
 from actuator_opt.rendering import html, paper, terminal
-from actuator_opt.rendering.ink import Ink
 from actuator_opt.sweeps import result
 from actuator_opt.sweeps.field import field
 from actuator_opt.sweeps.result import Pool, better, front
@@ -192,15 +191,15 @@ def test_the_pareto_line_is_of_every_feasible_design(knee, monkeypatch):
 @settings(max_examples=60, deadline=None)
 def test_what_is_kept_is_every_kth_row(sizes):
     """Whatever the chunks, the kept rows are those of numbers 0, k, 2k, ... and not too few."""
-    pool, most, total = Pool(), swept.MOST_POINTS, 0
-    swept.MOST_POINTS = 10
+    pool, most, total = Pool(), result.MOST_POINTS, 0
+    result.MOST_POINTS = 10
     try:
         for size in sizes:
             rows = np.arange(total, total + size, dtype=float)[:, None]
             pool.add(rows[:, 0].astype(int), rows)
             total += size
     finally:
-        swept.MOST_POINTS = most
+        result.MOST_POINTS = most
     assert pool.rows.ravel().tolist() == list(range(0, total, pool.step))
     assert len(pool.rows) <= 10
     assert pool.step == 1 or len(pool.rows) >= 5
@@ -208,7 +207,12 @@ def test_what_is_kept_is_every_kth_row(sizes):
 
 @pytest.mark.parametrize(
     ("kinds", "show"),
-    [(["parallel", "ucurves"], []), (["scatter"], []), (["scatter"], list(PAIR))],
+    [
+        (["parallel", "ucurves"], []),
+        (["scatter"], []),
+        (["scatter"], list(PAIR)),
+        (["scatter"], [*PAIR, "friction_running", "seal_gap", "power", "bore_growth", "flow"]),
+    ],
 )
 def test_figures_are_whole_and_clear(mixed, kinds, show):
     """No words on others or beyond the paper."""
@@ -312,16 +316,13 @@ def test_a_reduced_sweep_computes_what_is_shown(knee, tmp_path):
         ao.sweep(knee, GRID, reduce=True, figures=["parallel"])
 
 
-def test_differences_of_curves_are_read_off_their_own_axis():
-    """A tenth stiffer everywhere stands at 10 %, as far as both curves go; the first at 0."""
-    ink = Ink(180.0, 200.0)
+def test_differences_of_curves_are_those_from_the_first():
+    """A tenth stiffer everywhere is 10 %, as far as both curves go; the first is at 0."""
     curves = [([0.0, 10.0, 30.0], [4.0, 2.0, 3.0]), ([0.0, 20.0, 40.0], [4.4, 2.75, 5.0])]
-    differences_drawn(ink, 20.0, (0.0, 40.0), curves, "design 1")
-    ticks = {m["text"]: m["at"][1] for m in ink.marks if m.get("anchor") == "right"}
-    first, second = (m["path"][0] for m in ink.marks if m.get("pen") == STYLES[0]["pen"])
-    assert {y for _, y in first} == {ticks["0"]}
-    assert {y for _, y in second} == {ticks["10"]}
-    assert len(second) == 2  # at 0 and 20 mm: at 40 mm the first curve has ended
+    first, second = differences([tuple(map(np.array, curve)) for curve in curves])
+    assert first.ys.tolist() == [0.0, 0.0, 0.0]
+    assert second.xs.tolist() == [0.0, 20.0]  # at 40 mm the first curve has ended
+    assert second.ys == pytest.approx([10.0, 10.0])
 
 
 def test_the_page_of_a_sweep(knee, tmp_path):

@@ -35,7 +35,7 @@ from .shared import ORIGINS, SweepFigure, SweepFigureData, heading
 
 _LEFT, _WIDE, _TALL, _WIDTH = 20.0, 152.0, 100.0, 180.0
 LEVELS = 9
-"""About so many contours."""
+"""Approximate number of contours."""
 _SIZE = 6.3
 STYLES: tuple[dict[str, Any], ...] = tuple(
     {"stroke": colour, "pen": pen, "dash": dash}
@@ -53,12 +53,12 @@ class _Labels:
     axes: Axes
     boxes: list[tuple[float, float, float, float]] = field(default_factory=list)
     crowd: Array = field(default_factory=lambda: np.empty((0, 2)))
-    """Points of all lines, which words rather keep clear of."""
+    """Points of all lines: words stand where few of them lie."""
 
     def place(
         self, lines: Sequence[Sequence[Point]], words: str, *, bold: bool = False
     ) -> Point | None:
-        """Where on a line there is room for words; the freest place, None without any."""
+        """The freest place for words on a line; None without room."""
         half, tall = text_width(words, _SIZE, bold=bold) / 2 + 0.8, 0.5 * _SIZE * POINT + 0.7
         axes, best = self.axes, None
         for share, (x, y) in _beside(lines, half + 0.4):
@@ -92,7 +92,7 @@ def _touch(a: tuple[float, ...], b: tuple[float, ...]) -> bool:
 
 
 def _candidates(lines: Sequence[Sequence[Point]]) -> Iterator[tuple[float, Point]]:
-    """Places along lines, with how far they are from the middle of the longest."""
+    """Places along lines, with their distance from the middle of the longest line."""
     sized = []
     for line in lines:
         points = np.array(line)
@@ -117,7 +117,9 @@ def _even(line: Sequence[Point]) -> Array:
 def contour_figure(
     drawn: SweepFigureData, field: Field, boundaries: Sequence[Boundary], metric: str
 ) -> Ink:
-    """Contours of one metric, the lines where limits are just met, the missed side hatched.
+    """Contours of a metric, the lines where limits are just met, the missed side hatched.
+
+    Drawn, not a chart: names stand on the lines, and areas where a limit is missed are hatched.
 
     Raises
     ------
@@ -289,7 +291,7 @@ def _name(
 
 
 def _say(ink: Ink, at: Point, words: str, color: str, *, bold: bool = False) -> None:
-    """Words on white, so that a dash beside them is no point of theirs."""
+    """Words on white, so that no dash beside them reads as a minus or a point."""
     wide = text_width(words, _SIZE, bold=bold) + 1.6
     ink.box(at[0] - wide / 2, at[1] - 1.3, wide, 2.6, fill=WHITE, stroke=None)
     ink.text(*at, words, size=_SIZE, anchor="center", color=color, bold=bold)
@@ -298,7 +300,7 @@ def _say(ink: Ink, at: Point, words: str, color: str, *, bold: bool = False) -> 
 def _below(
     ink: Ink, drawn: SweepFigureData, field: Field, key: Sequence[tuple[str, str]], y: float
 ) -> float:
-    """What the marks mean, and the limits without a line; the height of the figure."""
+    """Key of the marks, and the limits without a line; the height of the figure."""
     x = 2.0
     marks = [("contour", _METRIC), ("limit just met", STYLES[0])]
     for words, style in marks:

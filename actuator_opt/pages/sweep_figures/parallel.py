@@ -1,4 +1,4 @@
-"""Parallel axes of a sweep: one axis for all that varies, the objective and chosen metrics."""
+"""Parallel axes of a sweep: an axis for every varied input, the objective and every metric."""
 
 from __future__ import annotations
 
@@ -24,12 +24,14 @@ from .shared import (
 )
 
 MOST = 1000
-"""Designs drawn of the feasible, and of the others (a choice: more lines are a blot)."""
+"""Most feasible designs drawn, and most others (a choice: more lines are a blot)."""
 _LEFT, _RIGHT, _GAP, _TALL, _SIZE = 16.0, 14.0, 25.0, 82.0, 6.3
 
 
 def parallel_figure(drawn: SweepFigureData, metrics: Sequence[str]) -> Ink:
-    """What varies, the objective, metrics; every design a line, the best one bold.
+    """Inputs, objective and metrics; every design a line, the best design bold.
+
+    Drawn, not a chart: every upright axis has a scale of its own.
 
     Raises
     ------
@@ -59,7 +61,7 @@ def parallel_figure(drawn: SweepFigureData, metrics: Sequence[str]) -> Ink:
     values = [table(others), table(feasible), table(best)]
     ink = Ink(max(180.0, _LEFT + _GAP * (len(tracks) - 1) + _RIGHT), 400.0)
     counts = drawn.counts(("feasible", feasible.every), ("infeasible", others.every))
-    top = heading(ink, drawn, "what varies and what comes of it", counts) + 14.0
+    top = heading(ink, drawn, "varied inputs and metrics", counts) + 14.0
     gap = (ink.width - _LEFT - _RIGHT) / (len(tracks) - 1)
     places = [_LEFT + k * gap for k in range(len(tracks))]
     ranges = _ranges(tracks, values)
@@ -130,11 +132,11 @@ def _axis(
         ink.line((x - 0.8, y), (x, y), pen=0.18)
         right = track.names and x > _LEFT
         room = gap - 3.0 if track.names else 12.0
-        said = fitted(words, room if right or not track.names else max(gap - 3.0, 10.0), _SIZE)
+        cut = fitted(words, room if right or not track.names else max(gap - 3.0, 10.0), _SIZE)
         if track.names:
-            ink.text(x + 1.4, y, said, size=_SIZE, halo=True)
+            ink.text(x + 1.4, y, cut, size=_SIZE, halo=True)
         else:
-            ink.text(x - 1.4, y, said, size=_SIZE, anchor="right", halo=True)
+            ink.text(x - 1.4, y, cut, size=_SIZE, anchor="right", halo=True)
 
 
 def _limits(
@@ -157,7 +159,7 @@ def _limits(
 
 
 def _legend(ink: Ink, y: float) -> None:
-    """What the lines mean."""
+    """Names of the lines."""
     x = 2.0
     for words, style in (
         ("infeasible", {"stroke": INFEASIBLE, "pen": 0.5}),

@@ -20,6 +20,8 @@ WIDEST = 8
 """Most metrics (a choice: panels of 20 mm)."""
 LEAST = 0.1
 """Room about the feasible designs, of the range of all (a choice)."""
+BESIDE = 28.0
+"""Least height of a panel that has the legend beside it [mm]."""
 _LEFT, _RIGHT, _GAP, _FOOT, _WIDTH = 20.0, 4.0, 4.0, 10.0, 180.0
 PARETO: dict[str, Any] = {"stroke": RED, "pen": 0.4}
 LIMIT: dict[str, Any] = {"stroke": BLACK, "pen": 0.2, "dash": (1.6, 0.9)}
@@ -27,6 +29,9 @@ LIMIT: dict[str, Any] = {"stroke": BLACK, "pen": 0.2, "dash": (1.6, 0.9)}
 
 def scatter_figure(drawn: SweepFigureData, metrics: Sequence[str]) -> Ink:
     """A panel for every pair of metrics.
+
+    Drawn, not a chart: frames share their axes along rows and columns of a triangle, and
+    thousands of designs of a colour are a single mark.
 
     Raises
     ------
@@ -49,7 +54,8 @@ def scatter_figure(drawn: SweepFigureData, metrics: Sequence[str]) -> Ink:
         heading(ink, drawn, "metrics in pairs", f"{notes}. {_directions(drawn, metrics, lines)}")
         + 3.0
     )
-    if side == 1:
+    beside = side > 1 and tall >= BESIDE
+    if not beside:
         _legend(ink, 2.0, top, across=True)
         top += 6.0
     ink.height = top + side * tall + (side - 1) * _GAP + _FOOT
@@ -76,7 +82,7 @@ def scatter_figure(drawn: SweepFigureData, metrics: Sequence[str]) -> Ink:
             )
             x, y = (float(tables[1][k][0]) for k in (column, row))
             ink.circle(axes.x(x), axes.y(y), 1.1, fill=WHITE, stroke=BLACK, pen=0.5)
-    if side > 1:
+    if beside:
         _legend(ink, _LEFT + (wide + _GAP) * 1 + 4.0, top + 3.0)
     return ink
 
@@ -101,17 +107,17 @@ def _front(drawn: SweepFigureData, first: str, second: str) -> tuple[Array, bool
 def _directions(
     drawn: SweepFigureData, metrics: Sequence[str], lines: dict[tuple[str, str], tuple[Array, bool]]
 ) -> str:
-    """Which way each metric is better, and what the Pareto lines are of."""
+    """The better direction of each metric, and the designs behind the Pareto lines."""
     ways = {name: better(drawn.study, name) for name in metrics}
-    said = ["frames about the feasible designs"] if len(drawn.swept.sample.others.rows) else []
-    said += [
+    parts = ["frames about the feasible designs"] if len(drawn.swept.sample.others.rows) else []
+    parts += [
         f"{words}: {', '.join(named)}"
         for words, way in (("more is better", 1), ("less is better", -1), ("neither", 0))
         if (named := [name for name in metrics if ways[name] == way])
     ]
     if not all(exact for _, exact in lines.values()):
-        said.append("Pareto lines of the kept designs alone")
-    words = "; ".join(said)
+        parts.append("Pareto lines of the kept designs alone")
+    words = "; ".join(parts)
     return words[:1].upper() + words[1:]
 
 
@@ -201,7 +207,7 @@ def _line(
 
 
 def _legend(ink: Ink, x: float, y: float, *, across: bool = False) -> None:
-    """What the marks mean, one below the other or in one line."""
+    """Names of the marks, one below the other or in one line."""
     for words, fill in (
         ("infeasible", INFEASIBLE), ("feasible, worst third by the objective", BETTER[0]),
         ("middle third", BETTER[1]), ("best third", BETTER[2]), ("best design", None),

@@ -30,12 +30,12 @@ BETTER = ("#7fb0cf", "#3f7aa3", "#0b3c5d")
 """Feasible designs by thirds of the objective, the best third last: darker on a grey print too."""
 INFEASIBLE = PALE
 ORIGINS = ("requirement", "case")
-"""Limits that a person wrote."""
+"""Origins of limits in the design file."""
 
 
 @dataclass(frozen=True)
 class DrawnRows:
-    """Designs to draw: the combination of names each has, its row, and every which it is."""
+    """Designs to draw: their variants (combinations of names), rows, and the step between them."""
 
     variants: Array
     rows: Array
@@ -44,7 +44,7 @@ class DrawnRows:
 
 @dataclass(frozen=True)
 class Track:
-    """What every design has a value of: a number, or a name out of `names`."""
+    """A quantity that every design has: a number, or a name out of `names`."""
 
     words: str
     quantity: Quantity | None = None
@@ -69,7 +69,7 @@ class Track:
 
 
 class SweepFigureData:
-    """A sweep as its figures see it."""
+    """Values and limits of a sweep for its figures."""
 
     def __init__(self, swept: Swept) -> None:
         self.swept, self.study = swept, swept.study
@@ -100,11 +100,11 @@ class SweepFigureData:
         known = next((value for other, value in self.limits if other is limit), None)
         head = limit.name if limit.origin == "case" else limit.metric
         if known is None:
-            return f"{head} {SENSES[limit.sense]} what varies"
+            return f"{head} {SENSES[limit.sense]} varied value"
         return f"{head} {limit_text(self.study.quantity(limit.metric), limit.sense, known)}"
 
     def axis(self, path: str) -> Track:
-        """What varies."""
+        """A varied input."""
         axis = next(axis for axis in self.study.plan.axes if axis.path == path)
         if axis.values is None:
             return Track(path, names=axis.texts)
@@ -115,7 +115,7 @@ class SweepFigureData:
         return Track(name, self.study.quantity(name))
 
     def values(self, name: str, drawn: DrawnRows) -> Array:
-        """What designs have of something that varies or of a metric, as `Track` shows it."""
+        """Values of a varied input or of a metric, in the unit of its `Track`."""
         for axis in self.study.plan.named:
             if axis.path == name:
                 texts = [self.study.plan.texts(int(variant))[name] for variant in drawn.variants]
@@ -133,7 +133,7 @@ class SweepFigureData:
 
     @property
     def goal(self) -> Track:
-        """The objective as a person states it."""
+        """The objective in its own unit."""
         single = self.study.goal.single
         return Track("objective") if single is None else self.metric(single)
 
@@ -181,7 +181,7 @@ class SweepFigureData:
             raise InputError(Diagnostic(message, "show another metric"))
 
     def counts(self, *drawn: tuple[str, int]) -> str:
-        """How many designs there are, and which of them are drawn."""
+        """Number of designs, and the share of them that is drawn."""
         swept = self.swept
         words = f"{_many(swept.requested)} variants, "
         if swept.feasible is None:
@@ -191,7 +191,7 @@ class SweepFigureData:
             words += f"{_many(swept.feasible)} feasible"
         if swept.failed:
             words += f", {_many(swept.failed)} failed (not drawn)"
-        thinned = [f"every {_nth(step)} {what}" for what, step in drawn if step > 1]
+        thinned = [f"every {_nth(step)} {group}" for group, step in drawn if step > 1]
         return words + (f"; drawn: {' and '.join(thinned)} design" if thinned else "")
 
 
@@ -205,7 +205,7 @@ def _nth(step: int) -> str:
 
 
 def heading(ink: Ink, drawn: SweepFigureData, words: str, notes: str) -> float:
-    """The name of the design and what is drawn; the height it takes."""
+    """Title with the name of the design, and notes; the height they take."""
     room = ink.width - 4.0
     title = fitted(f"{drawn.study.design.name}: {words}", room * 0.88, 9.0)
     ink.text(2.0, 3.0, title, size=9.0, bold=True)
@@ -259,7 +259,7 @@ USUAL = 5
 
 
 def chosen(study: Study, show: Sequence[str]) -> tuple[str, ...]:
-    """The metrics to show: those asked for, else the objective's and the requirements'.
+    """The metrics to show: the requested ones, else those of objective and requirements.
 
     Raises
     ------
