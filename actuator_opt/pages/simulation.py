@@ -67,7 +67,7 @@ ZERO_BELOW = {
 CLOSED = 1e-3
 """Least error of a balance that a page warns of (a choice: one digit of the printed value)."""
 AGREE = 1e-2
-"""Least difference of two integrators, share of a signal's span, that a page warns of (a choice)."""
+"""Least difference of two integrators, share of a signal's span, that raises a warning (choice)."""
 MOST_EVENTS = 4
 """Most events that are listed."""
 MOST_PARTS = 3
