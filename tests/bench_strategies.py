@@ -33,7 +33,6 @@ from actuator_opt import api as verbs
 from actuator_opt.base.errors import UsageError
 from actuator_opt.optimisation import actuator, nlopt_wrapper
 from actuator_opt.optimisation.problem import BoxProblem, Space
-from actuator_opt.optimisation.resolve.parallel_descents import FEASIBLE
 from actuator_opt.optimisation.run import SAMPLES
 from actuator_opt.optimisation.solver import solve
 
@@ -173,12 +172,14 @@ def rows(
     }
     best = known.optimum
     if best is None:
-        met = [t.objective for ts in trials.values() for t in ts if t.violation <= FEASIBLE]
+        met = [t.objective for ts in trials.values() for t in ts if t.violation <= actuator.MET]
         best = min(met, default=math.nan)
 
     def row(name: str) -> Row:
         done = trials[name]
-        good = [t.violation <= FEASIBLE and t.objective - best <= NEAR * abs(best) for t in done]
+        good = [
+            t.violation <= actuator.MET and t.objective - best <= NEAR * abs(best) for t in done
+        ]
         return Row(
             name,
             len(done),

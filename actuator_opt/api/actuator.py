@@ -1,9 +1,7 @@
-"""A design as read, with its faults.
+"""A design as read, with its faults, and the stamp of a saved optimum.
 
-The first line of a saved optimum: the hash of the optimised design.
-
-The hash covers the design, its material values and the version. After any change it no longer
-matches, and the file is an ordinary design.
+The stamp is the first line of the file. It has a hash of the design, its material values and the
+version. After any change the hash no longer matches, and the file is an ordinary design.
 """
 
 from __future__ import annotations
@@ -25,7 +23,7 @@ Plugins = Iterable["Plugin | Callable[[View], object] | str | Path"]
 
 @dataclass(frozen=True, slots=True)
 class Actuator:
-    """A design as read: the design, the locations of its values, and the user's own metrics."""
+    """A design as read, with the locations of its values and the user's own metrics."""
 
     design: Design
     source: FileSource | None = None
@@ -37,15 +35,15 @@ class Actuator:
 
     def changed(self, values: Mapping[str, float | str]) -> Actuator:
         """The same actuator with other numbers by PATH (SI, or text with a unit)."""
-        known = with_own(self.plugins)
-        design = with_values(self.design, dict(values), metrics=known)
+        quantities = with_own(self.plugins)
+        design = with_values(self.design, dict(values), metrics=quantities)
         return Actuator(design, self.source, self.plugins)
 
 
-def plugins_of(given: Plugins) -> tuple[Plugin, ...]:
+def plugins_of(sources: Plugins) -> tuple[Plugin, ...]:
     """Plugins from functions and Python files."""
     plugins: list[Plugin] = []
-    for item in given:
+    for item in sources:
         if isinstance(item, Plugin):
             plugins.append(item)
         elif isinstance(item, (str, Path)):
@@ -78,14 +76,14 @@ def read(
     InputError
         with every fault of the file, each with its place and remedy
     """
-    own = plugins_of(plugins)
+    loaded_plugins = plugins_of(plugins)
     pairs = set.items() if isinstance(set, Mapping) else set
     loaded: LoadedDesign = read_design(
         source,
         overrides=[(path, str(value)) for path, value in pairs],
-        metrics=with_own(own),
+        metrics=with_own(loaded_plugins),
     )
-    return Actuator(loaded.design, loaded.source, own)
+    return Actuator(loaded.design, loaded.source, loaded_plugins)
 
 
 def read_as(
@@ -117,14 +115,14 @@ def as_actuator(design: Actuator | Design | str | Path, plugins: Plugins = ()) -
     return read(design, plugins=plugins)
 
 
-def place(actuator: Actuator) -> Callable[[str, str, str], Diagnostic] | None:
+def fault_of(actuator: Actuator) -> Callable[[str, str, str], Diagnostic] | None:
     """A function that builds a fault of a variable's PATH, with its place in the file."""
     return None if actuator.source is None else actuator.source.of_variable
 
 
 @contextmanager
 def located(actuator: Actuator) -> Iterator[None]:
-    """Add the place in the file to faults that only know their PATH."""
+    """Add the place in the file to faults that only have a PATH."""
     try:
         yield
     except InputError as error:
@@ -140,19 +138,24 @@ def located(actuator: Actuator) -> Iterator[None]:
         ) from None
 
 
-def answered(
+def checked_design(
     design: Actuator | Design | str | Path, plugins: Plugins
 ) -> tuple[Actuator, PreparedDesign]:
-    """Any form of a design, ready for the models; raises `InputError` as `unanswered`."""
+    """Any form of a design, ready for the models.
+
+    Raises
+    ------
+    InputError : a requirement on a metric that this design does not have
+    """
     actuator = as_actuator(design, plugins)
     subject = actuator.subject()
-    faults = unanswered(actuator, subject)
+    faults = requirement_faults(actuator, subject)
     if faults:
         raise InputError(faults)
     return actuator, subject
 
 
-def unanswered(actuator: Actuator, subject: PreparedDesign) -> list[Diagnostic]:
+def requirement_faults(actuator: Actuator, subject: PreparedDesign) -> list[Diagnostic]:
     """Requirements on metrics that this design does not have."""
     if not actuator.design.requirements:
         return []
@@ -165,8 +168,10 @@ def unanswered(actuator: Actuator, subject: PreparedDesign) -> list[Diagnostic]:
         message = f"cannot be met: {computed.why.get(metric, 'it does not apply to this design')}"
         remedy = "remove the requirement, or add what it needs"
         source = actuator.source
-        found = source.diagnostic(path, message, remedy) if source is not None else None
-        faults.append(found or Diagnostic(message, remedy, path=path))
+        if source is None:
+            faults.append(Diagnostic(message, remedy, path=path))
+        else:
+            faults.append(source.diagnostic(path, message, remedy))
     return faults
 
 
@@ -175,11 +180,11 @@ _LINE = re.compile(re.escape(_STAMP) + r"([0-9a-f]{16})\n")
 
 
 def stamped(text: str, spec_hash: str) -> str:
-    """A design file with the stamp, replacing an older one."""
+    """A design file with the stamp; an older stamp is replaced."""
     return f"{_STAMP}{spec_hash}\n{_LINE.sub('', text, count=1)}"
 
 
 def is_optimum(text: str, spec_hash: str) -> bool:
-    """Whether a design file is still the optimum that was saved."""
-    found = _LINE.match(text)
-    return found is not None and found[1] == spec_hash
+    """Whether a design file is an optimum, unchanged since it was saved."""
+    stamp = _LINE.match(text)
+    return stamp is not None and stamp[1] == spec_hash

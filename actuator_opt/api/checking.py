@@ -11,7 +11,7 @@ from ..base.errors import ActuatorError, Diagnostic, InputError
 from ..design import Design, is_scenario
 from ..design.reader import TEXT, opened
 from ..evaluation import PreparedDesign, without_films
-from .actuator import Actuator, Plugins, as_actuator, place, read, unanswered
+from .actuator import Actuator, Plugins, as_actuator, fault_of, read, requirement_faults
 from .simulations import read_scenario
 
 
@@ -28,7 +28,7 @@ def check(
     set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
     plugins: Plugins = (),
 ) -> list[Diagnostic]:
-    """All faults of a design or scenario; an empty list for a good one. Parameters as `read`.
+    """All faults of a design or scenario, empty if it has none. Parameters as `read`.
 
     Includes variables that no model reads and requirements on missing metrics. This runs the
     models, but solves no oil film.
@@ -42,8 +42,8 @@ def examine(
     set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
     plugins: Plugins = (),
 ) -> Examined:
-    """All faults as `check`, and a warning for every implausible value."""
-    if source == "-":  # read once, whatever kind it is
+    """All faults as `check`; without faults, a warning for every implausible value."""
+    if source == "-":  # standard input can only be read once
         text, name = opened(source)
         examined = examine(f"{text}\n", set=set, plugins=plugins)
         faults = [
@@ -62,7 +62,7 @@ def examine(
     except InputError as error:
         return Examined(error.diagnostics, [])
     faults = _of_models(actuator, without_films(subject))
-    if faults and actuator.plugins:  # they may not accept the NaN of an unsolved film
+    if faults and actuator.plugins:  # plugins may reject the NaN of an unsolved film
         faults = _of_models(actuator, subject)
     return Examined(faults, [] if faults else _out_of_proportion(subject))
 
@@ -70,7 +70,7 @@ def examine(
 def _of_models(actuator: Actuator, subject: PreparedDesign) -> list[Diagnostic]:
     """Requirements on missing metrics, variables that no model reads, impossible choices."""
     try:
-        faults = unanswered(actuator, subject)
+        faults = requirement_faults(actuator, subject)
         if faults:
             return faults
         if actuator.design.choices:
@@ -80,7 +80,7 @@ def _of_models(actuator: Actuator, subject: PreparedDesign) -> list[Diagnostic]:
         elif actuator.design.variables:
             from ..optimisation.actuator import build
 
-            build(subject, place(actuator))
+            build(subject, fault_of(actuator))
     except ActuatorError as error:
         return error.diagnostics
     return []

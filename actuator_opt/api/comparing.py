@@ -32,7 +32,7 @@ def compare(
     optimise: bool = False,
     seed: int = 0,
 ) -> Comparison:
-    """Compare designs: differences of the inputs, and the parts that make one better.
+    """Compare designs: differences of the inputs, and the parts that make a design better.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def compare(
     Raises
     ------
     UsageError : fewer than two, or too many
-    InputError : one cannot be read, or two are the same; every fault of every file
+    InputError : a design cannot be read, or two are the same; every fault of every file
     """
     if len(designs) < 2:
         message = "one design cannot be compared" if designs else "no design is named"
@@ -55,17 +55,17 @@ def compare(
         raise UsageError(Diagnostic(f"{len(designs)} designs are too many", f"name up to {MOST}"))
     if sum(design == "-" for design in designs if isinstance(design, str)) > 1:
         raise UsageError(Diagnostic("standard input can only give one design", "name - once"))
-    found: list[tuple[Evaluation, str, DesignState]] = []
+    resolved: list[tuple[Evaluation, str, DesignState]] = []
     faults: list[Diagnostic] = []
     for design in designs:
         try:
-            found.append(_found(design, set, plugins, optimise, seed))
+            resolved.append(_resolved(design, set, plugins, optimise, seed))
         except InputError as error:
             faults += error.diagnostics
     if faults:
         raise InputError(faults)
     try:
-        evaluations, origins, states = zip(*found, strict=True)
+        evaluations, origins, states = zip(*resolved, strict=True)
         return comparison.compare(evaluations, _numbered(origins), states)
     except InputError as error:
         remedy = "name designs that differ"
@@ -73,58 +73,58 @@ def compare(
 
 
 def _numbered(origins: Sequence[str]) -> list[str]:
-    """Origins, numbered where one stands twice."""
+    """Origins; repeated origins get a number."""
     return [
         f"{origin} ({origins[: k + 1].count(origin)})" if origins.count(origin) > 1 else origin
         for k, origin in enumerate(origins)
     ]
 
 
-def _found(
-    one: Any, set: Any, plugins: Plugins, optimise: bool, seed: int
+def _resolved(
+    design: Any, set: Any, plugins: Plugins, optimise: bool, seed: int
 ) -> tuple[Evaluation, str, DesignState]:
     """The evaluation of a named design, its origin, and whether it is an optimum."""
     from ..optimisation.result import Optimisation
     from . import optimum
 
-    if isinstance(one, (str, Path)) and not run_store.is_name(str(one)):
-        one, name = _file(one, set, plugins)
-    elif isinstance(one, (str, Path, Run)):
+    if isinstance(design, (str, Path)) and not run_store.is_name(str(design)):
+        design, name = _file(design, set, plugins)
+    elif isinstance(design, (str, Path, Run)):
         if set:
             message = "--set: a recorded run cannot be changed"
             raise UsageError(Diagnostic(message, "name designs instead"))
-        back: Restored = restore(one, plugins=plugins)
-        one, name = back.optimisation, f"run {back.run.id}"
-    elif isinstance(one, Optimisation):
-        name = one.best_evaluation.name
-    elif isinstance(one, Actuator):
-        name = file_name(one.design, one.source)
+        restored: Restored = restore(design, plugins=plugins)
+        design, name = restored.optimisation, f"run {restored.run.id}"
+    elif isinstance(design, Optimisation):
+        name = design.best_evaluation.name
+    elif isinstance(design, Actuator):
+        name = file_name(design.design, design.source)
     else:
-        name = one.name
-    if not isinstance(one, Optimisation):
-        evaluation = one if isinstance(one, Evaluation) else evaluate(one, plugins=plugins)
-        known = isinstance(one, Actuator) and one.source is not None
-        if known and is_optimum(one.source.text, evaluation.spec_hash):
+        name = design.name
+    if not isinstance(design, Optimisation):
+        evaluation = design if isinstance(design, Evaluation) else evaluate(design, plugins=plugins)
+        has_file = isinstance(design, Actuator) and design.source is not None
+        if has_file and is_optimum(design.source.text, evaluation.spec_hash):
             return evaluation, name, DesignState("optimal", optimum=True)
-        design = one if isinstance(one, Actuator) else evaluation.design
         if not (optimise and evaluation.design.variables):
             return evaluation, name, DesignState()
-        one = optimum.optimise(design, plugins=plugins, prices=False, seed=seed)
-    return one.best_evaluation, name, DesignState(one.status, optimum=one.optimum)
+        start = design if isinstance(design, Actuator) else evaluation.design
+        design = optimum.optimise(start, plugins=plugins, prices=False, seed=seed)
+    return design.best_evaluation, name, DesignState(design.status, optimum=design.optimum)
 
 
-def _file(one: str | Path, set: Any, plugins: Plugins) -> tuple[Actuator, str]:
+def _file(source: str | Path, set: Any, plugins: Plugins) -> tuple[Actuator, str]:
     """A design read from a file or a text, and its origin."""
-    actuator = read(one, set=set, plugins=plugins)
-    name = str(one) if "\n" not in str(one) else file_name(actuator.design, actuator.source)
+    actuator = read(source, set=set, plugins=plugins)
+    name = str(source) if "\n" not in str(source) else file_name(actuator.design, actuator.source)
     return actuator, "<stdin>" if name == "-" else name
 
 
 def comparison_json(comparison: Comparison) -> dict[str, Any]:
     """The `compare --json` object (SI)."""
-    from ..pages.comparison import sentences
+    from ..pages import comparison as page
 
-    said = sentences(comparison)
+    sentences = page.sentences(comparison)
     answers = {
         question.name: {
             "metric": question.metric,
@@ -134,9 +134,9 @@ def comparison_json(comparison: Comparison) -> dict[str, Any]:
             "parts": [{"part": part, "change": step} for part, step in question.steps],
             "sentence": sentence,
         }
-        for question, sentence in zip(comparison.questions, said, strict=False)
+        for question, sentence in zip(comparison.questions, sentences, strict=False)
     }
-    return comparison.to_dict() | {"answers": answers, "notes": said[len(answers) :]}
+    return comparison.to_dict() | {"answers": answers, "notes": sentences[len(answers) :]}
 
 
 def report_comparison(comparison: Comparison, **paper: Unpack[ReportArguments]) -> list[ReportFile]:

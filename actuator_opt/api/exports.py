@@ -7,16 +7,16 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..base import files as files, runs as run_store
+from ..base import files, runs as run_store
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..design import Design
 from ..evaluation import Evaluation
 from .actuator import Actuator, Plugins, as_actuator, plugins_of
 from .optimum import evaluate
-from .recorded_runs import Run, read_run, sound
+from .recorded_runs import Run, damage_reported, read_run
 from .reports import date_from_environment, file_name, require_date
 from .restoring import changed_plugins, named_plugins, restore
-from .sweeping import free, store_of
+from .sweeping import store_of, without_variables
 
 if TYPE_CHECKING:
     from ..explorer import ExplorerFile
@@ -37,18 +37,18 @@ def export(
 ) -> list[ExportFile]:
     """Write a design as STEP, DXF or XLSX files.
 
-    STEP holds the turned parts as solids, in mm, placed as in the section drawing, retracted;
-    their volumes are those of the mass breakdown. Not in it, for the models know no shape of
-    theirs: threads, studs and plugs of the rod, eyes, seals and guides, ports, and the holes of tie
-    rods in the plates. DXF is the section with true dimensions, layers by part; XLSX has the
-    requirements with live margins, the section as a picture, the variables and the masses.
+    STEP has the turned parts as solids, in mm, placed as in the section drawing of the retracted
+    actuator; their volumes are those of the mass breakdown. It lacks parts whose shape the models
+    do not define: threads, studs and plugs of the rod, eyes, seals and guides, ports, and the holes
+    of tie rods in the plates. DXF is the section with true dimensions and one layer per part. XLSX
+    has the requirements with live margins, the section as a picture, the variables and the masses.
 
     Parameters
     ----------
     subject : a design in any form, an evaluation, or an optimisation (its best design)
-    formats : one or more of "step", "dxf" (extra ``cad``), "xlsx" (extra ``excel``)
+    formats : any of "step", "dxf" (extra ``cad``), "xlsx" (extra ``excel``)
     folder, stem : target; default: the design's name in ``reports/``
-    actuator : the design as read, if `subject` is its evaluation: the files get its file's name
+    actuator : the design as read, if `subject` is its evaluation: its file names the exports
     date : ISO date in the files; default: SOURCE_DATE_EPOCH, else none
     plugins : the user's metrics and constraints, for a design that is not an `Actuator` yet
 
@@ -98,12 +98,12 @@ def explore(
 
     Parameters
     ----------
-    store : database of `sweep`, or a recorded run of `sweep` or `pareto` as `read_run` takes it
+    store : database of `sweep`, or a recorded run of `sweep` or `pareto`, as for `read_run`
     out : the page's file (``.html``), or a folder
     study : number of the study; default: the newest, or that of the run
-    rows : maximum designs of a sweep shown; larger ones give an even sample and the best
-    plugins : files with the user's metrics and constraints, as in the sweep; a record names them
-        but never runs them
+    rows : maximum designs shown; of a larger sweep, an even sample and the best
+    plugins : files with the user's metrics and constraints, as in the sweep; a record names these
+        programs, but alone never runs them
 
     Returns
     -------
@@ -114,8 +114,8 @@ def explore(
     UsageError
         fewer than one row
     InputError
-        no such file, study or run; not a store, or one that has moved; one of other models,
-        materials or custom metrics; or a place that cannot be written
+        no such file, study or run; not a store, or a store that has moved; a store with other
+        models, materials or custom metrics; or a target that cannot be written
     """
     from ..explorer import write_explorer
     from ..sweeps.explored import explored
@@ -128,26 +128,26 @@ def explore(
     if run is not None and study is not None:
         raise UsageError(Diagnostic("--study: a run has only one study", "leave it out"))
     front = run is not None and run.head.get("kind") == "pareto"
-    which: int | str | None = study
+    study_key: int | str | None = study
     source, target = Path(store), Path(out)
-    own, remarks = plugins_of(plugins), list[str]()
+    loaded_plugins, remarks = plugins_of(plugins), list[str]()
     if run is not None:
-        with sound(run):
-            source, which = (run.path, None) if front else store_of(run)
-            remarks = changed_plugins(run, named_plugins(run, own))
+        with damage_reported(run):
+            source, study_key = (run.path, None) if front else store_of(run)
+            remarks = changed_plugins(run, named_plugins(run, loaded_plugins))
     if target.suffix.lower() not in (".html", ".htm"):
         stem = f"{Path(str(run.head.get('file'))).stem}_pareto" if run and front else source.stem
         target = target / f"{stem}_explore.html"
     _require(target, source)
     if run is not None and front:
-        with sound(run):
-            found = _front(run, own)
+        with damage_reported(run):
+            explored_rows = _front(run, loaded_plugins)
     else:
-        found = explored(source, study=which, most=rows, plugins=own)
+        explored_rows = explored(source, study=study_key, most=rows, plugins=loaded_plugins)
     with files.writing(target.parent):
         target.parent.mkdir(parents=True, exist_ok=True)
-    named = [os.path.relpath(Path(file).resolve(), target.parent.resolve()) for file in plugins]
-    return write_explorer(found, target, plugins=named, remarks=remarks)
+    paths = [os.path.relpath(Path(file).resolve(), target.parent.resolve()) for file in plugins]
+    return write_explorer(explored_rows, target, plugins=paths, remarks=remarks)
 
 
 def _require(target: Path, source: Path) -> None:
@@ -164,15 +164,15 @@ def _front(run: Run, plugins: Plugins) -> Explored:
     from ..optimisation.pareto import ParetoFront
     from ..sweeps.explored import explored_designs
 
-    back = restore(run, plugins=plugins)
-    front = back.result
+    restored = restore(run, plugins=plugins)
+    front = restored.result
     assert isinstance(front, ParetoFront)
     if not front.points:
         raise InputError(Diagnostic(front.sentence, "see: runs show", str(run.path)))
     return explored_designs(
-        free(back.actuator),
+        without_variables(restored.actuator),
         [point.variables for point in front.points],
-        plugins=back.actuator.plugins,
+        plugins=restored.actuator.plugins,
         origin="Pareto front",
         shown=tuple(objective.metric for objective in front.objectives),
     )

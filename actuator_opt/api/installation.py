@@ -35,7 +35,7 @@ _BOUND = re.compile(r"(>=|<=|==|!=|~=|<|>)\s*([\d.]+)")
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One item examined; `remedy` says how to fix it."""
+    """An item examined; `remedy` says how to correct it."""
 
     group: str
     name: str
@@ -76,24 +76,24 @@ class Installation(Displayed):
 def doctor(
     *, out: str | Path = "reports", runs: str | Path | None = None, terminal: str = ""
 ) -> Installation:
-    """Examine Python, dependencies, extras, fonts, data, folders and the machine.
+    """Check Python, dependencies, extras, fonts, data, folders and the machine.
 
     Parameters
     ----------
-    out : folder of reports to be written
+    out : folder for reports
     runs : folder of run records; None if no runs are recorded
-    terminal : capabilities of the terminal, in words; "" leaves it out
+    terminal : capabilities of the terminal, in words; "": not listed
     """
-    found = [_python(), Finding("program", _NAME, "ok", f"{VERSION}, {Path(__file__).parents[1]}")]
-    found += [*_packages(), _fonts(), _materials()]
-    found.append(_folder("reports", Path(out), "name another folder with --out"))
+    program = Finding("program", _NAME, "ok", f"{VERSION}, {Path(__file__).parents[1]}")
+    findings = [_python(), program, *_packages(), _fonts(), _materials()]
+    findings.append(_folder("reports", Path(out), "name another folder with --out"))
     if runs is None:
-        found.append(Finding("folder", "runs", "ok", "no runs are recorded"))
+        findings.append(Finding("folder", "runs", "ok", "no runs are recorded"))
     else:
-        found.append(_folder("runs", Path(runs), "set ACTUATOR_OPT_RUNS to another folder"))
+        findings.append(_folder("runs", Path(runs), "set ACTUATOR_OPT_RUNS to another folder"))
     if terminal:
-        found.append(Finding("terminal", "output", "ok", terminal))
-    return Installation((*found, _machine()))
+        findings.append(Finding("terminal", "output", "ok", terminal))
+    return Installation((*findings, _machine()))
 
 
 def _python() -> Finding:
@@ -108,9 +108,9 @@ def _requirements() -> tuple[list[str], dict[str, list[str]]]:
     """Requirements of the project, and of each extra."""
     project = Path(__file__).parents[2] / "pyproject.toml"
     if project.is_file():
-        stated = tomllib.loads(project.read_text("utf-8")).get("project", {})
-        if stated.get("name") == _NAME:
-            return stated["dependencies"], stated.get("optional-dependencies", {})
+        project_table = tomllib.loads(project.read_text("utf-8")).get("project", {})
+        if project_table.get("name") == _NAME:
+            return project_table["dependencies"], project_table.get("optional-dependencies", {})
     core: list[str] = []
     extras: dict[str, list[str]] = {}
     try:
@@ -139,12 +139,12 @@ def _packages() -> Iterator[Finding]:
     for extra, texts in extras.items():
         if extra in ("test", "dev"):
             continue
-        found = [_package(text, modules) for text in texts]
-        faults = [f"{name} {fault}" for name, _, fault in found if fault]
-        values = [f"{name} {value}" for name, value, fault in found if not fault]
+        packages = [_package(text, modules) for text in texts]
+        faults = [f"{name} {fault}" for name, _, fault in packages if fault]
+        values = [f"{name} {value}" for name, value, fault in packages if not fault]
         remedy = f"for it: pip install '{_NAME}[{extra}]'" if faults else ""
-        shown = ", ".join(faults or values)
-        yield Finding("extra", extra, "missing" if faults else "ok", shown, remedy)
+        value = ", ".join(faults or values)
+        yield Finding("extra", extra, "missing" if faults else "ok", value, remedy)
 
 
 def _package(text: str, modules: dict[str, list[str]]) -> tuple[str, str, str]:
@@ -158,11 +158,10 @@ def _package(text: str, modules: dict[str, list[str]]) -> tuple[str, str, str]:
         return name, "", "is not installed"
     if not _fits(version, match[3]):
         return name, version, f"{version} is installed, {match[3].strip()} is needed"
-    own = modules.get(_normal(name), [])
-    module = next((one for one in own if _normal(one) == _normal(name)), None)
-    module = module or next((one for one in sorted(own) if not one.startswith("_")), None)
+    own = sorted(modules.get(_normal(name), []))
+    own = [x for x in own if _normal(x) == _normal(name)] or [x for x in own if x[0] != "_"]
     try:
-        import_module(module or name)
+        import_module(own[0] if own else name)
     except (ImportError, OSError, AttributeError, RuntimeError, TypeError, ValueError) as error:
         reason = (str(error).strip() or type(error).__name__).splitlines()[0]
         return name, version, f"{version} cannot be imported: {reason}"
@@ -174,7 +173,7 @@ def _normal(name: str) -> str:
 
 
 def _numbers(version: str) -> tuple[int, ...]:
-    """The release numbers of a version, without what follows them (rc1, .dev0)."""
+    """The release numbers of a version, without a suffix (rc1, .dev0)."""
     match = re.match(r"\d+(?:\.\d+)*", version)
     return () if match is None else tuple(map(int, match[0].split(".")))
 
@@ -185,16 +184,16 @@ def _fits(version: str, bounds: str) -> bool:
     >>> _fits("12.0.2", ">=12,<13"), _fits("13.0", ">=12,<13"), _fits("2.10", ">=2.9")
     (True, False, True)
     """
-    have = _numbers(version)
+    numbers = _numbers(version)
     for sign, text in _BOUND.findall(bounds):
         limit = _numbers(text)
-        size = max(len(have), len(limit))
-        a, b = (x + (0,) * (size - len(x)) for x in (have, limit))
-        kept = {
+        size = max(len(numbers), len(limit))
+        a, b = (x + (0,) * (size - len(x)) for x in (numbers, limit))
+        satisfied = {
             ">=": a >= b, "<=": a <= b, "==": a == b, "!=": a != b, "<": a < b, ">": a > b,
             "~=": a >= b and a[: len(limit) - 1] == b[: len(limit) - 1],
         }[sign]  # fmt: skip
-        if not kept:
+        if not satisfied:
             return False
     return True
 
@@ -203,9 +202,9 @@ def _fonts() -> Finding:
     from ..rendering.paper import font_folders
 
     folders = [Path(folder) for folder in font_folders()]
-    lost = [name for name in _FONTS if not any((folder / name).is_file() for folder in folders)]
-    if lost:
-        value = f"{', '.join(lost)} not found"
+    missing = [name for name in _FONTS if not any((folder / name).is_file() for folder in folders)]
+    if missing:
+        value = f"{', '.join(missing)} not found"
         return Finding("data", "fonts", "fault", value, "pip install --force-reinstall matplotlib")
     return Finding("data", "fonts", "ok", f"{len(_FONTS)} of {len(_FONTS)} in {folders[0]}")
 
@@ -225,8 +224,8 @@ def _folder(name: str, folder: Path, remedy: str) -> Finding:
     reason = store.unwritable(folder)
     if reason:
         return Finding("folder", name, "fault", f"cannot be written: {reason}", remedy)
-    new = "" if folder.is_dir() else " (made when needed)"
-    return Finding("folder", name, "ok", f"{folder.absolute()}{new}")
+    remark = "" if folder.is_dir() else " (made when needed)"
+    return Finding("folder", name, "ok", f"{folder.absolute()}{remark}")
 
 
 def _machine() -> Finding:

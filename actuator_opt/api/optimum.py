@@ -3,27 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Unpack
+from typing import TYPE_CHECKING, Any, Unpack
 
+from ..base.tables import Displayed
 from ..design import Design
-from .actuator import Actuator, Plugins, answered, located, place
+from ..evaluation import Evaluation, PreparedDesign, evaluate as evaluate_subject, prepare
+from ..evaluation.plugin import Plugin
+from ..evaluation.result import YieldEstimate
+from .actuator import Actuator, Plugins, as_actuator, checked_design, fault_of, located
 from .reports import ReportArguments, page_of, report_files
 
 if TYPE_CHECKING:
     from ..optimisation.pareto import ParetoFront
-
-
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
-
-from ..base.tables import Displayed
-from ..evaluation import Evaluation, PreparedDesign, evaluate as evaluate_subject, prepare
-from ..evaluation.plugin import Plugin
-from ..evaluation.result import YieldEstimate
-from .actuator import as_actuator
-
-if TYPE_CHECKING:
     from ..optimisation.prices import Sensitivity
     from ..optimisation.result import Optimisation
     from ..pages import ReportFile
@@ -33,13 +26,13 @@ if TYPE_CHECKING:
 def evaluate(
     design: Actuator | Design | str | Path, *, plugins: Plugins = (), seed: int | None = None
 ) -> Evaluation:
-    """Every metric, requirement and check of a design.
+    """Compute every metric, requirement and check of a design.
 
     Parameters
     ----------
     design : the design
     plugins : the user's own metrics and constraints
-    seed : of the draws of a quick yield estimate (`with_yield`); None: no estimate
+    seed : of the samples of a quick yield estimate (`with_yield`); None: no estimate
     """
     actuator = as_actuator(design, plugins)
     evaluation = evaluate_subject(actuator.subject())
@@ -51,13 +44,13 @@ def evaluate(
 def with_yield(
     evaluation: Evaluation, *, plugins: tuple[Plugin, ...] = (), seed: int = 0
 ) -> Evaluation:
-    """An evaluation with a quick estimate of its yield (`uncertainties.quick`).
+    """Add a quick estimate of the yield to an evaluation (`uncertainties.study.quick_yield`).
 
     Parameters
     ----------
     evaluation : of a design
-    plugins : the user's own metrics it was evaluated with
-    seed : of the draws
+    plugins : the user's own metrics in the evaluation
+    seed : of the samples
     """
     from ..uncertainties.study import quick_yield
 
@@ -83,17 +76,17 @@ def optimise(
     """Find the best design; parameters as `optimisation.run.optimise`.
 
     With a `yield_target`, all limits are met with that probability under the design's uncertain
-    inputs (`uncertainties.robust`); `robust` of the result has the details. Without one,
-    `best_evaluation` has a quick estimate of its yield (`uncertainties.quick`).
+    inputs (`uncertainties.robust`); `robust` of the result has the details. Without a target,
+    `best_evaluation` has a quick estimate of its yield.
     """
     from ..optimisation.run import optimise as run
 
-    actuator, subject = answered(design, plugins)
+    actuator, subject = checked_design(design, plugins)
 
     def search(subject: PreparedDesign, last: bool) -> Optimisation:
         return run(
             subject,
-            fault=place(actuator),
+            fault=fault_of(actuator),
             algorithm=algorithm,
             starts=starts,
             seed=seed,
@@ -115,17 +108,17 @@ def optimise(
 
 
 def estimated(optimisation: Optimisation, plugins: tuple[Plugin, ...]) -> Optimisation:
-    """An optimum with its yield: from its own sample, else a quick estimate."""
+    """An optimum with its yield: from the sample of `robust`, else a quick estimate."""
     best, sample = optimisation.best_evaluation, optimisation.robust
     if sample is not None:
-        known = YieldEstimate(
+        yield_estimate = YieldEstimate(
             value=sample.rate,
             lower=sample.lower,
             upper=sample.upper,
             draws=sample.samples,
             with_checks=None if sample.left_out else sample.rate,
         )
-        best = replace(best, yield_estimate=known)
+        best = replace(best, yield_estimate=yield_estimate)
     elif optimisation.status.startswith("interrupted"):
         best = replace(best, yield_estimate=YieldEstimate(why="the search was interrupted"))
     else:
@@ -156,7 +149,7 @@ class Prices(Displayed):
         return {key: data[key] for key in keys if key in data}
 
     def page(self) -> Page:
-        """Prices and movements, or why there is no optimum."""
+        """Prices and movements, or the reason for a missing optimum."""
         from ..pages.report import prices_page
 
         return prices_page(self.optimisation)
@@ -177,22 +170,22 @@ def pareto(
     checks: int = 3,
     plugins: Plugins = (),
 ) -> ParetoFront:
-    """Evenly spread designs of the Pareto front, with the knee.
+    """Search evenly spread designs of the Pareto front, and its knee.
 
     Parameters
     ----------
     design : as `optimise`
     objectives : two to four of ``METRIC:min`` or ``METRIC:max``
     n : designs requested
-    seed : same seed, same front
-    checks : independent searches between designs, which reveal merely local ones
+    seed : the same seed gives the same front
+    checks : independent searches between designs, which reveal local optima
     plugins : the user's metrics and constraints
     """
     from ..optimisation.pareto import pareto as run
 
-    actuator, subject = answered(design, plugins)
+    actuator, subject = checked_design(design, plugins)
     with located(actuator):
-        return run(subject, objectives, count=n, seed=seed, checks=checks, fault=place(actuator))
+        return run(subject, objectives, count=n, seed=seed, checks=checks, fault=fault_of(actuator))
 
 
 def write_front_csv(front: ParetoFront, path: str | Path) -> ReportFile:
@@ -214,7 +207,7 @@ def write_front(front: ParetoFront, **paper: Unpack[ReportArguments]) -> list[Re
 
     if not front.points:
         return []
-    origin, place = page_of(front.subject, "_pareto", **paper)
-    files = printed.write(page(front), origin, result=front_outcome(front), **place)
-    pictures = write_ink(front_figure(front), place["folder"], f"{place['stem']}_figure")
+    origin, fault_of = page_of(front.subject, "_pareto", **paper)
+    files = printed.write(page(front), origin, result=front_outcome(front), **fault_of)
+    pictures = write_ink(front_figure(front), fault_of["folder"], f"{fault_of['stem']}_figure")
     return files + report_files(pictures)

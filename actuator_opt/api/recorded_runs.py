@@ -1,8 +1,7 @@
-"""Run records: input and outcome of runs, listed and read back.
+"""Run records: write, list, read and delete them.
 
-Required form of the fields of a run record and of a report's attachment.
-
-Either may be damaged, or written by someone else.
+Records and the attachments of reports may be damaged or foreign, so their fields are checked
+against a required form first.
 """
 
 from __future__ import annotations
@@ -142,24 +141,24 @@ _RUN: Form = {
 
 
 def run_fault(run: object) -> str:
-    """The fault of the facts attached to a report; "" if there is none."""
+    """The fault of the data attached to a report; "" without a fault."""
     return _fault(run, _RUN)
 
 
 def head_fault(head: object) -> str:
-    """The fault of the head of a record; "" if there is none.
+    """The fault of the head of a record; "" without a fault.
 
     >>> head_fault({"kind": 3})
     'kind must be text'
     """
-    found = _fault(head, _HEAD)
-    if found or not isinstance(head, Mapping):
-        return found
+    fault = _fault(head, _HEAD)
+    if fault or not isinstance(head, Mapping):
+        return fault
     return _fault(head, _HEADS.get(head["kind"], {}))
 
 
 def body_fault(kind: str, body: object) -> str:
-    """The fault of the body of a record of this kind; "" if there is none."""
+    """The fault of the body of a record of this kind; "" without a fault."""
     return _fault(body, _BODY) or _fault(body, _BODIES.get(kind, {}))
 
 
@@ -169,8 +168,8 @@ _WORDS = {str: "text", int: "a whole number", bool: "true or false", float: "a n
 def _fault(value: object, form: Form, path: str = "") -> str:
     """Where a value deviates from a form, and what is expected; "" if it fits."""
     if isinstance(form, tuple):
-        found = [_fault(value, one, path) for one in form]
-        return "" if "" in found else found[0]
+        faults = [_fault(value, alternative, path) for alternative in form]
+        return "" if "" in faults else faults[0]
     if isinstance(form, list):
         if not isinstance(value, list):
             return f"{path} must be a list"
@@ -181,8 +180,8 @@ def _fault(value: object, form: Form, path: str = "") -> str:
         return _object_fault(value, form, path)
     if form is None:
         return "" if value is None else f"{path} must be null"
-    wanted = (int, float) if form is float else form
-    if isinstance(value, wanted) and (form in (bool, object) or not isinstance(value, bool)):
+    expected_type = (int, float) if form is float else form
+    if isinstance(value, expected_type) and (form in (bool, object) or not isinstance(value, bool)):
         return ""
     return f"{path} must be {_WORDS[form]}"
 
@@ -193,12 +192,12 @@ def _object_fault(value: object, form: dict[str, Form], path: str) -> str:
         return f"{path or 'it'} must be an object"
     head = f"{path}." if path else ""
     if "*" in form:
-        found = (_fault(below, form["*"], f"{head}{name}") for name, below in value.items())
-        return next(filter(None, found), "")
-    for key, below in form.items():
+        faults = (_fault(field, form["*"], f"{head}{name}") for name, field in value.items())
+        return next(filter(None, faults), "")
+    for key, field in form.items():
         name = key.removesuffix("?")
         if name in value:
-            fault = _fault(value[name], below, f"{head}{name}")
+            fault = _fault(value[name], field, f"{head}{name}")
             if fault:
                 return fault
         elif name == key:
@@ -206,14 +205,14 @@ def _object_fault(value: object, form: dict[str, Form], path: str) -> str:
     return ""
 
 
-_STATED = re.compile(r"^Version: *(\S+)", re.MULTILINE)
+_VERSION = re.compile(r"^Version: *(\S+)", re.MULTILINE)
 CLOSE = 1e-9
 """Relative difference up to which a number counts as reproduced: a choice, far above rounding."""
 
 
 @dataclass(frozen=True, slots=True)
 class Run(Displayed):
-    """A recorded run: `head` is shown in lists, `body` has input, versions and result."""
+    """A recorded run: lists show its `head`; its `body` has input, versions and result."""
 
     id: str
     path: Path
@@ -222,20 +221,20 @@ class Run(Displayed):
 
     def to_dict(self) -> dict[str, Any]:
         """The `runs show --json` object."""
-        kept = {key: value for key, value in self.body.items() if key not in ("state", "tables")}
-        return {"id": self.id, "path": str(self.path)} | dict(self.head) | kept
+        body = {key: value for key, value in self.body.items() if key not in ("state", "tables")}
+        return {"id": self.id, "path": str(self.path)} | dict(self.head) | body
 
     def text(self, **style: Unpack[Style]) -> str:
         """Return the terminal text."""
         from ..pages.runs import blocks
         from ..rendering.terminal import blocks_text
 
-        with sound(self):
+        with damage_reported(self):
             return blocks_text(blocks(self.id, self.head, self.body), **style)
 
 
 @contextmanager
-def sound(run: Run) -> Iterator[None]:
+def damage_reported(run: Run) -> Iterator[None]:
     """Report missing or malformed parts of a record in one line."""
     try:
         yield
@@ -251,8 +250,8 @@ def sound(run: Run) -> Iterator[None]:
         raise InputError(_damaged(type(error).__name__, run.path)) from None
 
 
-def _damaged(what: str, path: Path) -> Diagnostic:
-    return Diagnostic(f"is damaged ({what})", "run it again", str(path))
+def _damaged(reason: str, path: Path) -> Diagnostic:
+    return Diagnostic(f"is damaged ({reason})", "run it again", str(path))
 
 
 def record_run(
@@ -272,7 +271,7 @@ def record_run(
     ----------
     kind : the command
     head : its outcome in a few plain numbers and words, which lists show
-    body : everything else, as plain data
+    body : the other data of the run, as plain data
     actuator, command, date, folder : as `record`
     seed : of the run
 
@@ -287,12 +286,12 @@ def record_run(
     from ..design.writer import to_yaml
     from ..evaluation.build import spec_hash
 
-    place = run_store.folder() if folder is None else Path(folder)
+    place = _folder(folder)
     if place is None:
         return None
     source = actuator.source
     started = _started()
-    first = {
+    common_head = {
         "kind": kind,
         "name": actuator.design.name,
         "file": file_name(actuator.design, source),
@@ -302,7 +301,7 @@ def record_run(
         "spec_hash": spec_hash(actuator.subject()),
         "seed": seed,
     }
-    rest = {
+    common_body = {
         "date": date or date_from_environment(),
         "input": {
             "name": file_name(actuator.design, source),
@@ -312,9 +311,14 @@ def record_run(
         },
         "versions": _versions(),
     }
-    head, body = first | dict(head), rest | dict(body)
+    head, body = common_head | dict(head), common_body | dict(body)
     path = run_store.write(place, f"{started:%Y%m%d-%H%M%S}", head, body)
     return Run(path.stem, path, head, body)
+
+
+def _folder(folder: str | Path | None) -> Path | None:
+    """Folder of the records; None if recording is switched off."""
+    return run_store.folder() if folder is None else Path(folder)
 
 
 def _started() -> datetime:
@@ -325,7 +329,7 @@ def _started() -> datetime:
 
 
 def _plugins(plugins: Sequence[Plugin]) -> list[dict[str, str]]:
-    """The Python files of plugins, each once; "" means functions of a script."""
+    """The Python files of plugins without duplicates; "" means functions of a script."""
     files = dict.fromkeys(plugin.file for plugin in plugins)
     return [{"file": os.path.abspath(x) if x else x, "sha256": sha256(x)} for x in files]
 
@@ -339,15 +343,15 @@ def sha256(file: str) -> str:
 
 
 def _versions() -> dict[str, str]:
-    found = {"actuator-opt": VERSION, "python": platform.python_version()}
+    versions = {"actuator-opt": VERSION, "python": platform.python_version()}
     for name in ("numpy", "scipy", "nlopt", "cvxpy", "matplotlib", "typst"):
         try:
             package = metadata.distribution(name)
         except metadata.PackageNotFoundError:
             continue
-        head = _STATED.search(package.read_text("METADATA") or "")  # a full parse takes 4 ms
-        found[name] = package.version if head is None else head[1]
-    return found
+        version = _VERSION.search(package.read_text("METADATA") or "")  # a full parse takes 4 ms
+        versions[name] = package.version if version is None else version[1]
+    return versions
 
 
 def runs(
@@ -361,28 +365,26 @@ def runs(
     Parameters
     ----------
     design : only runs of a design with this name or file
-    command : only those of this command (``optimise``, ``pareto``, ``sweep``)
+    command : only runs of this command (``optimise``, ``pareto``, ``sweep``)
     folder : location of the records; default as `record`
     """
-    place = run_store.folder() if folder is None else Path(folder)
+    place = _folder(folder)
     if place is None:
         return [], []
-    every, faults = run_store.entries(place)
-    wrong = {entry.id: head_fault(entry.head) for entry in every}
-    faults += [_damaged(wrong[entry.id], entry.path) for entry in every if wrong[entry.id]]
-    found = [entry for entry in every if not wrong[entry.id]]
+    entries, faults = run_store.entries(place)
+    if command == "optimize":
+        command = "optimise"
     stem = None if design is None else Path(design).name
-    kept = [
-        entry
-        for entry in found
-        if (command is None or entry.head.get("kind") == _spelt(command))
-        and (stem is None or stem in _names(entry.head))
-    ]
-    return kept, faults
-
-
-def _spelt(command: str) -> str:
-    return "optimise" if command == "optimize" else command
+    selected = []
+    for entry in entries:
+        fault = head_fault(entry.head)
+        if fault:
+            faults.append(_damaged(fault, entry.path))
+        elif (command is None or entry.head.get("kind") == command) and (
+            stem is None or stem in _names(entry.head)
+        ):
+            selected.append(entry)
+    return selected, faults
 
 
 def _names(head: Mapping[str, Any]) -> tuple[str, ...]:
@@ -391,14 +393,13 @@ def _names(head: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def read_run(name: str | Path, *, folder: str | Path | None = None) -> Run:
-    """A recorded run by its id or the start of one, ``last``, or its file.
+    """A recorded run by its id or the start of its id, ``last``, or its file.
 
     Raises
     ------
-    InputError : none, several, a damaged or a newer one
+    InputError : no such run, several, a damaged record, or a record of a newer version
     """
-    place = run_store.folder() if folder is None else Path(folder)
-    path = run_store.find(place, str(name))
+    path = run_store.find(_folder(folder), str(name))
     head, body = run_store.read(path)
     fault = head_fault(head) or body_fault(head["kind"], body)
     if fault:
@@ -408,7 +409,7 @@ def read_run(name: str | Path, *, folder: str | Path | None = None) -> Run:
 
 def delete_run(name: str, *, folder: str | Path | None = None) -> str:
     """Delete a recorded run and return its id. Parameters as `read_run`."""
-    path = run_store.find(run_store.folder() if folder is None else Path(folder), name)
+    path = run_store.find(_folder(folder), name)
     if not run_store.is_record(path):
         remedy = "write its id"
         raise InputError(Diagnostic("is not a record of a run", remedy, str(path)))
@@ -418,16 +419,16 @@ def delete_run(name: str, *, folder: str | Path | None = None) -> str:
 
 
 def prune_runs(*, keep: int, folder: str | Path | None = None) -> list[str]:
-    """Delete all runs but the newest `keep`; ids of those this call deleted."""
-    place = run_store.folder() if folder is None else Path(folder)
+    """Delete all runs except the newest `keep`; returns the ids of the deleted runs."""
+    place = _folder(folder)
     if place is None:
         return []
-    found, _ = run_store.entries(place)
-    return [entry.id for entry in found[keep:] if run_store.delete(entry.path)]
+    entries, _ = run_store.entries(place)
+    return [entry.id for entry in entries[keep:] if run_store.delete(entry.path)]
 
 
 def differing(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
-    """Names whose numbers differ by more than `CLOSE`, or that only one side has."""
+    """Names whose numbers differ by more than `CLOSE`, or that either side lacks."""
     names = dict.fromkeys([*then, *now])
     return [name for name in names if not same(then.get(name), now.get(name))]
 
@@ -440,7 +441,7 @@ def same(a: Any, b: Any) -> bool:
 
 
 BEST = 10
-"""Maximum number of best designs in a sweep's record; the store has all rows."""
+"""Maximum number of best designs in the record of a sweep; the store has all rows."""
 REASONS = 20
 """Number of failure reasons recorded, most frequent first."""
 
@@ -455,7 +456,7 @@ def record(
     dynamics_verified: Verification | None = None,
     folder: str | Path | None = None,
 ) -> Run | None:
-    """Record an optimisation with its input, for showing and reporting it later.
+    """Record an optimisation with its input, to show and report it later.
 
     Parameters
     ----------
@@ -482,7 +483,7 @@ def record(
         "objective": result.to_dict()["objective"],
         "seconds": result.seconds,
     }
-    more = {
+    body = {
         "variables": {v.path: v.value for v in result.best_variables},
         "trace": [list(row) for row in result.trace],
         "result": result.to_dict(),
@@ -493,13 +494,13 @@ def record(
         ],
     }
     return record_run(
-        "optimise", head, more, actuator=actuator, command=command, date=date,
+        "optimise", head, body, actuator=actuator, command=command, date=date,
         seed=result.seed, folder=folder,
     )  # fmt: skip
 
 
 def _plain_table(table: Table) -> dict[str, object]:
-    """A table of a report as a record holds it: texts under their heads."""
+    """A table of a report in the form of a record: texts under their heads."""
     from ..rendering.heights import cells_of, joined
 
     flexible = all(column.flexible for column in table.columns)
@@ -513,42 +514,38 @@ def _plain_table(table: Table) -> dict[str, object]:
 
 
 def record_front(
-    found: ParetoFront,
+    front: ParetoFront,
     *,
     actuator: Actuator,
     command: str = "",
     date: str | None = None,
     folder: str | Path | None = None,
 ) -> Run | None:
-    """Record a Pareto front, for showing and reporting it later; as `record`."""
+    """Record a Pareto front, to show and report it later; parameters as `record`."""
     from ..optimisation.recorded import to_plain
 
-    knee = None if found.knee is None else found.knee.index
+    objectives, knee = front.objectives, None
+    if front.knee is not None:
+        metrics = front.points[front.knee.index].metrics
+        knee = {objective.metric: metrics[objective.metric] for objective in objectives}
     head = {
-        "status": found.status,
-        "outcome": found.sentence,
-        "met": bool(found.points),
-        "objectives": [
-            {"metric": objective.metric, "sense": objective.sense} for objective in found.objectives
-        ],
-        "points": len(found.points),
-        "knee": None
-        if knee is None
-        else {
-            objective.metric: found.points[knee].metrics[objective.metric]
-            for objective in found.objectives
-        },
-        "seconds": found.seconds,
+        "status": front.status,
+        "outcome": front.sentence,
+        "met": bool(front.points),
+        "objectives": [{"metric": x.metric, "sense": x.sense} for x in objectives],
+        "points": len(front.points),
+        "knee": knee,
+        "seconds": front.seconds,
     }
-    more = {"result": found.to_dict(), "state": to_plain(found)}
+    body = {"result": front.to_dict(), "state": to_plain(front)}
     return record_run(
-        "pareto", head, more, actuator=actuator, command=command, date=date,
-        seed=found.seed, folder=folder,
+        "pareto", head, body, actuator=actuator, command=command, date=date,
+        seed=front.seed, folder=folder,
     )  # fmt: skip
 
 
 def record_sweep(
-    found: Swept,
+    swept: Swept,
     *,
     actuator: Actuator,
     store: str | Path | None = None,
@@ -561,52 +558,50 @@ def record_sweep(
     date: str | None = None,
     folder: str | Path | None = None,
 ) -> Run | None:
-    """Record a sweep: plan, counts, best designs and the location of its rows, but no rows.
+    """Record a sweep: plan, counts, best designs, and the location of its rows without the rows.
 
     Parameters
     ----------
-    found : of `sweep`
+    swept : of `sweep`
     actuator, command, date, folder : as `record`
     store, csv, parquet, keep, figures, show : as given to `sweep`
     """
     from ..pages.sweep import counts
 
-    study = found.study
-    goal, met = study.goal, bool(found.best or found.feasible)
+    study = swept.study
+    goal, met = study.goal, bool(swept.best or swept.feasible)
     best = None
-    if found.best:
-        first = found.best[0].objective
-        best = found.metrics(found.best[0])[goal.single] if goal.single else goal.shown(first)
+    if swept.best:
+        first = swept.best[0].objective
+        best = swept.metrics(swept.best[0])[goal.single] if goal.single else goal.shown(first)
     head = {
         "status": "feasible" if met else "infeasible",
-        "outcome": f"{found.requested} variants: {counts(found)}",
+        "outcome": f"{swept.requested} variants: {counts(swept)}",
         "met": met,
         "objective": {"metric": goal.single or "weighted", "value": best},
-        "requested": found.requested,
-        "feasible": found.feasible,
-        "failed": found.failed,
-        "seconds": found.seconds,
+        "requested": swept.requested,
+        "feasible": swept.feasible,
+        "failed": swept.failed,
+        "seconds": swept.seconds,
     }
-    commonest = sorted(found.failures.items(), key=lambda one: (-one[1], one[0]))[:REASONS]
-    kept = replace(found, best=found.best[:BEST], failures=dict(commonest))
-    more: dict[str, Any] = {
-        "plan": _plan(found),
+    commonest = sorted(swept.failures.items(), key=lambda failure: (-failure[1], failure[0]))
+    summary = replace(swept, best=swept.best[:BEST], failures=dict(commonest[:REASONS]))
+    body: dict[str, Any] = {
+        "plan": _plan(swept),
         "asked": {
-            "store": None
-            if store is None
-            else {"path": os.path.abspath(store), "study": study.hash},
-            "csv": None if csv is None else os.path.abspath(csv),
-            "parquet": None if parquet is None else os.path.abspath(parquet),
+            "store": store and {"path": os.path.abspath(store), "study": study.hash},
+            "csv": csv and os.path.abspath(csv),
+            "parquet": parquet and os.path.abspath(parquet),
             "reduce": not study.full,
             "engine": study.engine,
             "keep": keep,
             "figures": list(figures),
             "show": list(show),
         },
-        "result": kept.to_dict(),
+        "result": summary.to_dict(),
     }
     return record_run(
-        "sweep", head, more, actuator=actuator, command=command, date=date,
+        "sweep", head, body, actuator=actuator, command=command, date=date,
         seed=study.plan.seed, folder=folder,
     )  # fmt: skip
 

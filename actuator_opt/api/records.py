@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 MOST_BYTES = 1_000_000_000
 """Largest file of a record (a choice: memory must hold it several times)."""
-_WISHES = (
+_NOT_TESTED = (
     "name",
     "notes",
     "variables",
@@ -49,13 +49,13 @@ def read_record(
     Parameters
     ----------
     source : path, ``"-"`` for standard input
-    columns : header by channel if it is not a known name, with a unit if the file states none:
+    columns : header by channel if it is not a known name, with a unit if the file lacks it:
         ``{"p1": "Channel 3 [bar]"}``
-    units : of columns whose header states none: ``"SI"`` (m, s, Pa, N, m/s, K), a file with lines
-        ``p1: bar`` (YAML) or ``p1,bar``, or a mapping; a unit in the header takes precedence over
-        ``"SI"`` and must agree with one stated for its column
-    needed : channels that must have a unit; others without one are left out and noted; default: all
-        but v and T
+    units : of columns without a unit in their header: ``"SI"`` (m, s, Pa, N, m/s, K), a file with
+        lines ``p1: bar`` (YAML) or ``p1,bar``, or a mapping; a unit in the header takes precedence
+        over ``"SI"`` and must agree with a unit stated for its column
+    needed : channels that must have a unit; default: all except v and T. Other channels without a
+        unit are left out and noted
 
     Returns
     -------
@@ -69,12 +69,12 @@ def read_record(
     from ..base.files import read_bytes
     from ..identification import column_units, decode_record, parse_record
 
-    known = column_units(units)
+    known_units = column_units(units)
     kinds = (".csv", ".txt", ".tsv")
     name = "<stdin>" if str(source) == "-" else str(source)
     data = read_bytes(source, most=MOST_BYTES + 1, kinds=kinds, what="CSV file")
     text = decode_record(data, name, most=MOST_BYTES)
-    return parse_record(text, name=name, columns=columns, units=known, needed=needed)
+    return parse_record(text, name=name, columns=columns, units=known_units, needed=needed)
 
 
 def identify(
@@ -143,12 +143,12 @@ def _record(
     units: Units,
     needed: Collection[str],
 ) -> Record:
-    """A record as read."""
+    """A record as read; options of reading are refused for a record that is already read."""
     if isinstance(record, (str, Path)):
         return read_record(record, columns=columns, units=units, needed=needed)
-    for given, what in ((columns, "columns are named"), (units, "units are stated")):
-        if given:
-            message = f"{what}, but the record is already read"
+    for option, fault in ((columns, "columns are named"), (units, "units are stated")):
+        if option:
+            message = f"{fault}, but the record is already read"
             raise InputError(Diagnostic(message, "give them to read_record"))
     return record
 
@@ -169,8 +169,8 @@ def bending(
     ----------
     record : as read, or its path
     span : between the supports [m]
-    design, part : source of the section, "rod" or "barrel"; for a metal part also of its shear
-        modulus
+    design, part : the design and its part, "rod" or "barrel", whose section is tested; a metal part
+        also gives its shear modulus
     specimen : in place of span, design and part
     columns, units : as `read_record`
 
@@ -207,14 +207,14 @@ class Calibrated(Displayed):
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data for JSON, SI."""
-        own = self.calibration
+        calibration = self.calibration
         return {
-            "record": own.identification.record.name,
+            "record": calibration.identification.record.name,
             "name": self.actuator.design.name,
-            "learned": {one.name: one.to_dict() for one in own.learned},
-            "left": dict(own.left),
-            "coulomb": {"measured": own.coulomb, "stated": own.stated},
-            "doubts": list(own.doubts),
+            "learned": {value.name: value.to_dict() for value in calibration.learned},
+            "left": dict(calibration.left),
+            "coulomb": {"measured": calibration.coulomb, "stated": calibration.stated},
+            "doubts": list(calibration.doubts),
             **self.redesign.to_dict(),
         }
 
@@ -239,7 +239,7 @@ def calibrate(
     """Set the seal friction of a design from its test record.
 
     Determines coefficients of friction, breakaway ratio, Stribeck speed and viscous friction of the
-    seals, with bounds under ``measured``; requirements and optimum before and after.
+    seals, with bounds under ``measured``, and compares requirements and optimum before and after.
 
     Parameters
     ----------
@@ -268,36 +268,36 @@ def calibrate(
         identified = identify(
             record, design=before, columns=columns, units=units, seed=seed, **settings
         )
-    found = learn(identified)
-    after, doubts = _with_values(before, found)
-    found = replace(found, doubts=(*found.doubts, *doubts))
-    groups = [one.bounds() for one in found.learned]
+    calibration = learn(identified)
+    after, doubts = _with_values(before, calibration)
+    calibration = replace(calibration, doubts=(*calibration.doubts, *doubts))
+    groups = [value.bounds() for value in calibration.learned]
     changes = redesign(before.subject(), after.subject(), groups, seed=seed, search=search)
-    return Calibrated(after, found, changes)
+    return Calibrated(after, calibration, changes)
 
 
 def _with_values(before: Actuator, calibration: Calibration) -> tuple[Actuator, list[str]]:
     """The actuator with measured values, fixed if they were free; and caveats."""
-    design, new = before.design, calibration.values()
-    held = [path for path in new if path in design.variables or path in design.choices]
-    free = {path: one for path, one in design.variables.items() if path not in held}
-    choices = {path: one for path, one in design.choices.items() if path not in held}
-    update = {"variables": free, "choices": choices, "measured": {}}
+    design, values = before.design, calibration.values()
+    variables = {path: x for path, x in design.variables.items() if path not in values}
+    choices = {path: x for path, x in design.choices.items() if path not in values}
+    update = {"variables": variables, "choices": choices, "measured": {}}
     base = Actuator(design.model_copy(update=update), before.source, before.plugins)
-    known = {**design.measured, **calibration.measured()}
-    after = base.changed(new).design.model_copy(update={"measured": known})
+    measured = {**design.measured, **calibration.measured()}
+    after = base.changed(values).design.model_copy(update={"measured": measured})
     doubts = []
-    if held:
-        doubts.append(f"no longer free, fixed as measured: {', '.join(held)}")
-    other = [
+    fixed = [path for path in values if path in design.variables or path in design.choices]
+    if fixed:
+        doubts.append(f"no longer free, fixed as measured: {', '.join(fixed)}")
+    seal_choices = [
         path
         for path in choices
         if path.startswith("seals.") and path.endswith((".compound", ".type"))
     ]
-    if other:
+    if seal_choices:
         doubts.append(
             "the measured friction is that of the tested seals, but choices of "
-            f"{', '.join(other)} use it too"
+            f"{', '.join(seal_choices)} use it too"
         )
     return Actuator(after, before.source, before.plugins), doubts
 
@@ -309,12 +309,13 @@ def _require_use(
     settings: Mapping[str, Any],
 ) -> None:
     """Reject settings that an identified record ignores, and records of another actuator."""
-    unused = [*(name for name, given in reading.items() if given), *settings]
+    unused = [*(name for name, argument in reading.items() if argument), *settings]
     if unused:
         message = f"{', '.join(unused)}: without effect, as the record is already identified"
         raise InputError(Diagnostic(message, "give them to identify"))
     own, other = (
-        one.model_copy(update=dict.fromkeys(_WISHES)) for one in (design, identified.bench.design)
+        stated.model_copy(update=dict.fromkeys(_NOT_TESTED))
+        for stated in (design, identified.bench.design)
     )
     if own != other:
         message = "the record was identified with another design"

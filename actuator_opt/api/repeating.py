@@ -40,8 +40,8 @@ _LONGEST = 100_000
 class Rerun(Displayed):
     """The repeated result of a report's command, compared with the original.
 
-    `repeats` is None if the report has no result to compare; `differences` maps what has changed to
-    its value then and now.
+    `repeats` is None if the report has no result to compare. `differences` has the values then and
+    now by name.
     """
 
     file: Path
@@ -77,15 +77,16 @@ class Rerun(Displayed):
 
     def report(self, **paper: Unpack[ReportArguments]) -> list[ReportFile]:
         """Write the report again, with the original command and date."""
-        paper |= {"actuator": self.actuator, "command": self.command, "date": self.date}
-        tables: dict[str, Any] = {"extra_tables": self.tables} if self.tables else {}
-        return results.report(self.subject, **paper, **tables)
+        return results.report(self.subject, **{**paper, **self._origin()})
 
     def record(self, **paper: Any) -> Run | None:
         """Record the run, if its command does so."""
-        paper |= {"actuator": self.actuator, "command": self.command, "date": self.date}
-        tables: dict[str, Any] = {"extra_tables": self.tables} if self.tables else {}
-        return results.keep(self.subject, **paper, **tables)
+        return results.keep(self.subject, **paper | self._origin())
+
+    def _origin(self) -> dict[str, Any]:
+        """Origin and further tables of the original report."""
+        data = {"actuator": self.actuator, "command": self.command, "date": self.date}
+        return data | ({"extra_tables": self.tables} if self.tables else {})
 
 
 def rerun(report: str | Path, *, plugins: Plugins = ()) -> Rerun:
@@ -99,49 +100,50 @@ def rerun(report: str | Path, *, plugins: Plugins = ()) -> Rerun:
     Raises
     ------
     InputError
-        not a PDF of this program; encrypted, damaged or of a newer version; or of a command that
-        needs more than the design
+        not a report of this program; encrypted, damaged or of a newer version; or a report whose
+        command needs more input than the design
     """
     from ..pages import read_attachment
 
     path = Path(report)
-    inside = read_attachment(path)
+    attachment = read_attachment(path)
+    run = attachment.run
     try:
-        run = {key: _text(inside.run, key) for key in ("actuator_opt", "command", "source_name")}
-        date = _require_facts(inside.run)
-        if _order(run["actuator_opt"]) > _order(VERSION):
-            message = f"was made by actuator-opt {shown(run['actuator_opt'])}, this is {VERSION}"
+        version, command, name = (_text(run, x) for x in ("actuator_opt", "command", "source_name"))
+        date = _require_form(run)
+        if _order(version) > _order(VERSION):
+            message = f"was made by actuator-opt {shown(version)}, this is {VERSION}"
             raise InputError(Diagnostic(message, "install that version, or a later one"))
-        verb, asked = parsed(run["command"])
-        if asked.plugin and not plugins:
-            message = f"was made with --plugin {asked.plugin[0]}, which is a program"
+        verb, options = parsed(command)
+        if options.plugin and not plugins:
+            message = f"was made with --plugin {options.plugin[0]}, which is a program"
             raise InputError(Diagnostic(message, "name it with --plugin to run it"))
-        pairs = [_pair(text) for text in asked.set]
+        pairs = [_pair(text) for text in options.set]
     except InputError as error:
         raise InputError(
             [replace(x, file=x.file or str(path)) for x in error.diagnostics]
         ) from None
-    own = plugins_of(plugins)
-    actuator = read_as(inside.source, run["source_name"], set=pairs, plugins=own)
-    subject, tables = _again(verb, asked, actuator)
-    then = inside.run.get("result")
-    found: dict[str, tuple[Any, Any]] | None
-    if isinstance(then, dict):
-        found = _differences(then, subject)
-    else:  # an older report: an equal hash of its content is just as good
-        same = inside.run.get("spec_hash", "") == _hash(subject)
-        found = {} if same else None
+    loaded_plugins = plugins_of(plugins)
+    actuator = read_as(attachment.source, name, set=pairs, plugins=loaded_plugins)
+    subject, tables = _again(verb, options, actuator)
+    recorded = run.get("result")
+    differences: dict[str, tuple[Any, Any]] | None
+    if isinstance(recorded, dict):
+        differences = _differences(recorded, subject)
+    else:  # an older report: compare the hash of its content
+        same = run.get("spec_hash", "") == _hash(subject)
+        differences = {} if same else None
     return Rerun(
         file=path,
-        command=run["command"],
-        version=run["actuator_opt"],
+        command=command,
+        version=version,
         date=date,
         subject=subject,
         actuator=actuator,
         tables=tuple(tables),
-        repeats=None if found is None else not found,
-        differences=found or {},
-        sentence=_sentence(found, run["actuator_opt"]),
+        repeats=None if differences is None else not differences,
+        differences=differences or {},
+        sentence=_sentence(differences, version),
     )
 
 
@@ -152,8 +154,8 @@ def _text(run: Mapping[str, Any], key: str) -> str:
     return value
 
 
-def _require_facts(run: Mapping[str, Any]) -> str | None:
-    """The date in the facts of a report; rejects facts in another form."""
+def _require_form(run: Mapping[str, Any]) -> str | None:
+    """The date in the data attached to a report; rejects data of another form."""
     fault, date = run_fault(run), run.get("date")
     if not fault and date is not None and not is_date(date):
         fault = "date is invalid"
@@ -172,27 +174,27 @@ class _Parser(argparse.ArgumentParser):
     """Options of a report's command; other options are reported as a fault."""
 
     def error(self, message: str) -> NoReturn:
-        told = f"its command cannot be repeated: {shown(message, 200)}"
-        raise InputError(Diagnostic(told, "run it by hand"))
+        fault = f"its command cannot be repeated: {shown(message, 200)}"
+        raise InputError(Diagnostic(fault, "run it by hand"))
 
 
 def parser() -> argparse.ArgumentParser:
-    """The options that affect a result, for the commands that can be repeated."""
-    made = _Parser(prog="actuator-opt", add_help=False, allow_abbrev=False)
-    made.add_argument("design")
-    made.add_argument("--set", action="append", default=[])
-    made.add_argument("--plugin", action="append", default=[])
-    made.add_argument("--starts", type=_within(STARTS), default=6)
-    made.add_argument("--seed", type=_within(SEED), default=0)
-    made.add_argument("--objective", action="append", default=[])
-    made.add_argument("-n", type=_within(FRONT), default=50)
-    made.add_argument("--checks", type=_within(CHECKS), default=3)
-    made.add_argument("--yield", type=float, dest="yield_target")
+    """A parser of the options that affect a result, for the commands that can be repeated."""
+    options = _Parser(prog="actuator-opt", add_help=False, allow_abbrev=False)
+    options.add_argument("design")
+    options.add_argument("--set", action="append", default=[])
+    options.add_argument("--plugin", action="append", default=[])
+    options.add_argument("--starts", type=_within(STARTS), default=6)
+    options.add_argument("--seed", type=_within(SEED), default=0)
+    options.add_argument("--objective", action="append", default=[])
+    options.add_argument("-n", type=_within(FRONT), default=50)
+    options.add_argument("--checks", type=_within(CHECKS), default=3)
+    options.add_argument("--yield", type=float, dest="yield_target")
     for name in _VALUES:
-        made.add_argument(name)
+        options.add_argument(name)
     for name in _FLAGS:
-        made.add_argument(name, action="store_true")
-    return made
+        options.add_argument(name, action="store_true")
+    return options
 
 
 def parsed(command: str) -> tuple[str, argparse.Namespace]:
@@ -209,15 +211,15 @@ def parsed(command: str) -> tuple[str, argparse.Namespace]:
         raise InputError(Diagnostic(message, "run the script"))
     verb = words[1]
     if words[0] != "actuator-opt" or verb not in OPTIMISED + EVALUATED + FRONTS:
-        made = shown(" ".join(words[:2]))
-        message = f"was made by {made}, which needs more input than a design"
+        start = shown(" ".join(words[:2]))
+        message = f"was made by {start}, which needs more input than a design"
         raise InputError(Diagnostic(message, f"run it by hand: {shown(command, 400)}"))
-    asked = parser().parse_args(words[2:])
-    scenario = asked.verify_dynamics
+    options = parser().parse_args(words[2:])
+    scenario = options.verify_dynamics
     if scenario == "-" or (scenario and Path(scenario).exists() and not Path(scenario).is_file()):
         message = f"its command needs the scenario {shown(scenario)}, which is not a regular file"
         raise InputError(Diagnostic(message, "run it by hand"))
-    return verb, asked
+    return verb, options
 
 
 def _within(bounds: IntegerRange) -> Callable[[str], int]:
@@ -240,31 +242,32 @@ def _pair(text: str) -> tuple[str, str]:
 
 
 def _again(
-    verb: str, asked: argparse.Namespace, actuator: Actuator
+    verb: str, options: argparse.Namespace, actuator: Actuator
 ) -> tuple[Evaluation | Optimisation | ParetoFront, Sequence[Table]]:
     """The result of the command, and the further tables of its report."""
     if verb in EVALUATED:
-        return evaluate(actuator, seed=asked.seed), []
+        return evaluate(actuator, seed=options.seed), []
     if verb in FRONTS:
-        how = {"n": asked.n, "seed": asked.seed, "checks": asked.checks}
-        return pareto(actuator, asked.objective, **how), []
+        effort = {"n": options.n, "seed": options.seed, "checks": options.checks}
+        return pareto(actuator, options.objective, **effort), []
     if verb == "sensitivity":
-        return optimise(actuator, seed=asked.seed), []
-    found = optimise(
+        return optimise(actuator, seed=options.seed), []
+    optimisation = optimise(
         actuator,
-        algorithm=asked.algorithm or "auto",
-        starts=asked.starts,
-        seed=asked.seed,
-        whole_plies=asked.whole_plies,
-        standard_sizes=asked.standard_sizes,
-        certify=asked.certify,
-        yield_target=asked.yield_target,
+        algorithm=options.algorithm or "auto",
+        starts=options.starts,
+        seed=options.seed,
+        whole_plies=options.whole_plies,
+        standard_sizes=options.standard_sizes,
+        certify=options.certify,
+        yield_target=options.yield_target,
     )
-    if asked.verify_dynamics is None:
-        return found, []
+    if options.verify_dynamics is None:
+        return optimisation, []
     from .simulations import verify_dynamics
 
-    return found, verification_tables(verify_dynamics(asked.verify_dynamics, found.best))
+    verification = verify_dynamics(options.verify_dynamics, optimisation.best)
+    return optimisation, verification_tables(verification)
 
 
 def _differences(
@@ -276,14 +279,14 @@ def _differences(
     from ..pages.report import outcome
 
     now = front_outcome(subject) if isinstance(subject, ParetoFront) else outcome(subject)
-    found: dict[str, tuple[Any, Any]] = {}
+    differences: dict[str, tuple[Any, Any]] = {}
     if then.get("status") != now.get("status"):
-        found["status"] = (then.get("status"), now.get("status"))
+        differences["status"] = (then.get("status"), now.get("status"))
     for key in ("variables", "metrics"):
         before, after = then.get(key) or {}, now.get(key) or {}
         for name in differing(before, after):
-            found[name] = (before.get(name), after.get(name))
-    return found
+            differences[name] = (before.get(name), after.get(name))
+    return differences
 
 
 def _hash(subject: Evaluation | Optimisation | ParetoFront) -> str | None:
@@ -294,25 +297,26 @@ def _hash(subject: Evaluation | Optimisation | ParetoFront) -> str | None:
     return None if isinstance(subject, ParetoFront) else parts_of(subject)[0].spec_hash
 
 
-def _sentence(found: Mapping[str, tuple[Any, Any]] | None, version: str) -> str:
+def _sentence(differences: Mapping[str, tuple[Any, Any]] | None, version: str) -> str:
     """Whether the result is reproduced, in words."""
-    made = f"the report was made by actuator-opt {version}"
-    also = made if version != VERSION else f"{made}, the same as this one"
-    if found is None:
-        return f"the report has no result to compare with; {also}"
-    if not found:
-        return f"the result is reproduced; {also}"
-    parts = [_change(name, *values) for name, values in found.items()]
-    parts.sort(reverse=True)
-    names = ", ".join(words for _, words in parts[:3])
-    more = f" and {len(parts) - 3} more" if len(parts) > 3 else ""
-    here = also if version == VERSION else f"{made}, but this is {VERSION}"
-    return f"the result is not reproduced: {names}{more}; {here}"
+    origin = f"the report was made by actuator-opt {version}"
+    if version == VERSION:
+        origin += ", the same as this one"
+    if differences is None:
+        return f"the report has no result to compare with; {origin}"
+    if not differences:
+        return f"the result is reproduced; {origin}"
+    if version != VERSION:
+        origin += f", but this is {VERSION}"
+    changes = sorted((_change(name, *x) for name, x in differences.items()), reverse=True)
+    names = ", ".join(words for _, words in changes[:3])
+    more = f" and {len(changes) - 3} more" if len(changes) > 3 else ""
+    return f"the result is not reproduced: {names}{more}; {origin}"
 
 
 def _change(name: str, then: Any, now: Any) -> tuple[float, str]:
     """Relative change of a value, with the change in words."""
     if isinstance(then, (int, float)) and isinstance(now, (int, float)) and then:
-        moved = abs(now / then - 1)
-        return moved, f"{shown(name)} {100 * (now / then - 1):+.3g} %"
+        change = abs(now / then - 1)
+        return change, f"{shown(name)} {100 * (now / then - 1):+.3g} %"
     return float("inf"), f"{shown(name)} {shown(then)} before, {now} now"

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from ..studies.seal import SealStudy
 
 REPLICAS = "actuator_opt.replicas"
-"""Package of the papers' tables, found by name."""
+"""Package of the papers' tables, imported by name."""
 ABSENT = (
     "Caution: the tables that compare this design with {paper} are not part of this installation. "
     "The source distribution and the repository contain them, in actuator_opt/replicas."
@@ -39,13 +39,14 @@ _LAST_SECOND = 253_402_300_799
 
 
 def _seal_studies(subject: PreparedDesign) -> list[SealStudy]:
-    """The seal sheets of a report, one for every place with an oil film in the design."""
+    """Seal studies of a report, for every place with an oil film in the design."""
     from ..studies.seal import study
 
+    if not any(case.moves for case in subject.design.load_cases):
+        return []
     places: tuple[Place, ...] = ("piston", "rod")
-    asked = [x for x in places if getattr(subject.design.seals, x).friction_law.film]
-    moving = any(case.moves for case in subject.design.load_cases)
-    return [study(subject, x, curves=True, mapped=True) for x in asked if moving]
+    films = [x for x in places if getattr(subject.design.seals, x).friction_law.film]
+    return [study(subject, place, curves=True, mapped=True) for place in films]
 
 
 class ReportArguments(TypedDict, total=False):
@@ -61,7 +62,7 @@ class ReportArguments(TypedDict, total=False):
 
 
 class ReportPlace(TypedDict, total=False):
-    """Folder and name of the files of a page, without suffix; which files."""
+    """Folder and name of the files of a page, without suffix, and the selection of files."""
 
     folder: Required[Path]
     stem: Required[str]
@@ -88,7 +89,7 @@ def page_of(
     ----------
     design : subject of the page
     tail : added to the name of the design's file
-    beside : another file that gives the name
+    beside : a file that gives the name instead
     folder, stem, actuator, command, date, all_pages, format : as `report`
 
     Raises
@@ -99,9 +100,9 @@ def page_of(
     if date is not None:
         require_date(date)
     source = None if actuator is None else actuator.source
-    named = f"{Path(beside or file_name(design, source)).stem}{tail}"
+    default = f"{Path(beside or file_name(design, source)).stem}{tail}"
     page = origin(design, source, command=command, date=date)
-    place: ReportPlace = {"folder": Path(folder), "stem": stem or named}
+    place: ReportPlace = {"folder": Path(folder), "stem": stem or default}
     if all_pages:
         place["all_pages"] = True
     if format != "pdf":
@@ -131,16 +132,16 @@ def report_design(
     design = subject.design if isinstance(subject, Evaluation) else subject.best
     origin, place = page_of(design, **paper)
     tables = [*published(evaluation), *extra_tables, *verification_tables(dynamics_verified)]
-    shown = page(subject, extra_tables=tables, seals=_seal_studies(prepare(design)))
-    how = {"actuator_opt": evaluation.version, "result": outcome(subject)}
-    return write(shown, origin, **place, **how)
+    report = page(subject, extra_tables=tables, seals=_seal_studies(prepare(design)))
+    run = {"actuator_opt": evaluation.version, "result": outcome(subject)}
+    return write(report, origin, **place, **run)
 
 
 def published(evaluation: Evaluation) -> list[Block]:
     """The numbers of the paper that a design reproduces, beside ours.
 
-    The package of these tables is found by name, because a wheel comes without it; then the report
-    says where the tables are.
+    The package of these tables is imported by name, as a wheel lacks it; the report then names the
+    distributions that have the tables.
     """
     from ..rendering.blocks import Notes
 
@@ -157,7 +158,7 @@ def published(evaluation: Evaluation) -> list[Block]:
 
 
 def verification_tables(verification: Verification | None) -> list[Table]:
-    """Requirements checked in time, as tables of a report."""
+    """Requirements verified by simulation, as tables of a report."""
     if verification is None:
         return []
     from ..pages.verification import tables
@@ -166,14 +167,14 @@ def verification_tables(verification: Verification | None) -> list[Table]:
 
 
 def report_files(paths: Iterable[Path]) -> list[ReportFile]:
-    """Files written elsewhere, each with its hash."""
+    """Files that are already written, each with its hash."""
     from ..pages import ReportFile
 
     return [ReportFile(path, hashlib.sha256(path.read_bytes()).hexdigest(), 1) for path in paths]
 
 
 def file_name(design: Design, source: FileSource | None) -> str:
-    """Name of the design's file; without a file, the design's own name made suitable."""
+    """Name of the design's file; without a file, one made from the design's name."""
     if source is not None and not source.file.startswith("<"):
         return Path(source.file).name
     name = re.sub(r"[^\w-]+", "_", design.name).strip("_")
@@ -222,7 +223,7 @@ def date_from_environment() -> str | None:
 
     Raises
     ------
-    UsageError : it is not a count of seconds
+    UsageError : not a count of seconds
     """
     stamp = os.environ.get("SOURCE_DATE_EPOCH", "").strip()
     if not stamp:
@@ -244,8 +245,8 @@ def save(
 ) -> Path:
     """Write a design file with full precision, keeping comments and order if possible.
 
-    Of an optimisation it is the design to build. Its first line marks an optimum, unless it has
-    custom metrics, which may change independently of the file.
+    For an optimisation, this is the design to build. The first line of the file marks an optimum,
+    unless it has custom metrics, which may change independently of the file.
     """
     from ..base.files import write_text
     from ..design.writer import to_yaml

@@ -12,7 +12,7 @@ from ..base.tables import Displayed
 from ..version import VERSION
 from .actuator import Actuator, Plugins, plugins_of, read_as
 from .optimum import write_front, write_front_csv
-from .recorded_runs import Run, differing, read_run, sha256, sound
+from .recorded_runs import Run, damage_reported, differing, read_run, sha256
 from .reports import ReportArguments, report_design
 from .sweeping import KeptSweep, kept_sweep, report_sweep
 
@@ -53,45 +53,45 @@ def restore(of: Run | str | Path, *, plugins: Plugins = ()) -> Restored:
 
     Parameters
     ----------
-    of : the run, or what `read_run` takes
+    of : the run, or its name as for `read_run`
     plugins : the Python files of its own metrics; as programs, they are never run unless named
 
     Raises
     ------
-    InputError : a run of another command, a damaged record, or plugins that are not named
+    InputError : a run of another command, a damaged record, or unnamed plugins
     """
-    found = of if isinstance(of, Run) else read_run(of)
-    kind = found.head.get("kind")
+    run = of if isinstance(of, Run) else read_run(of)
+    kind = run.head.get("kind")
     if kind not in ("optimise", "pareto", "sweep"):
         message = f"is a run of {kind}, which has no such report"
-        raise InputError(Diagnostic(message, "name a run that runs list shows", str(found.path)))
+        raise InputError(Diagnostic(message, "name a run that runs list shows", str(run.path)))
     try:
-        with sound(found):
-            given = found.body["input"]
-            own = named_plugins(found, plugins)
-            sets = [(path, value) for path, value in given["set"]]
-            actuator = read_as(given["text"], given["name"], set=sets, plugins=own)
+        with damage_reported(run):
+            source = run.body["input"]
+            loaded_plugins = named_plugins(run, plugins)
+            sets = [(path, value) for path, value in source["set"]]
+            actuator = read_as(source["text"], source["name"], set=sets, plugins=loaded_plugins)
             if kind == "sweep":
-                doubts = tuple(changed_plugins(found, own))
-                return Restored(found, kept_sweep(found, actuator), actuator, doubts)
-            result, shown = _solved(found, own)
-            doubts = (*changed_plugins(found, own), *_doubts(found, shown))
-            return Restored(found, result, actuator, doubts)
+                doubts = tuple(changed_plugins(run, loaded_plugins))
+                return Restored(run, kept_sweep(run, actuator), actuator, doubts)
+            result, evaluation = _solved(run, loaded_plugins)
+            doubts = (*changed_plugins(run, loaded_plugins), *_doubts(run, evaluation))
+            return Restored(run, result, actuator, doubts)
     except InputError as error:
-        faults = [replace(x, file=x.file or str(found.path)) for x in error.diagnostics]
+        faults = [replace(x, file=x.file or str(run.path)) for x in error.diagnostics]
         raise InputError(faults) from None
 
 
-def _solved(run: Run, own: tuple[Plugin, ...]) -> tuple[Optimisation | ParetoFront, Evaluation]:
-    """An optimisation or a front, and its recorded evaluation."""
+def _solved(run: Run, plugins: tuple[Plugin, ...]) -> tuple[Optimisation | ParetoFront, Evaluation]:
+    """The recorded optimisation or front, and its evaluation."""
     from ..optimisation.pareto import ParetoFront
     from ..optimisation.recorded import from_plain
     from ..optimisation.result import Optimisation
 
     if run.head["kind"] == "pareto":
-        front = from_plain(ParetoFront, run.body["state"], own)
+        front = from_plain(ParetoFront, run.body["state"], plugins)
         return front, front.evaluation
-    best = from_plain(Optimisation, run.body["state"], own)
+    best = from_plain(Optimisation, run.body["state"], plugins)
     return best, best.best_evaluation
 
 
@@ -100,38 +100,38 @@ def named_plugins(run: Run, plugins: Plugins) -> tuple[Plugin, ...]:
 
     Raises
     ------
-    InputError : the run had custom metrics, and none is named
+    InputError : the run had custom metrics, and no plugin is named
     """
-    own = plugins_of(plugins)
-    files = [one["file"] or "a function of a script" for one in run.body["input"]["plugins"]]
-    if files and not own:
+    loaded_plugins = plugins_of(plugins)
+    files = [plugin["file"] or "a function of a script" for plugin in run.body["input"]["plugins"]]
+    if files and not loaded_plugins:
         message = f"its custom metrics came from {', '.join(files)}, which is a program"
         raise InputError(Diagnostic(message, "name it with --plugin to run it", str(run.path)))
-    return own
+    return loaded_plugins
 
 
-def changed_plugins(run: Run, own: Sequence[Plugin]) -> list[str]:
+def changed_plugins(run: Run, loaded_plugins: Sequence[Plugin]) -> list[str]:
     """List files of custom metrics that differ from those recorded."""
-    now = {sha256(file) for file in {plugin.file for plugin in own} if file}
+    hashes = {sha256(file) for file in {plugin.file for plugin in loaded_plugins} if file}
     return [
-        f"run {run.id} was made with another version of {one['file']} (its SHA-256 differs)"
-        for one in run.body["input"]["plugins"]
-        if one["file"] and one["sha256"] not in now
+        f"run {run.id} was made with another version of {plugin['file']} (its SHA-256 differs)"
+        for plugin in run.body["input"]["plugins"]
+        if plugin["file"] and plugin["sha256"] not in hashes
     ]
 
 
-def _doubts(run: Run, now: Evaluation) -> list[str]:
+def _doubts(run: Run, evaluation: Evaluation) -> list[str]:
     """Notes where the present models do not reproduce the record."""
-    then = run.body["result"]["metrics"]
-    before = {name: row["value"] for name, row in then.items()}
-    changed = differing(before, {name: row.value for name, row in now.metrics.items()})
-    version = str(run.head.get("version", ""))
+    recorded = {name: row["value"] for name, row in run.body["result"]["metrics"].items()}
+    present = {name: row.value for name, row in evaluation.metrics.items()}
+    changed = differing(recorded, present)
     if not changed:
         return []
+    version = str(run.head.get("version", ""))
     names = ", ".join(changed[:3]) + (f" and {len(changed) - 3} more" if len(changed) > 3 else "")
-    made = f"actuator-opt {version}" if version != VERSION else "other material data or plugins"
+    origin = f"actuator-opt {version}" if version != VERSION else "other material data or plugins"
     return [
-        f"run {run.id} was made by {made}; the present models (actuator-opt {VERSION}) give "
+        f"run {run.id} was made by {origin}; the present models (actuator-opt {VERSION}) give "
         f"other values of {names}, which the report shows"
     ]
 
@@ -150,11 +150,11 @@ def report_run(
     plugins : as `restore`
     paper : as `report`; design and command are those of the run, and its date unless one is given
     """
-    found = of if isinstance(of, Restored) else restore(of, plugins=plugins)
-    with sound(found.run):
-        paper["actuator"], paper["command"] = found.actuator, found.run.head["command"]
-        paper["date"] = paper.get("date") or found.run.body["date"]
-        return _reported(found, paper)
+    restored = of if isinstance(of, Restored) else restore(of, plugins=plugins)
+    with damage_reported(restored.run):
+        paper["actuator"], paper["command"] = restored.actuator, restored.run.head["command"]
+        paper["date"] = paper.get("date") or restored.run.body["date"]
+        return _reported(restored, paper)
 
 
 def _reported(restored: Restored, paper: ReportArguments) -> list[ReportFile]:
@@ -194,7 +194,7 @@ def draw_run(of: Run, folder: str | Path) -> list[Path]:
         message = f"is a run of {of.head.get('kind')}, whose search has no convergence to draw"
         remedy = f"draw it with: actuator-opt report {of.id}"
         raise InputError(Diagnostic(message, remedy, str(of.path)))
-    with sound(of):
+    with damage_reported(of):
         result = of.body["result"]
         title = f"{of.head['name']}: search, {result['algorithm']}, seed {of.head['seed']}"
         metric = str(of.head["objective"].get("metric", ""))

@@ -1,8 +1,8 @@
 """Output functions of every type of result, declared once.
 
 The terminal and the library look up a result by its type: text and JSON, report, CSV, record and
-exit code. Each function is named "module:function" below `actuator_opt`, or is a method of the
-result, and is imported on use. None means that a type lacks it; leaving one out fails at import.
+exit code. A function is named "module:function" below `actuator_opt` and imported on use, or is a
+method of the result. None means that a type lacks it; an omitted function fails at import.
 """
 
 from __future__ import annotations
@@ -41,9 +41,9 @@ class ResultKind:
     type : of the result, "module:class"
     exit_code : of a command that gives this result
     page : builds the `Page` of a result: its text, its report and its HTML
-    blocks : builds the blocks of a result that has no page: its text
-    text : lines for the terminal of (result, colour=, unicode=, width=), if there is neither
-    report : writes the report of (result, **`Paper`); some kinds need more keywords
+    blocks : builds the blocks of a result without a page: its text
+    text : lines for the terminal of (result, colour=, unicode=, width=), without page and blocks
+    report : writes the report of (result, **`ReportArguments`); some kinds need more keywords
     csv : writes the result to a path
     record : records the run of (result, actuator=, command=, date=)
     data : plain data for JSON, SI
@@ -111,10 +111,10 @@ def _unrounded(result: Any) -> list[str]:
 
 def kinds(*declared: ResultKind) -> dict[str, ResultKind]:
     """Kinds by their type; rejects a type declared twice."""
-    found = {kind.type: kind for kind in declared}
-    if len(found) != len(declared):
+    by_type = {kind.type: kind for kind in declared}
+    if len(by_type) != len(declared):
         raise TypeError("a type of result is declared twice")
-    return found
+    return by_type
 
 
 # fmt: off
@@ -182,12 +182,12 @@ KINDS = kinds(
         report=None, csv=None, record=None,
     ),
     ResultKind(
-        "api.records:Calibrated", lambda new: _met(new.redesign.evaluation), page="page",
-        report="api:write_calibration", csv=None, record=None,
+        "api.records:Calibrated", lambda calibrated: _met(calibrated.redesign.evaluation),
+        page="page", report="api:write_calibration", csv=None, record=None,
     ),
     ResultKind(
-        "api.installation:Installation", lambda found: _missed(not found.ok), text="text",
-        report=None, csv=None, record=None,
+        "api.installation:Installation", lambda installation: _missed(not installation.ok),
+        text="text", report=None, csv=None, record=None,
     ),
     ResultKind(
         "api.recorded_runs:Run", _always, text="text",
@@ -219,7 +219,7 @@ def kind_of(result: object) -> ResultKind:
 
 
 def piece(name: str, result: object) -> Callable[..., Any]:
-    """A function of a kind, to be called without the result."""
+    """A function of a kind, called without the result."""
     module, _, function = name.rpartition(":")
     if not module:
         return getattr(result, name)  # type: ignore[no-any-return]
@@ -269,14 +269,14 @@ def data(result: object) -> dict[str, Any]:
 
 def remarks(result: object) -> list[str]:
     """Lines for standard error below the text of a result."""
-    found = kind_of(result).remarks
-    return [] if found is None else found(result)
+    lines_of = kind_of(result).remarks
+    return [] if lines_of is None else lines_of(result)
 
 
 def writes(result: object) -> bool:
     """Whether there is a report or CSV to write."""
-    found = kind_of(result).writes
-    return found is None or found(result)
+    condition = kind_of(result).writes
+    return condition is None or condition(result)
 
 
 def write_csv(result: object, path: str | Path) -> ReportFile:
@@ -288,10 +288,10 @@ def write_csv(result: object, path: str | Path) -> ReportFile:
     return file
 
 
-def keep(result: object, **how: Any) -> Run | None:
+def keep(result: object, **context: Any) -> Run | None:
     """Record the run of a result; None if its kind has no records. Parameters as `record`."""
     name = kind_of(result).record
-    return None if name is None else piece(name, result)(**how)
+    return None if name is None else piece(name, result)(**context)
 
 
 def report(
@@ -322,23 +322,22 @@ def report(
     actuator : the design as read, for its listing and attachment
     command : command that made the report, printed on it
     date : ISO date; default: SOURCE_DATE_EPOCH, else none
-    all_pages : an image of every sheet, not of the first alone
-    format : "pdf" (with PNG), "html" (one file that needs no network), or "both"
-    seed : of the draws of the estimate
+    all_pages : an image of every sheet instead of only the first
+    format : "pdf" (with PNG), "html" (a file that needs no network), or "both"
+    seed : of the samples of the estimate
     plugins : the user's metrics and constraints, for a design that is not an `Actuator` yet, or a
         run
     more : `dynamics_verified` (of `verify_dynamics`) and `extra_tables` of an evaluation or an
         optimisation; `scenario` as read, `measured` and `sensitivities` of a simulation; `sheet`
-        (False: the map alone) of a seal
+        (False: only the map) of a seal
 
     Returns
     -------
-    the files, each with its path and SHA-256; none of a front without designs
+    the files, each with its path and SHA-256; no file for a front without designs
 
     Raises
     ------
-    UsageError : not an ISO date, a result without a report, or one that needs `actuator` or
-        `scenario`
+    UsageError : not an ISO date, a result without a report, or a missing `actuator` or `scenario`
     InputError : the folder cannot be written; no partial file is left
     """
     paper: dict[str, Any] = {"folder": folder, "stem": stem, "command": command, "date": date}
@@ -355,8 +354,8 @@ def report(
         actuator = as_actuator(subject, plugins)
         subject = evaluate(actuator, seed=seed)
     elif isinstance(subject, Evaluation) and subject.yield_estimate == UNKNOWN:
-        own = () if actuator is None else actuator.plugins
-        subject = with_yield(subject, plugins=own, seed=seed)
+        loaded_plugins = () if actuator is None else actuator.plugins
+        subject = with_yield(subject, plugins=loaded_plugins, seed=seed)
     name = kind_of(subject).report
     if name is None:
         message = f"{type(subject).__name__} has no report"

@@ -1,4 +1,4 @@
-"""A warm session: solve once, then re-solve, predict, price and trace changes of numbers."""
+"""A warm session: solve a design once, then re-solve, predict and price changes of its numbers."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..base.quantities import Quantity
 from ..base.tables import aligned
 from ..design import Design, canonical, get, quantity_of
 from ..evaluation import PreparedDesign
-from .actuator import Actuator, Plugins, as_actuator, located, place, unanswered
+from .actuator import Actuator, Plugins, as_actuator, fault_of, located, read, requirement_faults
 
 if TYPE_CHECKING:
     from ..optimisation.actuator import ActuatorProblem
@@ -44,8 +44,8 @@ class Prediction:
     ----------
     objective : predicted objective; infinite (the worst) if the first step leaves no design
     variables : predicted free dimensions by PATH
-    valid : whether the same limits stay active all the way, to first order
-    why : what changes on the way if not, and after which share of it
+    valid : whether the same limits stay active over the whole change, to first order
+    why : if not, the first change of the active limits, and the share of the change before it
     """
 
     objective: float
@@ -60,17 +60,17 @@ class Prediction:
 
 @dataclass(frozen=True, slots=True)
 class Price:
-    """Price of a number at the session's optimum: objective per unit of it, both SI.
+    """Price of a number at the session's optimum: objective per unit of the number, both SI.
 
     Parameters
     ----------
     path, value : the number and its value
     slope_down, slope_up : change of the objective per unit, with the sign of a derivative, for a
         falling and a rising number. They differ only at a degenerate vertex. None if the next step
-        that way leaves no design
-    holds : lowest and highest value up to which the same limits stay active, to first order; None
+        in this direction leaves no design
+    holds : lowest and highest value between which the same limits stay active, to first order; None
         on a side without a change within ±100 %
-    changes : what changes there
+    changes : change of the active limits at these values
     movement : change of each free dimension per unit, by PATH
     """
 
@@ -97,7 +97,7 @@ class OptimumCurve:
     values : its values, in the requested order
     objectives : at the optima; None without a design
     variables : the free dimensions of each optimum by PATH; empty without a design
-    objective : quantity of the objective; None if it has none (weighted terms)
+    objective : quantity of the objective; None for weighted terms
     """
 
     path: str
@@ -140,12 +140,14 @@ class OptimumCurve:
 
     def __str__(self) -> str:
         """The values and their objectives as a table with units."""
-        shown = self.objective
         rows = [[self.path, "objective"]]
         for value, objective in zip(self.values, self.objectives, strict=True):
-            text = "none found" if objective is None else f"{objective:.6g}"
-            if objective is not None and shown is not None:
-                text = shown.text(objective, 6)
+            if objective is None:
+                text = "none found"
+            elif self.objective is None:
+                text = f"{objective:.6g}"
+            else:
+                text = self.objective.text(objective, 6)
             rows.append([self.quantity.text(value, 6), text])
         return aligned(rows, right=(0, 1))
 
@@ -153,9 +155,9 @@ class OptimumCurve:
 class Session:
     """A design's optimum, prepared for fast re-solving.
 
-    Every call takes its changes relative to the design as read; no call affects a later one. An
-    objective of weighted terms divides each by its value in the design as read; `solve` by that
-    with the changes, as `optimise` would.
+    Every call takes its changes relative to the design as read; no call affects a later call. An
+    objective of weighted terms divides each term by its value in the design as read. `solve`
+    divides by its value in the changed design, as `optimise` does.
 
     Attributes
     ----------
@@ -172,12 +174,12 @@ class Session:
 
         began = time.perf_counter()
         subject = actuator.subject()
-        faults = unanswered(actuator, subject)
+        faults = requirement_faults(actuator, subject)
         if faults:
             raise InputError(faults)
         with located(actuator):
             _require_continuous(actuator, sizes_of(actuator.design, Wanted(), subject.materials))
-            problem = build(subject, place(actuator))
+            problem = build(subject, fault_of(actuator))
             require_movable_objective(problem)
         solution = solve(problem.problem, starts=STARTS, samples=SAMPLES, seed=seed)
         if solution.outcome is Outcome.NOTHING_FREE:
@@ -209,16 +211,16 @@ class Session:
         """Re-solve the optimum with some numbers changed.
 
         Full steps start from the session's optimum. If they do not converge, restoration and
-        descent follow, then a search; only the search may find no design. The optimality conditions
-        are checked to 1e-6. `start` of the result is the session's optimum, `samples` is 0 unless a
-        search was made. For the reason of an infeasible result use `optimise`.
+        descent follow, then a search; only the search can report that no design exists. The
+        optimality conditions are checked to 1e-6. `start` of the result is the session's optimum,
+        `samples` is 0 without a search. For the reason of an infeasible result use `optimise`.
 
         Parameters
         ----------
         changes : new numbers by PATH, SI or text with a unit, relative to the design as read
         prices : whether to price requirements and parameters, as `optimise`
-        stop : called between steps; once it returns True, the result has the status "interrupted",
-            or "interrupted_infeasible", and the best design known
+        stop : called between steps; once it returns True, the result has the status "interrupted"
+            or "interrupted_infeasible", and the best design so far
 
         Raises
         ------
@@ -252,9 +254,9 @@ class Session:
         )
 
     def predict(self, changes: Changes) -> Prediction:
-        """Predict the optimum with some numbers changed, linearly: no model is evaluated.
+        """Predict the optimum with some numbers changed, linearly, without evaluating models.
 
-        The first prediction with a number computes its derivatives. Parameters and errors as of
+        The first prediction with a number computes its derivatives. Parameters and errors as
         `solve`; a number without a derivative raises `UsageError`.
         """
         _, numbers = self._changed(changes)
@@ -268,13 +270,13 @@ class Session:
         if not steps:
             return Prediction(objective, self._named(x), valid=True)
         line = self._warm.line(steps)
-        shown = self._shown(line.above)
+        change = self._shown(line.above)
         why = ""
         if line.high is not None and line.high[0] < 1 - ROUNDING:
             why = f"after {100 * abs(line.high[0]):.3g} % of the change {line.high[1]}"
         if not math.isfinite(line.above):
             why = "no design is left in this direction"
-        return Prediction(objective + shown, self._named(x + line.moves), not why, why)
+        return Prediction(objective + change, self._named(x + line.moves), not why, why)
 
     def price(self, path: str) -> Price:
         """Price a number at the session's optimum.
@@ -284,19 +286,19 @@ class Session:
 
         Parameters
         ----------
-        path : of a number that is not free
+        path : of a fixed number
 
         Raises
         ------
         InputError
             an unknown PATH, or a word
         UsageError
-            a free dimension, or a number without derivative (bounds of variables, say)
+            a free dimension, or a number without derivative, such as a bound of a variable
         """
         return self.prices([path])[0]
 
     def prices(self, paths: Sequence[str]) -> tuple[Price, ...]:
-        """Price several numbers, whose derivatives are computed together; as `price`."""
+        """Price several numbers, with their derivatives computed together; as `price`."""
         names = [self._path(path) for path in paths]
         values = {path: self._priced(path) for path in names}
         self._warm.differentiate(names)
@@ -335,15 +337,15 @@ class Session:
         Raises
         ------
         InputError, UsageError
-            as of `solve`; no values
+            as `solve`; no values
         """
         if isinstance(values, str) or not len(values):
             raise UsageError(Diagnostic("a curve needs a list of values", 'e.g. [0.1, "112 mm"]'))
         numbers = [self._changed({path: value})[1] for value in values]
         path = next(iter(numbers[0]))
-        wanted = [number[path] for number in numbers]
+        si_values = [number[path] for number in numbers]
         optima = self._warm.solve_together(
-            path, wanted, lambda value: self._built(self._changed({path: value})[0])[1], stop
+            path, si_values, lambda value: self._built(self._changed({path: value})[0])[1], stop
         )
         goal = self._warm.actuator.goal
         metrics = self.optimum.evaluation.metrics
@@ -351,14 +353,14 @@ class Session:
         return OptimumCurve(
             path=path,
             quantity=quantity_of(path, self._actuator.design),
-            values=tuple(wanted),
-            objectives=tuple(None if one is None else goal.shown(one.objective) for one in optima),
-            variables=tuple({} if one is None else self._named(one.x) for one in optima),
+            values=tuple(si_values),
+            objectives=tuple(None if x is None else goal.shown(x.objective) for x in optima),
+            variables=tuple({} if x is None else self._named(x.x) for x in optima),
             objective=None if single is None else metrics[single].quantity,
         )
 
     def _changed(self, changes: Changes) -> tuple[Actuator, dict[str, float]]:
-        """The design with the changes, and their numbers in SI by canonical PATH."""
+        """The changed design, and the changed numbers in SI by canonical PATH."""
         if not isinstance(changes, Mapping):
             message = f"changes: need numbers by PATH, not {type(changes).__name__}"
             raise UsageError(Diagnostic(message, 'write e.g. {"cylinder.stroke": "112 mm"}'))
@@ -413,10 +415,10 @@ class Session:
 
         subject = actuator.subject()
         with located(actuator):
-            problem = build(subject, place(actuator))
-        answered = {row.limit_of.metric for row in (*problem.rows, *problem.fixed)}
-        if not answered.issuperset(actuator.design.requirements):
-            faults = unanswered(actuator, subject)
+            problem = build(subject, fault_of(actuator))
+        limited_metrics = {row.limit_of.metric for row in (*problem.rows, *problem.fixed)}
+        if not limited_metrics.issuperset(actuator.design.requirements):
+            faults = requirement_faults(actuator, subject)
             if faults:
                 raise InputError(faults)
         return subject, problem
@@ -490,7 +492,7 @@ class Session:
 
 
 def _require_continuous(actuator: Actuator, sizes: object) -> None:
-    """Reject designs with choices or sizes, as a session re-solves continuous dimensions only."""
+    """Reject choices and listed sizes: a session only re-solves continuous dimensions."""
     design = actuator.design
     if design.choices:
         raise UsageError(
@@ -517,11 +519,11 @@ def session(
     plugins: Plugins = (),
     seed: int = 0,
 ) -> Session:
-    """Solve a design once, for fast re-solving of changes.
+    """Solve a design once, to re-solve changes fast.
 
     Parameters
     ----------
-    design : as of `optimise`
+    design : as `optimise`
     set : values to replace first, by PATH; a bare number is SI
     plugins : the user's metrics and constraints
     seed : of the search
@@ -533,12 +535,7 @@ def session(
     UsageError
         a design with choices, or with variables of listed sizes
     """
-    from .actuator import read
-
-    pairs = set.items() if isinstance(set, Mapping) else set
     if isinstance(design, (str, Path)):
-        return Session(read(design, set=[(path, str(value)) for path, value in pairs],
-                            plugins=plugins), seed=seed)  # fmt: skip
-    actuator = as_actuator(design, plugins)
-    changes = dict(pairs)
+        return Session(read(design, set=set, plugins=plugins), seed=seed)
+    actuator, changes = as_actuator(design, plugins), dict(set)
     return Session(actuator.changed(changes) if changes else actuator, seed=seed)

@@ -36,7 +36,7 @@ _TABLES = (".csv", ".txt", ".tsv")
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """A scenario as read, with its design, changed by its values, and its records."""
+    """A scenario as read, with its records and its design, which has the scenario's values."""
 
     scenario: Scenario
     actuator: Actuator
@@ -45,7 +45,7 @@ class Trial:
 
     @property
     def files(self) -> list[Path]:
-        """The design and the records it reads."""
+        """Files of the design and of the records."""
         records = [self.loaded.folder / file for file, _ in self.records]
         return [self.loaded.design_file, *records]
 
@@ -62,7 +62,7 @@ def read_scenario(
     ----------
     source : path or text
     set : values to replace, by PATH of the scenario, else of its design; a bare number is SI
-    units : of columns of recorded inputs whose header states none, as `read_record`
+    units : of columns of recorded inputs without a unit in their header, as `read_record`
 
     Raises
     ------
@@ -79,13 +79,13 @@ def read_scenario(
 
 
 def _records(loaded: LoadedScenario, units: Units) -> dict[tuple[str, str], tuple[Array, Array]]:
-    """Every column that a signal of the scenario names."""
+    """Columns of records that signals of the scenario name, by file and column."""
     from ..base.files import read_bytes
     from ..design.scenario import recorded_parts
     from ..identification import column_units, decode_record, parse_column
 
-    known = column_units(units)
-    found: dict[tuple[str, str], tuple[Array, Array]] = {}
+    known_units = column_units(units)
+    records: dict[tuple[str, str], tuple[Array, Array]] = {}
     texts: dict[str, str] = {}
     for path, part, dimension in recorded_parts(loaded.scenario):
         file, column = str(part.file), str(part.column)
@@ -95,13 +95,13 @@ def _records(loaded: LoadedScenario, units: Units) -> dict[tuple[str, str], tupl
                 path_of = loaded.folder / file
                 data = read_bytes(path_of, most=MOST_BYTES + 1, kinds=_TABLES, what="CSV file")
                 texts[file] = decode_record(data, name, most=MOST_BYTES)
-            found[file, column] = parse_column(
-                texts[file], column, dimension, name=name, units=known
+            records[file, column] = parse_column(
+                texts[file], column, dimension, name=name, units=known_units
             )
         except InputError as error:
             at = path if file in texts else f"{path.removesuffix('column')}file"
             raise InputError([_where(fault, at, loaded) for fault in error.diagnostics]) from None
-    return found
+    return records
 
 
 def _where(fault: Diagnostic, path: str, loaded: LoadedScenario) -> Diagnostic:
@@ -129,7 +129,7 @@ def simulate(
 
     Returns
     -------
-    the results, SI: `time` and `signals` by name over it, `told` (label and quantity of each),
+    the results, SI: `signals` by name over `time`, `told` (label and quantity of each signal),
     `values` by the names of `quantities.RESULTS` (None with a reason in `why`), `requirements`,
     `servo`, `balance`, `events`, `notes`; printed, a table
 
@@ -138,7 +138,7 @@ def simulate(
     InputError
         as `read_scenario`; a gain without a tuning rule
     Unsolvable
-        the integration fails; gives the time
+        the integration fails; states the time
     """
     from ..simulation import simulate as run
 
@@ -195,7 +195,7 @@ class Compared(Displayed):
     """A simulation compared with a measured record, and the parameters fitted to it."""
 
     overlay: Overlay
-    """Simulation after the fit, if any."""
+    """The simulation with the record, after the fit, if any."""
     fit: Fit | None = None
 
     @property
@@ -213,9 +213,9 @@ class Compared(Displayed):
 
         return blocks(self.overlay, self.fit)
 
-    def report(self, **how: Any) -> list[ReportFile]:
+    def report(self, **paper: Any) -> list[ReportFile]:
         """Write the page of the simulation with the record; parameters as `write_simulation`."""
-        return write_simulation(self.simulation, measured=self, **how)
+        return write_simulation(self.simulation, measured=self, **paper)
 
 
 def compare_measured(
@@ -237,7 +237,7 @@ def compare_measured(
     record : CSV file with t and any of p1, p2, x, v, F_L, ...
     fit : names of parameters, as ``air_content``; see `simulation.measured.parameters`
     columns : header by channel if it is not a known name
-    units : of columns whose header states none, as `read_record`
+    units : of columns without a unit in their header, as `read_record`
     verify, method : as `simulate`; with a fit, of the run with the fitted values
     simulation : of the scenario, if already run
 
@@ -259,14 +259,14 @@ def compare_measured(
     measured = parse_measured(text, name=name, columns=columns, units=column_units(units))
     with placed(trial):
         if not fit:
-            done = simulation or simulate(trial, verify=verify, method=method)
-            return Compared(overlay(done, measured))
+            simulation = simulation or simulate(trial, verify=verify, method=method)
+            return Compared(overlay(simulation, measured))
         subject = trial.actuator.subject()
-        found = fitted(
+        result = fitted(
             trial.scenario, plant(subject), trial.records, measured, fit,
             verify=verify, method=method, spec=spec_of(subject, trial.scenario),
         )  # fmt: skip
-    return Compared(found.after, found)
+    return Compared(result.after, result)
 
 
 def servo_sensitivities(
@@ -289,7 +289,7 @@ def servo_sensitivities(
 def verify_dynamics(
     scenario: Trial | str | Path, design: Actuator | Design | str | Path | None = None
 ) -> Verification:
-    """Verify every dynamic requirement of a design and of a scenario in time.
+    """Verify every dynamic requirement of a design and of a scenario by simulation.
 
     Parameters
     ----------
@@ -310,7 +310,7 @@ def fitting(trial: Trial, design: Actuator | Design | str | Path) -> Actuator:
     Raises
     ------
     InputError
-        a scenario that does not fit this design, or that has no cylinder to verify
+        a scenario that does not fit this design, or has no cylinder to verify
     """
     from ..design.scenario import design_faults
 
@@ -322,9 +322,9 @@ def fitting(trial: Trial, design: Actuator | Design | str | Path) -> Actuator:
     changes = {change.path: change.value for change in trial.loaded.changes}
     actuator = as_actuator(design)
     actuator = actuator.changed(changes) if changes else actuator
-    found = sorted(design_faults(scenario, actuator.design), key=source.place)
-    if found:
-        raise InputError([source.at(fault) for fault in found])
+    faults = sorted(design_faults(scenario, actuator.design), key=source.place)
+    if faults:
+        raise InputError([source.at(fault) for fault in faults])
     return actuator
 
 
@@ -347,7 +347,7 @@ def write_simulation(
 
     Raises
     ------
-    UsageError : no `scenario`, as the simulation does not keep its file
+    UsageError : no `scenario`, as a simulation does not contain its file
     """
     from ..pages.measured import drawn
     from ..pages.simulation import page
@@ -361,8 +361,8 @@ def write_simulation(
     blocks = [] if measured is None else measured.blocks()
     blocks += [] if sensitivities is None else sensitivity_blocks(sensitivities)
     record = None if measured is None else drawn(measured.overlay)
-    made = page(simulation, measured=record, extra=blocks)
-    return printed.write(made, origin, **place, scenario_hash=simulation.spec_hash)
+    report = page(simulation, measured=record, extra=blocks)
+    return printed.write(report, origin, **place, scenario_hash=simulation.spec_hash)
 
 
 def write_comparison(
@@ -373,12 +373,12 @@ def write_comparison(
     notes: Sequence[str] = (),
     **paper: Unpack[ReportArguments],
 ) -> list[ReportFile]:
-    """Write one page that compares several simulations (PDF and PNG).
+    """Write a page that compares several simulations (PDF and PNG).
 
     Parameters
     ----------
     runs : name and simulation of each; "50 %, extending" and "50 %, retracting" share a colour
-    scenario : that they vary, attached
+    scenario : of the simulations, attached
     title, notes : of the page
     paper : as `report`; the name is the scenario file's with "-compared"
 
@@ -390,15 +390,15 @@ def write_comparison(
     from ..pages.simulation_comparison import comparison, page
     from ..rendering import paper as printed
 
-    made = page(comparison(runs, title, notes))
+    report = page(comparison(runs, title, notes))
     origin, place = _page(scenario, runs[0][1], "-compared", paper)
-    return printed.write(made, origin, **place)
+    return printed.write(report, origin, **place)
 
 
 def _page(
     scenario: Trial, simulation: Simulation, tail: str, paper: ReportArguments
 ) -> tuple[Origin, ReportPlace]:
-    """`page_of` for a scenario, which is attached and names the page."""
+    """`page_of` for a scenario: its file is attached and names the page."""
     source = scenario.loaded.source
     name = "scenario.yaml" if source.file.startswith("<") else Path(source.file).name
     paper["actuator"] = scenario.actuator

@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
+from ..base.errors import Diagnostic, UsageError
 from ..design import Design
-from .actuator import Actuator, as_actuator
+from .actuator import Actuator, Plugins, as_actuator, checked_design, located
 from .reports import ReportArguments, page_of
 
 if TYPE_CHECKING:
     from ..evaluation.rings import Place
-    from ..studies.seal import SealStudy
-
-
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
-
-from ..base.errors import Diagnostic, UsageError
-from .actuator import Plugins, answered, located
-
-if TYPE_CHECKING:
     from ..pages import ReportFile
+    from ..studies.seal import SealStudy
     from ..uncertainties import Uncertainty
 
 LEAST, MOST = 20, 10_000_000
@@ -49,21 +42,21 @@ def uncertainty(
     count : draws for the yield
     seed : the same seed gives the same result
     quasi_random : draw scrambled Sobol points, with 16 randomisations, instead of independent ones
-    rows : rows for the indices, (inputs + 2) evaluations each; 0 for no indices
-    metrics : evaluated beside the margins of all limits; default: those of the objective
+    rows : rows for the indices, (inputs + 2) evaluations each; 0: no indices
+    metrics : analysed beside the margins of all limits; default: the metrics of the objective
     plugins : the user's own metrics and constraints
 
     Raises
     ------
     InputError
-        a distribution that does not fit its value, or of a number that no model reads
+        a distribution that does not fit its value, or belongs to a number that no model reads
     """
     from ..uncertainties import uncertainty as run
 
     if not LEAST <= count <= MOST:
         message = f"{count} draws: need {LEAST} to {MOST}"
         raise UsageError(Diagnostic(message, "10000 bounds a yield of 99 % within 0.2 %"))
-    actuator, subject = answered(design, plugins)
+    actuator, subject = checked_design(design, plugins)
     with located(actuator):
         return run(
             subject, count=count, seed=seed, quasi_random=quasi_random, rows=rows, metrics=metrics
@@ -75,7 +68,7 @@ def write_uncertainty(study: Uncertainty, **paper: Unpack[ReportArguments]) -> l
 
     Raises
     ------
-    UsageError : no `actuator`, as the study does not keep its design
+    UsageError : no `actuator`, as the study does not contain its design
     """
     from ..pages.uncertainty import page
     from ..rendering import paper as printed
@@ -108,14 +101,14 @@ def seal(
 ) -> SealStudy:
     """Contact, oil film, friction, leakage and damping of the seals of piston or rod.
 
-    The film is solved whether the design uses it or a coefficient of friction.
+    The film is solved even if the design uses a coefficient of friction.
 
     Parameters
     ----------
     design : as `evaluate`
     place : "piston" or "rod"
-    speed, pressure : of the counterface [m/s], sealed gauge [Pa]; default: those of the moving
-        load case with the highest pressure
+    speed, pressure : of the counterface [m/s], sealed gauge [Pa]; default: from the moving load
+        case with the highest pressure
     curves : compute friction over speed at three pressures
     mapped : compute a map over speed and pressure
     finite_elements : compute the contact profiles of O-rings and step rings (extra ``fem``); the
@@ -133,9 +126,9 @@ def seal(
 
     actuator = as_actuator(design)
     elements = getattr(actuator.design.seals, place).elements()
-    asked = {f"seals.{place}.{tail}friction": film.LAW.name for tail in elements}
-    subject = actuator.changed(asked).subject()
-    subject, found = with_elements(subject, place) if finite_elements else (subject, ())
+    changes = {f"seals.{place}.{tail}friction": film.LAW.name for tail in elements}
+    subject = actuator.changed(changes).subject()
+    subject, profiles = with_elements(subject, place) if finite_elements else (subject, ())
     return study(
         subject,
         place,
@@ -143,7 +136,7 @@ def seal(
         pressure=pressure,
         curves=curves,
         mapped=mapped,
-        elements=found,
+        elements=profiles,
     )
 
 
@@ -165,7 +158,7 @@ def write_seal(
     Parameters
     ----------
     study : of `seal`
-    sheet : whether to write the sheet, or the map alone
+    sheet : whether to write the sheet, or only the map
     paper : as `report`
     """
     from ..pages.seal import page, series

@@ -2,30 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from ..base.errors import Diagnostic, InputError, UsageError
+from ..base.files import require_apart, writing as cannot_write
 from ..base.tables import Displayed
-from .actuator import Actuator
+from ..design import Design
+from ..evaluation import PreparedDesign, compute
+from .actuator import Actuator, Plugins, as_actuator, requirement_faults
 from .recorded_runs import Run
 from .reports import ReportArguments, file_name, report_files
 
 if TYPE_CHECKING:
     from ..pages import ReportFile
-
-
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager
-from typing import TYPE_CHECKING
-
-from ..base.files import require_apart, writing as cannot_write
-from ..design import Design
-from ..evaluation import PreparedDesign, compute
-from .actuator import Plugins, as_actuator, unanswered
-
-if TYPE_CHECKING:
     from ..sweeps import Swept
     from ..sweeps.chunk import Chunk, Study
     from ..sweeps.plan import Method, Plan
@@ -35,7 +28,7 @@ LARGE = 1_000_000
 """Number of points from which a full sweep needs confirmation."""
 
 MOST_WORKERS = 1024
-"""Maximum processes on one machine (a choice: more are probably a slip, and may overload it)."""
+"""Maximum processes on a machine (a choice: more are probably a slip, and may overload it)."""
 
 
 def sweep(
@@ -64,7 +57,7 @@ def sweep(
     Parameters
     ----------
     design : the base design
-    vary : ``"PATH=A..B:N"`` or ``"PATH=a,b,c"``, or these by PATH
+    vary : ``"PATH=A..B:N"`` or ``"PATH=a,b,c"``, or a mapping of PATH to ``"A..B:N"``
     method : "grid" (full factorial), "sobol" or "lhs" (Latin hypercube)
     n : points of "sobol" and "lhs"
     seed : of "sobol" and "lhs"
@@ -91,49 +84,43 @@ def sweep(
     InputError
         an invalid PATH or value, an objective without a value, or a store that cannot be used
     """
-    from ..sweeps import plan, read_axis, sweep as run
+    from ..sweeps import sweep as run
     from ..sweeps.screen import usable_engine
 
     engine = usable_engine(engine, reduced=reduce)
     if workers is not None and not 1 <= workers <= MOST_WORKERS:
         raise UsageError(Diagnostic(f"--workers {workers}", f"give 1 to {MOST_WORKERS}"))
-    _require_apart(store, csv, parquet)
-    if reduce and any(file is not None for file in (store, csv, parquet)):
+    files = [Path(file) for file in (store, csv, parquet) if file is not None]
+    _require_distinct(files)
+    if reduce and files:
         message = "--reduce only keeps the best designs"
         raise UsageError(Diagnostic(message, "omit --store, --csv and --parquet"))
     actuator = as_actuator(design, plugins)
-    for file in (store, csv, parquet):
-        if file is not None:
-            require_apart(Path(file), *_read_from(actuator))
-    subject = actuator.subject()
-    faults = unanswered(actuator, subject)
-    if faults:
-        raise InputError(faults)
-    _require_objective(subject)
-    base = free(actuator)
-    given = [f"{k}={v}" for k, v in vary.items()] if isinstance(vary, Mapping) else list(vary)
-    axes = [read_axis(text, base, subject.quantities) for text in given]
-    chosen = plan(axes, method=method, count=n, seed=seed)
-    if chosen.count > LARGE and not reduce and not yes:
-        message = f"all {chosen.count:,} points would be evaluated in full".replace(",", " ")
+    for file in files:
+        require_apart(file, *_read_from(actuator))
+    points = _points(actuator, _sweepable(actuator), vary, method, n, seed)
+    if points.count > LARGE and not reduce and not yes:
+        message = f"all {points.count:,} points would be evaluated in full".replace(",", " ")
         remedy = "confirm with --yes, or keep only the best with --reduce best:K"
         raise UsageError(Diagnostic(message, remedy))
-    study = study_of(actuator, chosen, full=not reduce, show=show, engine=engine)
+    study = study_of(actuator, points, full=not reduce, show=show, engine=engine)
     if actuator.plugins and scheduler is not None:
         message = "custom metrics cannot be sent to other machines"
         raise UsageError(Diagnostic(message, "omit --scheduler or --plugin"))
-    how: dict[str, Any] = {
-        "store": None if store is None else Path(store),
-        "keep": keep,
-        "workers": 1 if actuator.plugins or engine != "numpy" else workers,
-        "scheduler": scheduler,
-        "watch": _watched(study, figures, show),
-    }
-    with writing(study, csv, parquet) as each:
-        found = run(study, each=each, **how)
+    watched = _watched(study, figures, show)
+    with writing(study, csv, parquet) as write_rows:
+        swept = run(
+            study,
+            each=write_rows,
+            store=None if store is None else Path(store),
+            keep=keep,
+            workers=1 if actuator.plugins or engine != "numpy" else workers,
+            scheduler=scheduler,
+            watch=watched,
+        )
     if figures and out is not None:
-        draw_sweep(found, figures, show=show, out=out)
-    return found
+        draw_sweep(swept, figures, show=show, out=out)
+    return swept
 
 
 @contextmanager
@@ -153,28 +140,55 @@ def writing(
             file = ParquetFile(columns.fields, about(study), Path(parquet))
             files.append(stack.enter_context(file))
 
-        def each(chunk: Chunk) -> None:
+        def write_rows(chunk: Chunk) -> None:
             values = columns.values(chunk) if files else []
             for file in files:
                 file.add(values)
 
-        yield each
+        yield write_rows
 
 
-def _require_objective(subject: PreparedDesign) -> None:
-    """Reject an objective without a value; raises `InputError`."""
+def _sweepable(actuator: Actuator) -> PreparedDesign:
+    """The design, ready for the models.
+
+    Raises
+    ------
+    InputError : a requirement on a missing metric, or an objective without a value
+    """
     from ..optimisation.actuator import goal_of
 
+    subject = actuator.subject()
+    faults = requirement_faults(actuator, subject)
+    if faults:
+        raise InputError(faults)
     goal_of(subject).value(compute(subject, subject.values()).computed, subject.cases)
+    return subject
 
 
-def _require_apart(*files: str | Path | None) -> None:
-    """Reject one file for two purposes, and standard output; raises `UsageError`."""
-    if "-" in map(str, files):
+def _points(
+    actuator: Actuator,
+    subject: PreparedDesign,
+    vary: Sequence[str] | Mapping[str, str],
+    method: Method,
+    count: int | None,
+    seed: int,
+) -> Plan:
+    """The points of a sweep; arguments as `sweep`."""
+    from ..sweeps import plan, read_axis
+
+    base = without_variables(actuator)
+    texts = [f"{k}={v}" for k, v in vary.items()] if isinstance(vary, Mapping) else list(vary)
+    axes = [read_axis(text, base, subject.quantities) for text in texts]
+    return plan(axes, method=method, count=count, seed=seed)
+
+
+def _require_distinct(files: Sequence[Path]) -> None:
+    """Reject a file for two purposes, and standard output; raises `UsageError`."""
+    if Path("-") in files:
         message = "-: standard output is used for the results"
         raise UsageError(Diagnostic(message, "name a file for --store, --csv or --parquet"))
     places = []
-    for path in (Path(file) for file in files if file is not None):
+    for path in files:
         with cannot_write(path):
             places.append(path.resolve())
     for place in places:
@@ -184,13 +198,13 @@ def _require_apart(*files: str | Path | None) -> None:
 
 
 def _read_from(actuator: Actuator) -> list[str]:
-    """The files that a design and its custom metrics were read from."""
+    """The files of a design and of its custom metrics."""
     design = [] if actuator.source is None else [actuator.source.file]
     return [*design, *(plugin.file for plugin in actuator.plugins if plugin.file)]
 
 
-def free(actuator: Actuator) -> Design:
-    """Its design without free variables."""
+def without_variables(actuator: Actuator) -> Design:
+    """The design without variables and choices."""
     return actuator.design.model_copy(update={"variables": {}, "choices": {}})
 
 
@@ -200,11 +214,18 @@ def study_of(
     """The study of a sweep: the design, its points and the requested metrics."""
     from ..sweeps.chunk import Study
 
-    return Study(free(actuator), plan, actuator.plugins, full=full, more=tuple(show), engine=engine)
+    return Study(
+        without_variables(actuator),
+        plan,
+        actuator.plugins,
+        full=full,
+        more=tuple(show),
+        engine=engine,
+    )
 
 
 def _watched(study: Study, figures: Sequence[str], show: Sequence[str]) -> tuple[str, ...]:
-    """The metrics for Pareto lines of the figures; rejects an invalid figure before the work."""
+    """Metrics for the Pareto lines of the figures; refuses an invalid figure before the sweep."""
     if not figures:
         return ()
     from ..pages.sweep_figures.shared import watched
@@ -225,9 +246,9 @@ def draw_sweep(
     Parameters
     ----------
     swept : result of `sweep`
-    figures : "parallel" (what varies, the objective, metrics), "scatter" (metrics in pairs with
-        their Pareto lines), "contour" (of metrics over the two numbers of a grid, with the
-        boundary of every limit), "ucurves" (stiffness over the stroke of the best designs)
+    figures : "parallel" (varied inputs, objective, metrics), "scatter" (metrics in pairs with
+        their Pareto lines), "contour" (metrics over the two numbers of a grid, with the boundary
+        of every limit), "ucurves" (stiffness over the stroke of the best designs)
     show : metrics; default: the objective and the requirements, in a contour the objective
     out, stem : target; default: the design's name in ``reports/``
 
@@ -256,7 +277,7 @@ def draw_sweep(
 
 @dataclass(frozen=True, slots=True)
 class KeptSweep(Displayed):
-    """A sweep from its record: the study, and the run with the location of its rows."""
+    """A sweep from its record: the study, and the run, which has the location of the rows."""
 
     run: Run
     study: Study
@@ -264,40 +285,41 @@ class KeptSweep(Displayed):
 
 def kept_sweep(run: Run, actuator: Actuator) -> KeptSweep:
     """The sweep of a record, without reading its rows yet."""
-    asked = run.body["asked"]
-    study = study_of(actuator, _plan(run), full=not asked["reduce"], show=asked["show"])
+    options = run.body["asked"]
+    study = study_of(actuator, _plan(run), full=not options["reduce"], show=options["show"])
     return KeptSweep(run, study)
 
 
 def _plan(run: Run) -> Plan:
+    """The recorded points; raises `ValueError` for a damaged record."""
     import numpy as np
 
     from ..sweeps.plan import SweepAxis, plan
 
-    told: dict[str, Any] = run.body["plan"]
+    record: dict[str, Any] = run.body["plan"]
     axes = [
         SweepAxis(
-            one["path"],
-            None if one["values"] is None else np.array(one["values"], dtype=float),
-            tuple(one["texts"]),
-            one["range"],
-            one["steps"],
+            axis["path"],
+            None if axis["values"] is None else np.array(axis["values"], dtype=float),
+            tuple(axis["texts"]),
+            axis["range"],
+            axis["steps"],
         )
-        for one in told["axes"]
+        for axis in record["axes"]
     ]
     for axis in axes:
         ends = axis.range and axis.values is not None and len(axis.values) == 2
         steps = axis.count is None or axis.count >= 2
         if not (ends and steps if axis.range else axis.size):
             raise ValueError("an axis without values")
-    count = None if told["method"] == "grid" else told["count"]
+    count = None if record["method"] == "grid" else record["count"]
     try:
-        found = plan(axes, method=told["method"], count=count, seed=run.head["seed"])
+        points = plan(axes, method=record["method"], count=count, seed=run.head["seed"])
     except UsageError as error:
         raise ValueError(str(error)) from None
-    if found.count != told["count"]:
+    if points.count != record["count"]:
         raise ValueError("another number of points")
-    return found
+    return points
 
 
 def store_of(run: Run) -> tuple[Path, str]:
@@ -310,49 +332,50 @@ def store_of(run: Run) -> tuple[Path, str]:
     if run.head.get("kind") != "sweep":
         message = f"is a run of {run.head.get('kind')}, which has no stored rows"
         raise InputError(Diagnostic(message, "name a run of sweep or pareto", str(run.path)))
-    kept = run.body["asked"]["store"]
-    if kept is None:
+    store = run.body["asked"]["store"]
+    if store is None:
         message = f"run {run.id} is a sweep without --store, so its rows were not stored"
         remedy = "see its best with runs show, or run it again with --store F.db"
         raise InputError(Diagnostic(message, remedy, str(run.path)))
-    path = Path(kept["path"])
+    path = Path(store["path"])
     if not path.exists():
         message = f"no longer exists; run {run.id} stored its rows there"
         remedy = "restore it, or name its new location: actuator-opt explore F.db"
         raise InputError(Diagnostic(message, remedy, str(path)))
-    return path, kept["study"]
+    return path, store["study"]
 
 
-def report_sweep(kept: KeptSweep, **paper: Unpack[ReportArguments]) -> list[ReportFile]:
+def report_sweep(sweep_record: KeptSweep, **paper: Unpack[ReportArguments]) -> list[ReportFile]:
     """Write the figures and tables of a recorded sweep again, from the rows in its store.
 
-    The figures are those of the sweep, else parallel axes if a design is feasible. The CSV
-    (``NAME-sweep.csv``) is omitted for a sweep of over a million points that wrote none; a Parquet
-    file is written if the sweep wrote one. Of `paper` (see `report`) only folder and stem are used.
+    The figures are those of the sweep, else parallel axes if a design is feasible. The CSV file
+    (``NAME-sweep.csv``) is omitted for a sweep of over a million points without a CSV file. A
+    Parquet file is written if the sweep wrote one. Only folder and stem of `paper` are used (see
+    `report`).
 
     Raises
     ------
-    InputError : the store is missing, has other rows or lacks some, or the folder cannot be written
+    InputError : the store is missing, lacks rows or has other rows, or the folder cannot be written
     """
     from ..base.files import require_folder
     from ..pages.sweep_figures.shared import watched
     from ..sweeps import swept_again
 
     target = Path(paper.get("folder", "reports"))
-    asked, study = kept.run.body["asked"], kept.study
-    path, _ = store_of(kept.run)
+    options, study = sweep_record.run.body["asked"], sweep_record.study
+    path, _ = store_of(sweep_record.run)
     require_folder(target)
-    figures, show = asked["figures"], asked["show"]
-    how: dict[str, Any] = {"keep": asked["keep"], "watch": watched(study, figures, show)}
+    figures, show = options["figures"], options["show"]
+    watch = watched(study, figures, show)
     stem = paper.get("stem") or Path(file_name(study.design, None)).stem
     csv = parquet = None
-    if study.plan.count <= LARGE or asked["csv"] is not None:
+    if study.plan.count <= LARGE or options["csv"] is not None:
         csv = target / f"{stem}-sweep.csv"
-    if asked["parquet"] is not None:
+    if options["parquet"] is not None:
         parquet = target / f"{stem}-sweep.parquet"
     target.mkdir(parents=True, exist_ok=True)
-    with writing(study, csv, parquet) as each:
-        swept = swept_again(study, path, each=each, **how)
+    with writing(study, csv, parquet) as write_rows:
+        swept = swept_again(study, path, keep=options["keep"], each=write_rows, watch=watch)
     files = [file for file in (csv, parquet) if file is not None]
     kinds = figures or (["parallel"] if swept.feasible else [])
     if kinds:

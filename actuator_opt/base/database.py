@@ -35,10 +35,10 @@ FORMAT = 2
 BUSY = 60.0
 """Seconds to wait while another process writes."""
 
-ASKED = 500
+KEYS_PER_QUERY = 500
 """Keys per query; SQLite accepts at least 999 parameters."""
 
-OURS = frozenset({"meta", "studies", "rows"})
+TABLES = frozenset({"meta", "studies", "rows"})
 """Tables that identify a database of this program."""
 
 PAUSE = 0.01
@@ -87,10 +87,10 @@ class Checksums:
 
     def of(self, key: bytes, numbers: bytes | None, failure: str | None) -> bytes:
         """Checksum of a row."""
-        element_state = self._head.copy()
-        element_state.update(key)
-        element_state.update(b"failed " + (failure or "").encode() if numbers is None else numbers)
-        return element_state.digest()
+        checksum = self._head.copy()
+        checksum.update(key)
+        checksum.update(b"failed " + (failure or "").encode() if numbers is None else numbers)
+        return checksum.digest()
 
     def fits(self, key: Any, numbers: Any, failure: Any, checksum: Any) -> bool:
         """Whether a stored row is intact: numbers, or the reason for a failed design."""
@@ -109,7 +109,7 @@ class Database:
         self, connection: sqlite3.Connection, number: int, study: str, width: int, path: Path
     ) -> None:
         self.connection, self.number, self.path = connection, number, path
-        self.width, self.seals = width, Checksums(study, width)
+        self.width, self.checksums = width, Checksums(study, width)
 
     def missing(self, keys: Sequence[bytes]) -> tuple[list[int], int]:
         """Indices of the keys without an intact row, and how many of their rows are damaged."""
@@ -121,30 +121,30 @@ class Database:
     def known(self, keys: Sequence[bytes]) -> dict[int, tuple[Array | None, str | None]]:
         """Rows already stored, by the index of their key; damaged rows are left out."""
         rows = self._known(keys)
-        kept: dict[int, tuple[Array | None, str | None]] = {}
+        stored: dict[int, tuple[Array | None, str | None]] = {}
         for k, key in enumerate(keys):
             row = rows.get(key)
             if row is not None:
                 blob, failure = row
-                kept[k] = (None if blob is None else np.frombuffer(blob, dtype="<f8"), failure)
-        return kept
+                stored[k] = (None if blob is None else np.frombuffer(blob, dtype="<f8"), failure)
+        return stored
 
     def _known(self, keys: Sequence[bytes]) -> dict[bytes, tuple[bytes | None, str | None] | None]:
         """Numbers and failure reasons of stored rows by key; None for damaged rows."""
-        some = "SELECT 1 FROM rows WHERE study = ? LIMIT 1"
-        if self.connection.execute(some, (self.number,)).fetchone() is None:
+        probe = "SELECT 1 FROM rows WHERE study = ? LIMIT 1"
+        if self.connection.execute(probe, (self.number,)).fetchone() is None:
             return {}
-        kept: dict[bytes, tuple[bytes | None, str | None] | None] = {}
-        for first in range(0, len(keys), ASKED):
-            part = keys[first : first + ASKED]
+        stored: dict[bytes, tuple[bytes | None, str | None] | None] = {}
+        for first in range(0, len(keys), KEYS_PER_QUERY):
+            part = keys[first : first + KEYS_PER_QUERY]
             marks = ",".join("?" * len(part))
             select = (
                 "SELECT key, numbers, failure, checksum FROM rows"
                 f" WHERE study = ? AND key IN ({marks})"
             )
             for row in self.connection.execute(select, (self.number, *part)):
-                kept[row[0]] = row[1:3] if self.seals.fits(*row) else None
-        return kept
+                stored[row[0]] = row[1:3] if self.checksums.fits(*row) else None
+        return stored
 
     def put(self, keys: Sequence[bytes], rows: StoredNumbers) -> None:
         """Store a chunk completely or not at all; damaged rows are replaced."""
@@ -155,7 +155,7 @@ class Database:
         for k, key in enumerate(keys):
             failure = failures.get(k)
             numbers = data[k * width : (k + 1) * width] if failure is None else None
-            checksum = self.seals.of(key, numbers, failure)
+            checksum = self.checksums.of(key, numbers, failure)
             records.append((self.number, key, numbers, failure, checksum))
         with self.connection:
             self.connection.executemany(_PUT, records)
@@ -192,9 +192,9 @@ def opened(
     with _diagnosed(path):
         connection = sqlite3.connect(path.absolute(), timeout=BUSY)  # ":memory:" is a file, too
         try:
-            _patiently(lambda: _require_ours(connection, path, version))
-            told = json.dumps([list(column) for column in columns])
-            number = _begun(connection, path, (study, name, design, told))
+            _retried(lambda: _prepare(connection, path, version))
+            columns_text = json.dumps([list(column) for column in columns])
+            number = _study_number(connection, path, (study, name, design, columns_text))
             with connection:
                 put = "INSERT OR IGNORE INTO texts VALUES (?, ?, ?)"
                 connection.executemany(put, [(number, *text) for text in texts])
@@ -203,9 +203,11 @@ def opened(
             connection.close()
 
 
-def _begun(connection: sqlite3.Connection, path: Path, study: tuple[str, str, str, str]) -> int:
+def _study_number(
+    connection: sqlite3.Connection, path: Path, study: tuple[str, str, str, str]
+) -> int:
     """Index of a study (hash, name, design, columns); the study is added if missing."""
-    hashed, *about = study
+    hashed, *description = study
     with connection:
         connection.execute(
             "INSERT OR IGNORE INTO studies (hash, name, design, columns, checksum)"
@@ -216,14 +218,14 @@ def _begun(connection: sqlite3.Connection, path: Path, study: tuple[str, str, st
     row = connection.execute(select, (hashed,)).fetchone()
     if row is None:  # its index is damaged
         raise damaged(path)
-    number, *kept, checksum = row
-    if checksum != study_checksum(hashed, *kept):
+    number, *stored, checksum = row
+    if checksum != study_checksum(hashed, *stored):
         with connection:
             connection.execute(
                 "UPDATE studies SET name = ?, design = ?, columns = ?, checksum = ? WHERE id = ?",
-                (*about, study_checksum(*study), number),
+                (*description, study_checksum(*study), number),
             )
-    elif kept[-1] != about[-1]:
+    elif stored[-1] != description[-1]:
         raise refused(path, "has other columns for this study", "name another file")
     return int(number)
 
@@ -234,8 +236,8 @@ def study_checksum(*about: object) -> bytes:
     return hashlib.blake2b(text.encode(), digest_size=CHECK).digest()
 
 
-def _patiently(act: Callable[[], None]) -> None:
-    """Retry what SQLite refuses while another process opens the file."""
+def _retried(act: Callable[[], None]) -> None:
+    """Call a function again while SQLite refuses it because another process opens the file."""
     end = time.monotonic() + BUSY
     while True:
         try:
@@ -246,10 +248,10 @@ def _patiently(act: Callable[[], None]) -> None:
         time.sleep(PAUSE)
 
 
-def _require_ours(connection: sqlite3.Connection, path: Path, version: str) -> None:
+def _prepare(connection: sqlite3.Connection, path: Path, version: str) -> None:
     """Create the tables of a new file; refuse a foreign database."""
     tables = {row[0] for row in connection.execute("SELECT name FROM sqlite_master")}
-    if tables and not tables >= OURS:
+    if tables and not tables >= TABLES:
         raise refused(path, "is another program's database", "name another file")
     connection.execute("PRAGMA journal_mode = WAL")
     connection.execute("PRAGMA synchronous = NORMAL")
@@ -310,7 +312,7 @@ def _diagnosed(path: Path) -> Iterator[None]:
 
 MAGIC = b"SQLite format 3\0"
 """First bytes of every SQLite file."""
-SOME = 4096
+ROWS_PER_QUERY = 4096
 """Rows per query."""
 _SELECT = "SELECT key, numbers, failure, checksum FROM rows WHERE study = ?"
 
@@ -345,32 +347,32 @@ class Reader:
             no such study, or the study has no rows
         """
         select = "SELECT id, hash, name, design, columns, checksum FROM studies ORDER BY id"
-        every = self.connection.execute(select).fetchall()
-        if not every:
+        studies = self.connection.execute(select).fetchall()
+        if not studies:
             raise refused(self.path, "has no study", "fill it with `sweep --store` first")
-        found = [one for one in every if number in (None, one[0])]
-        if not found:
-            have = ", ".join(f"{one[0]} ({one[2]})" for one in every[-8:])
+        matches = [row for row in studies if number in (None, row[0])]
+        if not matches:
+            have = ", ".join(f"{row[0]} ({row[2]})" for row in studies[-8:])
             raise refused(self.path, f"has no study {number}", f"choose --study from {have}")
-        number, hashed, name, design, columns, checksum = found[-1]
+        number, hashed, name, design, columns, checksum = matches[-1]
         if checksum != study_checksum(hashed, name, design, columns):
             message = f"study {number} is damaged"
             raise refused(self.path, message, "run the sweep again with --store")
-        told = self._columns(columns)
+        stated = self._columns(columns)
         count = "SELECT count(*) FROM rows NOT INDEXED WHERE study = ?"  # an index may lack rows
         rows = self.connection.execute(count, (number,)).fetchone()[0]
         if not rows:
             raise refused(self.path, f"study {number} has no rows yet", "run its sweep first")
-        failures = self._failures(number, Checksums(hashed, len(told)))
-        return StoredRows(number, hashed, name, design, told, rows, failures, self._texts(number))
+        failures = self._failures(number, Checksums(hashed, len(stated)))
+        return StoredRows(number, hashed, name, design, stated, rows, failures, self._texts(number))
 
-    def _failures(self, number: int, seals: Checksums) -> dict[str, int]:
+    def _failures(self, number: int, checksums: Checksums) -> dict[str, int]:
         """Number of failed designs by reason, the most frequent first; damaged rows are ignored."""
         select = f"{_SELECT} AND failure IS NOT NULL"
         reasons = Counter(
-            row[2] for row in self.connection.execute(select, (number,)) if seals.fits(*row)
+            row[2] for row in self.connection.execute(select, (number,)) if checksums.fits(*row)
         )
-        return dict(sorted(reasons.items(), key=lambda one: (-one[1], one[0])))
+        return dict(sorted(reasons.items(), key=lambda item: (-item[1], item[0])))
 
     def number(self, hashed: str) -> int:
         """Number of the study with a hash.
@@ -388,24 +390,24 @@ class Reader:
 
     def _columns(self, text: str) -> tuple[NumberColumn, ...]:
         try:
-            told = json.loads(text)
+            data = json.loads(text)
         except (TypeError, ValueError, RecursionError):
-            told = None
-        if not isinstance(told, list) or not all(
-            isinstance(one, list) and len(one) == len(NumberColumn._fields) for one in told
+            data = None
+        if not isinstance(data, list) or not all(
+            isinstance(column, list) and len(column) == len(NumberColumn._fields) for column in data
         ):
             raise refused(self.path, "does not name the columns of its rows", "run the sweep again")
-        return tuple(NumberColumn(*one) for one in told)
+        return tuple(NumberColumn(*column) for column in data)
 
     def _texts(self, number: int) -> dict[str, tuple[str, ...]]:
         tables = {row[0] for row in self.connection.execute("SELECT name FROM sqlite_master")}
         if "texts" not in tables:
             return {}
-        found: dict[str, tuple[str, ...]] = {}
+        texts_by_path: dict[str, tuple[str, ...]] = {}
         select = "SELECT path, text FROM texts WHERE study = ? ORDER BY path, text"
         for path, text in self.connection.execute(select, (number,)):
-            found[path] = (*found.get(path, ()), text)
-        return found
+            texts_by_path[path] = (*texts_by_path.get(path, ()), text)
+        return texts_by_path
 
     def rows(self, study: StoredRows) -> Iterator[tuple[list[bytes], Array]]:
         """Keys and numbers of the successful rows, in batches, ordered by key.
@@ -416,12 +418,15 @@ class Reader:
         select = f"{_SELECT} AND failure IS NULL ORDER BY key"
         cursor = self.connection.execute(select, (study.number,))
         width = len(study.columns)
-        seals = Checksums(study.hash, width)
-        while every := cursor.fetchmany(SOME):
-            some = [row for row in every if seals.fits(*row)]
-            data = b"".join(row[1] for row in some)
-            if some:
-                yield [row[0] for row in some], np.frombuffer(data, dtype="<f8").reshape(-1, width)
+        checksums = Checksums(study.hash, width)
+        while batch := cursor.fetchmany(ROWS_PER_QUERY):
+            intact = [row for row in batch if checksums.fits(*row)]
+            data = b"".join(row[1] for row in intact)
+            if intact:
+                yield (
+                    [row[0] for row in intact],
+                    np.frombuffer(data, dtype="<f8").reshape(-1, width),
+                )
 
 
 @contextmanager
@@ -470,5 +475,5 @@ def _connected(path: Path) -> sqlite3.Connection:
 
 def _require_tables(connection: sqlite3.Connection, path: Path) -> None:
     tables = {row[0] for row in connection.execute("SELECT name FROM sqlite_master")}
-    if not tables >= OURS:
+    if not tables >= TABLES:
         raise refused(path, "is not a database of sweeps", "name a file written by `sweep --store`")

@@ -30,8 +30,8 @@ def closest(word: str, names: Iterable[str]) -> str | None:
             return name
     import difflib  # slow to import, needed for faults only
 
-    found = difflib.get_close_matches(word, candidates, n=1, cutoff=0.6)
-    return found[0] if found else None
+    matches = difflib.get_close_matches(word, candidates, n=1, cutoff=0.6)
+    return matches[0] if matches else None
 
 
 def remedy(word: str, names: Iterable[str], limit: int = 12) -> str:

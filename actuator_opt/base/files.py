@@ -65,7 +65,7 @@ def read_bytes(source: str | Path, *, most: int, kinds: tuple[str, ...], what: s
     ----------
     source : path as the user wrote it; ``"-"`` for standard input
     most : largest number of bytes to read
-    kinds : suffixes of such files, to suggest a similar name
+    kinds : suffixes of these files, to suggest a similar name
     what : kind of file, in words
 
     Raises
@@ -74,12 +74,12 @@ def read_bytes(source: str | Path, *, most: int, kinds: tuple[str, ...], what: s
     """
     path, name = Path(source), str(source)
     if name == "-":
-        return _given(most)
+        return _standard_input(most)
     try:
         with path.open("rb") as stream:
             return stream.read(most)
     except FileNotFoundError:
-        raise InputError(Diagnostic("no such file", _near(path, kinds), name)) from None
+        raise InputError(Diagnostic("no such file", _suggestion(path, kinds), name)) from None
     except IsADirectoryError:
         raise InputError(Diagnostic("is a folder", f"name a {what} in it", name)) from None
     except (OSError, ValueError) as error:
@@ -87,7 +87,7 @@ def read_bytes(source: str | Path, *, most: int, kinds: tuple[str, ...], what: s
         raise InputError(Diagnostic(f"cannot be read: {reason}", "", name)) from None
 
 
-def _given(most: int) -> bytes:
+def _standard_input(most: int) -> bytes:
     """The first `most` bytes of standard input; raises `InputError`."""
     stream: TextIO | None = sys.stdin
     if stream is None:  # closed by the shell
@@ -99,9 +99,10 @@ def _given(most: int) -> bytes:
         raise InputError(Diagnostic(f"standard input cannot be read: {reason}", "", "-")) from None
 
 
-def _near(path: Path, kinds: tuple[str, ...]) -> str:
+def _suggestion(path: Path, kinds: tuple[str, ...]) -> str:
+    """Remedy for a missing file: a file of a similar name, if any."""
     try:
-        names = [one.name for one in path.parent.iterdir() if one.suffix in kinds]
+        names = [entry.name for entry in path.parent.iterdir() if entry.suffix in kinds]
     except OSError:
         return "check the path"
     match = closest(path.name, names)
@@ -130,10 +131,10 @@ def _whole(text: str) -> int:
 
 
 def _finite(text: str) -> float:
-    found = float(text)
-    if not isfinite(found):
+    number = float(text)
+    if not isfinite(number):
         raise ValueError("not a finite number")
-    return found
+    return number
 
 
 def require_writable(path: Path) -> None:

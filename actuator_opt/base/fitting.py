@@ -14,10 +14,7 @@ import numpy as np
 from .numeric import Array
 
 FIRM, LIGHT, HEAVY = 1e-4, 1e-12, 1e8
-"""First, least and greatest damping of a step relative to the curvature (a choice, as in
-Marquardt's)."""
-
-
+"""First, least and greatest damping of a step over the curvature (a choice, as Marquardt's)."""
 CONFIDENCE = 0.95
 """Confidence level of the bounds."""
 NORMAL = 1.959964
@@ -29,7 +26,7 @@ ROUNDING = 1e-6
 RANK = 1e-7
 """Least ratio of singular values: below it a double-precision residual cannot resolve a step."""
 SEEN = 1e-4
-"""Largest share of a parameter's step that may lie in directions the points do not resolve."""
+"""Largest share of a parameter's step in directions that the points do not resolve."""
 
 Verdict = Literal["identifiable", "weakly identifiable", "not identifiable"]
 
@@ -71,7 +68,7 @@ def solve(
     from scipy.optimize import least_squares  # slow to import, rarely needed
 
     low, high = bounds
-    found = least_squares(
+    solution = least_squares(
         residuals,
         np.clip(start, low + room, high - room),
         jac=slopes,
@@ -82,7 +79,7 @@ def solve(
         gtol=slope_tolerance,
         max_nfev=most,
     )
-    return Minimum(found.x, float(found.cost))
+    return Minimum(solution.x, float(solution.cost))
 
 
 class Parameter(NamedTuple):
@@ -165,40 +162,40 @@ def known(
     count = len(values)
     free = residuals.size - count if spare is None else spare
     _, singular, right = np.linalg.svd(slopes * sizes, full_matrices=False)
-    seen = singular > RANK * singular[0] if singular.size and singular[0] > 0 else singular > 0
-    rank = int(np.count_nonzero(seen))
+    resolved = singular > RANK * singular[0] if singular.size and singular[0] > 0 else singular > 0
+    rank = int(np.count_nonzero(resolved))
     t = quantile(free)
     if free <= 0:
         covariance = np.full((count, count), np.inf)
     else:
-        scaled = right[seen] / singular[seen, None]
-        hidden = 1 - np.sum(right[seen] ** 2, axis=0)
+        scaled = right[resolved] / singular[resolved, None]
+        unresolved_share = 1 - np.sum(right[resolved] ** 2, axis=0)
         variance = float(np.sum(residuals**2)) / free
         covariance = variance * (scaled.T @ scaled) * np.outer(sizes, sizes)
-        unseen = hidden > SEEN
-        covariance[unseen] = covariance[:, unseen] = np.inf
+        undetermined = unresolved_share > SEEN
+        covariance[undetermined] = covariance[:, undetermined] = np.inf
     parameters = {}
     for k, (name, value) in enumerate(values.items()):
         error = float(np.sqrt(covariance[k, k]))
         half = t * error
-        near = half <= max(WEAK * abs(value), ROUNDING * float(sizes[k]))
+        identifiable = half <= max(WEAK * abs(value), ROUNDING * float(sizes[k]))
         middle = float(value)
-        parameters[name] = Parameter(middle, middle - half, middle + half, error, bool(near))
+        parameters[name] = Parameter(
+            middle, middle - half, middle + half, error, bool(identifiable)
+        )
     return FittedParameters(parameters, covariance, rank, t)
 
 
 SETTLED = 1e-6
-"""Relative cost reduction that a step must achieve to continue (a choice: with 100 residuals the
-rest is a hundredth of a standard error)."""
-
-
+"""Least relative cost reduction of a step to continue (a choice: with 100 residuals the remaining
+error is a hundredth of a standard error)."""
 LOST = 1e3
-"""Damping at which a problem without progress is given up (a choice: steps are then a thousandth of
-the undamped one)."""
+"""Damping above which a problem without progress is abandoned (a choice: steps are then a
+thousandth of the undamped step)."""
 
 
 class FitSearch(NamedTuple):
-    """Searched numbers with their limits."""
+    """Names of the searched numbers, with their limits."""
 
     names: tuple[str, ...]
     low: Array
@@ -212,9 +209,10 @@ def relaxed(
     search: FitSearch,
     steps: int,
 ) -> tuple[Array, Array]:
-    """Solve many least-squares problems at once, each from its row, within limits.
+    """Solve many least-squares problems at once, each from its own start, within limits.
 
-    Levenberg-Marquardt steps; a number that the cost pushes against a limit stays there.
+    Takes Levenberg-Marquardt steps. A number at a limit stays there while the cost would push it
+    beyond.
 
     Parameters
     ----------
@@ -230,30 +228,40 @@ def relaxed(
     """
     x = np.clip(rows, search.low, search.high)
     at = np.arange(x.shape[0])
-    rest = misfit(x, at)
-    cost = np.sum(rest**2, axis=1)
+    residuals = misfit(x, at)
+    cost = np.sum(residuals**2, axis=1)
     damping = np.full(x.shape[0], FIRM)
     for _ in range(steps):
-        own = slopes(x[at])
-        down = np.einsum("...ij,...i->...j", own, rest[at])
-        held = ((x[at] <= search.low) & (down > 0)) | ((x[at] >= search.high) & (down < 0))
-        normal = np.where(held[:, :, None] | held[:, None, :], 0.0, own.swapaxes(-1, -2) @ own)
+        jacobian = slopes(x[at])
+        gradient = np.einsum("...ij,...i->...j", jacobian, residuals[at])
+        at_limit = ((x[at] <= search.low) & (gradient > 0)) | (
+            (x[at] >= search.high) & (gradient < 0)
+        )
+        normal = np.where(
+            at_limit[:, :, None] | at_limit[:, None, :], 0.0, jacobian.swapaxes(-1, -2) @ jacobian
+        )
         diagonal = np.einsum("...ii->...i", normal)
         size = np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
         scaled = normal / (size[:, :, None] * size[:, None, :])
         scaled = scaled + np.eye(x.shape[1]) * (
             damping[at, None, None] + np.where(diagonal > 0, 0.0, 1.0)[:, :, None]
         )
-        move = np.linalg.solve(scaled, (np.where(held, 0.0, down) / size)[..., None])[..., 0]
+        move = np.linalg.solve(scaled, (np.where(at_limit, 0.0, gradient) / size)[..., None])[
+            ..., 0
+        ]
         trial = np.clip(x[at] - move / size, search.low, search.high)
-        tried = misfit(trial, at)
-        new = np.sum(tried**2, axis=1)
-        better = new < cost[at]
-        won = better & (cost[at] - new > SETTLED * cost[at])
+        trial_residuals = misfit(trial, at)
+        trial_cost = np.sum(trial_residuals**2, axis=1)
+        better = trial_cost < cost[at]
+        progressing = better & (cost[at] - trial_cost > SETTLED * cost[at])
         damping[at] = np.clip(damping[at] * np.where(better, 0.1, 10.0), LIGHT, HEAVY)
-        kept = at[better]
-        x[kept], rest[kept], cost[kept] = trial[better], tried[better], new[better]
-        at = at[won | (~better & (damping[at] < LOST))]
+        improved = at[better]
+        x[improved], residuals[improved], cost[improved] = (
+            trial[better],
+            trial_residuals[better],
+            trial_cost[better],
+        )
+        at = at[progressing | (~better & (damping[at] < LOST))]
         if not at.size:
             break
     return x, cost

@@ -112,15 +112,15 @@ def kinds_in(what: str, package: str, name: str, *modules: str) -> Kinds[Any]:
     ------
     ValueError : as `kinds`; or a module without a kind, or with a kind of another name
     """
-    found = []
+    entries = []
     for module in modules:
         declared = getattr(import_module(f".{module}", package), name, None)
         if declared is None:
             raise ValueError(f"{package}.{module}: declares no {name}")
         if declared.name != module:
             raise ValueError(f'{package}.{module}: its {name} is named "{declared.name}"')
-        found.append(declared)
-    return kinds(what, *found)
+        entries.append(declared)
+    return kinds(what, *entries)
 
 
 def per_kind(registry: Mapping[str, Any], functions: Mapping[str, V]) -> Mapping[str, V]:

@@ -44,8 +44,8 @@ def real(value: Array) -> Array:
 def where(condition: Array, yes: Array, no: Array) -> Array:
     """Elementwise choice; `condition` must come from real parts."""
     if type(condition) is np.ndarray:  # the common case, kept fast: models call this most
-        found: Any = np.where(condition, yes, no)
-        return found.item() if found.dtype.hasobject else found  # a traced value is a scalar
+        choice: Any = np.where(condition, yes, no)
+        return choice.item() if choice.dtype.hasobject else choice  # a traced value is a scalar
     if isinstance(condition, (bool, np.bool_)):
         return yes if condition else no
     return namespace(condition, yes, no).where(condition, yes, no)
@@ -109,11 +109,11 @@ def expm1_quotient(value: Array) -> Array:
 def log1p_quotient(value: Array) -> Array:
     """log1p(value)/value, 1 at 0, smooth and complex-step safe; NaN from -1 down."""
     xp = namespace(value)
-    torn = real(value) <= -1
+    undefined = real(value) <= -1
     small = (real(value) < 1e-5) & (real(value) > -1e-5)
-    safe = where(small | torn, 0 * value + 1, value)
+    safe = where(small | undefined, 0 * value + 1, value)
     mean = where(small, 1 - value / 2 + value * value / 3, xp.log1p(safe) / safe)
-    return where(torn, np.nan, mean)
+    return where(undefined, np.nan, mean)
 
 
 def together(values: Sequence[Array], axis: int = 0) -> Array:
@@ -189,27 +189,27 @@ def geometry(function: Callable[P, T]) -> Callable[P, T]:
 
     @functools.wraps(function)
     def checked(*args: P.args, **arguments: P.kwargs) -> T:
-        given: dict[str, Any] = arguments
-        wrong: Any = False
+        values: dict[str, Any] = arguments
+        impossible: Any = False
         for name in names:
-            if name in given and not _possible(given[name]):
-                given[name], found = _checked(given[name])
-                wrong = wrong | found
+            if name in values and not _possible(values[name]):
+                values[name], mask = _checked(values[name])
+                impossible = impossible | mask
         for greater, lesser in pairs:
-            if greater in given and lesser in given:
-                given[greater], found = _kept(
-                    real(given[greater]) <= real(given[lesser]), given[greater]
+            if greater in values and lesser in values:
+                values[greater], mask = _masked(
+                    real(values[greater]) <= real(values[lesser]), values[greater]
                 )
-                wrong = wrong | found
-        if "layers" in given and not all(_possible(one.thickness) for one in given["layers"]):
-            kept = [_checked(layer.thickness) for layer in given["layers"]]
-            given["layers"] = [
+                impossible = impossible | mask
+        if "layers" in values and not all(_possible(layer.thickness) for layer in values["layers"]):
+            layers = [_checked(layer.thickness) for layer in values["layers"]]
+            values["layers"] = [
                 layer if value is layer.thickness else replace(layer, thickness=value)
-                for layer, (value, _) in zip(given["layers"], kept, strict=True)
+                for layer, (value, _) in zip(values["layers"], layers, strict=True)
             ]
-            wrong = functools.reduce(lambda one, layer: one | layer[1], kept, wrong)
+            impossible = functools.reduce(lambda mask, layer: mask | layer[1], layers, impossible)
         result = function(*args, **arguments)
-        return result if wrong is False else _spoiled(result, wrong)
+        return result if impossible is False else _with_nan(result, impossible)
 
     return checked
 
@@ -226,13 +226,13 @@ def _possible(value: Any) -> bool:
 def _checked(value: Any) -> tuple[Any, Any]:
     """A size, or several, with NaN for negative values; and a mask of these values."""
     if not isinstance(value, tuple | list):
-        return _kept(real(value) < 0, value)
-    kept = [_checked(one) for one in value]
-    wrong = functools.reduce(lambda one, other: one | other[1], kept, False)
-    return type(value)(one for one, _ in kept), wrong
+        return _masked(real(value) < 0, value)
+    elements = [_checked(element) for element in value]
+    impossible = functools.reduce(lambda mask, pair: mask | pair[1], elements, False)
+    return type(value)(element for element, _ in elements), impossible
 
 
-def _kept(impossible: Any, value: Any) -> tuple[Any, Any]:
+def _masked(impossible: Any, value: Any) -> tuple[Any, Any]:
     """A value with NaN where it is impossible, and a mask of these; symbols are unchanged."""
     if impossible is False:
         return value, False
@@ -245,18 +245,20 @@ def _kept(impossible: Any, value: Any) -> tuple[Any, Any]:
     return value, False
 
 
-def _spoiled(result: Any, wrong: Any) -> Any:
+def _with_nan(result: Any, impossible: Any) -> Any:
     """A result with NaN for each number whose geometry is impossible."""
     if isinstance(result, tuple | list):
-        parts = [_spoiled(part, wrong) for part in result]
+        parts = [_with_nan(part, impossible) for part in result]
         return type(result)(*parts) if hasattr(result, "_fields") else type(result)(parts)
     if isinstance(result, dict):
-        return {name: _spoiled(part, wrong) for name, part in result.items()}
+        return {name: _with_nan(part, impossible) for name, part in result.items()}
     if is_dataclass(result) and not isinstance(result, type):
         known = [field.name for field in fields(result) if field.init]
-        return replace(result, **{name: _spoiled(getattr(result, name), wrong) for name in known})
+        return replace(
+            result, **{name: _with_nan(getattr(result, name), impossible) for name in known}
+        )
     if isinstance(result, float | complex | np.floating | np.complexfloating):
-        return where(wrong, np.nan, result)
+        return where(impossible, np.nan, result)
     if isinstance(result, np.ndarray) and result.dtype.kind in "fc":
-        return np.where(wrong, np.nan, result)
+        return np.where(impossible, np.nan, result)
     return result

@@ -40,24 +40,24 @@ def cubic_roots(square: np.ndarray, slope: np.ndarray, constant: np.ndarray) -> 
     """
     x = _outer_root(square, slope, constant)
     with np.errstate(all="ignore"):
-        last = -constant / x
+        product = -constant / x
         far = np.abs(x) * x * x > np.abs(constant)
-    linear = np.where(far, (last - slope) / np.where(far, x, 1.0), x + square)
-    last = np.where(far, last, (x + square) * x + slope)
+    linear = np.where(far, (product - slope) / np.where(far, x, 1.0), x + square)
+    product = np.where(far, product, (x + square) * x + slope)
     half = -0.5 * linear
-    rest = half * half - last
-    apart = np.sqrt(np.abs(rest))
-    larger = half + np.copysign(apart, half)
-    smaller = np.divide(last, larger, out=np.zeros_like(last), where=larger != 0)
-    real = rest >= 0
-    found = np.empty((*x.shape, 3), dtype=complex)
-    found[..., 0] = x
-    found[..., 1].real, found[..., 1].imag = (
+    discriminant = half * half - product
+    offset = np.sqrt(np.abs(discriminant))
+    larger = half + np.copysign(offset, half)
+    smaller = np.divide(product, larger, out=np.zeros_like(product), where=larger != 0)
+    real = discriminant >= 0
+    result = np.empty((*x.shape, 3), dtype=complex)
+    result[..., 0] = x
+    result[..., 1].real, result[..., 1].imag = (
         np.where(real, larger, half),
-        np.where(real, 0.0, apart),
+        np.where(real, 0.0, offset),
     )
-    found[..., 2].real, found[..., 2].imag = np.where(real, smaller, half), -found[..., 1].imag
-    return found
+    result[..., 2].real, result[..., 2].imag = np.where(real, smaller, half), -result[..., 1].imag
+    return result
 
 
 def _outer_root(square: np.ndarray, slope: np.ndarray, constant: np.ndarray) -> np.ndarray:
@@ -144,13 +144,13 @@ def multiply(*factors: Polynomial) -> Polynomial:
     """
     product: Polynomial = factors[0]
     for factor in factors[1:]:
-        others = [(j, c) for j, c in enumerate(factor) if not _vanishes(c)]
+        nonzero = [(j, c) for j, c in enumerate(factor) if not _vanishes(c)]
         terms: list[Array] = [0.0] * max(len(product) + len(factor) - 1, 0)
         filled = [False] * len(terms)
         for i, first in enumerate(product):
             if _vanishes(first):
                 continue
-            for j, second in others:
+            for j, second in nonzero:
                 term, k = first * second, i + j
                 terms[k] = terms[k] + term if filled[k] else term
                 filled[k] = True
@@ -231,20 +231,20 @@ def _scaled_roots(coefficients: np.ndarray) -> np.ndarray:
     broken = ~np.all(np.isfinite(monic), axis=-1)
     monic = np.where(broken[..., None], 0.0, monic)
     if degree == 3:
-        found = cubic_roots(monic[..., 2], monic[..., 1], monic[..., 0])
+        result = cubic_roots(monic[..., 2], monic[..., 1], monic[..., 0])
     else:
         companion = np.zeros((*monic.shape[:-1], degree, degree))
         companion[..., 1:, :-1] = np.eye(degree - 1)
         companion[..., :, -1] = -monic
-        found = np.linalg.eigvals(companion).astype(complex)
-    found *= size[..., None]
-    found = np.where(broken[..., None], np.nan, found)
+        result = np.linalg.eigvals(companion).astype(complex)
+    result *= size[..., None]
+    result = np.where(broken[..., None], np.nan, result)
     lower = (lead == 0) & np.all(np.isfinite(coefficients), axis=-1)
     if lower.any():
-        found[lower, 0] = -np.inf
+        result[lower, 0] = -np.inf
         if degree > 1:
-            found[lower, 1:] = _scaled_roots(coefficients[lower, :-1])
-    return found
+            result[lower, 1:] = _scaled_roots(coefficients[lower, :-1])
+    return result
 
 
 def root_motion(polynomial: Polynomial, root: Array) -> Array:

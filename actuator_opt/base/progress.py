@@ -1,4 +1,4 @@
-"""Progress of long computations, reported to the terminal or to nobody."""
+"""Progress of long computations, reported to a watching function if there is one."""
 
 from __future__ import annotations
 

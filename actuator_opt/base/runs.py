@@ -133,7 +133,7 @@ def _claim(part: Path, path: Path) -> None:
 
 def entries(place: Path) -> tuple[list[StoredRun], list[Diagnostic]]:
     """Records of a folder, newest first, and the faults of unreadable records."""
-    found: list[tuple[int, str, StoredRun]] = []
+    runs: list[tuple[int, str, StoredRun]] = []
     faults = []
     try:
         paths = sorted(path for path in place.iterdir() if is_record(path))
@@ -157,9 +157,9 @@ def entries(place: Path) -> tuple[list[StoredRun], list[Diagnostic]]:
         except InputError as error:
             faults += error.diagnostics
         else:
-            found.append((written, entry.id, entry))
-    found.sort(key=lambda row: row[:2], reverse=True)
-    return [entry for _, _, entry in found], faults
+            runs.append((written, entry.id, entry))
+    runs.sort(key=lambda row: row[:2], reverse=True)
+    return [entry for _, _, entry in runs], faults
 
 
 def is_record(path: Path) -> bool:
@@ -194,9 +194,9 @@ def _sealed(line: bytes) -> bytes:
     """A line of JSON with its checksum as the last key of the object."""
     import hashlib
 
-    found = hashlib.blake2b(line, digest_size=16).hexdigest()
+    checksum = hashlib.blake2b(line, digest_size=16).hexdigest()
     comma = "" if line == b"{}" else ","
-    return line[:-1] + f'{comma}"{_SEAL}":"{found}"}}'.encode()
+    return line[:-1] + f'{comma}"{_SEAL}":"{checksum}"}}'.encode()
 
 
 def _bare(line: bytes) -> bytes:
@@ -225,26 +225,27 @@ def find(place: Path | None, name: str) -> Path:
     if place is None:
         raise InputError(Diagnostic("no runs are recorded", f"unset {SWITCH}"))
     if name == "last":
-        known, _ = entries(place)
-        if not known:
+        runs, _ = entries(place)
+        if not runs:
             raise InputError(
                 Diagnostic("no run is recorded yet", "run a command such as optimise", str(place))
             )
-        return known[0].path
-    found = [one for one in _named(place) if one.name.startswith(name)] if name else []
-    if len(found) == 1:
-        return found[0]
-    what = f'"{shown(name)}"'
-    if found:
-        ids = ", ".join(one.stem for one in found[:3])
-        more = f" and {len(found) - 3} more" if len(found) > 3 else ""
+        return runs[0].path
+    matches = [file for file in _named(place) if file.name.startswith(name)] if name else []
+    if len(matches) == 1:
+        return matches[0]
+    quoted = f'"{shown(name)}"'
+    if matches:
+        ids = ", ".join(file.stem for file in matches[:3])
+        more = f" and {len(matches) - 3} more" if len(matches) > 3 else ""
         raise InputError(
-            Diagnostic(f"several runs begin with {what}: {ids}{more}", "add more characters")
+            Diagnostic(f"several runs begin with {quoted}: {ids}{more}", "add more characters")
         )
-    raise InputError(Diagnostic(f"no run {what}", "see: actuator-opt runs list", str(place)))
+    raise InputError(Diagnostic(f"no run {quoted}", "see: actuator-opt runs list", str(place)))
 
 
 def _named(place: Path) -> list[Path]:
+    """Files of records in a folder; none if it cannot be read."""
     try:
         return sorted(path for path in place.iterdir() if is_record(path))
     except OSError:
@@ -263,8 +264,8 @@ def read(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
     data = read_bytes(path, most=_MOST, kinds=(SUFFIX,), what="record")
     lines = data.splitlines()
     head, sealed = _parsed(lines[0] if lines else b"", path)
-    known = head.get("record")
-    if isinstance(known, int) and known > FORMAT:
+    version_of_file = head.get("record")
+    if isinstance(version_of_file, int) and version_of_file > FORMAT:
         version = shown(str(head.get("version", "")))
         message = f"was written by actuator-opt {version}, in a newer format"
         raise InputError(Diagnostic(message, "install that version or a later release", str(path)))

@@ -24,8 +24,8 @@ class Interpolation:
     Parameters
     ----------
     values : outputs (m,)
-    slopes : their derivatives (m,) by the logarithm of inputs; those of axes are unused, and an
-        input that is neither here nor an axis has no effect
+    slopes : derivatives of the outputs (m,) by the logarithm of inputs; those of axes are unused,
+        and an input that is neither here nor an axis has no effect
     why : reason for a failed evaluation; values and slopes are then unused
     """
 
@@ -58,11 +58,15 @@ class SurrogateAxis:
         middle, half = 0.5 * log(self.lower * self.upper), 0.5 * log(self.upper / self.lower)
         return [exp(middle + half * cos(pi * (k + 0.5) / self.nodes)) for k in range(self.nodes)]
 
+    def _coordinate(self, value: Array) -> Array:
+        """Position of an input on the axis, from -1 to 1."""
+        low, high = log(self.lower), log(self.upper)
+        limited = clip(value, self.lower, self.upper)
+        return (2 * np.log(limited) - low - high) / (high - low)
+
     def basis(self, value: Array) -> Array:
         """Chebyshev polynomials (..., terms) at an input, limited to the axis."""
-        low, high = log(self.lower), log(self.upper)
-        held = clip(value, self.lower, self.upper)
-        x = (2 * np.log(held) - low - high) / (high - low)
+        x = self._coordinate(value)
         rows = [np.ones_like(x), x]
         while len(rows) < self.terms:
             rows.append(2 * x * rows[-1] - rows[-2])
@@ -70,14 +74,12 @@ class SurrogateAxis:
 
     def basis_slope(self, value: Array) -> Array:
         """Derivatives of the polynomials (..., terms) by the logarithm of the input."""
-        low, high = log(self.lower), log(self.upper)
-        held = clip(value, self.lower, self.upper)
-        x = (2 * np.log(held) - low - high) / (high - low)
+        x = self._coordinate(value)
         second = [np.ones_like(x), 2 * x]  # U_k; T_k' = k U_(k-1)
         while len(second) < self.terms:
             second.append(2 * x * second[-1] - second[-2])
         rows = [0 * x, *(k * second[k - 1] for k in range(1, self.terms))]
-        return np.stack(rows, axis=-1) * (2 / (high - low))
+        return np.stack(rows, axis=-1) * (2 / (log(self.upper) - log(self.lower)))
 
     def holds(self, value: float) -> bool:
         """Whether an input lies on the axis."""
@@ -115,8 +117,8 @@ class Surrogate:
         for axis in self.axes:
             basis = axis.basis_slope if axis.name == slope else axis.basis
             rows = np.broadcast_to(basis(point[axis.name]), (*shape, axis.terms))
-            rest = table.ndim - len(shape) - 1
-            table = np.sum(rows.reshape(rows.shape + (1,) * rest) * table, axis=len(shape))
+            others = table.ndim - len(shape) - 1
+            table = np.sum(rows.reshape(rows.shape + (1,) * others) * table, axis=len(shape))
         result = table[..., 0]
         for k, name in enumerate(self.linear):
             change = np.log(point[name] / self.base[name])
@@ -145,31 +147,31 @@ def surrogate(
     Failed points are left out and the others fitted by least squares; the fit is refused if more
     than a tenth of the points failed.
     """
-    points, answers, failed = [], [], []
+    points, results, failed = [], [], []
     grids = [axis.points for axis in axes]
     for index in product(*(range(len(grid)) for grid in grids)):
-        turned = _back_and_forth(index, [len(grid) for grid in grids])
+        indices = _back_and_forth(index, [len(grid) for grid in grids])
         point = dict(base)
-        for axis, grid, i in zip(axes, grids, turned, strict=True):
+        for axis, grid, i in zip(axes, grids, indices, strict=True):
             point[axis.name] = grid[i]
-        answer = function(point)
-        if answer.why:
-            failed.append(answer.why)
+        result = function(point)
+        if result.why:
+            failed.append(result.why)
             continue
         points.append(point)
-        answers.append(answer)
-    if not answers or len(failed) > 0.1 * (len(answers) + len(failed)):
+        results.append(result)
+    if not results or len(failed) > 0.1 * (len(results) + len(failed)):
         return None
     names = {axis.name for axis in axes}
-    linear = tuple(name for name in base if name in answers[0].slopes and name not in names)
-    table = np.zeros((*(axis.terms for axis in axes), answers[0].values.size, 1 + len(linear)))
-    table[..., 0] = _fitted(axes, points, [a.values for a in answers], answers)
+    linear = tuple(name for name in base if name in results[0].slopes and name not in names)
+    table = np.zeros((*(axis.terms for axis in axes), results[0].values.size, 1 + len(linear)))
+    table[..., 0] = _fitted(axes, points, [result.values for result in results], results)
     plain = tuple(replace(axis, hermite=False) for axis in axes)
     corner = tuple(slice(axis.nodes) for axis in axes)
     for k, name in enumerate(linear):
-        values = [a.slopes.get(name, np.zeros_like(a.values)) for a in answers]
+        values = [result.slopes.get(name, np.zeros_like(result.values)) for result in results]
         place: tuple[slice | int, ...] = (*corner, slice(None), k + 1)
-        table[place] = _fitted(plain, points, values, answers)
+        table[place] = _fitted(plain, points, values, results)
     return Surrogate(tuple(axes), dict(base), table, linear, tuple(failed))
 
 
@@ -177,16 +179,16 @@ def _fitted(
     axes: Sequence[SurrogateAxis],
     points: Sequence[Mapping[str, float]],
     values: Sequence[np.ndarray],
-    answers: Sequence[Interpolation],
+    results: Sequence[Interpolation],
 ) -> np.ndarray:
     """Coefficients (terms of every axis, outputs) that match the values, and slopes if given."""
-    rows, told = [_basis(axes, points)], [np.array(values)]
+    rows, targets = [_basis(axes, points)], [np.array(values)]
     for axis in axes:
         if axis.hermite:
             rows.append(_basis(axes, points, axis.name))
-            told.append(np.array([answer.slopes[axis.name] for answer in answers]))
-    found = np.linalg.lstsq(np.concatenate(rows), np.concatenate(told), rcond=None)[0]
-    return np.asarray(found.reshape(*(axis.terms for axis in axes), -1))
+            targets.append(np.array([result.slopes[axis.name] for result in results]))
+    solution = np.linalg.lstsq(np.concatenate(rows), np.concatenate(targets), rcond=None)[0]
+    return np.asarray(solution.reshape(*(axis.terms for axis in axes), -1))
 
 
 def _basis(
@@ -203,8 +205,8 @@ def _basis(
 
 def _back_and_forth(index: tuple[int, ...], sizes: Sequence[int]) -> tuple[int, ...]:
     """Indices in back-and-forth order, so that successive points are neighbours."""
-    turned, parity = [], 0
+    indices, parity = [], 0
     for i, size in zip(index, sizes, strict=True):
-        turned.append(i if parity % 2 == 0 else size - 1 - i)
+        indices.append(i if parity % 2 == 0 else size - 1 - i)
         parity = parity * size + i
-    return tuple(turned)
+    return tuple(indices)

@@ -1,4 +1,4 @@
-"""The command line: its commands, and the way each of them ends.
+"""The command line: its commands and their exit codes.
 
 stdout has data, stderr has messages; ``--json`` prints one SI object, including faults. Only the
 module of the given command is imported, and heavy modules only inside the commands that need them.
@@ -65,7 +65,7 @@ def _main(
 
 
 def _leave(code: ExitCode | None, **options: object) -> None:
-    """Exit with the code of a command; an interrupted command has already reported it."""
+    """Exit with the code of a command."""
     sys.exit(code or ExitCode.MET)
 
 
@@ -87,13 +87,13 @@ def command_line(arguments: Sequence[str] = ()) -> Any:
         callback=_main,
         result_callback=_leave,
     )
-    asked = [name for name in COMMANDS if name in arguments[:1]]
-    for name in asked or ([] if list(arguments) == ["--version"] else COMMANDS):
-        found = getattr(import_module(f".{COMMANDS[name]}", __package__), name)
-        if isinstance(found, typer.Typer):
-            app.add_typer(found, name=name)
+    names = [name for name in COMMANDS if name in arguments[:1]]
+    for name in names or ([] if list(arguments) == ["--version"] else COMMANDS):
+        function = getattr(import_module(f".{COMMANDS[name]}", __package__), name)
+        if isinstance(function, typer.Typer):
+            app.add_typer(function, name=name)
         else:
-            app.command(name, hidden=name in HIDDEN)(found)
+            app.command(name, hidden=name in HIDDEN)(function)
     root: Any = typer.main.get_command(app)
     debug = copy.copy(next(option for option in root.params if option.name == "debug"))
     debug.expose_value = False
@@ -106,6 +106,7 @@ def command_line(arguments: Sequence[str] = ()) -> Any:
 
 def _misunderstood(error: TyperException) -> ExitCode:
     """Report a misused command line; without arguments, print the help."""
+    # typer raises its help as an error whose message starts with "Usage:"
     context = getattr(error, "ctx", None)
     message = error.format_message()
     if message.startswith("Usage:"):
@@ -116,8 +117,8 @@ def _misunderstood(error: TyperException) -> ExitCode:
     return streams.faults([fault], ExitCode.USAGE)
 
 
-def _answered() -> int:
-    """Run the command line; returns the exit code and prints input faults as lines."""
+def _exit_code() -> int:
+    """Run the command line, print input faults as lines, and return the exit code."""
     try:
         command = command_line(sys.argv[1:])
         code: int = command(prog_name="actuator-opt", standalone_mode=False) or ExitCode.MET
@@ -131,7 +132,7 @@ def _answered() -> int:
         code = leaving.code if isinstance(leaving.code, int) else ExitCode.FAULT
         if code == ExitCode.INTERRUPTED:  # already reported by the command
             return code
-    if streams.interrupted():  # noticed, but lost on the way here
+    if streams.interrupted():  # noticed, but the exception was lost
         raise KeyboardInterrupt
     return code
 
@@ -140,7 +141,7 @@ def main() -> None:
     """Run the command line; every fault gives a line and an exit code, never a traceback."""
     streams.prepare()
     try:
-        code = _answered()
+        code = _exit_code()
     except KeyboardInterrupt:
         code = streams.faults([Diagnostic("interrupted")], ExitCode.INTERRUPTED)
     except Exception as error:

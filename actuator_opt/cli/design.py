@@ -73,13 +73,13 @@ def init(
     """Write a commented start file for a design or a scenario."""
     if scenario is not None and source is not None:
         raise UsageError(Diagnostic("--from and --scenario", "use only one of them"))
-    given = {}
+    title = {}
     if name is not None:
-        given["name"], file = _named_file(name)
+        title["name"], file = _named_file(name)
         out = file if out is None else out
     if out is not None and str(out) == "-":
         out = None
-    text = _start_text(source, scenario, out, given)
+    text = _start_text(source, scenario, out, title)
     if out is None:
         Job(as_json=as_json).answer(lambda: {"text": text}, lambda: text)
         return
@@ -92,9 +92,9 @@ def init(
 
 
 def _start_text(
-    source: str | None, scenario: str | None, out: Path | None, given: dict[str, str]
+    source: str | None, scenario: str | None, out: Path | None, title: dict[str, str]
 ) -> str:
-    """Start file of a design, or of a scenario to be written to `out`."""
+    """Start file of a design, or of a scenario for the file `out`; `title` has its name, if any."""
     from ..design import read_design
     from ..design.kinds import ValueFault
     from ..design.scenario.reader import scenario_text
@@ -102,9 +102,9 @@ def _start_text(
 
     try:
         if scenario is None:
-            return init_text(from_design=None if source is None else read_design(source), **given)
-        beside = relpath(scenario, Path() if out is None else out.parent)
-        return scenario_text(read_design(scenario).design, beside, **given)
+            return init_text(from_design=None if source is None else read_design(source), **title)
+        file = relpath(scenario, Path() if out is None else out.parent)
+        return scenario_text(read_design(scenario).design, file, **title)
     except ValueFault as fault:
         raise UsageError(Diagnostic(f"NAME: {fault.message}", fault.remedy)) from None
 
@@ -125,17 +125,17 @@ def check(
     from .. import api as verbs
 
     job = Job(sets=sets, as_json=as_json, quiet=quiet)
-    pairs, faults, said = job.set, list[Diagnostic](), list[str]()
+    pairs, faults, remarks = job.set, list[Diagnostic](), list[str]()
     warnings: list[dict[str, str]] = []
     for design in designs:
         examined = verbs.examine(design, set=pairs, plugins=plugin or [])
         faults += examined.faults
         warnings += [{"file": design, "message": text} for text in examined.warnings]
-        said += [f"{design}: warning: {text}" for text in examined.warnings]
-        said += [] if examined.faults else [f"{design}: no faults"]
+        remarks += [f"{design}: warning: {text}" for text in examined.warnings]
+        remarks += [] if examined.faults else [f"{design}: no faults"]
     errors = {"errors": [fault.to_dict() for fault in faults]}
     data = errors | ({"warnings": warnings} if warnings else {})
-    job.answer(lambda: data, remarks=said, faults=faults)
+    job.answer(lambda: data, remarks=remarks, faults=faults)
     return ExitCode.BAD_INPUT if faults else ExitCode.MET
 
 
@@ -196,7 +196,7 @@ def report(
 
 
 def _restored(job: Job) -> Restored:
-    """A recorded run; differences from the time of the run are reported."""
+    """A recorded run; deviations of the present models from it are printed."""
     from .. import api as verbs
 
     if job.sets:
@@ -224,7 +224,7 @@ def compare(
     ] = None,
     optimise: Annotated[
         bool,
-        typer.Option("--optimise", help="Optimise each design first; runs and optima are kept."),
+        typer.Option("--optimise", help="First optimise every design that is not an optimum."),
     ] = False,
     seed: Seed = 0,
     as_json: Json = False,
@@ -236,10 +236,10 @@ def compare(
     if out is not None:
         store.require_folder(out)
     job = Job(sets=sets, as_json=as_json, quiet=quiet)
-    how = {"set": job.set, "plugins": plugin or [], "optimise": optimise, "seed": seed}
-    found = job.run(verbs.compare, *designs, **how)
-    paths = [] if out is None else verbs.draw_comparison(found, out)
-    return job.deliver(found, files=[{"path": str(path)} for path in paths])
+    options = {"set": job.set, "plugins": plugin or [], "optimise": optimise, "seed": seed}
+    comparison = job.run(verbs.compare, *designs, **options)
+    paths = [] if out is None else verbs.draw_comparison(comparison, out)
+    return job.deliver(comparison, files=[{"path": str(path)} for path in paths])
 
 
 def export(
@@ -267,14 +267,14 @@ def export(
     from .. import api as verbs
     from ..exports import require_formats
 
-    asked = require_formats(formats or [])
+    known = require_formats(formats or [])
     job = Job(
         design, sets=sets, plugins=plugin, report=True, out=out, date=date,
         as_json=as_json, quiet=quiet,
     )  # fmt: skip
     evaluation = job.run(verbs.evaluate)
-    written = verbs.export(evaluation, formats=asked, folder=out, actuator=job.actuator, date=date)
-    files = [file.to_dict() for file in written]
+    exports = verbs.export(evaluation, formats=known, folder=out, actuator=job.actuator, date=date)
+    files = [file.to_dict() for file in exports]
     job.answer(lambda: {"files": files}, files=files)
     return verbs.exit_code(evaluation)
 

@@ -29,5 +29,5 @@ def doctor(out: Out = REPORTS, as_json: Json = False, quiet: Quiet = False) -> E
     """Check the installation and its optional libraries."""
     from .. import api as verbs
 
-    found = verbs.doctor(out=out, runs=run_store.folder(), terminal=_terminal())
-    return Job(as_json=as_json, quiet=quiet).deliver(found)
+    installation = verbs.doctor(out=out, runs=run_store.folder(), terminal=_terminal())
+    return Job(as_json=as_json, quiet=quiet).deliver(installation)

@@ -27,18 +27,18 @@ Files = Sequence[Mapping[str, Any]]
 class Job:
     """Input, output and answer of a command.
 
-    Unwritable outputs are refused before any work.
+    Outputs that cannot be written are refused before any computation.
 
     Parameters
     ----------
     design : its file
-    others : further files that are read
+    others : further input files
     sets, plugins : of the design
-    csv, write : files to write; neither may be one that is read, but `write` may be the design
+    csv, write : files to write; neither may be an input file, except that `write` may be the design
     report : whether to write the report to `out`, with `date`, as `format`; `all_pages` as images
-    as_json, quiet : how to answer
-    record : whether to keep a record of the run
-    paper : keywords of the report besides those that every report takes
+    as_json, quiet : form of the answer
+    record : whether to record the run
+    paper : keywords that only this report has
     """
 
     design: str = ""
@@ -87,11 +87,10 @@ class Job:
 
         return read(self.design, set=self.set, plugins=self.plugins or ())
 
-    def run(self, verb: Callable[..., _T], *given: object, **options: Any) -> _T:
-        """Run a verb, on the design by default; progress is shown on a terminal."""
-        given = given or (self.actuator,)
+    def run(self, verb: Callable[..., _T], *inputs: object, **options: Any) -> _T:
+        """Run a verb, on the design by default, and show its progress on a terminal."""
         with nullcontext() if self.quiet else streams.watching():
-            return verb(*given, **options)
+            return verb(*(inputs or (self.actuator,)), **options)
 
     def deliver(
         self,
@@ -114,25 +113,26 @@ class Job:
         """
         from ..api import results
 
-        also = {name: one for name, one in also.items() if one is not None}
+        also = {name: further for name, further in also.items() if further is not None}
         written = [*files, *self.written(result, **also)]
+        shown = (result, *also.values())
 
         def data() -> dict[str, Any]:
-            more: dict[str, Any] = {name: results.data(one) for name, one in also.items()}
-            more |= {"files": written} if written else {}
-            more |= {"errors": [fault.to_dict() for fault in faults]} if faults else {}
-            return results.data(result) | more
+            entries = results.data(result)
+            entries |= {name: results.data(further) for name, further in also.items()}
+            entries |= {"files": written} if written else {}
+            entries |= {"errors": [fault.to_dict() for fault in faults]} if faults else {}
+            return entries
 
         def text() -> str:
             style = streams.style()
-            return "\n".join(results.text(one, **style) for one in (result, *also.values()))
+            return "\n".join(results.text(x, **style) for x in shown)
 
-        named = [*({"path": path} for path in saved if path is not None), *written]
-        self.answer(data, text, remarks=results.remarks(result), files=named, faults=faults)
+        listed = [*({"path": path} for path in saved if path is not None), *written]
+        self.answer(data, text, remarks=results.remarks(result), files=listed, faults=faults)
         if self.record:
             self.keep(result, **also)
-        codes = [results.exit_code(one) for one in (result, *also.values())]
-        return next(filter(None, codes), ExitCode.MET)
+        return next(filter(None, map(results.exit_code, shown)), ExitCode.MET)
 
     def written(self, result: object, **also: Any) -> list[dict[str, Any]]:
         """Write the requested CSV and report."""
@@ -151,12 +151,12 @@ class Job:
             files += verbs.report(result, **self._origin(), **paper, **also)
         return [file.to_dict() for file in files]
 
-    def keep(self, result: object, **how: Any) -> None:
-        """Record the run of a result; a failure gives one line and does not affect the result."""
+    def keep(self, result: object, **more: Any) -> None:
+        """Record the run of a result; a failure only prints a line."""
         from ..api import results
 
         try:
-            results.keep(result, **self._origin(), **how)
+            results.keep(result, **self._origin(), **more)
         except ActuatorError as error:
             remedy = "set ACTUATOR_OPT_RUNS to another folder, or give --no-record"
             fault = replace(error.diagnostics[0], remedy=remedy)
@@ -202,12 +202,12 @@ def command_line() -> str:
     """The command line without options that do not change the result: same input, same bytes."""
     import shlex
 
-    kept, skip = [], False
+    words, skip = ["actuator-opt"], False
     for word in sys.argv[1:]:
         if skip:
             skip = False
         elif word in _TARGETS:
             skip = True
-        elif word not in _SILENT and not word.startswith(tuple(f"{one}=" for one in _TARGETS)):
-            kept.append(word)
-    return shlex.join(["actuator-opt", *kept])
+        elif word not in _SILENT and word.partition("=")[0] not in _TARGETS:
+            words.append(word)
+    return shlex.join(words)

@@ -86,14 +86,14 @@ def optimise(
     fault = None if write is None else _unsaved(result, write)
     if write is not None and fault is None:
         verbs.save(result, write, source=job.actuator.source)
-    timed = None
+    verification = None
     if trial is not None and not result.status.startswith("interrupted"):
-        timed = job.run(verbs.verify_dynamics, trial, result.best)
+        verification = job.run(verbs.verify_dynamics, trial, result.best)
     return job.deliver(
         result,
         saved=[] if fault else [write],
         faults=[fault] if fault else [],
-        dynamics_verified=timed,
+        dynamics_verified=verification,
     )
 
 
@@ -102,7 +102,7 @@ optimize = optimise
 
 
 def _scenario(file: str, actuator: Actuator) -> Trial:
-    """Scenario to verify the best design in; it must name this design."""
+    """Scenario to verify the best design in; it must fit this design."""
     from .. import api as verbs
 
     trial = verbs.read_scenario(file)
@@ -111,14 +111,14 @@ def _scenario(file: str, actuator: Actuator) -> Trial:
 
 
 def _unsaved(result: Optimisation, write: Path) -> Diagnostic | None:
-    """Why there is no best design to save; None if there is."""
+    """The fault if there is no best design to save."""
     from .. import api as verbs
 
     if verbs.exit_code(result) == ExitCode.MET or result.status == "interrupted":
         return None
-    told = result if result.robust is not None else result.rounding or result
-    why = "; ".join(part for part in (told.sentence, told.remedy) if part)
-    return Diagnostic(f"not written, no design to save: {why}", file=str(write))
+    outcome = result if result.robust is not None else result.rounding or result
+    reason = "; ".join(part for part in (outcome.sentence, outcome.remedy) if part)
+    return Diagnostic(f"not written, no design to save: {reason}", file=str(write))
 
 
 def sensitivity(

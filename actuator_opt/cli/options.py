@@ -1,4 +1,4 @@
-"""Options that several commands share, each declared once with its help."""
+"""Options that several commands share, with their help."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ Yield = Annotated[
     typer.Option(
         "--yield",
         metavar="P",
-        help="Probability that all limits hold under scatter, e.g. 0.99.",
+        help="Required probability of meeting all limits under scatter, e.g. 0.99.",
     ),
 ]
 VerifyDynamics = Annotated[
@@ -121,7 +121,7 @@ NoRecord = Annotated[
 Report = Annotated[bool, typer.Option("--report", help="Write the report (PDF and PNG) too.")]
 AllPages = Annotated[
     bool,
-    typer.Option("--all-pages", help="An image (PNG) of every sheet of the report, not of one."),
+    typer.Option("--all-pages", help="Write an image (PNG) of every sheet, not only the first."),
 ]
 Format = Annotated[
     str,
@@ -148,14 +148,14 @@ def quantity_of(option: str, text: str | None, quantity: Quantity) -> float | No
 
 def named_columns(texts: list[str] | None) -> dict[str, str]:
     """Channel and column of every ``--column``."""
-    found: dict[str, str] = {}
+    columns: dict[str, str] = {}
     for text in texts or []:
         channel, equals, name = text.partition("=")
         if not equals or not channel.strip() or not name.strip():
             message = f'--column "{text}" is not CHANNEL=NAME'
             raise UsageError(Diagnostic(message, 'write e.g. "p1=Channel 3 [bar]"'))
-        found[channel.strip()] = name.strip()
-    return found
+        columns[channel.strip()] = name.strip()
+    return columns
 
 
 def file_of_units(units: str | None) -> list[str]:

@@ -156,20 +156,20 @@ def identify(
         as_json=as_json, quiet=quiet,
     )  # fmt: skip
     _check_bootstrap(bootstrap)
-    reading = {"columns": named_columns(columns), "units": units}
+    reading: dict[str, Any] = {"columns": named_columns(columns), "units": units}
     length = quantity_of("--span", span, RECORDS["span"])
     settings = _settings(cutoff, order, uncompensated, mass, load_force, pressure_lag)
     if length is None:
         if part is not None:
             raise UsageError(Diagnostic("--part: only with --span", "add --span, or remove it"))
-        how = {"bootstrap": bootstrap, "seed": seed, **reading, **settings}
-        return job.deliver(job.run(verbs.identify, record, design=job.actuator, **how))
-    others = {"--report": report or None, "--csv": csv, "--bootstrap": bootstrap or None}
-    _only_bending(others | {_OPTIONS[name]: one for name, one in settings.items()})
+        settings |= {"bootstrap": bootstrap, "seed": seed, **reading}
+        return job.deliver(job.run(verbs.identify, record, design=job.actuator, **settings))
+    options = {"--report": report or None, "--csv": csv, "--bootstrap": bootstrap or None}
+    _only_bending(options | {_OPTIONS[name]: value for name, value in settings.items()})
     if part not in (None, "rod", "barrel"):
         raise UsageError(Diagnostic(f'--part "{part}"', "write rod or barrel"))
-    how = {"span": length, "part": part or "rod", **reading}
-    return job.deliver(job.run(verbs.bending, record, design=job.actuator, **how))
+    reading |= {"span": length, "part": part or "rod"}
+    return job.deliver(job.run(verbs.bending, record, design=job.actuator, **reading))
 
 
 def calibrate(
@@ -222,12 +222,12 @@ def calibrate(
     return job.deliver(calibrated, files=saved)
 
 
-def _only_bending(asked: Mapping[str, object]) -> None:
+def _only_bending(options: Mapping[str, object]) -> None:
     """Refuse options that a bending test does not use."""
-    options = [name for name, one in asked.items() if one is not None]
-    if options:
-        message = f"{', '.join(options)}: not with --span: a bending test gives a modulus only"
-        raise UsageError(Diagnostic(message, "remove --span, or these"))
+    unused = [name for name, value in options.items() if value is not None]
+    if unused:
+        message = f"{', '.join(unused)}: not with --span: a bending test gives a modulus only"
+        raise UsageError(Diagnostic(message, "remove --span, or these options"))
 
 
 def _check_bootstrap(count: int) -> None:
@@ -257,8 +257,8 @@ def _settings(
     load_force: str | None,
     pressure_lag: str | None,
 ) -> dict[str, Any]:
-    """Stated settings for reading a record, SI."""
-    found = {
+    """Stated settings of the identification, SI."""
+    settings = {
         "cutoff": quantity_of("--cutoff", cutoff, RECORDS["cutoff"]),
         "order": order,
         "compensated": False if uncompensated else None,
@@ -266,4 +266,4 @@ def _settings(
         "load_force": quantity_of("--load-force", load_force, RECORDS["load_force"]),
         "pressure_lag": quantity_of("--pressure-lag", pressure_lag, RECORDS["pressure_lag"]),
     }
-    return {name: one for name, one in found.items() if one is not None}
+    return {name: value for name, value in settings.items() if value is not None}

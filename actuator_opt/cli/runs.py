@@ -38,9 +38,9 @@ def list_runs(
     """List recorded runs, newest first."""
     from .. import api as verbs
 
-    found, faults = verbs.runs(design=design, command=command)
-    rows = [(run.id, dict(run.head)) for run in found]
-    told = [{"id": name} | head for name, head in rows]
+    stored, faults = verbs.runs(design=design, command=command)
+    rows = [(run.id, dict(run.head)) for run in stored]
+    data = [{"id": name} | head for name, head in rows]
 
     def text() -> str:
         from ..pages.runs import listing
@@ -53,18 +53,19 @@ def list_runs(
         for fault in faults:
             streams.err(str(fault))
     job.answer(
-        lambda: {"runs": told, "errors": [fault.to_dict() for fault in faults]},
+        lambda: {"runs": data, "errors": [fault.to_dict() for fault in faults]},
         text if rows else None,
-        remarks=[] if rows else [_nothing(design, command)],
+        remarks=[] if rows else [_no_runs(design, command)],
     )
 
 
-def _nothing(design: str | None, command: str | None) -> str:
+def _no_runs(design: str | None, command: str | None) -> str:
+    """The reason for an empty list of runs."""
     place = run_store.folder()
     if place is None:
         return f"runs are not recorded: {run_store.SWITCH} is set"
-    what = " of this selection" if design or command else ""
-    return f"no runs{what} are recorded in {place}"
+    selection = " of this selection" if design or command else ""
+    return f"no runs{selection} are recorded in {place}"
 
 
 @runs.command("show")
@@ -113,9 +114,9 @@ def prune_runs(
     _say_deleted(verbs.prune_runs(keep=keep), as_json=as_json, quiet=quiet)
 
 
-def _say_deleted(found: list[str], *, as_json: bool, quiet: bool) -> None:
-    said = [f"deleted {name}" for name in found] or ["nothing to delete"]
-    Job(as_json=as_json, quiet=quiet).answer(lambda: {"deleted": found}, remarks=said)
+def _say_deleted(ids: list[str], *, as_json: bool, quiet: bool) -> None:
+    remarks = [f"deleted {name}" for name in ids] or ["nothing to delete"]
+    Job(as_json=as_json, quiet=quiet).answer(lambda: {"deleted": ids}, remarks=remarks)
 
 
 def rerun(

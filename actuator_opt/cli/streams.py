@@ -1,7 +1,7 @@
 """Standard streams: width, colour, progress, and faults as lines or JSON.
 
-A closed pipe ends the output but not the command, which keeps its exit status. Data is written in
-one piece: Ctrl-C waits until then. An unexpected exception becomes a line and an exit code.
+A closed pipe ends the output but not the command, which keeps its exit status. Data is written
+completely before Ctrl-C takes effect. An unexpected exception becomes a line and an exit code.
 """
 
 from __future__ import annotations
@@ -22,7 +22,6 @@ from ..base.errors import Diagnostic, ExitCode, InputError, escaped, shown
 from ..base.progress import watched
 from ..base.units import whole
 from ..version import VERSION
-from . import streams
 
 if TYPE_CHECKING:
     from ..rendering.console import Style
@@ -38,7 +37,7 @@ class _Progress:
     """State of the streams during a command."""
 
     printed: bool = False
-    """Whether standard output has data already: a second JSON object must not follow."""
+    """Whether standard output already has data, which no second JSON object may follow."""
     held: bool = False
     """Whether Ctrl-C is delayed."""
     interrupted: bool = False
@@ -143,7 +142,7 @@ def _whole() -> Iterator[None]:
 
 
 def err(text: str) -> None:
-    """Print a message to standard error, if any; control characters are escaped."""
+    """Print a message to standard error, if it exists; control characters are escaped."""
     stream: TextIO | None = sys.stderr
     if stream is None:
         return
@@ -164,7 +163,7 @@ def watching() -> Iterator[None]:
     begin = piece = last = monotonic()
     shown, done = "", 0.0
 
-    def show(what: str, share: float | None) -> None:
+    def show(task: str, share: float | None) -> None:
         nonlocal piece, last, shown, done
         now = monotonic()
         if share is not None:
@@ -172,7 +171,7 @@ def watching() -> Iterator[None]:
         if now < begin + PATIENCE or now < last + PAUSE:
             return
         left = f", {(now - piece) * (1 / share - 1):.0f} s left" if share else ""
-        words = escaped(what if share is None else f"{what}, {100 * share:.0f} %{left}")
+        words = escaped(task if share is None else f"{task}, {100 * share:.0f} %{left}")
         stream.write(f"\r{words.ljust(len(shown))}")
         stream.flush()
         last, shown = now, words
@@ -201,7 +200,7 @@ def as_json() -> bool:
 def faults(diagnostics: Iterable[Diagnostic], code: ExitCode) -> ExitCode:
     """Print faults as lines, or as a JSON object with ``--json``; returns `code`.
 
-    If standard output already has data, or fails, they are lines on standard error.
+    If standard output already has data, or fails, they become lines on standard error.
     """
     lines = list(diagnostics)
     if as_json() and not _now.printed:
@@ -216,13 +215,9 @@ def faults(diagnostics: Iterable[Diagnostic], code: ExitCode) -> ExitCode:
 
 
 DEBUG = "ACTUATOR_OPT_DEBUG"
-"""Environment variable that enables tracebacks (any text but "0")."""
-
-
+"""Environment variable that enables tracebacks (any text except "0")."""
 _LONGEST = 300
-"""Most characters of an exception that the line shows."""
-
-
+"""Maximum length of an exception in a line."""
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS}
 """Error codes of the operating system for a full disk."""
 
@@ -237,7 +232,7 @@ def unexpected(error: Exception) -> tuple[list[Diagnostic], ExitCode]:
     if debugging():
         import traceback
 
-        streams.err("".join(traceback.format_exception(error)).rstrip())
+        err("".join(traceback.format_exception(error)).rstrip())
     if isinstance(error, OSError):
         return [_of_system(error)], ExitCode.BAD_INPUT
     if isinstance(error, MemoryError):
@@ -249,8 +244,8 @@ def unexpected(error: Exception) -> tuple[list[Diagnostic], ExitCode]:
         message = "a worker process ended before its work was complete"
         remedy = "check the memory, or give fewer --workers; a --store resumes from its rows"
         return [Diagnostic(message, remedy)], ExitCode.SOLVER_FAILED
-    said = shown(f"{type(error).__name__}: {' '.join(str(error).split())}", _LONGEST)
-    message = f"internal error of actuator-opt {VERSION}: {said.removesuffix(': ')}"
+    text = shown(f"{type(error).__name__}: {' '.join(str(error).split())}", _LONGEST)
+    message = f"internal error of actuator-opt {VERSION}: {text.removesuffix(': ')}"
     remedy = f"please report it{_receiver()} with the command and the traceback (add --debug)"
     return [Diagnostic(message, remedy)], ExitCode.FAULT
 

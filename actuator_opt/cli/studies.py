@@ -89,45 +89,58 @@ def uncertainty(
         all_pages=all_pages, format=format,
         as_json=as_json, quiet=quiet,
     )  # fmt: skip
-    how = {"count": count, "seed": seed, "quasi_random": quasi, "rows": rows}
-    return job.deliver(job.run(verbs.uncertainty, metrics=metric or [], **how))
+    study = job.run(
+        verbs.uncertainty,
+        count=count,
+        seed=seed,
+        quasi_random=quasi,
+        rows=rows,
+        metrics=metric or [],
+    )
+    return job.deliver(study)
+
+
+SealPlace = Annotated[
+    str, typer.Option("--seal", metavar="piston|rod", help="The seal to analyse.")
+]
+Speed = Annotated[
+    str | None,
+    typer.Option(
+        "--speed", metavar="V", help='Sliding speed, e.g. "0.1 m/s"; default: from a load case.'
+    ),
+]
+Pressure = Annotated[
+    str | None,
+    typer.Option(
+        "--pressure", metavar="P", help='Sealed pressure, e.g. "60 bar"; default: highest.'
+    ),
+]
+Mapped = Annotated[
+    bool,
+    typer.Option("--map", help="Also compute a map over speed and pressure (and its CSV)."),
+]
+FiniteElements = Annotated[
+    bool,
+    typer.Option(
+        "--finite-elements",
+        help="Compute the contact of an O-ring or step ring by finite elements (extra fem; "
+        "seconds).",
+    ),
+]
+ContactDesign = Annotated[
+    Path | None,
+    typer.Option("--write", metavar="FILE", help="Save the design with these contact profiles."),
+]
 
 
 def seal(
     design: DesignFile,
-    place: Annotated[
-        str, typer.Option("--seal", metavar="piston|rod", help="The seal to analyse.")
-    ],
-    speed: Annotated[
-        str | None,
-        typer.Option(
-            "--speed", metavar="V", help='Sliding speed, e.g. "0.1 m/s"; default: from a load case.'
-        ),
-    ] = None,
-    pressure: Annotated[
-        str | None,
-        typer.Option(
-            "--pressure", metavar="P", help='Sealed pressure, e.g. "60 bar"; default: highest.'
-        ),
-    ] = None,
-    mapped: Annotated[
-        bool,
-        typer.Option("--map", help="Also compute a map over speed and pressure (and its CSV)."),
-    ] = False,
-    finite_elements: Annotated[
-        bool,
-        typer.Option(
-            "--finite-elements",
-            help="Compute the contact of an O-ring or step ring by finite elements (extra fem; "
-            "seconds).",
-        ),
-    ] = False,
-    write: Annotated[
-        Path | None,
-        typer.Option(
-            "--write", metavar="FILE", help="Save the design with these contact profiles."
-        ),
-    ] = None,
+    place: SealPlace,
+    speed: Speed = None,
+    pressure: Pressure = None,
+    mapped: Mapped = False,
+    finite_elements: FiniteElements = False,
+    write: ContactDesign = None,
     sets: Set = None,
     plugin: PluginFile = None,
     report: Report = False,
@@ -227,8 +240,8 @@ def simulate(
     """Simulate a scenario: servo, pressures, energy."""
     from .. import api as verbs
 
-    for name, given in (("--fit", fit), ("--column", columns)):
-        if given and measured is None:
+    for name, values in (("--fit", fit), ("--column", columns)):
+        if values and measured is None:
             raise UsageError(Diagnostic(f"{name}: only with --measured", "name the record"))
     job = Job(
         scenario, [*filter(None, [measured]), *file_of_units(units)], sets=sets, csv=csv,
@@ -241,12 +254,12 @@ def simulate(
     if csv is not None:
         require_apart(csv, *map(str, trial.files))
     job.paper["scenario"] = trial
-    how: dict[str, Any] = {"verify": verify, "method": "cvodes" if fast else "lsoda"}
+    options: dict[str, Any] = {"verify": verify, "method": "cvodes" if fast else "lsoda"}
     if measured is None:
-        overlay, simulation = None, job.run(verbs.simulate, trial, **how)
+        compared, simulation = None, job.run(verbs.simulate, trial, **options)
     else:
-        how |= {"fit": fit or (), "columns": named_columns(columns), "units": units}
-        overlay = job.run(verbs.compare_measured, trial, measured, **how)
-        simulation = overlay.simulation
-    ranked = job.run(verbs.servo_sensitivities, trial) if sensitivity else None
-    return job.deliver(simulation, measured=overlay, sensitivities=ranked)
+        options |= {"fit": fit or (), "columns": named_columns(columns), "units": units}
+        compared = job.run(verbs.compare_measured, trial, measured, **options)
+        simulation = compared.simulation
+    sensitivities = job.run(verbs.servo_sensitivities, trial) if sensitivity else None
+    return job.deliver(simulation, measured=compared, sensitivities=sensitivities)

@@ -117,24 +117,26 @@ def sweep(
         design, sets=sets, plugins=plugin, report=bool(figures), out=out,
         as_json=as_json, quiet=quiet,
     )  # fmt: skip
-    asked: dict[str, Any] = {"store": store, "csv": csv, "parquet": parquet, "keep": keep}
-    asked |= {"figures": figures or [], "show": show or []}
-    how: dict[str, Any] = {"vary": vary or [], "yes": yes, "engine": engine}
-    how |= {"method": method, "n": count, "seed": seed, "workers": workers, "scheduler": scheduler}
-    how |= {"reduce": reduce is not None}
-    with _kept_rows(store, quiet):
-        found = job.run(verbs.sweep, **asked, **how)
-    if found.study.engine != engine and not quiet:
+    figures, show = figures or [], show or []
+    output: dict[str, Any] = {"store": store, "csv": csv, "parquet": parquet, "keep": keep}
+    output |= {"figures": figures, "show": show}
+    with _resumable(store, quiet):
+        swept = job.run(
+            verbs.sweep, vary=vary or [], method=method, n=count, seed=seed,
+            reduce=reduce is not None, workers=workers, scheduler=scheduler, engine=engine, yes=yes,
+            **output,
+        )  # fmt: skip
+    if swept.study.engine != engine and not quiet:
         streams.err("JAX not installed (pip install 'actuator-opt[gpu]'); used NumPy")
     if not no_record:
-        job.keep(found, **asked)
-    files, faults = _drawn(found, asked["figures"], asked["show"], out)
-    code = job.deliver(found, files=files, saved=[csv, parquet], faults=faults)
+        job.keep(swept, **output)
+    files, faults = _drawn(swept, figures, show, out)
+    code = job.deliver(swept, files=files, saved=[csv, parquet], faults=faults)
     return ExitCode.BAD_INPUT if faults else code
 
 
 @contextmanager
-def _kept_rows(store: Path | None, quiet: bool) -> Iterator[None]:
+def _resumable(store: Path | None, quiet: bool) -> Iterator[None]:
     """If Ctrl-C ends a sweep with a store, explain how to resume."""
     try:
         yield
@@ -188,7 +190,7 @@ def explore(
     ] = None,
     rows: Annotated[
         int,
-        typer.Option("--rows", metavar="N", help="Most designs shown; beyond it, an even sample."),
+        typer.Option("--rows", metavar="N", help="Maximum number shown; of more, an even sample."),
     ] = 5000,
     out: Annotated[
         Path, typer.Option("--out", metavar="FILE", help="File (.html) or folder of the page.")
@@ -201,7 +203,7 @@ def explore(
     """Write a stored sweep or a front as one offline HTML page."""
     from .. import api as verbs
 
-    found = verbs.explore(store, out=out, study=study, rows=rows, plugins=plugin or [])
-    files = [file.to_dict() for file in found]
+    pages = verbs.explore(store, out=out, study=study, rows=rows, plugins=plugin or [])
+    files = [file.to_dict() for file in pages]
     job = Job(as_json=as_json, quiet=quiet)
-    job.answer(lambda: {"files": files}, remarks=found[0].remarks, files=files)
+    job.answer(lambda: {"files": files}, remarks=pages[0].remarks, files=files)

@@ -12,9 +12,9 @@ from ..base import errors
 from ..base.errors import Diagnostic, Fault, InputError
 from ..base.quantities import Quantity
 from ..metrics import METRICS
-from . import choice_list, requirements as wishes
+from . import choice_list, requirements
 from .faults import cross_field, material_faults
-from .kinds import Fraction, Of, Section, ValueFault, example, what
+from .kinds import Fraction, Of, Section, ValueFault, example, shape_in_words
 from .model import Design, Ply
 from .paths import put, resolve, spell
 from .structure import KeyEntry, Loc, MaterialLookup, child_at, entries, leaves
@@ -95,7 +95,7 @@ def check(
     copy: dict[str, Any] = copy_tree(tree)
     faults = list(_nothing(copy, ()))
     _to_si(copy, root)
-    faults += wishes.recheck(copy, metrics, root)
+    faults += requirements.recheck(copy, metrics, root)
     if "choices" in entries(root):
         faults += choice_list.recheck(copy)
     section = None
@@ -137,9 +137,9 @@ def _to_si(tree: dict[str, Any], root: type[Section]) -> None:
         child_at(tree, loc[:-1])[loc[-1]] = number
 
 
-def _unless_known(faults: Iterable[Fault], known: Sequence[Fault]) -> list[Fault]:
+def _unless_known(faults: Iterable[Fault], reported: Sequence[Fault]) -> list[Fault]:
     """Faults whose place, and the places above it, have no known fault; the first of each place."""
-    faulty = {fault.loc for fault in known}
+    faulty = {fault.loc for fault in reported}
     new = []
     for fault in faults:
         if not any(fault.loc[:depth] in faulty for depth in range(1, len(fault.loc) + 1)):
@@ -204,7 +204,7 @@ def _translate(error: ValidationError, root: type[Section]) -> Iterator[Fault]:
 
 
 def _word(value: object) -> str:
-    return f'"{errors.shown(value)}"' if isinstance(value, str) else what(value)
+    return f'"{errors.shown(value)}"' if isinstance(value, str) else shape_in_words(value)
 
 
 def _unknown_key(loc: Loc, root: type[Section]) -> Fault:
@@ -230,8 +230,8 @@ def how_to_add(name: str, entry: KeyEntry | None) -> str:
         required = [key for key, below in entries(entry.section).items() if below.required]
         dash = "- " if entry.shape == "list" else ""
         return f'add a block "{name}:" with {dash}{", ".join(required)}'
-    good = entry.kind.example if entry.kind is not None else "…"
-    return f'add e.g. "{name}: {good}"'
+    sample = entry.kind.example if entry.kind is not None else "…"
+    return f'add e.g. "{name}: {sample}"'
 
 
 def to_tree(section: Section) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from typing import Any, TypeAlias
 from ..base import errors
 from ..base.errors import Fault
 from ..base.quantities import Quantity
-from .kinds import Fraction, MaterialName, Text, ValueFault, what
+from .kinds import Fraction, MaterialName, Text, ValueFault, shape_in_words
 from .material import ROLES
 from .model import Design
 from .paths import Target, resolve
@@ -50,9 +50,15 @@ def recheck(tree: dict[str, Any]) -> Iterator[Fault]:
             continue
         if not isinstance(values, list):
             if values is not None:
-                given = f'"{errors.shown(values)}"' if isinstance(values, str) else what(values)
-                good = errors.shown(values) if isinstance(values, str) else _example(target)
-                yield Fault(loc, f"need a list of allowed values, not {given}", f"write [{good}]")
+                written = (
+                    f'"{errors.shown(values)}"'
+                    if isinstance(values, str)
+                    else shape_in_words(values)
+                )
+                sample = errors.shown(values) if isinstance(values, str) else _example(target)
+                yield Fault(
+                    loc, f"need a list of allowed values, not {written}", f"write [{sample}]"
+                )
             continue
         if not values:
             yield Fault(loc, "the list is empty", f"write e.g. [{_example(target)}]")
@@ -100,7 +106,7 @@ def _example(target: Target) -> str:
 def _values(loc: tuple[str, str], values: list[Any], target: Target) -> Iterator[Fault]:
     """Convert every value to that of a design; yields faults of invalid and duplicate values."""
     assert target.entry is not None
-    good: list[tuple[int, Value]] = []
+    valid: list[tuple[int, Value]] = []
     for index, raw in enumerate(values):
         if raw is None:
             continue  # already a fault
@@ -109,11 +115,11 @@ def _values(loc: tuple[str, str], values: list[Any], target: Target) -> Iterator
         except ValueFault as fault:
             yield Fault((*loc, index), fault.message, fault.remedy)
             continue
-        twin = next((i for i, other in good if same(other, value)), None)
+        twin = next((i for i, other in valid if same(other, value)), None)
         if twin is not None:
             message = f"{errors.shown(raw)}: the same as value {twin + 1} of the list"
             yield Fault((*loc, index), message, "keep one of them")
-        good.append((index, value))
+        valid.append((index, value))
 
 
 def _read(raw: Any, entry: KeyEntry) -> Value:
@@ -151,18 +157,18 @@ def material_faults(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
             continue
         if entry is None or not isinstance(entry.kind, MaterialName) or not _is_list(values):
             continue
-        fits = ROLES[entry.kind.role]
-        fitting = [name for name in materials.names() if materials.kind(name) in fits]
+        suitable = ROLES[entry.kind.role]
+        candidates = [name for name in materials.names() if materials.kind(name) in suitable]
         for index, name in enumerate(values):
-            if not isinstance(name, str) or name in fitting:
+            if not isinstance(name, str) or name in candidates:
                 continue
             loc = ("choices", path, index)
             if name not in materials:
                 message = f'"{errors.shown(name)}": unknown material'
-                yield Fault(loc, message, errors.remedy(name, fitting))
+                yield Fault(loc, message, errors.remedy(name, candidates))
             else:
                 message = f"{name}: its kind ({materials.kind(name)}) does not suit this place"
-                yield Fault(loc, message, f"use e.g. {', '.join(fitting[:6])}")
+                yield Fault(loc, message, f"use e.g. {', '.join(candidates[:6])}")
 
 
 def _is_list(values: object) -> bool:
@@ -201,11 +207,11 @@ def shown(path: str, value: Value, tree: Any) -> str:
 
 def left_out(design: Design) -> tuple[str, ...]:
     """A remark for each PATH whose own value is not among its choices."""
-    found = []
+    remarks = []
     block: Mapping[str, Sequence[Value]] = design.choices
     for path, values in block.items():
-        own = value_at(design, resolve(path, design).loc)
-        if own is None or not any(same(own, value) for value in values):
-            said = "" if own is None else f" ({shown(path, own, design)})"
-            found.append(f"{path}: the value in the file{said} is not among the choices")
-    return tuple(found)
+        file_value = value_at(design, resolve(path, design).loc)
+        if file_value is None or not any(same(file_value, value) for value in values):
+            suffix = "" if file_value is None else f" ({shown(path, file_value, design)})"
+            remarks.append(f"{path}: the value in the file{suffix} is not among the choices")
+    return tuple(remarks)

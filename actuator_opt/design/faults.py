@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple, get_args
 
 from ..base import errors, quantities
-from ..base.errors import Fault
+from ..base.errors import Fault, article
 from ..models import linkage as crank
 from . import choices, material, seal_faults, wall_faults
 from .kinds import MaterialName
@@ -40,8 +40,8 @@ def _closed(view: FileView) -> float | None:
     head = view.number("head", "length") if view.has("head") else piston
     barrel = view.number("barrel", "length")
     if not view.has("barrel", "length"):
-        known = stroke is not None and piston is not None and head is not None
-        barrel = (stroke or 0.0) + (piston or 0.0) + (head or 0.0) if known else None
+        complete = stroke is not None and piston is not None and head is not None
+        barrel = (stroke or 0.0) + (piston or 0.0) + (head or 0.0) if complete else None
     bore = view.number("cylinder", "bore")
     plain = None if bore is None else PLAIN_CAP * bore
     plate = view.number("caps", "thickness") if view.has("caps") else plain
@@ -70,19 +70,19 @@ def _reach(view: FileView) -> _Reach | None:
 
 def linkage(view: FileView) -> Iterator[Fault]:
     """No dead point between the stops: |a - r| < l < a + r."""
-    found = _reach(view)
-    if found is None:
+    reach = _reach(view)
+    if reach is None:
         return
-    closed, stroke, base, pin, _ = found
-    if stroke >= 2 * pin:
+    closed, stroke, base, radius, _ = reach
+    if stroke >= 2 * radius:
         yield Fault(
             ("linkage", "crank_radius"),
-            f"{length_text(pin)}: a stroke of {length_text(stroke)} moves the joint past a dead "
+            f"{length_text(radius)}: a stroke of {length_text(stroke)} moves the joint past a dead "
             "point",
             f"write more than {length_text(stroke / 2)}, or a shorter cylinder.stroke",
         )
         return
-    least, most = max(closed + stroke - pin, pin - closed), closed + pin
+    least, most = max(closed + stroke - radius, radius - closed), closed + radius
     if not least < base < most:
         yield Fault(
             ("linkage", "base_radius"),
@@ -120,19 +120,19 @@ def linkage_load_cases(view: FileView) -> Iterator[Fault]:
 
 def _angle(view: FileView, loc: Loc) -> Iterator[Fault]:
     """The joint angle of a case is between those of both stops."""
-    angle, found = view.number(*loc, "angle"), _reach(view)
-    if angle is None or found is None:
+    angle, reach = view.number(*loc, "angle"), _reach(view)
+    if angle is None or reach is None:
         return
     low, high = (
         float(
             crank.linkage_angle(
-                length=found.closed + travel,
-                base_radius=found.base,
-                crank_radius=found.crank,
-                angle_offset=found.offset,
+                length=reach.closed + travel,
+                base_radius=reach.base,
+                crank_radius=reach.crank,
+                angle_offset=reach.offset,
             )
         )
-        for travel in (0.0, found.stroke)
+        for travel in (0.0, reach.stroke)
     )
     if low - 1e-9 <= angle <= high + 1e-9 or math.isnan(high - low):
         return
@@ -179,12 +179,12 @@ def ports(view: FileView) -> Iterator[Fault]:
     end = view.text("ports", "end")
     if end not in ENDS:  # a separate fault, reported at its place
         return
-    needed = {"valve": ("valve",), "reducing_valve": ("ports", "reducing_valve")}.get(end or "")
-    if needed is not None and not view.has(*needed):
+    block = {"valve": ("valve",), "reducing_valve": ("ports", "reducing_valve")}.get(end or "")
+    if block is not None and not view.has(*block):
         yield Fault(
             ("ports", "end"),
-            f"{end}: not described",
-            f"add {'.'.join(needed)}, or write closed or constant_pressure",
+            f"{end}: its block is missing",
+            f"add {'.'.join(block)}, or write closed or constant_pressure",
         )
     if end != "reducing_valve" and view.has("ports", "reducing_valve"):
         yield Fault(
@@ -447,10 +447,6 @@ def cross_field(tree: Any) -> Iterator[Fault]:
         yield from check(view)
 
 
-def _a(word: str | None) -> str:
-    return f"{'an' if word and word[0] in 'aeiou' else 'a'} {word}"
-
-
 def material_faults(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
     """All faults that depend on the material library."""
     yield from _material_names(tree, materials)
@@ -466,20 +462,21 @@ def _material_names(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
     for loc, entry, name in leaves(tree):
         if not isinstance(entry.kind, MaterialName) or not isinstance(name, str):
             continue
-        fits = ROLES[entry.kind.role]
+        suitable = ROLES[entry.kind.role]
         if loc == ("retention", "material") and joint is not None:
-            fits = joint.kinds or fits
+            suitable = joint.kinds or suitable
         elif loc == ("rod", "fitting", "adhesive"):
-            fits = ("adhesive",)
-        if name in materials and materials.kind(name) in fits:
+            suitable = ("adhesive",)
+        if name in materials and materials.kind(name) in suitable:
             continue
-        fitting = [other for other in materials.names() if materials.kind(other) in fits]
+        candidates = [other for other in materials.names() if materials.kind(other) in suitable]
         if name not in materials:
             message = f'"{errors.shown(name)}": unknown material'
-            yield Fault(loc, message, errors.remedy(name, fitting))
+            yield Fault(loc, message, errors.remedy(name, candidates))
         else:
-            message = f"{name} is {_a(materials.kind(name))}, need {_a(' or '.join(fits))}"
-            yield Fault(loc, message, f"use e.g. {', '.join(fitting[:6])}" if fitting else "")
+            kind, kinds = str(materials.kind(name)), " or ".join(suitable)
+            message = f"{name} is {article(kind)}, need {article(kinds)}"
+            yield Fault(loc, message, f"use e.g. {', '.join(candidates[:6])}" if candidates else "")
     changed = child(tree, "materials")
     for name in changed if isinstance(changed, Mapping) else ():
         if name not in materials:

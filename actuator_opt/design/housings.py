@@ -70,7 +70,7 @@ class ExtrusionTable:
 class Deviation:
     """A gland dimension outside its limits; `excess` is the signed distance."""
 
-    what: str
+    quantity: str
     value: float
     lower: float
     upper: float
@@ -127,17 +127,17 @@ def housings_for(element: str, place: Place, diameter: float) -> tuple[Housing, 
     ------
     InputError : the standard has no housing for that diameter
     """
-    every = housings(element, place)
-    found = [housing for housing in every if housing.fits(diameter)]
-    if not found:
+    listed = housings(element, place)
+    fitting = [housing for housing in listed if housing.fits(diameter)]
+    if not fitting:
         message = f"no {place} housing of a {element} for {diameter * 1e3:.4g} mm"
         advice = "a wiper sits on the rod"
-        if every:
-            low = min(housing.diameter_min for housing in every) * 1e3
-            high = max(housing.diameter_max for housing in every) * 1e3
-            advice = f"{every[0].standard} covers {low:.4g} to {high:.4g} mm"
+        if listed:
+            low = min(housing.diameter_min for housing in listed) * 1e3
+            high = max(housing.diameter_max for housing in listed) * 1e3
+            advice = f"{listed[0].standard} covers {low:.4g} to {high:.4g} mm"
         raise InputError(Diagnostic(message, advice))
-    return tuple(sorted(found, key=lambda housing: not housing.is_nominal(diameter)))
+    return tuple(sorted(fitting, key=lambda housing: not housing.is_nominal(diameter)))
 
 
 @functools.cache
@@ -176,7 +176,7 @@ def gland_deviations(
 
     Parameters
     ----------
-    gland : standard gland of the ring's section (`standards.gland`)
+    gland : standard gland of the ring's section (`standard_sizes.gland`)
     squeeze_min, squeeze_max : squeeze limits of the groove with its tolerances
     width : width of the groove, m
     fill : largest fill of the groove by the ring

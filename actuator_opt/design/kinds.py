@@ -139,7 +139,7 @@ def read_quantity(value: object, quantity: Quantity) -> float:
         return check_range(float(value), quantity)
     if not isinstance(value, str):
         raise ValueFault(
-            f"need {article(quantity.label)}, not {what(value)}",
+            f"need {article(quantity.label)}, not {shape_in_words(value)}",
             f'write one value, e.g. "{example(quantity)}"',
         )
     try:
@@ -151,7 +151,7 @@ def read_quantity(value: object, quantity: Quantity) -> float:
     return check_range(number, quantity, shown(value))
 
 
-def what(value: object) -> str:
+def shape_in_words(value: object) -> str:
     """Shape of a value in words."""
     if value is None:
         return "nothing"
@@ -260,9 +260,11 @@ class Text(ValueKind):
     def validate(self, value: Any) -> str:
         """The text itself."""
         if not isinstance(value, str):
-            raise ValueFault(f"need a text, not {what(value)}", "write one value")
-        bad = [c for c in value if not (c.isprintable() or (self.multiline and c in "\n\t"))]
-        if bad:
+            raise ValueFault(f"need a text, not {shape_in_words(value)}", "write one value")
+        unprintable = [
+            c for c in value if not (c.isprintable() or (self.multiline and c in "\n\t"))
+        ]
+        if unprintable:
             raise ValueFault(f'"{shown(value)}": contains unprintable characters', "remove them")
         if len(value) > self.longest:
             raise ValueFault(
@@ -292,7 +294,7 @@ class Boolean(ValueKind):
             return bool(value)
         if isinstance(value, str) and value.strip().lower() in self.words:
             return self.words[value.strip().lower()]
-        word = f'"{shown(value)}"' if isinstance(value, str) else what(value)
+        word = f'"{shown(value)}"' if isinstance(value, str) else shape_in_words(value)
         raise ValueFault(f"need true or false, not {word}", "write true or false")
 
 
@@ -366,7 +368,9 @@ class SizesKind(ValueKind):
         if isinstance(value, str):
             return value
         if not isinstance(value, (list, tuple)):  # entries are checked where units are known
-            raise ValueFault(f"need sizes, not {what(value)}", "write a series, or a list")
+            raise ValueFault(
+                f"need sizes, not {shape_in_words(value)}", "write a series, or a list"
+            )
         return tuple(value)
 
 
@@ -381,7 +385,7 @@ class ObjectiveKind(ValueKind):
         if isinstance(value, str):
             return value
         if not isinstance(value, Mapping) or not value:
-            raise ValueFault(f"need a metric, not {what(value)}", "write e.g. mass")
+            raise ValueFault(f"need a metric, not {shape_in_words(value)}", "write e.g. mass")
         for name, weight in value.items():
             if not isinstance(weight, (int, float)) or not 0 < weight < math.inf:
                 raise ValueFault(f"{name}: the weight must be > 0", "write e.g. mass: 1")

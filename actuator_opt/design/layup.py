@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 
 from ..base import quantities, units
 from ..base.errors import Diagnostic, shown
-from .kinds import ValueFault, example, read_quantity, what
+from .kinds import ValueFault, example, read_quantity, shape_in_words
 from .model import MOST_LAYERS, Ply
 from .paths import spell
 from .structure import Loc, child, child_at, lists_of
@@ -113,11 +113,13 @@ class _Parser:
     def offset(self) -> int:
         return self.tokens[self.at][2]
 
-    def unexpected(self, wanted: str) -> NotationFault:
+    def unexpected(self, expected: str) -> NotationFault:
         """The current token violates the grammar."""
         text, remedy = self.text, f'write e.g. "{EXAMPLE}"'
         if self.kind == "end":
-            return NotationFault(self.offset, f"the lay-up ends where {wanted} is expected", remedy)
+            return NotationFault(
+                self.offset, f"the lay-up ends where {expected} is expected", remedy
+            )
         if text in ",;|":
             remedy = 'separate plies by "/"'
         elif text in ("deg", "°", "rad"):
@@ -126,7 +128,7 @@ class _Parser:
             remedy = f"s mirrors a group in brackets, {remedy}"
         elif text == "]":
             remedy = 'remove it, or open a "["'
-        return NotationFault(self.offset, f'"{shown(text)}" where {wanted} is expected', remedy)
+        return NotationFault(self.offset, f'"{shown(text)}" where {expected} is expected', remedy)
 
     def layup(self, depth: int) -> list[PlyGroup]:
         """Items between slashes."""
@@ -208,45 +210,45 @@ def expanded(document: Document) -> Document:
     for wall in lists_of(Ply):
         items = child_at(document.data, wall)
         if isinstance(items, list) and any(isinstance(i, dict) and "plies" in i for i in items):
-            document = _in_full(document, wall, items)
+            document = _expand_wall(document, wall, items)
     return document
 
 
-def _in_full(document: Document, wall: Loc, items: Sequence[Any]) -> Document:
+def _expand_wall(document: Document, wall: Loc, items: Sequence[Any]) -> Document:
     """Expand a list entry by entry; the old index i becomes `starts[i]`."""
-    whole: list[Any] = []
+    expanded_items: list[Any] = []
     starts: list[int] = []
     places: dict[Loc, NodeSpan] = {}
     faults: list[Diagnostic] = []
     unusable: set[Loc] = set()
     shorthands: list[Shorthand] = []
     for index, item in enumerate(items):
-        first, loc = len(whole), (*wall, index)
+        first, loc = len(expanded_items), (*wall, index)
         starts.append(first)
         if not isinstance(item, dict) or "plies" not in item:
-            whole.append(item)
+            expanded_items.append(item)
             continue
-        wrong = list(_wrong(item))
+        entry_faults = list(_entry_faults(item))
         faults += [
             _diagnostic(document, loc, fault, (*wall, first))
-            for fault in wrong
+            for fault in entry_faults
             if (*loc, fault.key) not in document.unusable
         ]
-        layers = () if wrong or first > MOST_LAYERS else read_notation(item["plies"])
+        layers = () if entry_faults or first > MOST_LAYERS else read_notation(item["plies"])
         if not layers:
-            whole.append({key: item[key] for key in item if key not in _OWN_KEYS})
+            expanded_items.append({key: item[key] for key in item if key not in _OWN_KEYS})
             unusable.add((*wall, first, "thickness"))
             continue
-        whole += _entries(item, layers)
+        expanded_items += _entries(item, layers)
         shorthands.append(Shorthand(wall, first, len(layers), _extent(document, loc)))
         for number, layer in enumerate(layers):
             places |= _places(document, loc, (*wall, first + number), layer)
     if faults:  # PATHs to layers that do not exist yet would only repeat them
         variables = child(document.data, "variables")
-        named = variables if isinstance(variables, dict) else ()
-        unusable |= {("variables", path) for path in named if path.startswith(f"{spell(wall)}[")}
+        paths = variables if isinstance(variables, dict) else ()
+        unusable |= {("variables", path) for path in paths if path.startswith(f"{spell(wall)}[")}
 
-    def moved(loc: Loc) -> Loc:
+    def expanded_loc(loc: Loc) -> Loc:
         depth = len(wall)
         if len(loc) <= depth or loc[:depth] != wall:
             return loc
@@ -254,11 +256,11 @@ def _in_full(document: Document, wall: Loc, items: Sequence[Any]) -> Document:
 
     return replace(
         document,
-        data=_with(document.data, wall, whole),
-        values=places | {moved(loc): span for loc, span in document.values.items()},
-        keys={moved(loc): span for loc, span in document.keys.items()},
+        data=_with(document.data, wall, expanded_items),
+        values=places | {expanded_loc(loc): span for loc, span in document.values.items()},
+        keys={expanded_loc(loc): span for loc, span in document.keys.items()},
         faults=[*document.faults, *faults],
-        unusable={moved(loc) for loc in document.unusable} | unusable,
+        unusable={expanded_loc(loc) for loc in document.unusable} | unusable,
         shorthands=(*document.shorthands, *shorthands),
     )
 
@@ -268,7 +270,7 @@ def _with(node: Any, loc: Loc, value: Any) -> Any:
     return value if not loc else {**node, loc[0]: _with(node[loc[0]], loc[1:], value)}
 
 
-class _Wrong(NamedTuple):
+class _EntryFault(NamedTuple):
     """A fault of a compact entry: at a key, its value, or a character of the value."""
 
     key: str
@@ -278,16 +280,16 @@ class _Wrong(NamedTuple):
     at_key: bool = False
 
 
-def _wrong(item: Mapping[str, Any]) -> Iterator[_Wrong]:
+def _entry_faults(item: Mapping[str, Any]) -> Iterator[_EntryFault]:
     """All faults of a compact entry except those of its material."""
     for key in ("angle", "thickness", "balanced"):
         if key in item:
             message = f"{key} and plies in one entry: plies already defines it"
-            yield _Wrong(key, message, "keep one of them", at_key=True)
+            yield _EntryFault(key, message, "keep one of them", at_key=True)
     thickness = quantities.INPUTS["ply_thickness"]
     if "ply_thickness" not in item:
         remedy = f'add e.g. "ply_thickness: {example(thickness)}"'
-        yield _Wrong("ply_thickness", "missing: required with plies", remedy)
+        yield _EntryFault("ply_thickness", "missing: required with plies", remedy)
     for key in ("plies", "ply_thickness"):
         value = item.get(key, "")
         try:
@@ -297,23 +299,23 @@ def _wrong(item: Mapping[str, Any]) -> Iterator[_Wrong]:
                 read_quantity(value, thickness)
             elif key == "plies" and not isinstance(value, str):
                 remedy = f'put it in quotes: plies: "{EXAMPLE}"'
-                raise ValueFault(f"need a text, not {what(value)}", remedy)
+                raise ValueFault(f"need a text, not {shape_in_words(value)}", remedy)
             elif key == "plies":
                 read_notation(value)
         except NotationFault as fault:
-            yield _Wrong(key, fault.message, fault.remedy, fault.offset)
+            yield _EntryFault(key, fault.message, fault.remedy, fault.offset)
         except ValueFault as fault:
-            yield _Wrong(key, fault.message, fault.remedy)
+            yield _EntryFault(key, fault.message, fault.remedy)
 
 
-def _diagnostic(document: Document, loc: Loc, wrong: _Wrong, now: Loc) -> Diagnostic:
-    """A fault of the compact entry at `loc`, whose first layer is now at `now`."""
-    at = (*loc, wrong.key)
-    span = document.keys.get(at) if wrong.at_key else document.values.get(at)
-    if wrong.offset is not None:
-        span = _character(document, at, wrong.offset)
+def _diagnostic(document: Document, loc: Loc, fault: _EntryFault, first_loc: Loc) -> Diagnostic:
+    """A fault of the compact entry at `loc`, whose first layer is now at `first_loc`."""
+    at = (*loc, fault.key)
+    span = document.keys.get(at) if fault.at_key else document.values.get(at)
+    if fault.offset is not None:
+        span = _character(document, at, fault.offset)
     span = span or document.values.get(loc)
-    return document.diagnostic(span, wrong.message, wrong.remedy, spell((*now, wrong.key)))
+    return document.diagnostic(span, fault.message, fault.remedy, spell((*first_loc, fault.key)))
 
 
 def _character(document: Document, loc: Loc, offset: int) -> NodeSpan | None:
@@ -343,14 +345,16 @@ def _entries(item: Mapping[str, Any], layers: Sequence[PlyGroup]) -> Iterator[di
         yield entry | {"ply_thickness": item["ply_thickness"]}
 
 
-def _places(document: Document, loc: Loc, now: Loc, layer: PlyGroup) -> dict[Loc, NodeSpan]:
+def _places(document: Document, loc: Loc, layer_loc: Loc, layer: PlyGroup) -> dict[Loc, NodeSpan]:
     """Places of the values of a layer: those of the notation at its angle."""
-    said = _character(document, (*loc, "plies"), layer.offset)
-    found = {now: said} | {(*now, key): said for key in ("angle", "thickness", "balanced")}
-    found |= {
-        (*now, key): document.values.get((*loc, key)) for key in ("material", "ply_thickness")
+    angle_span = _character(document, (*loc, "plies"), layer.offset)
+    places = {layer_loc: angle_span} | {
+        (*layer_loc, key): angle_span for key in ("angle", "thickness", "balanced")
     }
-    return {place: span for place, span in found.items() if span is not None}
+    places |= {
+        (*layer_loc, key): document.values.get((*loc, key)) for key in ("material", "ply_thickness")
+    }
+    return {place: span for place, span in places.items() if span is not None}
 
 
 def _extent(document: Document, loc: Loc) -> NodeSpan:

@@ -330,21 +330,21 @@ def allowable_factor(
     return factor
 
 
-_GOOD = {
+_EXAMPLES = {
     "bulk_modulus_slope": "6", "pressure_viscosity": "18 1/GPa", "tait_modulus": "8.4 GPa",
     "tait_decay": "0.0058 1/K", "tait_coefficient": "11.9",
 }  # fmt: skip
 """An example of each property, for mineral oil, for messages."""
 
 
-def bulk_modulus_law(stated: str | None, known: Container[str]) -> str:
+def bulk_modulus_law(stated: str | None, properties: Container[str]) -> str:
     """The stated law; else linear if the slope is a known property, else constant."""
-    return stated or ("linear" if "bulk_modulus_slope" in known else "constant")
+    return stated or ("linear" if "bulk_modulus_slope" in properties else "constant")
 
 
-def viscosity_law(stated: str | None, known: Container[str]) -> str:
+def viscosity_law(stated: str | None, properties: Container[str]) -> str:
     """The stated law; else Roelands if its coefficient is a known property."""
-    return stated or ("roelands" if "pressure_viscosity" in known else "none")
+    return stated or ("roelands" if "pressure_viscosity" in properties else "none")
 
 
 def of_fluid(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
@@ -353,19 +353,19 @@ def of_fluid(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
     name = view.text("fluid", "material")
     if name is None or not isinstance(materials, Properties) or materials.kind(name) != "fluid":
         return
-    own = child_at(tree, ("materials", name))
+    changes = child_at(tree, ("materials", name))
     try:
-        known = {*materials.numbers(name), *(own if isinstance(own, Mapping) else ())}
+        properties = {*materials.numbers(name), *(changes if isinstance(changes, Mapping) else ())}
     except InputError:  # a faulty entry is reported elsewhere
         return
     for key, all_laws, instead in (
-        ("bulk_modulus_law", BULK_MODULUS_LAWS, bulk_modulus_law(None, known)),
-        ("viscosity_pressure", VISCOSITY_LAWS, viscosity_law(None, known)),
+        ("bulk_modulus_law", BULK_MODULUS_LAWS, bulk_modulus_law(None, properties)),
+        ("viscosity_pressure", VISCOSITY_LAWS, viscosity_law(None, properties)),
     ):
         law = view.text("fluid", key)
-        missing = [needed for needed in _needs(all_laws, law) if needed not in known]
+        missing = [needed for needed in _needs(all_laws, law) if needed not in properties]
         if missing:
-            stated = f'"{missing[0]}: {_GOOD[missing[0]]}"'
+            stated = f'"{missing[0]}: {_EXAMPLES[missing[0]]}"'
             yield Fault(
                 ("fluid", key),
                 f"{law}: {name} has no {', '.join(missing)}",
@@ -380,7 +380,6 @@ def _needs(laws: Kinds[Any], law: str | None) -> tuple[str, ...]:
 
 FASTEST = 10.0
 """Largest decay of an exponential between neighbouring points: beyond it only one point counts."""
-
 
 LARGEST_POWER = 300.0
 """Largest exponent of an amplitude extrapolated to rest, far from overflow."""
@@ -411,7 +410,7 @@ class LawFit:
     @property
     def values(self) -> dict[str, float]:
         """Parameter values by name."""
-        return {name: one.value for name, one in self.parameters.items()}
+        return {name: parameter.value for name, parameter in self.parameters.items()}
 
     @property
     def determined(self) -> bool:
@@ -466,7 +465,7 @@ def fit_power_law(speed: Array, damping: Array, weights: Array | None = None) ->
     steepest = LARGEST_POWER / max(-logarithm[0], *np.abs(np.log(v[[0, -1]])))
     grid = _both_signs(0.05, min(20.0, steepest), 30)
     (exponent,), (amplitude,) = _projected(
-        b, w, [(one,) for one in grid], lambda rate: _shifted(rate, logarithm), steepest
+        b, w, [(start,) for start in grid], lambda rate: _shifted(rate, logarithm), steepest
     )
     reference = v[0] if exponent < 0 else v[-1]
     values = {"coefficient": float(amplitude * reference**-exponent), "exponent": float(exponent)}
@@ -497,15 +496,15 @@ def fit_double_exponential(speed: Array, damping: Array, weights: Array | None =
     gap = float(np.min(np.diff(np.unique(v))))
     steepest = min(FASTEST / gap, LARGEST_POWER / float(v[-1]))
     grid = _both_signs(0.03 / float(v[-1]), steepest, 26)
-    pairs = [(one, other) for k, one in enumerate(grid) for other in grid[k + 1 :]]
+    pairs = [(first, second) for k, first in enumerate(grid) for second in grid[k + 1 :]]
     rates, amplitudes = _projected(b, w, pairs, lambda rate: _shifted(rate, v), steepest)
     order = np.argsort(rates)
-    found = [(amplitudes[k] * np.exp(-rates[k] * _reference(rates[k], v)), rates[k]) for k in order]
+    terms = [(amplitudes[k] * np.exp(-rates[k] * _reference(rates[k], v)), rates[k]) for k in order]
     values = {
-        "coefficient_1": float(found[0][0]),
-        "rate_1": float(found[0][1]),
-        "coefficient_2": float(found[1][0]),
-        "rate_2": float(found[1][1]),
+        "coefficient_1": float(terms[0][0]),
+        "rate_1": float(terms[0][1]),
+        "coefficient_2": float(terms[1][0]),
+        "rate_2": float(terms[1][1]),
     }
     at_limit = [rate for rate in rates if abs(rate) > 0.999 * steepest]
     doubts = ("an exponential so steep that only one point affects it",) if at_limit else ()
@@ -545,29 +544,29 @@ def assess(
     residuals = damping - fitted
     sizes = np.array([max(abs(x), (least or {}).get(key, 0.0)) or 1.0 for key, x in values.items()])
     slopes = np.sqrt(weights)[:, None] * _slopes(law, values, speed)
-    found = known(values, slopes, np.sqrt(weights) * residuals, sizes)
-    spare = speed.size - len(values)
+    estimate = known(values, slopes, np.sqrt(weights) * residuals, sizes)
+    freedom = speed.size - len(values)
     reasons = list(doubts)
-    if spare == 0:
+    if freedom == 0:
         reasons.append(
             f"{speed.size} points leave no degree of freedom for {len(values)} parameters"
         )
-    elif found.rank < len(values):
-        reasons.append(f"the points determine {found.rank} of {len(values)} parameters")
+    elif estimate.rank < len(values):
+        reasons.append(f"the points determine {estimate.rank} of {len(values)} parameters")
     else:
-        weak = [key for key, one in found.parameters.items() if not one.identifiable]
+        weak = [key for key, parameter in estimate.parameters.items() if not parameter.identifiable]
         if weak:
             reasons.append(f"bounds of {', '.join(weak)} wider than {WEAK:.0%} of the value")
     return LawFit(
         name=name,
         law=law,
-        parameters=found.parameters,
-        covariance=found.covariance,
+        parameters=estimate.parameters,
+        covariance=estimate.covariance,
         speed=speed,
         damping=damping,
         residuals=residuals,
         r_squared=_r_squared(damping, fitted, weights),
-        quantile=found.quantile,
+        quantile=estimate.quantile,
         doubts=tuple(reasons),
     )
 
@@ -603,7 +602,7 @@ def _shifted(rate: float, abscissa: Array) -> Array:
 def _both_signs(least: float, most: float, count: int) -> list[float]:
     """A geometric grid of rates of both signs."""
     half = np.geomspace(least, most, count)
-    return [float(one) for one in (*-half[::-1], *half)]
+    return [float(rate) for rate in (*-half[::-1], *half)]
 
 
 def _projected(
@@ -631,9 +630,9 @@ def _projected(
 
     costs = [float(np.sum(misfit(np.array(start)) ** 2)) for start in starts]
     best, least = np.array(starts[int(np.argmin(costs))]), np.inf
-    for start in _apart(starts, costs):
+    for start in _distinct_starts(starts, costs):
         limit = np.full(start.shape, steepest)
-        found = least_squares.solve(
+        solution = least_squares.solve(
             misfit,
             np.clip(start, -0.99 * limit, 0.99 * limit),
             (-limit, limit),
@@ -643,17 +642,19 @@ def _projected(
             step_tolerance=1e-15,
             slope_tolerance=1e-15,
         )
-        if found.cost < least:
-            best, least = found.x, found.cost
+        if solution.cost < least:
+            best, least = solution.x, solution.cost
     return best, linear(best)[0] * scale
 
 
-def _apart(starts: Sequence[tuple[float, ...]], costs: list[float], count: int = 6) -> Array:
+def _distinct_starts(
+    starts: Sequence[tuple[float, ...]], costs: list[float], count: int = 6
+) -> Array:
     """Starts of least cost that differ from each other by more than a third in a rate."""
     chosen: list[tuple[float, ...]] = []
     for k in np.argsort(costs):
         start = np.array(starts[k])
-        if all(np.max(np.abs(start / np.array(one) - 1)) > 1 / 3 for one in chosen):
+        if all(np.max(np.abs(start / np.array(other) - 1)) > 1 / 3 for other in chosen):
             chosen.append(starts[k])
         if len(chosen) == count:
             break
@@ -664,22 +665,25 @@ def _points(
     speed: Array, damping: Array, weights: Array | None, *, parameters: int
 ) -> tuple[Array, Array, Array]:
     """Points in order of speed, as arrays; raises a one-line error if unusable."""
-    v, b = (np.atleast_1d(np.asarray(one, dtype=float)) for one in (speed, damping))
+    v, b = (np.atleast_1d(np.asarray(values, dtype=float)) for values in (speed, damping))
     w = np.ones(v.shape) if weights is None else np.atleast_1d(np.asarray(weights, dtype=float))
     if v.ndim != 1 or v.shape != b.shape or v.shape != w.shape:
-        sizes = ", ".join(str(one.shape) for one in (v, b, w))
+        sizes = ", ".join(str(values.shape) for values in (v, b, w))
         raise _fault(
             f"speed, damping and weights have shapes {sizes}", "give one value of each per point"
         )
-    for name, one in (("speed", v), ("damping", b), ("weight", w)):
-        broken = np.flatnonzero(~np.isfinite(one))
-        if broken.size:
-            raise _fault(f"{name} of point {broken[0]} is {one[broken[0]]}", "leave the point out")
-    for name, one in (("speed", v), ("weight", w)):
-        low = np.flatnonzero(one <= 0)
-        if low.size:
+    for name, values in (("speed", v), ("damping", b), ("weight", w)):
+        not_finite = np.flatnonzero(~np.isfinite(values))
+        if not_finite.size:
+            raise _fault(
+                f"{name} of point {not_finite[0]} is {values[not_finite[0]]}", "leave the point out"
+            )
+    for name, values in (("speed", v), ("weight", w)):
+        not_positive = np.flatnonzero(values <= 0)
+        if not_positive.size:
             reason = "secant damping is undefined at rest and " if name == "speed" else ""
-            fault = f"{name} of point {low[0]} is {one[low[0]]:g}; {reason}must be above 0"
+            index = not_positive[0]
+            fault = f"{name} of point {index} is {values[index]:g}; {reason}must be above 0"
             raise _fault(fault, "leave the point out")
     different = np.unique(v).size
     if different < parameters:

@@ -1,9 +1,7 @@
 """Material libraries: shipped entries, overridden by the user's files; look-up by name.
 
-Library files: YAML entries to `Material`, each fault with file and line.
-
-A file maps names to entries. It is split at its top-level keys and only requested entries are
-parsed, so a large library does not slow the start.
+A YAML file maps names to entries, and each fault has file and line. The file is split at its
+top-level keys and only requested entries are parsed, so a large library does not slow the start.
 """
 
 from __future__ import annotations
@@ -19,7 +17,7 @@ from ..base import files as store, units
 from ..base.errors import Diagnostic, InputError, remedy, shown
 from ..base.quantities import INPUTS, MATERIAL_PROPERTIES, Quantity
 from . import material, yaml_source
-from .kinds import ValueFault, read_quantity, what
+from .kinds import ValueFault, read_quantity, shape_in_words
 from .material import ROLES, Material, Property, Spread, allowable_factor, compatible, ply_constants
 
 _TOP = re.compile(r"(?m)^(?P<quote>['\"]?)(?P<name>[^\W\d][\w.+-]*)(?P=quote)[ \t]*:")
@@ -70,13 +68,13 @@ class MaterialFile:
     def sources(self) -> Mapping[str, str]:
         """Citations by key."""
         if self._sources is None:
-            found: dict[str, str] = {}
+            citations: dict[str, str] = {}
             if "sources" in self.places:
                 table = self.document("sources").data["sources"]
                 if not isinstance(table, dict):
                     raise InputError(self.fault("sources", "need a block of citations by key"))
-                found = {key: " ".join(str(text).split()) for key, text in table.items()}
-            self._sources = found
+                citations = {key: " ".join(str(text).split()) for key, text in table.items()}
+            self._sources = citations
         return self._sources
 
     def fault(self, name: str, message: str, advice: str = "") -> Diagnostic:
@@ -117,7 +115,7 @@ def _read_file(path: str, changed: int, size: int) -> MaterialFile:
     for stray in _STRAY.finditer(text):
         line = text.count("\n", 0, stray.start()) + 1
         message = f'"{shown(stray[0], 30)}" belongs to no material'
-        advice = "write NAME: and indent what belongs to it"
+        advice = "write NAME: and indent its keys below it"
         material_file.faults.append(
             Diagnostic(message, advice, path, line, 1, None, shown(stray[0], 120))
         )
@@ -134,10 +132,10 @@ def read_entry(file: MaterialFile, name: str, parent: Parent) -> Material:
     parent : returns the material of an ``inherit:``
     """
     reader = _Reader(file, name)
-    found = reader.entry(parent)
-    if reader.faults or found is None:
+    entry = reader.entry(parent)
+    if reader.faults or entry is None:
         raise InputError(reader.faults)
-    return found
+    return entry
 
 
 class _Reader:
@@ -160,7 +158,11 @@ class _Reader:
         """Material of the entry, or None if it is not a block."""
         data = self.document.data.get(self.name)
         if not isinstance(data, dict):
-            self.fault((), f"need a block of keys, not {what(data)}", "see: materials show")
+            self.fault(
+                (),
+                f"need a block of keys, not {shape_in_words(data)}",
+                "see: actuator-opt materials show",
+            )
             return None
         self._unknown((), data, _ENTRY_KEYS)
         base = None
@@ -175,15 +177,15 @@ class _Reader:
         properties = dict(base.properties) if base else {}
         properties |= self._properties(data)
         properties = {name: properties[name] for name in MATERIAL_PROPERTIES if name in properties}
-        found = Material(
+        entry = Material(
             self.name, str(kind), self._text(data, "label") or self.name, properties,
             self._text(data, "notes"), self._text(data, "warning"),
             self._family(data, base), self._suits(data, base),
             self.file.path, self.file.places[self.name][2],
         )  # fmt: skip
         if not self.faults and not self.name.startswith("_"):
-            self._complete(found)
-        return found
+            self._complete(entry)
+        return entry
 
     def _properties(self, data: dict[str, Any]) -> dict[str, Property]:
         defaults = self._meta((), data, {})
@@ -191,9 +193,9 @@ class _Reader:
         if table is None:
             return {}
         if not isinstance(table, dict):
-            self.fault(("properties",), f"need a block of properties, not {what(table)}")
+            self.fault(("properties",), f"need a block of properties, not {shape_in_words(table)}")
             return {}
-        found = {}
+        properties = {}
         for name, spec in table.items():
             quantity = MATERIAL_PROPERTIES.get(name)
             loc = ("properties", name)
@@ -203,8 +205,8 @@ class _Reader:
                 continue
             entry = self._property(loc, quantity, spec, defaults)
             if entry is not None:
-                found[name] = entry
-        return found
+                properties[name] = entry
+        return properties
 
     def _property(
         self, loc: tuple[str, ...], quantity: Quantity, spec: Any, defaults: Mapping[str, str]
@@ -248,7 +250,7 @@ class _Reader:
             self.fault(loc, "need a list of two or more points", "- {temperature: ..., value: ...}")
             return None, ()
         argument: str | None = None
-        found: list[tuple[float, float]] = []
+        points: list[tuple[float, float]] = []
         for index, row in enumerate(rows):
             keys = set(row) - {"value"} if isinstance(row, dict) else set()
             if len(keys) != 1 or "value" not in row or not keys <= set(_ARGUMENTS):
@@ -264,26 +266,26 @@ class _Reader:
             y = self._number((*loc, index, "value"), quantity, row["value"])
             if x is None or y is None:
                 return None, ()
-            if found and x <= found[-1][0]:
+            if points and x <= points[-1][0]:
                 self.fault((*loc, index), f"the {key} must rise from point to point", "sort them")
                 return None, ()
-            found.append((x, y))
-        return argument, tuple(found)
+            points.append((x, y))
+        return argument, tuple(points)
 
     def _meta(
         self, loc: tuple[str, ...], spec: dict[str, Any], defaults: Mapping[str, str]
     ) -> dict[str, str]:
-        found = dict(defaults)
+        meta = dict(defaults)
         for key in _META:
             if key in spec:
-                found[key] = self._text(spec, key, loc)
+                meta[key] = self._text(spec, key, loc)
         if "source" in spec:
-            found["source"] = self.file.sources().get(found["source"], found["source"])
+            meta["source"] = self.file.sources().get(meta["source"], meta["source"])
         for key, allowed in (("confidence", material.CONFIDENCES), ("basis", material.BASES)):
-            if key in spec and found[key] not in allowed:
+            if key in spec and meta[key] not in allowed:
                 advice = f"use one of {', '.join(allowed)}"
-                self.fault((*loc, key), f'unknown {key} "{shown(found[key])}"', advice)
-        return found
+                self.fault((*loc, key), f'unknown {key} "{shown(meta[key])}"', advice)
+        return meta
 
     def _spread(
         self, loc: tuple[str, ...], text: str, quantity: Quantity, value: float
@@ -321,7 +323,7 @@ class _Reader:
         if value is None:
             return ""
         if not isinstance(value, str):
-            self.fault((*loc, key), f"need a text, not {what(value)}")
+            self.fault((*loc, key), f"need a text, not {shape_in_words(value)}")
             return ""
         return " ".join(value.split())
 
@@ -348,21 +350,21 @@ class _Reader:
             if key not in allowed:
                 self.fault((*loc, key), f'unknown key "{shown(key)}"', remedy(key, allowed))
 
-    def _complete(self, found: Material) -> None:
+    def _complete(self, entry: Material) -> None:
         """Faults of the entry as a whole: missing or impossible properties."""
-        required = material.REQUIRED[found.kind]
-        if found.kind == "ply" and not found.isotropic:
+        required = material.REQUIRED[entry.kind]
+        if entry.kind == "ply" and not entry.isotropic:
             required += material.PLY_REQUIRED
-        missing = [name for name in required if name not in found.properties]
+        missing = [name for name in required if name not in entry.properties]
         if missing:
-            self.fault((), f"a {found.kind} needs {', '.join(missing)}", "add it to properties:")
+            self.fault((), f"a {entry.kind} needs {', '.join(missing)}", "add it to properties:")
             return
-        if found.kind == "fluid" and not found.viscosity_points:
+        if entry.kind == "fluid" and not entry.viscosity_points:
             loc = ("properties", "kinematic_viscosity")
             advice = "write points: [{temperature: 40 degC, value: ...}, ...]"
             self.fault(loc, "a fluid needs its viscosity at two or more temperatures", advice)
             return
-        vapour = found.properties.get("vapour_pressure")
+        vapour = entry.properties.get("vapour_pressure")
         if vapour is not None and vapour.points and min(vapour.values) <= 0:
             loc = ("properties", "vapour_pressure")
             self.fault(
@@ -371,7 +373,7 @@ class _Reader:
                 "remove the point with value 0",
             )
             return
-        constants = material.ply_constants(found.numbers)
+        constants = material.ply_constants(entry.numbers)
         if constants and material.compliance_determinant(constants) <= 0:
             message = (
                 "the elastic constants are impossible: the compliance is not positive definite"
@@ -400,7 +402,7 @@ class Library:
         self._home = {
             name: index for index, file in enumerate(self._files) for name in file.names()
         }
-        self._read_already: dict[tuple[int, str], Material] = {}
+        self._cache: dict[tuple[int, str], Material] = {}
         self._open: list[tuple[int, str]] = []
         self._check_clashes()
 
@@ -454,12 +456,12 @@ class Library:
         """
         if name not in self:
             raise InputError(self._unknown(name, role))
-        found = self._read(name, self._home[name])
-        if role is not None and found.kind not in ROLES[role]:
+        entry = self._read(name, self._home[name])
+        if role is not None and entry.kind not in ROLES[role]:
             choices = ", ".join(self.names(role=role)[:8])
-            message = f'"{name}" is a {found.kind}, not a {role} material'
+            message = f'"{name}" is a {entry.kind}, not a {role} material'
             raise InputError(Diagnostic(message, f"use e.g. {choices}"))
-        return found
+        return entry
 
     def numbers(self, name: str) -> dict[str, float]:
         """Stated properties of a material, SI; a table is represented by its reference value."""
@@ -479,20 +481,20 @@ class Library:
 
     def _read(self, name: str, index: int) -> Material:
         key = (index, name)
-        if key in self._read_already:
-            return self._read_already[key]
+        if key in self._cache:
+            return self._cache[key]
         file = self._files[index]
         if key in self._open:
             raise InputError(
-                file.fault(name, "inherits from itself", "remove one inherit: of the circle")
+                file.fault(name, "inherits from itself", "remove one inherit: of the cycle")
             )
         self._open.append(key)
         try:
-            found = read_entry(file, name, functools.partial(self._parent, index))
+            entry = read_entry(file, name, functools.partial(self._parent, index))
         finally:
             self._open.remove(key)
-        self._read_already[key] = found
-        return found
+        self._cache[key] = entry
+        return entry
 
     def _parent(self, index: int, name: str) -> Material | None:
         """The material that `inherit: name` refers to in file `index`.
@@ -534,11 +536,11 @@ def load_library(extra: Iterable[str | Path] = ()) -> Library:
     """
     folder = store.data_folder("materials")
     shipped = sorted(p for p in folder.glob("*.yaml") if not p.name.startswith("standards"))
-    own = tuple(read_file(Path(path)) for path in extra)
-    library = _library((*(read_file(path) for path in shipped), *own))
-    if own:
-        mine = {file.path for file in own}
-        faults = [fault for fault in library.check() if fault.file in mine]
+    user_files = tuple(read_file(Path(path)) for path in extra)
+    library = _library((*(read_file(path) for path in shipped), *user_files))
+    if user_files:
+        user_paths = {file.path for file in user_files}
+        faults = [fault for fault in library.check() if fault.file in user_paths]
         if faults:
             raise InputError(faults)
     return library

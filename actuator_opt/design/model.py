@@ -437,14 +437,14 @@ class _Retention(Section):
 
 def _own_fields() -> dict[str, Any]:
     """Keys that only some joints have, each with its quantity."""
-    own = {
+    joint_fields = {
         field.key: field for joint in JOINTS.values() for field in joint.fields if field.quantity
     }
-    for key in own.keys() & _Retention.model_fields.keys():
+    for key in joint_fields.keys() & _Retention.model_fields.keys():
         raise ValueError(f"joint field {key}: shared by all joints, must not state a quantity")
     return {
         key: (Annotated[float | None, Of(field.quantity, field.help)], None)
-        for key, field in own.items()
+        for key, field in joint_fields.items()
     }
 
 

@@ -117,13 +117,13 @@ def _resolve_section(
     loc: Loc,
 ) -> Target:
     """Follow `tokens` from a section of the tree; the section may be unset (None)."""
-    known, tree = entries(section), whole[0]
+    keys, tree = entries(section), whole[0]
     if not tokens:
-        raise _not_a_value(path, list(known))
+        raise _not_a_value(path, list(keys))
     name, rest = tokens[0].text, tokens[1:]
-    entry = known.get(name)
+    entry = keys.get(name)
     if entry is None or tokens[0].bracket:
-        siblings = [spell((*loc, key), tree) for key in known]
+        siblings = [spell((*loc, key), tree) for key in keys]
         raise _no_such(path, [*siblings, *(spell(at, tree) for at, _, _ in leaves(*whole))])
     node, loc = child(node, name), (*loc, name)
     if entry.shape in ("value", "choice"):
@@ -152,9 +152,9 @@ def _index(path: str, text: str, node: Any, loc: Loc) -> int:
     index = units.whole(text)
     if index is not None and index < len(items):
         return index
-    have = [str(n) for n in names if n is not None] or [str(i) for i in range(len(items))]
+    options = [str(n) for n in names if n is not None] or [str(i) for i in range(len(items))]
     message = f"{path}: {spell(loc)} has no entry {errors.shown(text)}"
-    raise ValueFault(message, errors.remedy(text, have) or "it is empty")
+    raise ValueFault(message, errors.remedy(text, options) or "it is empty")
 
 
 def _resolve_table(head: str, rest: str, tree: Any, metrics: Mapping[str, Quantity]) -> Target:
@@ -178,24 +178,24 @@ def _resolve_table(head: str, rest: str, tree: Any, metrics: Mapping[str, Quanti
     if head == "requirements":
         if last not in _LIMITS or not name:
             raise ValueFault(f"{path}: unknown PATH", f"end it with .{' or .'.join(_LIMITS)}")
-        known: Mapping[str, Quantity] = metrics
+        allowed: Mapping[str, Quantity] = metrics
         key = name
     else:
-        known, key = quantities.MATERIAL_PROPERTIES, last
+        allowed, key = quantities.MATERIAL_PROPERTIES, last
         if not name:
             raise ValueFault(f"{path}: unknown PATH", "write materials.NAME.PROPERTY")
-    if key not in known:
-        what = "metric" if head == "requirements" else "material property"
-        raise ValueFault(f'{path}: "{key}" is not a {what}', errors.remedy(key, known))
-    return Target(path, (head, name, last), known[key])
+    if key not in allowed:
+        noun = "metric" if head == "requirements" else "material property"
+        raise ValueFault(f'{path}: "{key}" is not a {noun}', errors.remedy(key, allowed))
+    return Target(path, (head, name, last), allowed[key])
 
 
 def _not_a_value(path: str, below: Sequence[str]) -> ValueFault:
     return ValueFault(f"{path}: names a block, not a value", f"add one of .{', .'.join(below[:8])}")
 
 
-def _no_such(path: str, every: Sequence[str]) -> ValueFault:
-    return ValueFault(f"{path}: unknown PATH", errors.remedy(path, dict.fromkeys(every), 6))
+def _no_such(path: str, candidates: Sequence[str]) -> ValueFault:
+    return ValueFault(f"{path}: unknown PATH", errors.remedy(path, dict.fromkeys(candidates), 6))
 
 
 def canonical(path: str, design: Design) -> str:
@@ -233,20 +233,20 @@ def numbers(design: Design) -> dict[str, float]:
 
     Positions stated as a fraction of the stroke stay fractions; bounds of variables are left out.
     """
-    found: dict[str, float] = {}
+    values: dict[str, float] = {}
     for loc, _, value in leaves(design):
         number = number_of(value)
         if number is not None:
-            found[spell(loc, design)] = number
+            values[spell(loc, design)] = number
     for metric, limit in design.requirements.items():
         for sense in _LIMITS:
             value = getattr(limit, sense)
             if value is not None:
-                found[f"requirements.{metric}.{sense}"] = value
+                values[f"requirements.{metric}.{sense}"] = value
     for material, properties in design.materials.items():
         for name, value in properties.items():
-            found[f"materials.{material}.{name}"] = value
-    return found
+            values[f"materials.{material}.{name}"] = value
+    return values
 
 
 def split_assignment(text: str) -> tuple[str, str]:

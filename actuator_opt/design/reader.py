@@ -92,8 +92,8 @@ class FileSource:
 
     def place(self, fault: Fault) -> tuple[int, int]:
         """Line and column of a fault, for sorting."""
-        found = self._find(fault)
-        return found[:2] if isinstance(found, NodeSpan) else (0, 0)
+        span = self._find(fault)
+        return span[:2] if isinstance(span, NodeSpan) else (0, 0)
 
     def _find(self, fault: Fault) -> NodeSpan | Override | None:
         """Nearest place in the text at or above a fault, or the value that replaced it."""
@@ -158,18 +158,18 @@ def read_document(
 ) -> LoadedDesign:
     """The design of a parsed YAML document; parameters as for `read_design`."""
 
-    def made(tree: dict[str, Any]) -> tuple[Design | None, Sequence[Fault]]:
-        known = library() if materials is None else materials
-        built = build(tree, materials=known, metrics=metrics)
+    def build_design(tree: dict[str, Any]) -> tuple[Design | None, Sequence[Fault]]:
+        lookup = library() if materials is None else materials
+        built = build(tree, materials=lookup, metrics=metrics)
         return built.design, built.faults
 
-    return LoadedDesign(*load(layup.expanded(document), Design, made, overrides, metrics))
+    return LoadedDesign(*load(layup.expanded(document), Design, build_design, overrides, metrics))
 
 
 def load(
     document: Document,
     root: type[Root],
-    made: Callable[[dict[str, Any]], tuple[Root | None, Sequence[Fault]]],
+    build_section: Callable[[dict[str, Any]], tuple[Root | None, Sequence[Fault]]],
     overrides: Iterable[Override | tuple[str, str]] = (),
     metrics: Mapping[str, Quantity] | None = None,
 ) -> tuple[Root, FileSource]:
@@ -179,7 +179,7 @@ def load(
     ----------
     document : parsed YAML
     root : section type of the whole file
-    made : builds the section from a tree, or lists the faults of the tree
+    build_section : builds the section from a tree, or lists the faults of the tree
     overrides : values that replace those of the document, as for `read_design`
     metrics : metrics that may be named; default: `metrics.METRICS`
 
@@ -204,10 +204,10 @@ def load(
             message, shown = fault.message.removeprefix(f"{path}: "), errors.shown(path, 120)
             faults.append(override.diagnostic(message, fault.remedy, shown, at_key=True))
     source = FileSource(document, places, root, metrics)
-    section, all_found = made(tree)
-    found = _once([f for f in all_found if not _unusable(f, document)], document)
-    if section is None or faults or found:
-        raise InputError(_in_order(source, faults, found))
+    section, section_faults = build_section(tree)
+    reported = _once([f for f in section_faults if not _unusable(f, document)], document)
+    if section is None or faults or reported:
+        raise InputError(_in_order(source, faults, reported))
     return section, source
 
 
@@ -224,11 +224,11 @@ def is_scenario(source: str | Path) -> bool:
 def _require_kind(document: Document) -> None:
     """Refuse a scenario in place of a design, or a design in place of a scenario."""
     for kind, mark in _MARKS.items():
-        if mark in document.data and _MARKS[document.what] not in document.data:
+        if mark in document.data and _MARKS[document.kind] not in document.data:
             remedy = "give the design file that it names"
             if kind == "design":
                 remedy = f'name it in a scenario: "design: {Path(document.file).name}"'
-            message = f"the file is a {kind}, not a {document.what}"
+            message = f"the file is a {kind}, not a {document.kind}"
             raise InputError(document.diagnostic(document.keys.get((mark,)), message, remedy))
 
 
@@ -238,33 +238,33 @@ def _unusable(fault: Fault, document: Document) -> bool:
 
 def _once(faults: Sequence[Fault], document: Document) -> list[Fault]:
     """Faults that the layers of a compact entry share, reported once."""
-    found, said = [], set()
+    unique, seen = [], set()
     for fault in faults:
         shorthand = document.shorthand(fault.loc)
         if shorthand is not None:
-            same = (shorthand, fault.loc[len(shorthand.wall) + 1 :], fault.message)
-            if same in said:
+            key = (shorthand, fault.loc[len(shorthand.wall) + 1 :], fault.message)
+            if key in seen:
                 continue
-            said.add(same)
-        found.append(fault)
-    return found
+            seen.add(key)
+        unique.append(fault)
+    return unique
 
 
 def _in_order(
-    source: FileSource, said: Sequence[Diagnostic], faults: Sequence[Fault]
+    source: FileSource, diagnostics: Sequence[Diagnostic], faults: Sequence[Fault]
 ) -> list[Diagnostic]:
     """Faults by line and column, at most `MOST_FAULTS`, with the number of omitted faults.
 
     Faults of other files and of the command line come first.
     """
     first = sorted(faults, key=source.place)[:MOST_FAULTS]
-    everything = [*said, *(source.at(fault) for fault in first)]
-    everything.sort(key=lambda f: (f.file == source.file, f.line or 0, f.column or 0))
-    left = len(said) + len(faults) - MOST_FAULTS
-    if left > 0:
-        more = Diagnostic(f"and {left} more faults", "correct these first", source.file)
-        everything = [*everything[:MOST_FAULTS], more]
-    return everything
+    ordered = [*diagnostics, *(source.at(fault) for fault in first)]
+    ordered.sort(key=lambda f: (f.file == source.file, f.line or 0, f.column or 0))
+    omitted = len(diagnostics) + len(faults) - MOST_FAULTS
+    if omitted > 0:
+        more = Diagnostic(f"and {omitted} more faults", "correct these first", source.file)
+        ordered = [*ordered[:MOST_FAULTS], more]
+    return ordered
 
 
 def _bare_is_si(value: str, quantity: Quantity | None) -> str:
@@ -280,13 +280,13 @@ def _bare_is_si(value: str, quantity: Quantity | None) -> str:
     return f"{number * 100!r} %" if quantity.name == "fraction" else f"{value} {quantity.si_unit}"
 
 
-def opened(source: str | Path, what: str = "design") -> tuple[str, str]:
+def opened(source: str | Path, kind: str = "design") -> tuple[str, str]:
     """Text and name of a file, of standard input, or of a text of several lines."""
     if isinstance(source, str) and ("\n" in source or "\r" in source):
         return source, TEXT
     name = STDIN if source == "-" else str(source)
-    data = read_bytes(source, most=MAX_BYTES + 1, kinds=(".yaml", ".yml"), what=f"{what} file")
-    return decode(data, name, what), name
+    data = read_bytes(source, most=MAX_BYTES + 1, kinds=(".yaml", ".yml"), what=f"{kind} file")
+    return decode(data, name, kind), name
 
 
 def library() -> MaterialLookup:

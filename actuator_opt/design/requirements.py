@@ -14,7 +14,7 @@ from ..base import errors, quantities
 from ..base.errors import Fault
 from ..base.quantities import Quantity
 from . import sizes, uncertain_faults
-from .kinds import Section, ValueFault, example, read_quantity, what
+from .kinds import Section, ValueFault, example, read_quantity, shape_in_words
 from .model import Design
 from .paths import Target, resolve
 from .structure import Loc, entries, number_of, value_at
@@ -58,9 +58,11 @@ def requirements(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Itera
         quantity = limit_quantity(metrics[metric])
         if not isinstance(limit, dict):
             if limit is not None:
-                good = errors.shown(limit) if isinstance(limit, str) else example(quantity)
+                sample = errors.shown(limit) if isinstance(limit, str) else example(quantity)
                 yield Fault(
-                    loc, f"need limits, not {what(limit)}", f'write "min: {good}" or "max: {good}"'
+                    loc,
+                    f"need limits, not {shape_in_words(limit)}",
+                    f'write "min: {sample}" or "max: {sample}"',
                 )
             continue
         faults = [_number(limit, (*loc, sense), quantity) for sense in ("min", "max")]
@@ -100,7 +102,9 @@ def variables(tree: dict[str, Any]) -> Iterator[Fault]:
         if not isinstance(bounds, dict) or quantity is None:
             if bounds is not None:
                 yield Fault(
-                    loc, f"need bounds, not {what(bounds)}", 'write "lower: …" and "upper: …"'
+                    loc,
+                    f"need bounds, not {shape_in_words(bounds)}",
+                    'write "lower: …" and "upper: …"',
                 )
             continue
         faults = [_number(bounds, (*loc, key), quantity) for key in ("lower", "upper", "start")]
@@ -137,7 +141,7 @@ def measured(tree: dict[str, Any]) -> Iterator[Fault]:
         if not isinstance(bounds, dict):
             if bounds is not None:
                 remedy = 'write "lower: …", "upper: …" and "record: …"'
-                yield Fault(loc, f"need bounds, not {what(bounds)}", remedy)
+                yield Fault(loc, f"need bounds, not {shape_in_words(bounds)}", remedy)
             continue
         faults = [_number(bounds, (*loc, key), target.quantity) for key in ("lower", "upper")]
         yield from (fault for fault in faults if fault)
@@ -168,7 +172,10 @@ def _movable(path: str, tree: dict[str, Any]) -> Target:
     if target.quantity is None:
         raise ValueFault("is text, not a number", "name a number of the design")
     if target.quantity.dimension == "count":
-        raise ValueFault("is a count and cannot vary continuously", "fix it and compare designs")
+        raise ValueFault(
+            "is a count and cannot vary continuously",
+            "remove the entry; compare designs with other counts",
+        )
     if target.entry is None or target.entry.shape == "list":
         raise ValueFault("is not a dimension of the actuator", "name a number of the design")
     if target.path != path:
@@ -227,14 +234,14 @@ def objective(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Iterator
     block = tree.get("objective")
     if not isinstance(block, dict):
         return
-    given = [key for key in ("minimise", "maximise") if key in block]
-    if len(given) != 1:
-        if given:
+    stated = [key for key in ("minimise", "maximise") if key in block]
+    if len(stated) != 1:
+        if stated:
             message = "both minimise and maximise"
-            yield Fault(("objective", given[1]), message, "keep one of them", at_key=True)
+            yield Fault(("objective", stated[1]), message, "keep one of them", at_key=True)
         else:
             yield Fault(("objective", "minimise"), "missing", 'add e.g. "minimise: mass"')
-    for key in given:
+    for key in stated:
         terms = block[key]
         loc = ("objective", key)
         if isinstance(terms, str):
@@ -273,21 +280,25 @@ def waivers(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Iterator[F
 def materials(tree: dict[str, Any]) -> Iterator[Fault]:
     """Changed properties in their units (material names are checked in `faults`)."""
     block = tree.get("materials")
-    known = quantities.MATERIAL_PROPERTIES
+    property_quantities = quantities.MATERIAL_PROPERTIES
     for material, properties in block.items() if isinstance(block, dict) else ():
         loc = ("materials", material)
         if not isinstance(properties, dict):
             if properties is not None:
                 yield Fault(
-                    loc, f"need properties, not {what(properties)}", "write PROPERTY: value"
+                    loc,
+                    f"need properties, not {shape_in_words(properties)}",
+                    "write PROPERTY: value",
                 )
             continue
         for name in properties:
-            if name not in known:
+            if name not in property_quantities:
                 message = f'"{errors.shown(name)}" is not a material property'
-                yield Fault((*loc, name), message, errors.remedy(name, known), at_key=True)
+                yield Fault(
+                    (*loc, name), message, errors.remedy(name, property_quantities), at_key=True
+                )
                 continue
-            fault = _number(properties, (*loc, name), known[name])
+            fault = _number(properties, (*loc, name), property_quantities[name])
             if fault is not None:
                 yield fault
 

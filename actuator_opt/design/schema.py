@@ -15,7 +15,7 @@ from typing import Any
 from ..base import quantities, units
 from ..base.quantities import Quantity
 from ..metrics import METRICS
-from . import choice_list, layup, requirements as wishes
+from . import choice_list, layup, requirements
 from .kinds import (
     Boolean,
     CaseName,
@@ -152,8 +152,12 @@ def entry_schema(entry: KeyEntry, materials: MaterialLookup | None) -> Schema:
     elif entry.shape == "section" and entry.section is not None:
         schema = section_schema(entry.section, materials)
     elif entry.shape == "list":
-        of = entry.section
-        items = value_schema(entry.kind, materials) if of is None else section_schema(of, materials)
+        section = entry.section
+        items = (
+            value_schema(entry.kind, materials)
+            if section is None
+            else section_schema(section, materials)
+        )
         schema = {"type": "array", "minItems": entry.least, "items": items}
         schema["description"] = items["description"]
         if entry.most is not None:
@@ -169,17 +173,17 @@ def entry_schema(entry: KeyEntry, materials: MaterialLookup | None) -> Schema:
 
 def section_schema(section: type[Section], materials: MaterialLookup | None) -> Schema:
     """A block of keys; the required keys are offered as a snippet."""
-    known = entries(section)
+    keys = entries(section)
     schema: Schema = {
         "description": (section.__doc__ or "").split("\n\n")[0].replace("\n    ", " "),
         "type": "object",
         "additionalProperties": False,
-        "properties": {name: entry_schema(entry, materials) for name, entry in known.items()},
+        "properties": {name: entry_schema(entry, materials) for name, entry in keys.items()},
     }
-    required = [name for name, entry in known.items() if entry.required]
+    required = [name for name, entry in keys.items() if entry.required]
     if required:
         schema["required"] = required
-        body = {name: _snippet(entry) for name, entry in known.items() if entry.required}
+        body = {name: _snippet(entry) for name, entry in keys.items() if entry.required}
         label = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", section.__name__).lower()
         schema["defaultSnippets"] = [{"label": label, "body": body}]
     return _with_notation(schema) if section is Ply else schema
@@ -187,7 +191,7 @@ def section_schema(section: type[Section], materials: MaterialLookup | None) -> 
 
 def _with_notation(schema: Schema) -> Schema:
     """A layer, or several layers in compact notation."""
-    said = [{"required": [key]} for key in ("angle", "thickness", "balanced")]
+    excluded = [{"required": [key]} for key in ("angle", "thickness", "balanced")]
     schema["properties"]["plies"] = {
         "title": "lay-up in compact notation",
         "description": "Several layers, from the inside outwards: angles in degrees, +-25 is a "
@@ -200,7 +204,7 @@ def _with_notation(schema: Schema) -> Schema:
     schema["required"] = ["material"]
     schema["oneOf"] = [
         {"required": ["thickness"], "not": {"required": ["plies"]}},
-        {"required": ["plies", "ply_thickness"], "not": {"anyOf": said}},
+        {"required": ["plies", "ply_thickness"], "not": {"anyOf": excluded}},
     ]
     body = {"material": "t700_epoxy", "plies": layup.EXAMPLE, "ply_thickness": "0.2 mm"}
     schema["defaultSnippets"].append({"label": "plies", "body": body})
@@ -266,14 +270,14 @@ def json_schema(
 
 def _of_parts(section: type[Section] = Design, prefix: str = "") -> dict[str, KeyEntry]:
     """PATHs of all values of a part; ``[*]`` is the index of a list."""
-    found: dict[str, KeyEntry] = {}
+    parts: dict[str, KeyEntry] = {}
     for name, entry in entries(section).items():
         path = f"{prefix}.{name}" if prefix else name
         if entry.section is not None and entry.shape in ("section", "list"):
-            found |= _of_parts(entry.section, path if entry.shape == "section" else f"{path}[*]")
+            parts |= _of_parts(entry.section, path if entry.shape == "section" else f"{path}[*]")
         elif entry.shape in ("value", "choice") and prefix and not prefix.startswith("objective"):
-            found[path] = entry
-    return found
+            parts[path] = entry
+    return parts
 
 
 def _by_path(schemas: Mapping[str, Schema]) -> Schema:
@@ -324,46 +328,46 @@ def _variables(definitions: Schema) -> Schema:
 def _start_and_sizes(quantity: Quantity, path: str) -> Schema:
     """Keys of a variable besides its bounds."""
     value = {"$ref": f"#/definitions/{quantity.name}"}
-    suited = [s for s in SERIES.values() if s.paths.fullmatch(path.replace("[*]", "[0]"))]
-    some = {"type": "array", "minItems": 1, "maxItems": MOST_SIZES, "uniqueItems": True}
-    series: Schema = {"enum": [s.name for s in suited]}
-    series["enumDescriptions"] = [s.label for s in suited]
-    options = [series] if suited else []
+    suitable = [s for s in SERIES.values() if s.paths.fullmatch(path.replace("[*]", "[0]"))]
+    sizes = {"type": "array", "minItems": 1, "maxItems": MOST_SIZES, "uniqueItems": True}
+    series: Schema = {"enum": [s.name for s in suitable]}
+    series["enumDescriptions"] = [s.label for s in suitable]
+    options = [series] if suitable else []
     return {
         "start": value,
         "step": {
             "description": "step of the variable, which takes its multiples",
             "allOf": [value],
         },
-        "sizes": {"description": SizesKind.help, "anyOf": [*options, some | {"items": value}]},
+        "sizes": {"description": SizesKind.help, "anyOf": [*options, sizes | {"items": value}]},
     }
 
 
 def _measured(definitions: Schema) -> Schema:
-    known: Schema = {}
+    schemas: Schema = {}
     for path, entry in _of_parts().items():
         if isinstance(entry.kind, Of):
-            known[path] = bounds = _bounds(entry.kind, path, definitions)
+            schemas[path] = bounds = _bounds(entry.kind, path, definitions)
             bounds["required"] = [*bounds["required"], "record"]
             bounds["properties"]["record"] = {
                 "type": "string",
                 "description": "name of the record in a report",
             }
     help = "Values from a test record: PATH with 95 % bounds and the name of the record."
-    return {"description": help} | _by_path(known)
+    return {"description": help} | _by_path(schemas)
 
 
 def _uncertainty(definitions: Schema) -> Schema:
-    known: Schema = {}
+    schemas: Schema = {}
     for path, entry in _of_parts().items():
         if isinstance(entry.kind, Of) and entry.kind.quantity.dimension != "count":
-            known[path] = _distribution(path, entry.kind.quantity, definitions)
+            schemas[path] = _distribution(path, entry.kind.quantity, definitions)
     for name, quantity in quantities.MATERIAL_PROPERTIES.items():
-        known[f"materials.[*].{name}"] = _distribution(name, quantity, definitions)
-    schema = _by_path({p: s for p, s in known.items() if not p.startswith("materials.")})
+        schemas[f"materials.[*].{name}"] = _distribution(name, quantity, definitions)
+    schema = _by_path({p: s for p, s in schemas.items() if not p.startswith("materials.")})
     for name in quantities.MATERIAL_PROPERTIES:
         pattern = rf"^materials\.[^.]+\.{name}$"
-        schema["patternProperties"][pattern] = known[f"materials.[*].{name}"]
+        schema["patternProperties"][pattern] = schemas[f"materials.[*].{name}"]
     help = "Scatter of values beyond that of libraries and practice: PATH with a distribution."
     return {"description": help} | schema
 
@@ -383,30 +387,32 @@ def _shared(quantity: Quantity, definitions: Schema) -> Schema:
         definitions.setdefault(f"key_{key}", schema["properties"][key])
         schema["properties"][key] = {"$ref": f"#/definitions/key_{key}"}
     for key in NUMBERS:
-        own = quantity_of_entry(key, quantity)
-        assert own is not None
+        key_quantity = quantity_of_entry(key, quantity)
+        assert key_quantity is not None
         if key in ("deviation", "half_width"):  # equal for all quantities of a unit
             words = key.replace("_", " ")
-            kind = f"{key}_{own.dimension}_{own.unit}".translate(_REFERENCE)
-            own = replace(own, name=kind, label=words, symbol=own.unit or "-", upper=1e20)
-        definitions.setdefault(own.name, quantity_schema(own))
-        schema["properties"][key] = {"$ref": f"#/definitions/{own.name}"}
+            kind = f"{key}_{key_quantity.dimension}_{key_quantity.unit}".translate(_REFERENCE)
+            key_quantity = replace(
+                key_quantity, name=kind, label=words, symbol=key_quantity.unit or "-", upper=1e20
+            )
+        definitions.setdefault(key_quantity.name, quantity_schema(key_quantity))
+        schema["properties"][key] = {"$ref": f"#/definitions/{key_quantity.name}"}
     schema["required"] = []
     schema["anyOf"] = [{"required": [key]} for key in ("distribution", "tolerance")]
     return schema
 
 
 def _set(materials: MaterialLookup | None, definitions: Schema) -> Schema:
-    known: Schema = {}
+    schemas: Schema = {}
     for path, entry in _of_parts().items():
-        known[path] = entry_schema(entry, materials)
+        schemas[path] = entry_schema(entry, materials)
         if isinstance(entry.kind, Of):
             name = entry.kind.quantity.name
             definitions.setdefault(name, quantity_schema(entry.kind.quantity))
             text = text_of(entry.kind.help, entry.kind.quantity)
-            known[path] = {"description": text, "allOf": [{"$ref": f"#/definitions/{name}"}]}
-        known[path]["title"] = path
-    schema = _by_path(known)
+            schemas[path] = {"description": text, "allOf": [{"$ref": f"#/definitions/{name}"}]}
+        schemas[path]["title"] = path
+    schema = _by_path(schemas)
     schema["patternProperties"][_OF_TABLES] = {"type": ["string", "number"]}
     return {"description": "Changed values of the design, by PATH."} | schema
 
@@ -435,7 +441,9 @@ def _requirements(metrics: Mapping[str, Quantity], definitions: Schema) -> Schem
     properties: Schema = {}
     for name, metric in metrics.items():
         kind = f"limit_{metric.dimension}_{metric.unit}".translate(_REFERENCE)
-        quantity = replace(wishes.limit_quantity(metric), label="limit", symbol=metric.unit or "-")
+        quantity = replace(
+            requirements.limit_quantity(metric), label="limit", symbol=metric.unit or "-"
+        )
         definitions.setdefault(kind, quantity_schema(quantity))
         properties[name] = {
             "title": metric.label,

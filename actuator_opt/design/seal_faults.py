@@ -1,14 +1,13 @@
-"""Faults of the seals: sizes of the type, room for the grooves, squeeze, films.
-
-Checks of stated contact profiles are in `profile_faults`.
-"""
+"""Faults of the seals: sizes of the type, room for the grooves, squeeze, films, stated profiles."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import pairwise
 from typing import Any
 
 from ..base.errors import Fault, InputError, article
+from ..base.quantities import INPUTS
 from ..friction.kinds import LAWS as FRICTION_LAWS
 from ..models.elastomer import modulus_gent
 from ..models.seals import LAWS
@@ -16,10 +15,16 @@ from ..seals.contact import GROOVE_WIDTH
 from ..seals.kinds import SIZES, TYPES
 from ..seals.seal_type import SealType, SizeFault
 from ..seals.u_cup import lip_faults
-from . import wall_faults
 from .seals import BACK_UPS
 from .structure import FileView, Loc, MaterialLookup, Properties, child_at, length_text
-from .wall_faults import elements
+
+
+def elements(view: FileView) -> Iterator[Loc]:
+    """Place of every sealing element the file states."""
+    for name in ("piston", "rod"):
+        yield ("seals", name)
+        if view.has("seals", name, "secondary"):
+            yield ("seals", name, "secondary")
 
 
 def fields(view: FileView) -> Iterator[Fault]:
@@ -121,13 +126,13 @@ def _grooves(view: FileView, seal: str) -> Iterator[tuple[Loc, float, float]]:
         count, kind = view.number(*loc, "count"), _kind(view, loc)
         if section is None or squeeze is None or count is None or count == 0 or kind is None:
             continue
-        known = {key: view.number(*loc, key) or 0.0 for key in kind.needed}
-        groove = kind.groove({"section": section, "squeeze": squeeze} | known)
+        sizes = {key: view.number(*loc, key) or 0.0 for key in kind.needed}
+        groove = kind.groove({"section": section, "squeeze": squeeze} | sizes)
         ring = groove.ring_width
         stated = view.number(*loc, "groove_width")
         field = "section" if stated is None else "groove_width"
-        backs = BACK_UPS.get(view.text(*loc, "back_up") or "", 0)
-        ring += backs * (view.number(*loc, "back_up_thickness") or 0.0)
+        back_up_count = BACK_UPS.get(view.text(*loc, "back_up") or "", 0)
+        ring += back_up_count * (view.number(*loc, "back_up_thickness") or 0.0)
         yield (*loc, field), groove.depth, count * (ring if stated is None else stated)
     at = ("seals", seal, "wiper")
     section, squeeze = view.number(*at, "section"), view.number(*at, "squeeze")
@@ -145,17 +150,17 @@ def grooves(view: FileView) -> Iterator[Fault]:
     """The seal grooves lie inside piston and head and leave a core and a wall."""
     bore, rod_diameter = view.number("cylinder", "bore"), view.number("rod", "outer_diameter")
     for seal, part in (("piston", "piston"), ("rod", "head")):
-        found = list(_grooves(view, seal))
-        if not found:
+        seal_grooves = list(_grooves(view, seal))
+        if not seal_grooves:
             continue
-        width = sum(one for _, _, one in found)
-        place, depth, _ = max(found, key=lambda groove: groove[1])
+        width = sum(groove_width for _, _, groove_width in seal_grooves)
+        place, depth, _ = max(seal_grooves, key=lambda groove: groove[1])
         length = view.number(part, "length")
         if length is not None and width >= length:
             yield Fault(
-                found[0][0],
-                f"grooves outside the {part}: they need at least {length_text(width)} of "
-                f"{part}.length {length_text(length)}",
+                seal_grooves[0][0],
+                f"grooves outside the {part}: they need at least {length_text(width)}, "
+                f"{part}.length is {length_text(length)}",
                 f"increase {part}.length or use smaller rings",
             )
         deep = (*place[:-1], "thickness" if place[-2] == "guide" else "section")
@@ -163,11 +168,11 @@ def grooves(view: FileView) -> Iterator[Fault]:
             continue
         if part == "piston":
             core = view.number("rod", "thread", "diameter") or rod_diameter
-            left = bore - 2 * depth
-            if core < bore and left <= core:
+            rest = bore - 2 * depth
+            if core < bore and rest <= core:
                 yield Fault(
                     deep,
-                    f"groove too deep: {length_text(max(left, 0.0))} core remains in the piston, "
+                    f"groove too deep: {length_text(max(rest, 0.0))} core remains in the piston, "
                     f"the rod needs {length_text(core)}",
                     "use a smaller section, a larger bore or a rod thread that fits",
                 )
@@ -181,19 +186,19 @@ def grooves(view: FileView) -> Iterator[Fault]:
 
 
 def clearances(view: FileView) -> Iterator[Fault]:
-    """The gap behind a ring is smaller than the groove depth, or the ring is not held."""
+    """The gap behind a ring is smaller than the groove depth; otherwise the ring slips out."""
     for seal, part in (("piston", "piston"), ("rod", "head")):
         gap = view.number(part, "clearance")
-        found = [(depth, loc) for loc, depth, _ in _grooves(view, seal)]
-        if gap is None or not found:
+        seal_grooves = [(depth, loc) for loc, depth, _ in _grooves(view, seal)]
+        if gap is None or not seal_grooves:
             continue
-        depth, loc = min(found)
+        depth, loc = min(seal_grooves)
         if gap >= depth:
             ring = ".".join(str(key) for key in loc[:-1])
             yield Fault(
                 (part, "clearance"),
-                f"{length_text(gap)}: no groove remains: that of {ring} is {length_text(depth)} "
-                "deep, measured from the mating part",
+                f"{length_text(gap)}: not smaller than the groove of {ring}, {length_text(depth)} "
+                "deep from the mating part",
                 f"write less than {length_text(depth)}, e.g. 0.03 mm",
             )
 
@@ -206,7 +211,11 @@ def squeeze(view: FileView) -> Iterator[Fault]:
             continue
         if not kind.round_ring:
             if value == 0:
-                yield Fault((*loc, "squeeze"), "0: the seal does not touch", "write e.g. 8 %")
+                yield Fault(
+                    (*loc, "squeeze"),
+                    "0: the seal does not touch its counterface",
+                    "write e.g. 8 %",
+                )
             continue
         law = LAWS.get(view.text(*loc, "law") or "")
         if law is None:
@@ -226,8 +235,8 @@ def shapes(view: FileView) -> Iterator[Fault]:
         kind = _kind(view, loc)
         if kind is not None:
             keys = ("section", *kind.keys)
-            known = {key: value for key in keys if (value := view.number(*loc, key)) is not None}
-            yield from _said(loc, kind.faults(known))
+            sizes = {key: value for key in keys if (value := view.number(*loc, key)) is not None}
+            yield from _at_loc(loc, kind.faults(sizes))
 
     for name in ("piston", "rod"):
         loc = ("seals", name, "wiper")
@@ -235,7 +244,7 @@ def shapes(view: FileView) -> Iterator[Fault]:
         section = view.number(*loc, "section")
         if thickness is None or width is None:
             continue
-        yield from _said(loc, lip_faults(width, thickness))
+        yield from _at_loc(loc, lip_faults(width, thickness))
         if section is not None and thickness >= section:
             yield Fault(
                 (*loc, "thickness"),
@@ -244,10 +253,72 @@ def shapes(view: FileView) -> Iterator[Fault]:
             )
 
 
-def _said(loc: Loc, size_faults: Iterable[SizeFault]) -> Iterator[Fault]:
+def _at_loc(loc: Loc, size_faults: Iterable[SizeFault]) -> Iterator[Fault]:
     """Faults of sizes at their place."""
     for size_fault in size_faults:
         yield Fault((*loc, size_fault.key), size_fault.message, size_fault.remedy)
+
+
+def profiles(view: FileView) -> Iterator[Fault]:
+    """Stated contact pressures: positions increase from 0, one stress each, sorted by pressure."""
+    for loc in elements(view):
+        last = -1.0
+        for index, _ in enumerate(view.items(*loc, "contact")):
+            at = (*loc, "contact", index)
+            positions = view.items(*at, "positions")
+            stresses = view.items(*at, "stresses")
+            pressure = view.number(*at, "pressure")
+            if pressure is not None and pressure <= last:
+                yield Fault(
+                    (*at, "pressure"),
+                    f"{INPUTS['pressure'].text(pressure)}: not above the previous profile",
+                    "sort the profiles by pressure, each once",
+                )
+            last = last if pressure is None else pressure
+            pressures = [x for x in stresses if isinstance(x, float)]
+            complete = pressures and len(pressures) == len(stresses)
+            if complete and pressure is not None and max(pressures) <= pressure:
+                yield Fault(
+                    (*at, "stresses"),
+                    f"nowhere above the sealed pressure ({INPUTS['pressure'].text(pressure)}): "
+                    "this contact does not seal",
+                    "state contact pressures that include the sealed pressure",
+                )
+            if len(positions) != len(stresses):
+                yield Fault(
+                    (*at, "stresses"),
+                    f"{len(stresses)} stresses at {len(positions)} positions",
+                    "write one stress for every position",
+                )
+            numbers = [x for x in positions if isinstance(x, float)]
+            pairs = pairwise(numbers)
+            if numbers and (numbers[0] != 0 or any(b <= a for a, b in pairs)):
+                yield Fault(
+                    (*at, "positions"),
+                    "must increase from 0",
+                    "begin with 0 mm at the sealed side, then increase",
+                )
+
+
+def reach(view: FileView) -> Iterator[Fault]:
+    """Stated profiles extend from zero pressure to the supply pressure."""
+    supply, text = view.number("supply", "pressure"), INPUTS["pressure"].text
+    for loc in elements(view):
+        count = len(view.items(*loc, "contact"))
+        first = view.number(*loc, "contact", 0, "pressure")
+        last = view.number(*loc, "contact", count - 1, "pressure")
+        if first is not None and first > 0:
+            yield Fault(
+                (*loc, "contact", 0, "pressure"),
+                f"{text(first)}: the profile without pressure is missing",
+                "add a profile at 0 bar before it",
+            )
+        if last is not None and supply is not None and last < supply * (1 - 1e-9):
+            yield Fault(
+                (*loc, "contact", count - 1, "pressure"),
+                f"{text(last)}: the profiles end below supply.pressure ({text(supply)})",
+                "add a profile at the supply pressure",
+            )
 
 
 def films(view: FileView) -> Iterator[Fault]:
@@ -274,7 +345,7 @@ def films(view: FileView) -> Iterator[Fault]:
                 )
 
 
-CHECKS = (fields, widths, grooves, clearances, squeeze, shapes, *wall_faults.PROFILE_CHECKS, films)
+CHECKS = (fields, widths, grooves, clearances, squeeze, shapes, profiles, reach, films)
 
 
 def _numbers(block: object) -> dict[str, float]:
@@ -298,14 +369,18 @@ def sliding_rings(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
         if name is None or kind is None or materials.kind(name) != "seal":
             continue
         try:
-            own = child_at(tree, ("materials", name))
-            known = {**materials.numbers(name), **_numbers(own)}
+            changes = child_at(tree, ("materials", name))
+            properties = {**materials.numbers(name), **_numbers(changes)}
         except InputError:  # a faulty entry is reported elsewhere
             continue
-        modulus, hardness = known.get("youngs_modulus", 0.0), known.get("hardness", 0.0)
+        modulus, hardness = properties.get("youngs_modulus", 0.0), properties.get("hardness", 0.0)
         sliding = modulus > SLIDING_RING * float(modulus_gent(hardness=hardness))
         if sliding != (kind.modulus_by == "hardness"):
-            has = "is a plastic ring on rubber" if sliding else "has no sliding ring"
+            statement = "is a plastic ring on rubber" if sliding else "has no sliding ring"
             fits = " or ".join(x.name for x in TYPES.values() if x.modulus_by == "hardness")
             other = f"write type: {fits}" if sliding else "use e.g. ptfe_bronze_nbr_70"
-            yield Fault((*loc, "compound"), f"{name} {has}, not for {article(kind.name)}", other)
+            yield Fault(
+                (*loc, "compound"),
+                f"{name} {statement}: it does not suit {article(kind.name)}",
+                other,
+            )

@@ -107,8 +107,8 @@ class SealElement(Section):
 
     def stated_sizes(self) -> dict[str, float]:
         """Sizes of its type that the design states, SI."""
-        known = {size.key: getattr(self, size.key) for size in SIZES}
-        return {key: value for key, value in known.items() if value is not None}
+        sizes = {size.key: getattr(self, size.key) for size in SIZES}
+        return {key: value for key, value in sizes.items() if value is not None}
 
 
 class Wiper(Section):

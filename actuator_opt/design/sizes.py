@@ -15,7 +15,7 @@ from typing import Any
 from ..base import errors
 from ..base.errors import Fault
 from ..base.quantities import Quantity
-from .kinds import ValueFault, example, read_quantity, what
+from .kinds import ValueFault, example, read_quantity, shape_in_words
 from .paths import resolve
 from .standard_sizes import SERIES, SizeSeries
 from .structure import FileView, Loc, child, child_at, number_of, value_at
@@ -57,22 +57,26 @@ def read(loc: Loc, bounds: dict[str, Any], quantity: Quantity) -> Iterator[Fault
     sizes = bounds.get("sizes")
     if sizes is None:
         return
-    here, good = (*loc, "sizes"), f"[{example(quantity)}]"
+    here, sample = (*loc, "sizes"), f"[{example(quantity)}]"
     if isinstance(sizes, str):
         if sizes not in SERIES:
-            suited = [name for name, one in SERIES.items() if one.paths.fullmatch(str(loc[-1]))]
+            suitable = [
+                name for name, series in SERIES.items() if series.paths.fullmatch(str(loc[-1]))
+            ]
             message = f'"{errors.shown(sizes)}" is not a series of sizes'
-            remedy = errors.remedy(sizes, suited)
+            remedy = errors.remedy(sizes, suitable)
             yield Fault(
-                here, message, f"{remedy}, or list them: {good}" if remedy else f"write {good}"
+                here, message, f"{remedy}, or list them: {sample}" if remedy else f"write {sample}"
             )
         elif SERIES[sizes].paths.fullmatch(str(loc[-1])) is None:
             series = SERIES[sizes]
             yield Fault(here, f"{sizes} has no sizes for {loc[-1]}", f"it is for {series.suits}")
     elif not isinstance(sizes, list):
-        yield Fault(here, f"need sizes, not {what(sizes)}", f"write {good}, or a series")
+        yield Fault(
+            here, f"need sizes, not {shape_in_words(sizes)}", f"write {sample}, or a series"
+        )
     elif not sizes:
-        yield Fault(here, "the list is empty", f"write e.g. {good}, or remove the line")
+        yield Fault(here, "the list is empty", f"write e.g. {sample}, or remove the line")
     elif len(sizes) > MOST_SIZES:
         yield Fault(here, f"{len(sizes)} sizes are too many", f"keep at most {MOST_SIZES}")
     else:
@@ -105,7 +109,7 @@ def _difference(quantity: Quantity) -> Quantity:
 def _read_list(
     loc: Loc, sizes: list[Any], bounds: dict[str, Any], quantity: Quantity
 ) -> Iterator[Fault]:
-    known: list[tuple[int, float]] = []
+    read_sizes: list[tuple[int, float]] = []
     lower, upper = bounds.get("lower"), bounds.get("upper")
     for index, raw in enumerate(sizes):
         if raw is None:
@@ -116,16 +120,16 @@ def _read_list(
             yield Fault((*loc, index), fault.message, fault.remedy)
             continue
         near = ROOM * abs(value)
-        twin = next((i for i, other in known if abs(other - value) <= near), None)
+        twin = next((i for i, other in read_sizes if abs(other - value) <= near), None)
         if twin is not None:
             message = f"{errors.shown(raw)}: the same as value {twin + 1} of the list"
             yield Fault((*loc, index), message, "keep one of them")
-        known.append((index, value))
+        read_sizes.append((index, value))
         if not isinstance(lower, float) or not isinstance(upper, float) or lower > upper:
             continue
         if not lower - near <= value <= upper + near:
-            said = f"{quantity.text(lower)} to {quantity.text(upper)}"
-            message = f"{quantity.text(value)}: outside the bounds {said}"
+            bounds_text = f"{quantity.text(lower)} to {quantity.text(upper)}"
+            message = f"{quantity.text(value)}: outside the bounds {bounds_text}"
             yield Fault((*loc, index), message, "remove it, or widen the bounds")
 
 
@@ -147,13 +151,13 @@ def groups(
     """
     view = FileView(tree)
     rules = {path: rule for path in _paths(tree) if (rule := _rule(view, path, plies, standard))}
-    found, faults = [], []
+    size_groups, faults = [], []
     for members in _families(rules):
         try:
-            found.append(_group(view, members))
-        except _NoSize as none:
-            faults.append(none.fault(tree))
-    return tuple(found), tuple(faults)
+            size_groups.append(_group(view, members))
+        except _NoSize as error:
+            faults.append(error.fault(tree))
+    return tuple(size_groups), tuple(faults)
 
 
 class _NoSize(Exception):
@@ -175,7 +179,7 @@ class _NoSize(Exception):
 def _paths(tree: Any) -> list[str]:
     """Variables that are numbers with valid bounds."""
     block = child(tree, "variables")
-    good = []
+    numeric = []
     for path in block if isinstance(block, dict) else ():
         lower, upper = (child_at(tree, ("variables", path, key)) for key in ("lower", "upper"))
         if not isinstance(lower, float) or not isinstance(upper, float) or lower > upper:
@@ -185,8 +189,8 @@ def _paths(tree: Any) -> list[str]:
         except ValueFault:
             continue
         if target.quantity is not None:
-            good.append(path)
-    return good
+            numeric.append(path)
+    return numeric
 
 
 def _rule(view: FileView, path: str, plies: bool, standard: bool) -> _Rule | None:
@@ -207,15 +211,15 @@ def _rule(view: FileView, path: str, plies: bool, standard: bool) -> _Rule | Non
         return _Rule(path, "own list", "size of the list", lambda _: values)
     if isinstance(sizes, str):
         series = SERIES.get(sizes)
-        return _of(series, view, path) if series and series.paths.fullmatch(path) else None
+        return _series_rule(series, view, path) if series and series.paths.fullmatch(path) else None
     for series in SERIES.values():
-        wanted = (standard and series.asked != "file") or (plies and series.asked == "plies")
-        if wanted and series.paths.fullmatch(path) and series.fault(view, path) is None:
-            return _of(series, view, path)
+        selected = (standard and series.option != "file") or (plies and series.option == "plies")
+        if selected and series.paths.fullmatch(path) and series.fault(view, path) is None:
+            return _series_rule(series, view, path)
     return None
 
 
-def _of(series: SizeSeries, view: FileView, path: str) -> _Rule:
+def _series_rule(series: SizeSeries, view: FileView, path: str) -> _Rule:
     bounds, parent = _bounds(view, path), series.parent(path)
     return _Rule(
         path,
@@ -240,20 +244,20 @@ def _multiples(step: float, bounds: tuple[float, float]) -> list[float]:
 
 def _families(rules: dict[str, _Rule]) -> Iterator[list[_Rule]]:
     """Dependent rules together, parents first, in the order of the variables."""
-    left = dict(rules)
+    remaining = dict(rules)
 
     def below(path: str) -> Iterator[_Rule]:
-        if path in left:
-            yield left.pop(path)
-            for other in list(left):
-                if other in left and left[other].parent == path:
+        if path in remaining:
+            yield remaining.pop(path)
+            for other in list(remaining):
+                if other in remaining and remaining[other].parent == path:
                     yield from below(other)
 
     for path, rule in rules.items():
         top = rule
         while top.parent in rules:
             top = rules[top.parent]
-        if path in left:
+        if path in remaining:
             yield list(below(top.path))
 
 
@@ -266,19 +270,19 @@ def _group(view: FileView, members: Sequence[_Rule]) -> VariableGroup:
         if rule.series and (fault := SERIES[rule.series].fault(view, rule.path)):
             raise _NoSize(rule.path, *fault)
         fixed = _fixed(view, rule, column)
-        wider, seen = [], set()
+        extended, offered = [], set()
         for row in rows:
             parent = row[column[rule.parent]] if rule.parent in column else fixed
             for value in rule.values(parent):
-                seen.add(value)
+                offered.add(value)
                 if lower - ROOM * abs(lower) <= value <= upper + ROOM * abs(upper):
-                    wider.append((*row, min(max(value, lower), upper)))
-        if not wider:
-            raise _none_fits(view, rule, sorted(seen))
-        if len(rows) > 1 and len(wider) > MOST_SIZES:
-            message = f"{len(wider)} combinations with the sizes of {rule.parent}: too many"
+                    extended.append((*row, min(max(value, lower), upper)))
+        if not extended:
+            raise _none_fits(view, rule, sorted(offered))
+        if len(rows) > 1 and len(extended) > MOST_SIZES:
+            message = f"{len(extended)} combinations with the sizes of {rule.parent}: too many"
             raise _NoSize(rule.path, message, f"narrow the bounds, for at most {MOST_SIZES}")
-        rows = wider
+        rows = extended
     paths, labels = tuple(rule.path for rule in members), tuple(rule.label for rule in members)
     return VariableGroup(paths, labels, tuple(sorted(set(rows))))
 

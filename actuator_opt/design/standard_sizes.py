@@ -1,11 +1,10 @@
-"""Standard sizes as data: ISO 3320 bores and rods, ISO 6020-2/6022 pairs, O-rings and glands.
+"""Standard sizes as data, and the series of sizes that a variable can take.
 
-Lengths are in m, pressures in Pa. Every row states source and confidence.
+Tables: ISO 3320 bores and rods, ISO 6020-2/6022 pairs, O-rings and glands. Lengths are in m,
+pressures in Pa; every row states source and confidence.
 
-Series for the `sizes` of a variable: standards, whole plies, feasible angles.
-
-A series states its PATHs, whether it applies to a design, the variable its sizes depend on, and the
-sizes themselves. Tables and their sources are in `standards`.
+Series for the `sizes` of a variable: standards, whole plies, feasible angles. A series states its
+PATHs, whether it applies to a design, the variable its sizes depend on, and the sizes themselves.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ from ..base import files as store
 from ..base.errors import Diagnostic, InputError
 from ..base.quantities import INPUTS
 from ..seals.kinds import TYPES
-from . import standard_sizes as standards, yaml_source
+from . import yaml_source
 from .seals import BACK_UPS
 from .structure import FileView, child_at
 
@@ -105,11 +104,11 @@ class Gland:
         ------
         InputError : not tabulated for this number
         """
-        known = ((self.width_min, self.width_max), *self.back_up_widths)
-        if not 0 <= back_up_rings < len(known):
+        widths = ((self.width_min, self.width_max), *self.back_up_widths)
+        if not 0 <= back_up_rings < len(widths):
             message = f"no width with {back_up_rings} back-up rings in the {self.table} table"
-            raise InputError(Diagnostic(message, f"it has widths for 0 to {len(known) - 1}"))
-        return known[back_up_rings]
+            raise InputError(Diagnostic(message, f"it has widths for 0 to {len(widths) - 1}"))
+        return widths[back_up_rings]
 
     @property
     def squeeze(self) -> float:
@@ -220,10 +219,10 @@ def section_tolerance(section: float) -> StandardSize:
     ------
     InputError : the section is thicker than the bands
     """
-    own, bands = tables()["section_tolerances"], tables()["section_tolerance_bands"]
-    for size, tolerance in own["rows"]:
+    sizes, bands = tables()["section_tolerances"], tables()["section_tolerance_bands"]
+    for size, tolerance in sizes["rows"]:
         if abs(metres(size) - section) <= _SAME * section:
-            return StandardSize(metres(tolerance), own["confidence"], citation(own["source"]))
+            return StandardSize(metres(tolerance), sizes["confidence"], citation(sizes["source"]))
     for size, tolerance in bands["rows"]:
         if section <= metres(size) * (1 + 1e-9):
             return StandardSize(metres(tolerance), bands["confidence"], citation(bands["source"]))
@@ -238,27 +237,27 @@ def glands(use: Use, table: str | None = None) -> tuple[Gland, ...]:
     From the table ``as568``, ``metric`` or ``series_g`` (moving hydraulic seals only); by default
     from the first two.
     """
-    found: list[Gland] = []
+    tabulated: list[Gland] = []
     for name in ("as568", "metric") if table is None else (table,):
         data = tables()[f"glands_{name}"]
-        wide = tables().get(f"back_up_{name}")
-        back_up = wide["rows"] if wide else ()
+        back_up_table = tables().get(f"back_up_{name}")
+        back_up = back_up_table["rows"] if back_up_table else ()
         confidence, source = data["confidence"], citation(data["source"])
-        if wide and wide["source"] != data["source"]:
-            source += f"; with back-up rings: {citation(wide['source'])}"
+        if back_up_table and back_up_table["source"] != data["source"]:
+            source += f"; with back-up rings: {citation(back_up_table['source'])}"
         for row in data.get(use, ()):
             numbers = [metres(text) for text in row]
             if name == "metric":
                 section, depth, width = numbers
                 numbers = [section, 0.0, depth, depth, width, width, 0.0, 0.0]
             w, tolerance, d0, d1, g0, g1, r0, r1 = numbers
-            wider = [list(map(metres, other[1:])) for other in back_up if other[0] == row[0]]
-            pairs = tuple((other[i], other[i + 1]) for other in wider for i in (0, 2))
-            found.append(
+            back_up_rows = [list(map(metres, other[1:])) for other in back_up if other[0] == row[0]]
+            pairs = tuple((other[i], other[i + 1]) for other in back_up_rows for i in (0, 2))
+            tabulated.append(
                 Gland(use, name, w, tolerance, d0, d1, g0, g1, r0, r1,
                       False, confidence, source, pairs)
             )  # fmt: skip
-    return tuple(sorted(found, key=lambda gland: (gland.section, gland.table)))
+    return tuple(sorted(tabulated, key=lambda gland: (gland.section, gland.table)))
 
 
 def o_ring_sections(table: str | None = None) -> tuple[float, ...]:
@@ -299,8 +298,8 @@ def _between(rows: Sequence[Gland], section: float) -> Gland:
     share = (section - first.section) / (second.section - first.section)
 
     def mix(name: str) -> float:
-        one, two = getattr(first, name), getattr(second, name)
-        return float(one + share * (two - one))
+        lower, upper = getattr(first, name), getattr(second, name)
+        return float(lower + share * (upper - lower))
 
     return Gland(
         first.use, first.table, section, mix("section_tolerance"),
@@ -356,7 +355,7 @@ class SizeSeries:
     ----------
     name, label : name in the file and in reports
     suits, paths : suitable variables, in words and as a pattern of PATHs
-    asked : option that selects it if the file does not ("file": no option)
+    option : option that selects it if the file does not ("file": no option)
     needs_parent : whether its sizes require those of the parent variable
     """
 
@@ -364,7 +363,7 @@ class SizeSeries:
     label: str
     suits: str
     paths: re.Pattern[str]
-    asked: Literal["file", "plies", "standard"] = "file"
+    option: Literal["file", "plies", "standard"] = "file"
     needs_parent: bool = False
 
     def fault(self, view: FileView, path: str) -> tuple[str, str] | None:
@@ -402,7 +401,7 @@ class _Iso3320(SizeSeries):
     def values(
         self, view: FileView, path: str, parent: float | None, bounds: Bounds
     ) -> Sequence[float]:
-        sizes = standards.bores() if path == "cylinder.bore" else standards.rods()
+        sizes = bores() if path == "cylinder.bore" else rods()
         return [size.value for size in sizes]
 
 
@@ -426,7 +425,7 @@ class _Pairs(SizeSeries):
     def values(
         self, view: FileView, path: str, parent: float | None, bounds: Bounds
     ) -> Sequence[float]:
-        pairs = standards.cylinder_pairs(self.label)
+        pairs = cylinder_pairs(self.label)
         if path != "cylinder.bore":
             return sorted(pair.rod_diameter for pair in pairs if _same(pair.bore, parent))
         if child_at(view.tree, ("variables", "rod.outer_diameter")) is None:
@@ -435,8 +434,8 @@ class _Pairs(SizeSeries):
         return sorted({pair.bore for pair in pairs})
 
 
-def _same(one: float, other: float | None) -> bool:
-    return other is not None and math.isclose(one, other, rel_tol=1e-9)
+def _same(size: float, other: float | None) -> bool:
+    return other is not None and math.isclose(size, other, rel_tol=1e-9)
 
 
 class _Walls(SizeSeries):
@@ -453,7 +452,7 @@ class _Walls(SizeSeries):
     def values(
         self, view: FileView, path: str, parent: float | None, bounds: Bounds
     ) -> Sequence[float]:
-        walls = [size.value for size in standards.tube_walls()]
+        walls = [size.value for size in tube_walls()]
         if path != "rod.inner_diameter":
             return walls
         outside = Decimal(repr(parent or 0.0))
@@ -482,15 +481,15 @@ class _Glands(SizeSeries):
         self, view: FileView, path: str, parent: float | None, bounds: Bounds
     ) -> Sequence[float]:
         if path.endswith(".section"):
-            return standards.ring_sections()
+            return ring_sections()
         if parent is None:
             return []
         try:
-            gland = standards.gland(parent)
+            groove = gland(parent)
             if path.endswith(".squeeze"):
-                return [1 - gland.depth / parent]
+                return [1 - groove.depth / parent]
             rings = BACK_UPS.get(view.text(*self._seal(path), "back_up") or "none", 0)
-            return [sum(gland.widths(rings)) / 2]
+            return [sum(groove.widths(rings)) / 2]
         except InputError:
             return []
 
@@ -518,17 +517,17 @@ class _WholePlies(SizeSeries):
     def each(self, view: FileView, path: str) -> str:
         angle = _layer(view, path, "angle")
         pairs = "" if self._singly(view, path, angle) else "pairs of "
-        one = INPUTS["ply_thickness"].text(_layer(view, path, "ply_thickness") or 0.0)
-        return f"whole number of {pairs}plies of {one}"
+        ply_text = INPUTS["ply_thickness"].text(_layer(view, path, "ply_thickness") or 0.0)
+        return f"whole number of {pairs}plies of {ply_text}"
 
     def values(
         self, view: FileView, path: str, parent: float | None, bounds: Bounds
     ) -> Sequence[float]:
-        one = _layer(view, path, "ply_thickness") or 0.0
+        ply_thickness = _layer(view, path, "ply_thickness") or 0.0
         step = 1 if self._singly(view, path, parent) else 2
-        counts = range(step, math.ceil(bounds[1] / one) + 3, step)
+        counts = range(step, math.ceil(bounds[1] / ply_thickness) + 3, step)
         # in decimals: 26 plies of 0.125 mm are exactly 3.25 mm
-        return [float(count * Decimal(repr(one))) for count in counts]
+        return [float(count * Decimal(repr(ply_thickness))) for count in counts]
 
 
 class _Angles(SizeSeries):

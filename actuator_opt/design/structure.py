@@ -112,7 +112,7 @@ def child_at(tree: Any, loc: Loc) -> Any:
 
 
 @cache
-def lists_of(wanted: type[Section], section: type[Section] = Design) -> tuple[Loc, ...]:
+def lists_of(section_type: type[Section], section: type[Section] = Design) -> tuple[Loc, ...]:
     """Places of the lists of a section type.
 
     >>> from .model import Ply
@@ -121,10 +121,10 @@ def lists_of(wanted: type[Section], section: type[Section] = Design) -> tuple[Lo
     """
     locs: list[Loc] = []
     for name, entry in entries(section).items():
-        if entry.shape == "list" and entry.section is wanted:
+        if entry.shape == "list" and entry.section is section_type:
             locs.append((name,))
         elif entry.shape == "section" and entry.section is not None:
-            locs += [(name, *loc) for loc in lists_of(wanted, entry.section)]
+            locs += [(name, *loc) for loc in lists_of(section_type, entry.section)]
     return tuple(locs)
 
 

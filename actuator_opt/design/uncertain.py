@@ -21,8 +21,8 @@ _MICRON = 1e-6
 
 
 def _table() -> dict[str, Any]:
-    found: dict[str, Any] = tables()["iso_286"]
-    return found
+    table: dict[str, Any] = tables()["iso_286"]
+    return table
 
 
 def source() -> str:
@@ -51,8 +51,8 @@ def class_limits(name: str, size: float) -> tuple[float, float]:
     match = _CLASS.fullmatch(name.strip())
     letter = "" if match is None else match[1]
     grades, letters = [int(g) for g in table["grades"]], table["shafts"]
-    known = letter.lower() in (*letters, "h", "js")
-    if match is None or int(match[2]) not in grades or not known:
+    is_letter = letter.lower() in (*letters, "h", "js")
+    if match is None or int(match[2]) not in grades or not is_letter:
         message = f'"{name}" is not a supported tolerance class'
         ends = f"{', '.join(sorted(letters))}, h or js and {grades[0]} to {grades[-1]}"
         raise ValueFault(message, f"write e.g. H8 or f7: {ends}, capitals for holes")
@@ -69,7 +69,7 @@ def class_limits(name: str, size: float) -> tuple[float, float]:
 
 def _place(row: dict[str, Any]) -> int:
     """Index of a size step."""
-    return [one["to"] for one in _table()["rows"]].index(row["to"])
+    return [step["to"] for step in _table()["rows"]].index(row["to"])
 
 
 Stated = Mapping[str, Any]

@@ -7,7 +7,7 @@ from typing import Any, get_args
 
 from ..base import errors
 from ..base.errors import Fault
-from .kinds import ValueFault, example, read_quantity, what
+from .kinds import ValueFault, example, read_quantity, shape_in_words
 from .model import Shape
 from .paths import Target, resolve
 from .structure import number_of, value_at
@@ -27,10 +27,10 @@ def faults(tree: dict[str, Any]) -> Iterator[Fault]:
         if not isinstance(entry, dict):
             if entry is not None:
                 remedy = 'write "distribution: …" and its parameters'
-                yield Fault(loc, f"need a distribution, not {what(entry)}", remedy)
+                yield Fault(loc, f"need a distribution, not {shape_in_words(entry)}", remedy)
             continue
-        found = list(_read(loc, entry, target))
-        yield from found or _fit(loc, entry, target, tree)
+        entry_faults = list(_read(loc, entry, target))
+        yield from entry_faults or _fit(loc, entry, target, tree)
 
 
 def _number(path: str, tree: dict[str, Any]) -> Target:
@@ -82,14 +82,14 @@ def _fit(
         remedy = errors.remedy(word, get_args(Shape))
         yield Fault((*loc, "distribution"), message, remedy)
         return
-    given = tuple(key for key in (*NUMBERS, "tolerance") if entry.get(key) is not None)
-    if set(given) not in [set(group) for group in KEYS[shape]]:
+    stated = tuple(key for key in (*NUMBERS, "tolerance") if entry.get(key) is not None)
+    if set(stated) not in [set(group) for group in KEYS[shape]]:
         options = ", or ".join(" and ".join(group) for group in KEYS[shape]) or "nothing more"
-        has = f"has {' and '.join(given)}" if given else "has no parameters"
+        has = f"has {' and '.join(stated)}" if stated else "has no parameters"
         yield Fault(loc, f"{shape} {has}", f"write {options}", at_key=True)
         return
     value = number_of(value_at(tree, target.loc))
-    if "lower" in given and target.path in (tree.get("variables") or {}):
+    if "lower" in stated and target.path in (tree.get("variables") or {}):
         message = "fixed bounds, while the optimiser varies the value"
         yield Fault(
             (*loc, "lower"), message, "write half_width, factor or cv, which follow the value"
@@ -98,5 +98,5 @@ def _fit(
         assert target.quantity is not None
         message, remedy = misfit(shape, entry, value, target.quantity)
         if message:
-            key = given[0] if given else "distribution"
+            key = stated[0] if stated else "distribution"
             yield Fault((*loc, key), message, remedy)

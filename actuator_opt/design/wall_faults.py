@@ -1,19 +1,15 @@
-"""Faults of the walls of barrel and rod: impossible layers, unsuitable materials.
+"""Faults of barrel, rod and their joint: impossible layers, unsuitable materials and keys.
 
-Faults of `retention`: missing or unused keys, and faults that the joint reports.
-
-Each joint declares its keys and checks in its module in `joints`.
+Each joint declares the keys and checks of `retention` in its module in `joints`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from itertools import pairwise
 from typing import Any
 
 from ..base import quantities
 from ..base.errors import Fault, InputError
-from ..base.quantities import INPUTS
 from ..joints.joint import Joint
 from ..joints.kinds import JOINTS
 from .material import PLY_CONSTANTS, PLY_REQUIRED, compliance_determinant, ply_constants
@@ -71,7 +67,7 @@ def barrel_model(view: FileView) -> Iterator[Fault]:
     if view.text("barrel", "model") == "isotropic" and layers > 1:
         yield Fault(
             ("barrel", "model"),
-            f"isotropic: the layup has {layers} layers, the model has one",
+            f"isotropic: this model has a single layer, the layup has {layers}",
             "write auto, or keep one layer",
         )
 
@@ -109,29 +105,30 @@ def laminated_rod(view: FileView) -> Iterator[Fault]:
     why = "the bore of a laminated rod follows from outer_diameter and its layers"
     if view.number("rod", "inner_diameter"):
         yield Fault(("rod", "inner_diameter"), why, "remove the line", at_key=True)
-    moved = ("variables", "rod.inner_diameter")
-    if child_at(view.tree, moved) is not None:
+    variable = ("variables", "rod.inner_diameter")
+    if child_at(view.tree, variable) is not None:
         remedy = "remove it; vary e.g. rod.layup[0].thickness"
-        yield Fault(moved, why, remedy, at_key=True)
+        yield Fault(variable, why, remedy, at_key=True)
     outer = view.number("rod", "outer_diameter")
     parts = [view.number("rod", "layup", index, "thickness") for index in range(layers)]
-    known = [part for part in parts if part is not None]
-    if outer is None or len(known) < layers:
+    thicknesses = [part for part in parts if part is not None]
+    if outer is None or len(thicknesses) < layers:
         return
-    if 2 * sum(known) >= outer * (1 - 1e-9):
+    total = sum(thicknesses)
+    if 2 * total >= outer * (1 - 1e-9):
         yield Fault(
             ("rod", "layup"),
-            f"layers of {length_text(sum(known))} leave no bore in a rod of {length_text(outer)}",
+            f"layers of {length_text(total)} leave no bore in a rod of {length_text(outer)}",
             f"write less than {length_text(outer / 2)} in total, or a larger rod.outer_diameter",
             at_key=True,
         )
         return
-    wall, room = view.number("rod", "fitting", "wall"), outer / 2 - sum(known)
+    wall, room = view.number("rod", "fitting", "wall"), outer / 2 - total
     if wall is not None and wall > room * (1 + 1e-9):
         yield Fault(
             ("rod", "fitting", "wall"),
             f"{length_text(wall)}: the bore has a radius of {length_text(room)}",
-            f"write at most {length_text(room)}, or remove it: solid",
+            f"write at most {length_text(room)}, or remove it for a solid fitting",
         )
 
 
@@ -148,9 +145,9 @@ def of_materials(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
     view = FileView(tree)
     yield from _kinds(view, materials)
     if isinstance(materials, Properties):
-        known = _Known(view, materials)
-        yield from _strengths(view, known)
-        yield from _stiffness(view, known)
+        properties = _StatedProperties(view, materials)
+        yield from _strengths(view, properties)
+        yield from _stiffness(view, properties)
 
 
 def _names(view: FileView, wall: Loc) -> list[str | None]:
@@ -168,8 +165,10 @@ def _kinds(view: FileView, materials: MaterialLookup) -> Iterator[Fault]:
             "remove the line, or add a metal liner",
             at_key=True,
         )
-    wound = [name for name in _names(view, ("rod", "layup")) if name is not None]
-    if any(materials.kind(name) == "ply" for name in wound) and not view.has("rod", "fitting"):
+    layer_names = [name for name in _names(view, ("rod", "layup")) if name is not None]
+    if any(materials.kind(name) == "ply" for name in layer_names) and not view.has(
+        "rod", "fitting"
+    ):
         yield Fault(
             ("rod", "fitting"),
             "missing: a laminated rod needs bonded end fittings",
@@ -177,17 +176,17 @@ def _kinds(view: FileView, materials: MaterialLookup) -> Iterator[Fault]:
         )
 
 
-class _Known:
+class _StatedProperties:
     """Properties of the library, overridden by the design."""
 
     def __init__(self, view: FileView, materials: Properties) -> None:
-        self.own = child(view.tree, "materials")
+        self.block = child(view.tree, "materials")
         self.materials = materials
 
     def changed(self, name: str) -> dict[str, float]:
         """Properties that the design states; faulty values are left out."""
-        own = child(self.own, name)
-        pairs = own.items() if isinstance(own, Mapping) else ()
+        block = child(self.block, name)
+        pairs = block.items() if isinstance(block, Mapping) else ()
         return {key: value for key, value in pairs if isinstance(value, float)}
 
     def numbers(self, name: str) -> dict[str, float]:
@@ -200,16 +199,16 @@ class _Known:
 
 def known_numbers(view: FileView, materials: Properties, name: str) -> dict[str, float]:
     """Properties of a material from library and design; empty if missing or faulty."""
-    return _Known(view, materials).numbers(name)
+    return _StatedProperties(view, materials).numbers(name)
 
 
-def _strengths(view: FileView, known: _Known) -> Iterator[Fault]:
+def _strengths(view: FileView, properties: _StatedProperties) -> Iterator[Fault]:
     """Every ply of the barrel has the strengths of the selected criterion."""
     criterion = view.text("barrel", "criterion")
     if not view.has("barrel", "criterion") or view.text("barrel", "model") in _WITHOUT_PLIES:
         return
     for name in dict.fromkeys(_names(view, ("barrel", "layup"))):
-        numbers = known.numbers(name) if name is not None else {}
+        numbers = properties.numbers(name) if name is not None else {}
         missing = [key for key in PLY_STRENGTHS if key not in numbers]
         if "youngs_modulus_1" in numbers and missing:
             yield Fault(
@@ -219,11 +218,11 @@ def _strengths(view: FileView, known: _Known) -> Iterator[Fault]:
             )
 
 
-def _stiffness(view: FileView, known: _Known) -> Iterator[Fault]:
+def _stiffness(view: FileView, properties: _StatedProperties) -> Iterator[Fault]:
     """Changed elastic constants keep the stiffness positive definite."""
-    for name in known.own if isinstance(known.own, Mapping) else ():
-        changed = [key for key in known.changed(name) if key in _ELASTIC]
-        numbers = known.numbers(name) if changed else {}
+    for name in properties.block if isinstance(properties.block, Mapping) else ():
+        changed = [key for key in properties.changed(name) if key in _ELASTIC]
+        numbers = properties.numbers(name) if changed else {}
         if "youngs_modulus_1" in numbers and not set(PLY_REQUIRED) <= set(numbers):
             continue
         constants = ply_constants(numbers)
@@ -236,77 +235,6 @@ def _stiffness(view: FileView, known: _Known) -> Iterator[Fault]:
             )
 
 
-def elements(view: FileView) -> Iterator[Loc]:
-    """Place of every sealing element the file states."""
-    for name in ("piston", "rod"):
-        yield ("seals", name)
-        if view.has("seals", name, "secondary"):
-            yield ("seals", name, "secondary")
-
-
-def profiles(view: FileView) -> Iterator[Fault]:
-    """Stated contact pressures: positions increase from 0, one stress each, sorted by pressure."""
-    for loc in elements(view):
-        last = -1.0
-        for index, _ in enumerate(view.items(*loc, "contact")):
-            at = (*loc, "contact", index)
-            positions = view.items(*at, "positions")
-            stresses = view.items(*at, "stresses")
-            pressure = view.number(*at, "pressure")
-            if pressure is not None and pressure <= last:
-                yield Fault(
-                    (*at, "pressure"),
-                    f"{INPUTS['pressure'].text(pressure)}: not above the previous profile",
-                    "sort the profiles by pressure, each once",
-                )
-            last = last if pressure is None else pressure
-            known = [x for x in stresses if isinstance(x, float)]
-            complete = known and len(known) == len(stresses)
-            if complete and pressure is not None and max(known) <= pressure:
-                yield Fault(
-                    (*at, "stresses"),
-                    f"nowhere above the sealed pressure ({INPUTS['pressure'].text(pressure)}): "
-                    "this contact does not seal",
-                    "state contact pressures that include the sealed pressure",
-                )
-            if len(positions) != len(stresses):
-                yield Fault(
-                    (*at, "stresses"),
-                    f"{len(stresses)} stresses at {len(positions)} positions",
-                    "write one stress for every position",
-                )
-            numbers = [x for x in positions if isinstance(x, float)]
-            pairs = pairwise(numbers)
-            if numbers and (numbers[0] != 0 or any(b <= a for a, b in pairs)):
-                yield Fault(
-                    (*at, "positions"),
-                    "not from 0 upwards",
-                    "begin with 0 mm at the sealed side, then increase",
-                )
-
-
-def reach(view: FileView) -> Iterator[Fault]:
-    """Stated profiles extend from zero pressure to the supply pressure."""
-    supply, text = view.number("supply", "pressure"), INPUTS["pressure"].text
-    for loc in elements(view):
-        count = len(view.items(*loc, "contact"))
-        first = view.number(*loc, "contact", 0, "pressure")
-        last = view.number(*loc, "contact", count - 1, "pressure")
-        if first is not None and first > 0:
-            yield Fault(
-                (*loc, "contact", 0, "pressure"),
-                f"{text(first)}: the profile without pressure is missing",
-                "add a profile at 0 bar before it",
-            )
-        if last is not None and supply is not None and last < supply * (1 - 1e-9):
-            yield Fault(
-                (*loc, "contact", count - 1, "pressure"),
-                f"{text(last)}: the profiles end below supply.pressure ({text(supply)})",
-                "add a profile at the supply pressure",
-            )
-
-
-PROFILE_CHECKS = (profiles, reach)
 _TYPE = ("retention", "type")
 
 
@@ -330,13 +258,13 @@ def keys(view: FileView) -> Iterator[Fault]:
 
 def _unused(view: FileView, joint: Joint) -> Iterator[Fault]:
     """Keys that neither the joint nor an alternative among the choices uses, except defaults."""
-    offered = [JOINTS.get(name) for name in view.items("choices", ".".join(_TYPE))]
-    used = _keys(one for one in (joint, *offered) if one is not None)
+    alternatives = [JOINTS.get(name) for name in view.items("choices", ".".join(_TYPE))]
+    used = _keys(candidate for candidate in (joint, *alternatives) if candidate is not None)
     for name, entry in entries(Retention).items():
         value = view.value("retention", name)
         if entry.required or name in used or value is None or value == entry.default:
             continue
-        users = [one for one in JOINTS.values() if name in _keys([one])]
+        users = [candidate for candidate in JOINTS.values() if name in _keys([candidate])]
         message, remedy = joint.without.get(name) or (
             f"{joint.noun} {_have([joint])} no {name}, "
             f"only {' and '.join(user.noun for user in users)} {_have(users)}",
@@ -361,9 +289,9 @@ def skirts(view: FileView) -> Iterator[Fault]:
         return
     overlap, length = view.number("retention", "length"), view.number("barrel", "length")
     parts = [("cylinder", "stroke"), ("piston", "length"), ("head", "length")]
-    known = [one for one in (view.number(*part) for part in parts) if one is not None]
-    if length is None and len(known) == len(parts):
-        length = sum(known)
+    lengths = [number for number in (view.number(*part) for part in parts) if number is not None]
+    if length is None and len(lengths) == len(parts):
+        length = sum(lengths)
     if overlap is not None and length is not None and 2 * overlap > length * (1 + 1e-9):
         yield Fault(
             ("retention", "length"),
@@ -380,7 +308,7 @@ def values(view: FileView) -> Iterator[Fault]:
         yield from joint.faults(view)
 
 
-class _KnownEnds:
+class _EndMaterials:
     """The library, overridden by the properties that the design states."""
 
     def __init__(self, view: FileView, materials: MaterialLookup) -> None:
@@ -402,4 +330,4 @@ def of_end_materials(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
     view = FileView(tree)
     joint = joint_of(view)
     if joint is not None:
-        yield from joint.material_faults(view, _KnownEnds(view, materials))
+        yield from joint.material_faults(view, _EndMaterials(view, materials))

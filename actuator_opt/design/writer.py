@@ -60,20 +60,20 @@ def exact_text(value: float, quantity: Quantity | None, unit: str | None = None)
     for name in dict.fromkeys((unit, quantity.unit, quantity.si_unit)):
         if name is None or (share and not name):
             continue
-        of = units.unit(name, quantity.dimension) if name else units.Unit("", "", 1.0)
-        for number in _candidates(value, of):
-            if of.text_to_si(number) == value:
+        display_unit = units.unit(name, quantity.dimension) if name else units.Unit("", "", 1.0)
+        for number in _candidates(value, display_unit):
+            if display_unit.text_to_si(number) == value:
                 return f"{number} {name}".rstrip()
     return f"{100 * value!r} %" if share else f"{value!r} {quantity.si_unit}".rstrip()
 
 
-def _candidates(value: float, of: units.Unit) -> Iterator[str]:
+def _candidates(value: float, unit: units.Unit) -> Iterator[str]:
     """Texts in a unit for an SI value and its nearest neighbours, shortest first."""
-    low = high = of.from_si(value)
+    low = high = unit.from_si(value)
     for digits in (6, 9, 12, 15, 16, 17):
         yield f"{low:.{digits}g}"
-    if not of.offset:
-        yield f"{Decimal(repr(float(value))) / Decimal(repr(of.scale)):.17g}"
+    if not unit.offset:
+        yield f"{Decimal(repr(float(value))) / Decimal(repr(unit.scale)):.17g}"
     for _ in range(4):
         low, high = math.nextafter(low, -math.inf), math.nextafter(high, math.inf)
         yield repr(low)
@@ -96,8 +96,8 @@ def to_yaml(
     """
     metrics = METRICS if metrics is None else metrics
     if source is not None:
-        text = _kept(design, source.document, metrics)
-        text = text or _kept(design, _in_list_form(source.document), metrics)
+        text = _edited_text(design, source.document, metrics)
+        text = text or _edited_text(design, _in_list_form(source.document), metrics)
         if text:
             return text
     writer = _Leaves(design, metrics)
@@ -242,7 +242,7 @@ def _lines(node: dict[str, Any], loc: Loc, writer: _Leaves, indent: str) -> Iter
             yield f"{indent}{name}: {writer.text(here, value)}"
 
 
-def _kept(design: Design, document: Document | None, metrics: Mapping[str, Quantity]) -> str:
+def _edited_text(design: Design, document: Document | None, metrics: Mapping[str, Quantity]) -> str:
     """The document's text with the design's values; empty if not editable."""
     try:
         text = "" if document is None else _edited(design, document, metrics)
@@ -262,7 +262,7 @@ def _in_list_form(document: Document) -> Document | None:
         layers = value_at(document.data, shorthand.wall)[shorthand.first :]
         blocks = [
             (newline + " " * len(dash)).join(
-                f"{key}: {_as_read(said)}" for key, said in layer.items()
+                f"{key}: {_as_read(value)}" for key, value in layer.items()
             )
             for layer in layers[: shorthand.layers]
         ]
@@ -285,8 +285,8 @@ def _reads_back(text: str, design: Design, metrics: Mapping[str, Quantity]) -> b
     except InputError:
         return False
     built = build(document.data, metrics=metrics)
-    again = None if document.faults else built.design
-    return again is not None and to_tree(again) == to_tree(design)
+    reread = None if document.faults else built.design
+    return reread is not None and to_tree(reread) == to_tree(design)
 
 
 def _edited(design: Design, document: Document, metrics: Mapping[str, Quantity]) -> str:
@@ -327,11 +327,11 @@ def _compare(
         elif isinstance(value, list):
             if not isinstance(old[key], list) or len(old[key]) != len(value):
                 raise _CannotEdit
-            for index, (item, was) in enumerate(zip(value, old[key], strict=True)):
+            for index, (item, old_item) in enumerate(zip(value, old[key], strict=True)):
                 if isinstance(item, dict):
-                    _compare(item, was, (*here, index), below, document, writer, edits)
+                    _compare(item, old_item, (*here, index), below, document, writer, edits)
                 else:
-                    edits += _replacement(item, was, (*here, index), document, writer)
+                    edits += _replacement(item, old_item, (*here, index), document, writer)
         else:
             edits += _replacement(value, old[key], here, document, writer)
 
@@ -371,9 +371,6 @@ def _insertion(stated: dict[str, Any], loc: Loc, document: Document, writer: _Le
     lead = "" if text.startswith("\n", end - 1) else newline
     lines = (line + newline for line in _lines(stated, loc, writer, " " * (column - 1)))
     return _Edit(end, end, lead + "".join(lines), len(loc))
-
-
-__all__ = ["exact_text", "scalar", "to_yaml"]
 
 
 _TEXT = """\

@@ -76,7 +76,7 @@ class Document:
     """Places of unreadable values (aliases)."""
     shorthands: tuple[Shorthand, ...] = ()
     """Layers in compact notation, expanded by `layup.expanded`."""
-    what: str = "design"
+    kind: str = "design"
     """Kind of the file, in words."""
 
     def shorthand(self, loc: Loc) -> Shorthand | None:
@@ -101,13 +101,13 @@ class Document:
         return Diagnostic(message, remedy, self.file, line, column, path, source)
 
 
-def decode(data: bytes, file: str, what: str = "design") -> str:
+def decode(data: bytes, file: str, kind: str = "design") -> str:
     """Text of a file's bytes; raises `InputError` unless valid UTF-8 of moderate size."""
     if len(data) > MAX_BYTES:
         raise InputError(
             Diagnostic(
                 f"the file is larger than {MAX_BYTES / 1e6:.0f} MB",
-                f"a {what} file has a few kilobytes: is this the right file?",
+                f"a {kind} file has a few kilobytes: is this the right file?",
                 file,
             )
         )
@@ -123,12 +123,12 @@ def decode(data: bytes, file: str, what: str = "design") -> str:
         raise InputError(diagnostic) from None
 
 
-def parse(text: str, file: str, what: str = "design") -> Document:
+def parse(text: str, file: str, kind: str = "design") -> Document:
     """Tree of a YAML text; raises `InputError` if it cannot be parsed."""
     text = text.removeprefix("\ufeff")
-    document = Document(file, text, lines=_BREAK.split(text), what=what)
+    document = Document(file, text, lines=_BREAK.split(text), kind=kind)
     if len(text) > MAX_BYTES:
-        decode(text.encode("utf-8", "replace"), file, what)
+        decode(text.encode("utf-8", "replace"), file, kind)
     control = _CONTROL.search(text)
     if control is not None:
         line, column = _line_column(text, control.start())
@@ -184,8 +184,8 @@ class _Builder:
             if isinstance(event, yaml.DocumentStartEvent):
                 documents += 1
                 if documents > 1:
-                    one = f"one {self.document.what} per file"
-                    self._stop(event, "a second document starts here", one)
+                    advice = f"one {self.document.kind} per file"
+                    self._stop(event, "a second document starts here", advice)
             elif isinstance(event, yaml.NodeEvent):
                 nodes += 1
                 if nodes > MAX_NODES:
@@ -193,14 +193,14 @@ class _Builder:
                 self._node(event)
             elif isinstance(event, (yaml.MappingEndEvent, yaml.SequenceEndEvent)):
                 self._close(event)
-        span, what = NodeSpan(1, 1, 0, 0), self.document.what
-        start = _START[what]
+        span, kind = NodeSpan(1, 1, 0, 0), self.document.kind
+        start = _START[kind]
         if self.root is None:
             self._stop_at(span, "the file is empty", start)
         if not isinstance(self.root, dict):
             self._stop_at(
                 self.document.values.get((), span),
-                f"the file is not a {what}: it must consist of keys with values",
+                f"the file is not a {kind}: it must consist of keys with values",
                 start,
             )
         self.document.data = self.root
@@ -328,10 +328,12 @@ def _syntax_fault(document: Document, error: yaml.MarkedYAMLError) -> Diagnostic
     problem = error.problem or "not YAML"
     mark = error.problem_mark or error.context_mark
     message, remedy = problem, "write key: value, one per line"
-    for part, said, advice in _SYNTAX:
+    for part, meaning, advice in _SYNTAX:
         if part in problem:
-            message, remedy = said, advice
-            if ("is not closed" in said or "without" in said) and error.context_mark is not None:
+            message, remedy = meaning, advice
+            if (
+                "is not closed" in meaning or "without" in meaning
+            ) and error.context_mark is not None:
                 mark = error.context_mark
             break
     if mark is None:

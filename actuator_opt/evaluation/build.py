@@ -1,7 +1,7 @@
-"""Results of a model run: an Evaluation with rows, checks, warnings and provenance; many designs.
+"""Evaluation of a design with its requirements, checks and warnings; margins of many designs.
 
-Standard sizes of bore, rod, glands and housings are a remark, not a limit. Many designs at once get
-one governing value for each metric and limit.
+Standard sizes of bore, rod, glands and housings are a remark, not a limit. Many designs evaluated
+at once get a single governing value per metric and limit.
 """
 
 from __future__ import annotations
@@ -51,36 +51,42 @@ from .wall_study import study as wall_study
 
 PLACES: tuple[Place, ...] = ("piston", "rod")
 
-
 NEAR = 0.02
 """Relative difference of a housing's depth or length that is ignored."""
 
+NO_ANSWER = "not computable for these dimensions"
+NOT_COMPUTED = "not computed for this design"
+
+TOLERANCE = 1e-6
+"""A margin of at least −TOLERANCE counts as met."""
 
 _SIZES, _GLANDS, _SECTIONS = "standard sizes", "standard glands", "ISO 3601-2 sections (AS568)"
 
 
 def sizes(design: Design) -> Check:
     """Whether bore and rod are ISO 3320 sizes; otherwise the nearest sizes."""
-    odd = []
-    asked: tuple[tuple[Literal["bore", "rod"], float], ...] = (
+    nonstandard = []
+    dimensions: tuple[tuple[Literal["bore", "rod"], float], ...] = (
         ("bore", design.cylinder.bore),
         ("rod", design.rod.outer_diameter),
     )
-    for what, value in asked:
-        near = standards.nearest_standard(what, value, "nearest")
+    for part, value in dimensions:
+        near = standards.nearest_standard(part, value, "nearest")
         if abs(near - value) > 1e-9:
-            odd.append(f"{what} {1e3 * value:.4g} mm (nearest {1e3 * near:g} mm)")
-    if odd:
-        reason = "free sizes: " + ", ".join(odd)
+            nonstandard.append(f"{part} {1e3 * value:.4g} mm (nearest {1e3 * near:g} mm)")
+    if nonstandard:
+        reason = "free sizes: " + ", ".join(nonstandard)
         return Check(_SIZES, "not_checked", reason, source="ISO 3320")
     return Check(_SIZES, "met", "bore and rod are standard sizes", source="ISO 3320")
 
 
 def glands(rings: Iterable[Ring]) -> Check:
     """Whether every groove conforms to a standard; otherwise the differences."""
-    odd = [text for ring in rings for text in _remarks(floats(ring, 0))]
-    if odd:
-        return Check(_GLANDS, "not_checked", "free glands: " + "; ".join(odd), source=_SECTIONS)
+    nonstandard = [text for ring in rings for text in _remarks(floats(ring, 0))]
+    if nonstandard:
+        return Check(
+            _GLANDS, "not_checked", "free glands: " + "; ".join(nonstandard), source=_SECTIONS
+        )
     return Check(_GLANDS, "met", "all glands are standard", source=_SECTIONS)
 
 
@@ -111,41 +117,34 @@ def _o_ring(ring: Ring) -> Iterator[str]:
         yield f"{ring.label}: {error.diagnostics[0].message}"
         return
     for deviation in deviations:
-        scale, unit = (1e3, "mm") if deviation.what == "groove width" else (100, "%")
+        scale, unit = (1e3, "mm") if deviation.quantity == "groove width" else (100, "%")
         yield (
-            f"{ring.label}: {deviation.what} {scale * deviation.value:.3g} {unit}, "
+            f"{ring.label}: {deviation.quantity} {scale * deviation.value:.3g} {unit}, "
             f"{scale * deviation.lower:.3g} to {scale * deviation.upper:.3g} {unit}"
         )
 
 
 def _housing(ring: Ring) -> Iterator[str]:
     try:
-        known = housings_for(ring.element.type, ring.name, ring["diameter"])
+        standard_housings = housings_for(ring.element.type, ring.name, ring["diameter"])
     except InputError as error:
         yield f"{ring.label}: {error.diagnostics[0].message}"
         return
     depth, length = ring["gland_depth"], ring["groove_width"]
     if any(
-        abs(one.radial_depth - depth) <= NEAR * depth
-        and any(abs(x - length) <= NEAR * length for x in one.lengths)
-        for one in known
+        abs(housing.radial_depth - depth) <= NEAR * depth
+        and any(abs(x - length) <= NEAR * length for x in housing.lengths)
+        for housing in standard_housings
     ):
         return
     listed = ", ".join(
-        f"{1e3 * one.radial_depth:g} x {' or '.join(f'{1e3 * x:g}' for x in one.lengths)}"
-        for one in known[:2]
+        f"{1e3 * housing.radial_depth:g} x {' or '.join(f'{1e3 * x:g}' for x in housing.lengths)}"
+        for housing in standard_housings[:2]
     )
     yield (
         f"{ring.label}: groove {1e3 * depth:.3g} x {1e3 * length:.3g} mm, "
-        f"{known[0].standard} has {listed} mm"
+        f"{standard_housings[0].standard} has {listed} mm"
     )
-
-
-NO_ANSWER = "not computable for these dimensions"
-NOT_COMPUTED = "not computed for this design"
-
-TOLERANCE = 1e-6
-"""A margin of at least −TOLERANCE counts as met."""
 
 
 def names_of_materials(design: Design) -> list[str]:
@@ -219,15 +218,19 @@ def spec_hash(subject: PreparedDesign) -> str:
 def evaluate(subject: PreparedDesign) -> Evaluation:
     """Compute all metrics, requirements and checks of a design."""
     v = subject.values()
-    done = compute(subject, v)
-    computed = done.computed
+    run = compute(subject, v)
+    computed = run.computed
     design = subject.design
-    own = [x for x in all_limits(design, subject.plugins) if x.origin in ("requirement", "case")]
-    requirements = tuple(_requirement(limit, computed, v) for limit in own)
-    warnings = list(doubts.warnings(subject, v, done))
+    limits = all_limits(design, subject.plugins)
+    requirements = tuple(
+        _requirement(limit, computed, v)
+        for limit in limits
+        if limit.origin in ("requirement", "case")
+    )
+    warnings = list(doubts.warnings(subject, v, run))
     outside = {metric for metric, _ in warnings}
     metrics = {name: _metric(name, computed, v, subject, outside) for name in subject.quantities}
-    checks = tuple(_checks(design, computed, v, requirements, done.rings))
+    checks = tuple(_checks(design, computed, v, requirements, run.rings))
     warnings += [
         ("", f"check missed: {c.name}: {_against(c)}") for c in checks if c.status == "missed"
     ]
@@ -241,32 +244,26 @@ def evaluate(subject: PreparedDesign) -> Evaluation:
         checks=checks,
         warnings=tuple(dict.fromkeys(text for _, text in warnings)),
         unverified=tuple(doubts.unverified(subject, v)),
-        models=tuple(
-            doubts.models(metrics, subject, done.rings, outside, [t for _, t in warnings])
-        ),
-        mass_parts={name: float(np.squeeze(m)) for name, m in done.mass_parts.items()},
-        curve=_curve(done, v, metrics["stiffness_min"].case),
-        outlines=outline.outlines(design, subject.materials, done.geometry),
-        lengths=outline.lengths(design, done.geometry),
-        wall=wall_study(subject, v, done),
-        dynamics=dynamics.study(subject, v, done, metrics["stiffness_min"].case),
+        models=tuple(doubts.models(metrics, subject, run.rings, outside, [t for _, t in warnings])),
+        mass_parts={name: float(np.squeeze(m)) for name, m in run.mass_parts.items()},
+        curve=_curve(run, v, metrics["stiffness_min"].case),
+        outlines=outline.outlines(design, subject.materials, run.geometry),
+        lengths=outline.lengths(design, run.geometry),
+        wall=wall_study(subject, v, run),
+        dynamics=dynamics.study(subject, v, run, metrics["stiffness_min"].case),
         friction_parts=_friction_parts(computed, v, metrics["friction_running"].case),
     )
 
 
 def _friction_parts(computed: MetricArrays, v: Values, case: str | None) -> dict[str, float]:
     """Running friction of each seal in a case; parts without friction are left out."""
-    found = {}
+    friction = {}
     for label, array in computed.friction_parts.items():
         values = dict(by_case(computed, "friction_running", array, v.cases))
         value = float(values.get(case or ALL_CASES, values.get(ALL_CASES, np.zeros(1)))[0])
         if value:
-            found[label] = value
-    return found
-
-
-def _finite(value: float) -> bool:
-    return math.isfinite(value)
+            friction[label] = value
+    return friction
 
 
 def _metric(
@@ -277,7 +274,7 @@ def _metric(
         for case, value in by_case(computed, name, array, v.cases, place):
             rows.append((float(value[0]), case, place))
     value = float(governing(name, computed, v, subject)[0])
-    if not _finite(value):
+    if not math.isfinite(value):
         computed_at_all = name in computed.metrics
         why = computed.why.get(name, NO_ANSWER if computed_at_all else NOT_COMPUTED)
         if value == math.inf:
@@ -295,9 +292,9 @@ def _metric(
         place=place,
     )
     per_case: dict[str, float] = {}
-    for one, where, _ in rows:
-        if _finite(one):
-            per_case[where] = pick(one, per_case.get(where, one))
+    for number, case_name, _ in rows:
+        if math.isfinite(number):
+            per_case[case_name] = pick(number, per_case.get(case_name, number))
     return Metric(
         name=name,
         value=value,
@@ -324,7 +321,7 @@ def _worst(rows: Iterable[LimitRow]) -> LimitRow | None:
 def _requirement(limit: MetricLimit, computed: MetricArrays, v: Values) -> Requirement:
     row = _worst(rows_of(limit, computed, v))
     bound = float(np.squeeze(limit.value(v)))
-    if row is None or not _finite(float(row.value[0])):
+    if row is None or not math.isfinite(float(row.value[0])):
         unlimited = row is not None and float(row.value[0]) == math.inf and limit.sense == "min"
         return Requirement(
             limit.name,
@@ -392,11 +389,11 @@ def _check(
         )
         return Check(name, "not_checked", reason, metric.name, sense)
     if result.value is None and not result.met:
-        known: Literal["missed", "not_checked"] = (
+        status: Literal["missed", "not_checked"] = (
             "not_checked" if metric.name in computed.why else "missed"
         )
         reason = computed.why.get(metric.name, NO_ANSWER)
-        return Check(name, known, reason, metric.name, sense, result.limit)
+        return Check(name, status, reason, metric.name, sense, result.limit)
     return Check(
         name=name,
         status="met" if result.met else "missed",
@@ -419,15 +416,15 @@ def _against(check: Check) -> str:
     return f"{quantity.text(check.value)}, should be {word} {quantity.text(check.limit)}"
 
 
-def _curve(done: ModelRun, v: Values, case: str | None) -> StrokeCurve:
+def _curve(run: ModelRun, v: Values, case: str | None) -> StrokeCurve:
     """Stiffness over the stroke in the governing case."""
-    stroke = float(np.squeeze(done.geometry.stroke))
+    stroke = float(np.squeeze(run.geometry.stroke))
     index = v.cases.index(case) if case in v.cases else 0
-    weakest = of_case(done.weakest, index)
+    weakest = of_case(run.weakest, index)
     position = np.unique(np.append(np.linspace(0.0, stroke, 101), weakest))
     parts = {
         name: np.broadcast_to(np.atleast_2d(value), (len(v.cases), position.size))[index]
-        for name, value in done.springs.compliances(position).items()
+        for name, value in run.springs.compliances(position).items()
     }
     return StrokeCurve(
         case=v.cases[index],
@@ -455,8 +452,8 @@ class Many:
     @property
     def feasible(self) -> Array:
         """Whether requirements and checks are met, (designs,)."""
-        found: Array = self.margin >= -TOLERANCE
-        return found
+        feasible: Array = self.margin >= -TOLERANCE
+        return feasible
 
 
 @np.errstate(all="ignore")  # values that are not finite are NaN
@@ -499,10 +496,10 @@ def margins_of(subject: PreparedDesign, varied: Mapping[str, Array], count: int)
     """
     v = subject.values(varied)
     limits = limits_of(subject)
-    found = np.full((len(limits), count), np.inf)
+    margins = np.full((len(limits), count), np.inf)
     for number, value in _margins(limits, compute(subject, v).computed, v, count):
-        found[number] = np.minimum(found[number], value)
-    return found
+        margins[number] = np.minimum(margins[number], value)
+    return margins
 
 
 def margins_many(
@@ -512,10 +509,10 @@ def margins_many(
 
     Infinity if a limit does not apply; minus infinity if its value is unknown.
     """
-    found = margins_of(subject, varied, count)
+    margins = margins_of(subject, varied, count)
     return {
         limit.name: np.where(np.isnan(row), -np.inf, row)
-        for limit, row in zip(limits_of(subject), found, strict=True)
+        for limit, row in zip(limits_of(subject), margins, strict=True)
     }
 
 
@@ -530,13 +527,13 @@ def _margins(
 
 def limits_of(subject: PreparedDesign) -> tuple[MetricLimit, ...]:
     """Requirements and checks of a feasible design."""
-    every = all_limits(subject.design, subject.plugins)
-    return tuple(limit for limit in every if limit.origin != "advice")
+    limits = all_limits(subject.design, subject.plugins)
+    return tuple(limit for limit in limits if limit.origin != "advice")
 
 
 def _governing(
     name: str, computed: MetricArrays, v: Values, subject: PreparedDesign, count: int
 ) -> Array:
     """Governing value of every design (count,); infinity (unlimited) does not count as a value."""
-    found = governing(name, computed, v, subject)
-    return np.broadcast_to(np.where(np.isfinite(found), found, np.nan), (count,))
+    value = governing(name, computed, v, subject)
+    return np.broadcast_to(np.where(np.isfinite(value), value, np.nan), (count,))

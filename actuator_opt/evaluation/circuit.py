@@ -16,8 +16,6 @@ from .state import LoadState
 from .values import Values
 
 Chamber = Literal["a", "b"]
-
-
 CHAMBERS: tuple[Chamber, Chamber] = ("a", "b")
 
 
@@ -58,9 +56,9 @@ def branches(v: Values, design: Design, state: LoadState) -> dict[Chamber, Chamb
     viscosity = {"a": state.dynamic_viscosity_a, "b": state.dynamic_viscosity_b}
     total: dict[Chamber, dict[str, Array]] = {name: {} for name in CHAMBERS}
 
-    def count(chamber: Chamber, what: str, value: Array) -> None:
-        known = total[chamber].get(what)
-        total[chamber][what] = value if known is None else known + value
+    def count(chamber: Chamber, quantity: str, value: Array) -> None:
+        known = total[chamber].get(quantity)
+        total[chamber][quantity] = value if known is None else known + value
 
     for i, line in enumerate(design.lines):
         at, chamber = f"lines[{i}].", line.chamber
@@ -134,11 +132,11 @@ def valve_edges(v: Values, design: Design, state: LoadState) -> Edges:
             viscosity=state.kinematic_viscosity,
         )
     leakage, drop = v[at + "leakage_flow"], v[at + "leakage_drop"]
-    after = drop if design.valve.tank_leakage_drop is None else v[at + "tank_leakage_drop"]
+    tank_drop = drop if design.valve.tank_leakage_drop is None else v[at + "tank_leakage_drop"]
     return Edges(
         rated,
         valve.edge_coefficient(flow=leakage, pressure_drop=drop),
-        valve.edge_coefficient(flow=leakage, pressure_drop=after),
+        valve.edge_coefficient(flow=leakage, pressure_drop=tank_drop),
     )
 
 
@@ -147,7 +145,7 @@ def linear_valve(v: Values, design: Design, state: LoadState, leakage: Array) ->
     if design.valve is None:
         return None
     edges = valve_edges(v, design, state)
-    out, back = (
+    outward, inward = (
         holding_valve.valve_slopes(
             rated_coefficient=edges.rated,
             leakage_coefficient=edges.supply,
@@ -163,12 +161,12 @@ def linear_valve(v: Values, design: Design, state: LoadState, leakage: Array) ->
         for extending in (True, False)
     )
     conductances: dict[Chamber, Ways] = {
-        "a": Ways(out.conductance_a, back.conductance_a),
-        "b": Ways(out.conductance_b, back.conductance_b),
+        "a": Ways(outward.conductance_a, inward.conductance_a),
+        "b": Ways(outward.conductance_b, inward.conductance_b),
     }
     tight = not any(np.any(np.real(way) > 0) for ways in conductances.values() for way in ways)
     return LinearValve(
-        {"a": Ways(out.gain_a, back.gain_a), "b": Ways(-out.gain_b, -back.gain_b)},
+        {"a": Ways(outward.gain_a, inward.gain_a), "b": Ways(-outward.gain_b, -inward.gain_b)},
         {} if tight else conductances,
     )
 
@@ -232,9 +230,9 @@ def accumulator_ends(
     v: Values, design: Design, state: LoadState, chamber: Chamber
 ) -> tuple[LineEnd, ...]:
     """All accumulators on the line of a chamber."""
-    found = []
-    for i, one in enumerate(design.ports.accumulators):
-        if one.chamber != chamber:
+    ends = []
+    for i, entry in enumerate(design.ports.accumulators):
+        if entry.chamber != chamber:
             continue
         at = f"ports.accumulators[{i}]."
         neck = {"inner_diameter": v[at + "neck_diameter"], "length": v[at + "neck_length"]}
@@ -244,11 +242,11 @@ def accumulator_ends(
             gas_volume=v[at + "gas_volume"],
             polytropic_index=v["fluid.polytropic_index"],
         )
-        found.append(
+        ends.append(
             line_ends.accumulator_end(
                 capacitance=capacitance,
                 inertance=elements.inertance(**neck, density=state.density),
                 resistance=elements.resistance(**neck, dynamic_viscosity=state.dynamic_viscosity),
             )
         )
-    return tuple(found)
+    return tuple(ends)

@@ -121,8 +121,8 @@ class Comparison(Displayed):
         The designs limit or optimise them in opposite senses.
         """
         names = dict.fromkeys(name for e in self.evaluations for name in e.metrics)
-        found = {name: _senses(name, self.evaluations) for name in names}
-        return {name: senses for name, senses in found.items() if {"min", "max"} <= {*senses}}
+        by_metric = {name: _senses(name, self.evaluations) for name in names}
+        return {name: senses for name, senses in by_metric.items() if {"min", "max"} <= {*senses}}
 
     @property
     def duties_differ(self) -> tuple[str, ...]:
@@ -219,12 +219,12 @@ def compare(
         for path, values in _differences(trees, "")
     )
     masses = _union([e.mass_parts for e in evaluations])
-    soft = _union([weakest(e) for e in evaluations])
-    rubbing = _union([e.friction_parts for e in evaluations])
+    compliances = _union([weakest(e) for e in evaluations])
+    frictions = _union([e.friction_parts for e in evaluations])
     questions = (
         _question("lighter", "mass", evaluations, masses),
-        _question("stiffer", "stiffness_min", evaluations, soft),
-        _question("smoother", "friction_running", evaluations, rubbing),
+        _question("stiffer", "stiffness_min", evaluations, compliances),
+        _question("smoother", "friction_running", evaluations, frictions),
     )
     return Comparison(
         labels,
@@ -243,8 +243,8 @@ def weakest(evaluation: Evaluation) -> dict[str, float]:
     if not np.isfinite(stiffness).any():
         return {}
     place = int(np.nanargmin(stiffness))
-    found = {name: float(values[place]) for name, values in curve.contributions.items()}
-    return {name: value for name, value in found.items() if value}
+    compliances = {name: float(values[place]) for name, values in curve.contributions.items()}
+    return {name: value for name, value in compliances.items() if value}
 
 
 def _union(parts: Sequence[Mapping[str, float]]) -> dict[str, tuple[float, ...]]:
@@ -335,7 +335,7 @@ def _value(node: Any) -> Value:
         stated = node.get("material")
         return stated if isinstance(stated, str) else "given"
     if isinstance(node, list):
-        flat = all(isinstance(one, (str, int, float)) for one in node)
+        flat = all(isinstance(entry, (str, int, float)) for entry in node)
         return ", ".join(map(str, node)) if flat else f"{len(node)} given"
     return float(node) if isinstance(node, int) and not isinstance(node, bool) else node
 

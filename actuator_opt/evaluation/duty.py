@@ -13,7 +13,7 @@ from .limits import MaterialValues, MetricArrays
 from .linkage import Demand
 from .rods import RodSection
 from .state import LoadState
-from .strength import Held
+from .strength import LoadedJoint
 from .values import Values
 
 THREAD_NOTCH = 3.0
@@ -28,7 +28,7 @@ def compute(
     state: LoadState,
     wall: Wall,
     section: RodSection,
-    held: Held | None,
+    loaded_joint: LoadedJoint | None,
     stop: Demand,
     net: Array,
     out: MetricArrays,
@@ -36,7 +36,7 @@ def compute(
     """All life and service metrics; `net` is the force of every case, `stop` that into a stop."""
     supply = v["supply.pressure"]
     push, pull = supply * g.area_a, supply * g.area_b
-    _endurance(v, stock, design, wall, section, held, supply, push, pull, out)
+    _endurance(v, stock, design, wall, section, loaded_joint, supply, push, pull, out)
     _end_stop(v, design, g, state, supply, stop, net, out)
     _trapped(v, stock, design, g, state, wall, supply, out)
     _layers(stock, wall, out)
@@ -51,7 +51,7 @@ def _endurance(
     design: Design,
     wall: Wall,
     section: RodSection,
-    held: Held | None,
+    loaded_joint: LoadedJoint | None,
     supply: Array,
     push: Array,
     pull: Array,
@@ -65,23 +65,25 @@ def _endurance(
             force=pull, diameter=v["rod.thread.diameter"], pitch=v["rod.thread.pitch"]
         )
         loads.append(("rod thread", section.end_material, stress, stress / 2))
-    joined = Fatigue() if held is None else held.joint.fatigue(held.loaded)
-    loads.extend(joined.pulsed)
-    life, factor, lacking = {}, {}, []
+    joint_fatigue = (
+        Fatigue() if loaded_joint is None else loaded_joint.joint.fatigue(loaded_joint.loaded)
+    )
+    loads.extend(joint_fatigue.pulsed)
+    life, factor, unknown = {}, {}, []
     for place, name, span, mean in loads:
         ultimate = stock.allowable(name, "ultimate_strength")
         limit = stock.allowable(name, "fatigue_strength")
         if ultimate is None or limit is None:
-            lacking.append(name)
+            unknown.append(name)
             continue
-        reached = stock.get(name, "fatigue_cycles", default=1e6)
+        limit_cycles = stock.get(name, "fatigue_cycles", default=1e6)
         peak = mean + span / 2
         ratio = (mean - span / 2) / peak
         life[place] = endurance.cycles_to_failure(
             peak_stress=peak,
             ultimate_strength=ultimate,
             fatigue_limit=limit,
-            limit_cycles=reached,
+            limit_cycles=limit_cycles,
             stress_ratio=ratio,
         )
         factor[place] = endurance.fatigue_factor(
@@ -90,13 +92,13 @@ def _endurance(
             amplitude_strength=limit,
             stress_ratio=ratio,
         )
-    for place, known in joined.lives.items():
+    for place, known in joint_fatigue.lives.items():
         life[place], factor[place] = known
     for metric, values in (("cycle_life", life), ("fatigue_factor", factor)):
         if values:
             out.put(metric, values)
         else:
-            out.skip(metric, f"unknown fatigue strength of {', '.join(dict.fromkeys(lacking))}")
+            out.skip(metric, f"unknown fatigue strength of {', '.join(dict.fromkeys(unknown))}")
 
 
 def _end_stop(
@@ -165,9 +167,9 @@ def _trapped(
             bulk_modulus=maximum(state.bulk_modulus_a, state.bulk_modulus_b),
             wall_compliance_per_volume=2 * wall.swelling.growth / g.inner_radius,
         )
-        jump = slope * v["environment.trapped_rise"]
-        out.put("trapped_pressure", jump)
-        out.put("trapped_factor", v["supply.proof_ratio"] * supply / (supply + jump))
+        rise_pressure = slope * v["environment.trapped_rise"]
+        out.put("trapped_pressure", rise_pressure)
+        out.put("trapped_factor", v["supply.proof_ratio"] * supply / (supply + rise_pressure))
 
 
 def _layers(stock: MaterialValues, wall: Wall, out: MetricArrays) -> None:

@@ -1,6 +1,6 @@
 """Dynamics along the stroke and over frequency: modes, Bode data, transmission-line stiffness.
 
-SI throughout, for the governing load case and place only; `study` fills the record.
+SI units; for the governing load case and place only.
 """
 
 from __future__ import annotations
@@ -15,30 +15,22 @@ import numpy as np
 from ..base.numeric import Array
 from ..base.polynomial import Polynomial, add, at_frequency, roots, scale
 from ..design.model import Design, Line
-from ..models import (
-    dynamics,
-    line_ends,
-    linear,
-    lines,
-    loop,
-    transmission_line,
-    transmission_line as transmission,
-)
+from ..models import dynamics, line_ends, linear, lines, loop, transmission_line
 from ..models.line_ends import LineEnd
 from .circuit import CHAMBERS, Chamber, wall_compliance
 from .kernel import ModelRun, PreparedDesign
 from .motion import Motion
 from .state import LoadState
-from .values import Values, of_case
+from .values import Values, of_case, plain
 
 
 def _end(end: LineEnd, frequencies: Array, index: int) -> Array:
     """Admittance of a line end; infinite at constant pressure."""
-    alone = LineEnd(
+    case_end = LineEnd(
         tuple(of_case(c, index) for c in end.numerator),
         tuple(of_case(c, index) for c in end.denominator),
     )
-    return line_ends.end_admittance(end=alone, frequency=frequencies)
+    return line_ends.end_admittance(end=case_end, frequency=frequencies)
 
 
 def port_admittance(
@@ -55,11 +47,15 @@ def port_admittance(
     viscosity = state.dynamic_viscosity_a if chamber == "a" else state.dynamic_viscosity_b
     density = of_case(state.density, index)
     admittance = _end(motion.held[chamber], frequencies, index)
-    own = [(i, line) for i, line in enumerate(design.lines) if line.chamber == chamber]
+    chamber_lines = [(i, line) for i, line in enumerate(design.lines) if line.chamber == chamber]
     ways = motion.throttles.get(chamber)
     throttle = None if ways is None else ways.toward(motion.push)
-    beyond = [one for one in own if one[1].beyond_throttle] if throttle is not None else []
-    near = [one for one in own if one not in beyond]
+    beyond = (
+        [entry for entry in chamber_lines if entry[1].beyond_throttle]
+        if throttle is not None
+        else []
+    )
+    near = [entry for entry in chamber_lines if entry not in beyond]
 
     def through(admittance: Array, chain: Sequence[tuple[int, Line]]) -> Array:
         for i, _ in reversed(chain):
@@ -69,7 +65,7 @@ def port_admittance(
                 "length": float(np.squeeze(v[at + "length"])),
             }
             wall = float(np.squeeze(wall_compliance(v, design.lines[i], at)))
-            matrix = transmission.line_matrix(
+            matrix = transmission_line.line_matrix(
                 frequency=frequencies,
                 **size,
                 density=density,
@@ -82,7 +78,9 @@ def port_admittance(
                 dynamic_viscosity=of_case(viscosity, index),
                 friction="distributed",
             )
-            admittance = transmission.input_admittance(matrix=matrix, end_admittance=admittance)
+            admittance = transmission_line.input_admittance(
+                matrix=matrix, end_admittance=admittance
+            )
         return admittance
 
     admittance = through(admittance, beyond)
@@ -114,21 +112,21 @@ def dynamic_stiffness(
     diagonal = {}
     for chamber, total in zip(CHAMBERS, (whole.a, whole.b), strict=True):
         branch = motion.branches[chamber]
-        lines_of_it = branch.volume / oil[chamber] + branch.pipes + branch.hoses
+        line_compliance = branch.volume / oil[chamber] + branch.pipes + branch.hoses
         port = port_admittance(v, design, state, motion, chamber, index, frequencies)
-        own = of_case(total, index) - of_case(lines_of_it, index)
+        own = of_case(total, index) - of_case(line_compliance, index)
         diagonal[chamber] = s * own + of_case(motion.leakage, index) + port
     cross = s * of_case(whole.ab, index) - of_case(motion.leakage, index)
     a, b = of_case(budget.geometry.area_a, index), of_case(budget.geometry.area_b, index)
     with np.errstate(all="ignore"):
         det = diagonal["a"] * diagonal["b"] - cross * cross
-        held = (a * a * diagonal["b"] + b * b * diagonal["a"] + 2 * a * b * cross) / det
+        hydraulic = (a * a * diagonal["b"] + b * b * diagonal["a"] + 2 * a * b * cross) / det
         rigid = np.isinf(diagonal["a"]), np.isinf(diagonal["b"])  # constant pressure at the port
-        held = np.where(
-            rigid[0], b * b / diagonal["b"], np.where(rigid[1], a * a / diagonal["a"], held)
+        hydraulic = np.where(
+            rigid[0], b * b / diagonal["b"], np.where(rigid[1], a * a / diagonal["a"], hydraulic)
         )
     seals = 0.0 if budget.seals is None else of_case(budget.seals, index)
-    piston = seals + s * of_case(motion.damping, index) + s * held
+    piston = seals + s * of_case(motion.damping, index) + s * hydraulic
     flexibility = of_case(budget.series_compliance(), index)
     return piston / (1 + flexibility * piston) + s * s * of_case(motion.mass, index)
 
@@ -233,29 +231,17 @@ class DynamicsStudy:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""
-        return {name: _plain(getattr(self, name)) for name in self.__dataclass_fields__}
-
-
-def _plain(value: Any) -> Any:
-    if hasattr(value, "__dataclass_fields__"):
-        return {name: _plain(getattr(value, name)) for name in value.__dataclass_fields__}
-    if isinstance(value, np.ndarray):
-        return [_plain(x) for x in value.tolist()]
-    if isinstance(value, (list, tuple)):
-        return [_plain(x) for x in value]
-    if isinstance(value, float) and not np.isfinite(value):
-        return None
-    return value
+        return {name: plain(getattr(self, name)) for name in self.__dataclass_fields__}
 
 
 def study(
-    subject: PreparedDesign, v: Values, done: ModelRun, case: str | None
+    subject: PreparedDesign, v: Values, run: ModelRun, case: str | None
 ) -> DynamicsStudy | None:
-    """Dynamics of a design in the case of least stiffness; None without motion."""
-    motion = done.motion
+    """Dynamics of a design in the case of least stiffness."""
+    motion = run.motion
     index = v.cases.index(case) if case in v.cases else 0
-    stroke = float(np.squeeze(done.geometry.stroke))
-    weakest = of_case(done.places["weakest position"], index)
+    stroke = float(np.squeeze(run.geometry.stroke))
+    weakest = of_case(run.places["weakest position"], index)
     position = np.unique(np.append(np.linspace(0.0, stroke, 61), weakest))
     model = motion.model(position)
     along = motion.mode(model, position)
@@ -266,19 +252,23 @@ def study(
     whole = _damping_ratio(motion, there, index)
     ends = _damping_ratio(replace(motion, damping=0.0 * motion.damping), there, index)
     design = subject.design
-    shaken = _worst(done, "dynamic_stiffness", design)
-    asked = index if shaken is None else shaken[0]
+    shaken = _worst(run, "dynamic_stiffness", design)
+    response_index = index if shaken is None else shaken[0]
     places = {
         "cap end": 0.0,
-        "weakest position": of_case(done.places["weakest position"], asked),
+        "weakest position": of_case(run.places["weakest position"], response_index),
         "rod end": stroke,
     }
     models = {name: motion.model(np.array([[[x]]])) for name, x in places.items()}
-    loops = _loops(done, design)
-    polynomials = [(p, asked) for m in models.values() for p in (m.characteristic, m.mobile)]
-    polynomials += [(p, one.index) for one in loops for p in one.polynomials()]
+    loops = _loops(run, design)
+    polynomials = [
+        (p, response_index) for m in models.values() for p in (m.characteristic, m.mobile)
+    ]
+    polynomials += [
+        (p, position_loop.index) for position_loop in loops for p in position_loop.polynomials()
+    ]
     frequencies = _frequencies(polynomials)
-    told = [_loop(subject, v, done, one, frequencies) for one in loops]
+    loop_studies = [_loop(subject, v, run, position_loop, frequencies) for position_loop in loops]
     return DynamicsStudy(
         case=v.cases[index],
         mass=of_case(motion.mass, index),
@@ -291,15 +281,17 @@ def study(
         conductance_share=ends,
         poles=_poles(motion.model(there), index),
         frequencies=frequencies,
-        response_case=v.cases[asked],
+        response_case=v.cases[response_index],
         responses=tuple(
-            _response(motion, name, x, asked, models[name], frequencies)
+            _response(motion, name, x, response_index, models[name], frequencies)
             for name, x in places.items()
         ),
-        distributed=_distributed(v, design, done, asked, places["weakest position"], frequencies),
-        shaken=_shaken(design, done),
-        position_loop=told[0] if told else None,
-        other_loops=tuple(told[1:]),
+        distributed=_distributed(
+            v, design, run, response_index, places["weakest position"], frequencies
+        ),
+        shaken=_shaken(design, run),
+        position_loop=loop_studies[0] if loop_studies else None,
+        other_loops=tuple(loop_studies[1:]),
     )
 
 
@@ -308,37 +300,35 @@ def _damping_ratio(motion: Motion, there: Array, index: int) -> float:
     return of_case(motion.mode(motion.model(there), there).damping_ratio, index)
 
 
-def _loops(done: ModelRun, design: Design) -> list[_Loop]:
+def _loops(run: ModelRun, design: Design) -> list[_Loop]:
     """All loops that govern a margin or the bandwidth, with the governed metrics."""
     rows: dict[tuple[int, str], tuple[str, ...]] = {}
     for metric in ("gain_margin", "phase_margin", "bandwidth"):
-        row = _worst(done, metric, design)
+        row = _worst(run, metric, design)
         if row is not None:
             rows[row] = (*rows.get(row, ()), metric)
-    return [_Loop.of(done, *row, governs=metrics) for row, metrics in rows.items()]
+    return [_Loop.of(run, *row, governs=metrics) for row, metrics in rows.items()]
 
 
-def _shaken(design: Design, done: ModelRun) -> tuple[ShakenCase, ...]:
+def _shaken(design: Design, run: ModelRun) -> tuple[ShakenCase, ...]:
     """All load cases with excitation at their place of least dynamic stiffness."""
-    found = []
+    shaken = []
     for i, case in enumerate(design.load_cases):
         if case.frequency is None:
             continue
-        rows = done.computed.metrics["dynamic_stiffness"]
+        rows = run.computed.metrics["dynamic_stiffness"]
         place = min(rows, key=lambda name: of_case(rows[name], i))
-        phase = of_case(done.computed.metrics["dynamic_phase"][place], i)
-        found.append(ShakenCase(case.name, case.frequency, place, of_case(rows[place], i), phase))
-    return tuple(found)
+        phase = of_case(run.computed.metrics["dynamic_phase"][place], i)
+        shaken.append(ShakenCase(case.name, case.frequency, place, of_case(rows[place], i), phase))
+    return tuple(shaken)
 
 
 def _distributed(
-    v: Values, design: Design, done: ModelRun, index: int, position: float, frequencies: Array
+    v: Values, design: Design, run: ModelRun, index: int, position: float, frequencies: Array
 ) -> Array | None:
     if not design.lines:
         return None
-    return np.abs(
-        dynamic_stiffness(v, design, done.state, done.motion, index, position, frequencies)
-    )
+    return np.abs(dynamic_stiffness(v, design, run.state, run.motion, index, position, frequencies))
 
 
 def _row(value: Array, index: int, along: Array) -> Array:
@@ -348,27 +338,27 @@ def _row(value: Array, index: int, along: Array) -> Array:
 
 
 def _poles(model: linear.LinearActuator, index: int) -> tuple[Pole, ...]:
-    found = loop.poles(model=model)
-    found = found[min(index, found.shape[0] - 1), 0] if found.ndim == 3 else found.reshape(-1)
+    poles = loop.poles(model=model)
+    poles = poles[min(index, poles.shape[0] - 1), 0] if poles.ndim == 3 else poles.reshape(-1)
     rows = [
-        Pole(float(abs(one)) / (2 * pi), float(-one.real / abs(one)))
-        for one in found
-        if one.imag >= 0 and abs(one) > 0
+        Pole(float(abs(pole)) / (2 * pi), float(-pole.real / abs(pole)))
+        for pole in poles
+        if pole.imag >= 0 and abs(pole) > 0
     ]
     return tuple(sorted(rows, key=lambda pole: pole.frequency))
 
 
-def _worst(done: ModelRun, metric: str, design: Design) -> tuple[int, str] | None:
+def _worst(run: ModelRun, metric: str, design: Design) -> tuple[int, str] | None:
     """Case and place of a metric's least value; None if it was not computed."""
     shaken = [case.frequency is not None for case in design.load_cases]
     rows = [
         (float(value[i, 0]), i, place)
-        for place, value in done.computed.metrics.get(metric, {}).items()
+        for place, value in run.computed.metrics.get(metric, {}).items()
         for i in range(len(value))
         if metric != "dynamic_stiffness" or shaken[i]
     ]
-    known = [row for row in rows if np.isfinite(row[0])] or rows
-    return min(known)[1:] if known else None
+    finite = [row for row in rows if np.isfinite(row[0])] or rows
+    return min(finite)[1:] if finite else None
 
 
 def _frequencies(polynomials: list[tuple[Polynomial, int]]) -> Array:
@@ -376,27 +366,29 @@ def _frequencies(polynomials: list[tuple[Polynomial, int]]) -> Array:
 
     Each polynomial has its load case.
     """
-    found = [FREQUENCIES]
+    groups = [FREQUENCIES]
     for polynomial, index in polynomials:
         polynomial = polynomial[_integrators(polynomial) :]
         if len(polynomial) < 2:
             continue
         zeros = roots(polynomial)
         zeros = zeros.reshape(-1, zeros.shape[-1])
-        swings = zeros[min(index, len(zeros) - 1)]
-        swings = swings[swings.imag > 0]
-        size = np.abs(swings) / (2 * pi)
+        oscillating = zeros[min(index, len(zeros) - 1)]
+        oscillating = oscillating[oscillating.imag > 0]
+        size = np.abs(oscillating) / (2 * pi)
         near = (size > FREQUENCIES[0]) & (size < FREQUENCIES[-1])
-        width = np.clip(-swings.real / np.abs(swings), 1e-9, 0.05)
-        found.append((size * (1 + width * AROUND[:, None]))[:, near].reshape(-1))
-    grid = np.unique(np.concatenate(found))
+        width = np.clip(-oscillating.real / np.abs(oscillating), 1e-9, 0.05)
+        groups.append((size * (1 + width * AROUND[:, None]))[:, near].reshape(-1))
+    grid = np.unique(np.concatenate(groups))
     return grid[(grid >= FREQUENCIES[0]) & (grid <= FREQUENCIES[-1])]
 
 
 def _integrators(polynomial: Polynomial) -> int:
     """Number of zero roots of a polynomial: leading coefficients that are 0."""
-    known = (k for k, one in enumerate(polynomial) if np.any(np.asarray(one) != 0))
-    return next(known, len(polynomial))
+    nonzero = (
+        k for k, coefficient in enumerate(polynomial) if np.any(np.asarray(coefficient) != 0)
+    )
+    return next(nonzero, len(polynomial))
 
 
 def _response(
@@ -430,14 +422,14 @@ class _Loop:
     governs: tuple[str, ...]
 
     @classmethod
-    def of(cls, done: ModelRun, index: int, place: str, governs: tuple[str, ...]) -> _Loop:
+    def of(cls, run: ModelRun, index: int, place: str, governs: tuple[str, ...]) -> _Loop:
         """The loop of the place in the metrics' rows."""
         direction, _, where = place.partition(", ")
-        position = np.asarray(done.places[where])
-        position_open_loop = done.motion.position_loop(
+        position = np.asarray(run.places[where])
+        position_open_loop = run.motion.position_loop(
             position, extending=np.array(direction == "extending")
         )
-        gain = of_case(done.computed.metrics["position_gain"][""], index)
+        gain = of_case(run.computed.metrics["position_gain"][""], index)
         return cls(index, place, gain, position_open_loop, governs)
 
     def polynomials(self) -> list[Polynomial]:
@@ -451,30 +443,30 @@ class _Loop:
 
 
 def _loop(
-    subject: PreparedDesign, v: Values, done: ModelRun, at: _Loop, frequencies: Array
+    subject: PreparedDesign, v: Values, run: ModelRun, at: _Loop, frequencies: Array
 ) -> LoopStudy:
     """Frequency response of a loop, with its figures from the metrics."""
 
-    def of(metric: str) -> float:
-        return of_case(done.computed.metrics[metric][at.place], at.index)
+    def value_of(metric: str) -> float:
+        return of_case(run.computed.metrics[metric][at.place], at.index)
 
-    one, gain = at.open_loop, at.gain
-    limit = loop.ultimate_gain(loop=one)
-    figures = loop.margins(loop=one, gain=gain)
+    open_loop, gain = at.open_loop, at.gain
+    limit = loop.ultimate_gain(loop=open_loop)
+    figures = loop.margins(loop=open_loop, gain=gain)
     s = 2 * pi * frequencies.reshape(-1, 1, 1)
-    top, low = at_frequency(one.numerator, s), at_frequency(one.denominator, s)
+    top, low = at_frequency(open_loop.numerator, s), at_frequency(open_loop.denominator, s)
     response = gain * top.complex / low.complex
     response = response[:, min(at.index, response.shape[1] - 1), 0]
-    crossover, width = of_case(figures.crossover, at.index), of("bandwidth")
+    crossover, width = of_case(figures.crossover, at.index), value_of("bandwidth")
     return LoopStudy(
         case=v.cases[at.index],
         place=at.place,
         gain=gain,
         tuned=subject.design.control is None or subject.design.control.gain is None,
-        ultimate_gain=of("ultimate_gain"),
+        ultimate_gain=value_of("ultimate_gain"),
         ultimate_frequency=of_case(limit.frequency, at.index),
-        gain_margin=of("gain_margin"),
-        phase_margin=of("phase_margin"),
+        gain_margin=value_of("gain_margin"),
+        phase_margin=value_of("phase_margin"),
         crossover=crossover if np.isfinite(crossover) else None,
         bandwidth=width if np.isfinite(width) and width > 0 else None,
         governs=at.governs,

@@ -47,10 +47,10 @@ class RetentionNumbers:
 
     def get(self, key: str, default: Array) -> Array:
         """The number of a key, or `default` if the design does not state it."""
-        found: object = self._section
+        node: object = self._section
         for name in key.split("."):
-            found = getattr(found, name, None)
-        return default if found is None else found
+            node = getattr(node, name, None)
+        return default if node is None else node
 
     def __contains__(self, key: object) -> bool:
         return self.get(str(key), None) is not None
@@ -118,28 +118,28 @@ class Groove:
     pieces: tuple[GroovePart, ...]
 
 
-def _element(v: Values, place: str, path: str, element: SealElement) -> Groove:
+def _element_groove(v: Values, place: str, path: str, element: SealElement) -> Groove:
     sizes = {key: v[path + key] for key in ("section", "squeeze", *element.seal_type.needed)}
-    own = element.seal_type.groove(sizes)
-    default = own.width
-    pieces = [GroovePart(element.compound, piece.area, piece.depth) for piece in own.pieces]
+    base_groove = element.seal_type.groove(sizes)
+    default = base_groove.width
+    pieces = [GroovePart(element.compound, piece.area, piece.depth) for piece in base_groove.pieces]
     if element.back_ups:
         assert element.back_up_material is not None
         thickness = v[f"{path}back_up_thickness"]
         default = gland.back_up_groove_width(
             groove_width=default, thickness=thickness, count=element.back_ups
         )
-        area = element.back_ups * thickness * own.depth
-        pieces.append(GroovePart(element.back_up_material, area, own.depth / 2))
+        area = element.back_ups * thickness * base_groove.depth
+        pieces.append(GroovePart(element.back_up_material, area, base_groove.depth / 2))
     return Groove(
         place=place,
         path=path,
         role="element",
         material=element.compound,
         section=sizes["section"],
-        gland_depth=own.depth,
+        gland_depth=base_groove.depth,
         width=v.get(f"{path}groove_width", default),
-        ring_width=own.ring_width,
+        ring_width=base_groove.ring_width,
         count=v[f"{path}count"],
         pieces=tuple(pieces),
     )
@@ -149,11 +149,11 @@ def grooves(v: Values, design: Design, name: Literal["piston", "rod"]) -> tuple[
     """All grooves of a place, from the pressure side outwards: guide, elements, wiper."""
     seal: Seal = getattr(design.seals, name)
     at = f"seals.{name}."
-    found = []
+    place_grooves = []
     if seal.guide is not None:
         path = f"{at}guide."
         depth = v[f"{path}thickness"]
-        found.append(
+        place_grooves.append(
             Groove(
                 place=f"{name} guide",
                 path=path,
@@ -167,14 +167,16 @@ def grooves(v: Values, design: Design, name: Literal["piston", "rod"]) -> tuple[
                 pieces=(GroovePart(seal.guide.material, depth * v[f"{path}width"], depth / 2),),
             )
         )
-    found.append(_element(v, f"{name} seal", at, seal))
+    place_grooves.append(_element_groove(v, f"{name} seal", at, seal))
     if seal.secondary is not None:
-        found.append(_element(v, f"{name} secondary seal", f"{at}secondary.", seal.secondary))
+        place_grooves.append(
+            _element_groove(v, f"{name} secondary seal", f"{at}secondary.", seal.secondary)
+        )
     if seal.wiper is not None:
         path = f"{at}wiper."
         section, width = v[f"{path}section"], v[f"{path}groove_width"]
         depth = gland.gland_depth(squeeze=v[f"{path}squeeze"], section=section)
-        found.append(
+        place_grooves.append(
             Groove(
                 place=f"{name} wiper",
                 path=path,
@@ -188,10 +190,10 @@ def grooves(v: Values, design: Design, name: Literal["piston", "rod"]) -> tuple[
                 pieces=(GroovePart(seal.wiper.compound, section * width, depth / 2),),
             )
         )
-    return tuple(found)
+    return tuple(place_grooves)
 
 
-def taken(grooves: Sequence[Groove]) -> tuple[Array, Array, Array]:
+def groove_totals(grooves: Sequence[Groove]) -> tuple[Array, Array, Array]:
     """Total axial length of all grooves, their number, and the largest depth."""
     length: Array = 0.0
     count: Array = 0.0
@@ -317,8 +319,8 @@ def end_at(design: Design, sizes: JointSizes, g: Geometry) -> End:
 def lands(geometry: Geometry, thread_radius: Array) -> dict[str, Array]:
     """Walls that must stay positive: each is a constraint of the optimiser."""
     g = geometry
-    piston_length, piston_count, piston_depth = taken(g.piston_grooves)
-    head_length, head_count, head_depth = taken(g.rod_grooves)
+    piston_length, piston_count, piston_depth = groove_totals(g.piston_grooves)
+    head_length, head_count, head_depth = groove_totals(g.rod_grooves)
     bore = {"geometry_rod_bore": g.rod_inner_diameter} if g.rod_thicknesses else {}
     between = g.barrel_length - 2 * g.fit.length
     skirts = {"geometry_skirts": between} if g.has_skirts else {}
@@ -336,7 +338,7 @@ def lands(geometry: Geometry, thread_radius: Array) -> dict[str, Array]:
     )
 
 
-def makeable(
+def manufacture_margins(
     v: Values, design: Design, materials: Mapping[str, Material]
 ) -> tuple[dict[str, Array], dict[str, Array]]:
     """Margins to the process limits, by layer of barrel and rod.
@@ -344,16 +346,16 @@ def makeable(
     Winding angle minus the smallest feasible angle [rad], and layer thickness over the smallest
     feasible thickness, minus one. A layer at exactly 0 deg is laid along the mandrel, not wound.
     """
-    angles: dict[str, Array] = {}
-    spare: dict[str, Array] = {}
-    for path, entry in _layers(design):
-        known, at = materials[entry.material].numbers, f"materials.{entry.material}."
-        laid = entry.angle == 0 and f"{path}.angle" not in (*design.variables, *v.varied)
-        if known.get("minimum_angle", 0.0) > 0 and not laid:
-            angles[path] = absolute(v[f"{path}.angle"]) - v[f"{at}minimum_angle"]
-        if known.get("minimum_thickness", 0.0) > 0:
-            spare[path] = v[f"{path}.thickness"] / v[f"{at}minimum_thickness"] - 1
-    return angles, spare
+    angle_margins: dict[str, Array] = {}
+    thickness_margins: dict[str, Array] = {}
+    for path, ply in _layers(design):
+        numbers, at = materials[ply.material].numbers, f"materials.{ply.material}."
+        laid = ply.angle == 0 and f"{path}.angle" not in (*design.variables, *v.varied)
+        if numbers.get("minimum_angle", 0.0) > 0 and not laid:
+            angle_margins[path] = absolute(v[f"{path}.angle"]) - v[f"{at}minimum_angle"]
+        if numbers.get("minimum_thickness", 0.0) > 0:
+            thickness_margins[path] = v[f"{path}.thickness"] / v[f"{at}minimum_thickness"] - 1
+    return angle_margins, thickness_margins
 
 
 def _layers(design: Design) -> Iterator[tuple[str, Ply]]:

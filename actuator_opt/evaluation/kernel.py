@@ -1,4 +1,4 @@
-"""All metrics of one or many designs from one pass over the models, and their governing values.
+"""All metrics of one or many designs from one run of the models, and their governing values.
 
 The governing value of a metric, over load cases and places, is defined here only: tables, JSON,
 sweeps, fronts, the optimiser and reports show this value. Oil damping, leakage, flow and line
@@ -24,6 +24,7 @@ from . import (
     circuit,
     duty,
     film,
+    film_tables,
     geometry as geometry_module,
     linkage as joint,
     motion,
@@ -38,7 +39,7 @@ from . import (
 )
 from .barrel import Wall
 from .circuit import wall_compliance
-from .film import FilmTable, Key, Running
+from .film_tables import FilmTable, Key, Running
 from .geometry import Geometry
 from .limits import ENDS, MaterialValues, MetricArrays, by_case, margin
 from .plugin import Plugin, with_own
@@ -212,7 +213,7 @@ class PreparedDesign:
     """Knock-downs of every strength, by (material, property, at the coldest)."""
     plugins: tuple[Plugin, ...] = ()
     reserves: Mapping[str, float] = field(default_factory=dict)
-    """Margins that a search keeps beyond limits, by name of the limit."""
+    """Extra margin that a robust search requires, by name of the limit."""
     aims: Mapping[str, Sense] = field(default_factory=dict)
     """Objectives of a front, with the better sense of each; empty: as in the design."""
     lenient: bool = False
@@ -243,7 +244,7 @@ class PreparedDesign:
 
 @dataclass(frozen=True, slots=True)
 class ModelRun:
-    """A pass over the models, with intermediate results for the Evaluation."""
+    """Results of all models, with the intermediate results that an Evaluation reports."""
 
     computed: MetricArrays
     geometry: Geometry
@@ -251,7 +252,7 @@ class ModelRun:
     wall: Wall
     rings: tuple[Ring, ...]
     rod: RodSection
-    held: strength.Held | None
+    joint: strength.LoadedJoint | None
     beam: Beam
     springs: springs.Springs
     motion: motion.Motion
@@ -303,7 +304,7 @@ class Statics:
 
     base: Base
     rod: RodSection
-    held: strength.Held | None
+    joint: strength.LoadedJoint | None
     mass_parts: dict[str, Array]
     breakaway: Array
     branches: dict[circuit.Chamber, circuit.ChamberLines]
@@ -321,15 +322,17 @@ def statics(
 ) -> Statics:
     """All metrics without a search along the stroke, stored in `out`."""
     design = subject.design
-    found = base(subject, v, implicit)
-    stock, g, case_state = found.stock, found.geometry, found.state
-    barrel, rings = found.wall, found.rings
+    basis = base(subject, v, implicit)
+    stock, g, case_state = basis.stock, basis.geometry, basis.state
+    barrel, rings = basis.wall, basis.rings
     state.compute(design.fluid, stock, case_state, out)
     out.put("bore_growth", barrel.growth)
     tables = _films(subject)
-    there, back = (sealing.films_of(tables, rings, stroke, len(v.cases)) for stroke in STROKES)
-    friction = sealing.compute(v, design, stock, g, case_state, barrel, rings, there, out)
-    sealing.compute_film(g, case_state, there, back, out)
+    drive_films, return_films = (
+        sealing.films_of(tables, rings, stroke, len(v.cases)) for stroke in STROKES
+    )
+    friction = sealing.compute(v, design, stock, g, case_state, barrel, rings, drive_films, out)
+    sealing.compute_film(g, case_state, drive_films, return_films, out)
     net = _forces(g, case_state, friction, out)
     joint.compute(design, case_state.joint, case_state.positions, net, out)
     rod = rods.derive(v, design, stock, g)
@@ -339,20 +342,20 @@ def statics(
     branches = circuit.branches(v, design, case_state)
     budget = springs.springs(v, design, g, case_state, barrel, rod, friction.breakaway, branches)
     damping = compute_damping(g, case_state, friction, out)
-    leakage = compute_leakage(v, design, g, case_state, there.get("piston seal"), out)
+    leakage = compute_leakage(v, design, g, case_state, drive_films.get("piston seal"), out)
     compute_flow(v, design, g, case_state, out)
     beam = beam_module.derive(
         v, design, g, case_state, barrel, rod, parts, critical_load=implicit.critical_load
     )
-    held = strength.held(v, design, stock, g, barrel)
-    strength.compute(v, design, stock, g, case_state, barrel, rod, beam, held, out)
-    stop = joint.at_stop(case_state.asked, case_state.push)
+    loaded_joint = strength.joint_under_load(v, design, stock, g, barrel)
+    strength.compute(v, design, stock, g, case_state, barrel, rod, beam, loaded_joint, out)
+    stop = joint.at_stop(case_state.demands, case_state.push)
     stop = replace(stop, mass=_moving(stop.mass, parts))
-    duty.compute(v, design, stock, g, case_state, barrel, rod, held, stop, net, out)
+    duty.compute(v, design, stock, g, case_state, barrel, rod, loaded_joint, stop, net, out)
     thread = v["rod.thread.diameter"] if design.rod.thread is not None else g.rod_diameter
     for name, value in geometry_module.lands(g, thread / 2).items():
         out.put(name, value)
-    strength.own(held, out)
+    strength.joint_metrics(loaded_joint, out)
     if not g.rod_thicknesses:
         out.skip("geometry_rod_bore", "the rod has no layers")
     if not g.has_skirts:
@@ -361,14 +364,14 @@ def statics(
     out.put("barrel_length", g.barrel_length)
     out.put("closed_length", g.closed_length)
     return Statics(
-        base=found,
+        base=basis,
         rod=rod,
-        held=held,
+        joint=loaded_joint,
         mass_parts=parts,
         breakaway=friction.breakaway,
         branches=branches,
         springs=budget,
-        moving=_moving(case_state.asked[joint.WORST].mass, parts),
+        moving=_moving(case_state.demands[joint.WORST].mass, parts),
         beam=beam,
         damping=damping,
         leakage=leakage,
@@ -392,10 +395,10 @@ def compute(subject: PreparedDesign, v: Values, wanted: Container[str] | None = 
         )
         places = motion.compute(v, design, linear, wanted, out)
         for plugin in subject.plugins:
-            answer = plugin.call(v, out.metrics, lenient=subject.lenient)
-            out.metrics[plugin.name] = {"": answer.value}
-            if answer.raised:
-                out.skip(plugin.name, answer.raised)
+            plugin_value = plugin.call(v, out.metrics, lenient=subject.lenient)
+            out.metrics[plugin.name] = {"": plugin_value.value}
+            if plugin_value.raised:
+                out.skip(plugin.name, plugin_value.raised)
     return ModelRun(
         computed=out,
         geometry=s.base.geometry,
@@ -403,7 +406,7 @@ def compute(subject: PreparedDesign, v: Values, wanted: Container[str] | None = 
         wall=s.base.wall,
         rings=s.base.rings,
         rod=s.rod,
-        held=s.held,
+        joint=s.joint,
         beam=s.beam,
         springs=s.springs,
         motion=linear,
@@ -421,29 +424,29 @@ def _moving(load: Array, parts: dict[str, Array]) -> Array:
 def _at_stops(
     v: Values,
     design: Design,
-    found: Base,
+    basis: Base,
     rod: RodSection,
     breakaway: Array,
     parts: dict[str, Array],
     out: MetricArrays,
 ) -> None:
     """Stiffness and frequency with the load of a joint at either stop, one row each."""
-    s = found.state
-    both = joint.open_cases(v, design, s.positions)
-    if not both.any():
+    s = basis.state
+    differing = joint.open_cases(v, design, s.positions)
+    if not differing.any():
         return
     for end in ENDS:
-        held = state.holding(v, design, found.stock, found.geometry, s, end)
-        branches = circuit.branches(v, design, held)
+        stop_state = state.holding(v, design, basis.stock, basis.geometry, s, end)
+        branches = circuit.branches(v, design, stop_state)
         budget = springs.springs(
-            v, design, found.geometry, held, found.wall, rod, breakaway, branches
+            v, design, basis.geometry, stop_state, basis.wall, rod, breakaway, branches
         )
-        own = MetricArrays()
-        springs.compute(budget, _moving(s.asked[end].mass, parts), own)
+        stop_metrics = MetricArrays()
+        springs.compute(budget, _moving(s.demands[end].mass, parts), stop_metrics)
         for name in AT_STOPS:
-            out.metrics[name][f"loaded as {end}"] = own.metrics[name][""]
-            out.applies_at[name, f"loaded as {end}"] = both
-            out.applies_at[name, ""] = ~both
+            out.metrics[name][f"loaded as {end}"] = stop_metrics.metrics[name][""]
+            out.applies_at[name, f"loaded as {end}"] = differing
+            out.applies_at[name, ""] = ~differing
 
 
 @np.errstate(all="ignore")
@@ -455,7 +458,7 @@ def without_films(subject: PreparedDesign) -> PreparedDesign:
     if not film.films_asked(subject.design):
         return subject
     rings = base(subject, subject.values()).rings
-    return replace(subject, films=film.unsolved(subject.design, rings))
+    return replace(subject, films=film_tables.unsolved(subject.design, rings))
 
 
 def _films(subject: PreparedDesign) -> dict[Key, FilmTable]:
@@ -464,14 +467,14 @@ def _films(subject: PreparedDesign) -> dict[Key, FilmTable]:
     if not film.films_asked(design):
         return {}
     if not subject.films:
-        found = film.tables(design, subject.values, lambda v: base(subject, v).rings)
-        subject.films.update(found)
+        tables = film_tables.tables(design, subject.values, lambda v: base(subject, v).rings)
+        subject.films.update(tables)
     return subject.films
 
 
 def _manufacture(v: Values, subject: PreparedDesign, out: MetricArrays) -> None:
     """Margins to the limits of ply manufacture."""
-    angles, spare = geometry_module.makeable(v, subject.design, subject.materials)
+    angles, spare = geometry_module.manufacture_margins(v, subject.design, subject.materials)
     for name, values, limit in (
         ("winding_margin", angles, "smallest angle"),
         ("ply_thickness_margin", spare, "smallest thickness"),
@@ -499,7 +502,9 @@ def _forces(g: Geometry, s: LoadState, friction: Friction, out: MetricArrays) ->
     net = where(s.push, push, pull)
     driven = where(s.push, g.area_a, g.area_b)
     out.put("efficiency", forces.efficiency(force=net, pressure=s.driven_pressure, area=driven))
-    out.put("power", forces.power(force=minimum(net, s.force), speed=s.asked[joint.WORKING].speed))
+    out.put(
+        "power", forces.power(force=minimum(net, s.force), speed=s.demands[joint.WORKING].speed)
+    )
     return net
 
 
@@ -540,15 +545,15 @@ def extreme(
     NaN if any value is missing, None if the metric is not computed.
     """
     pick = maximum if sense == "max" else minimum
-    found: Array | None = None
+    governing_value: Array | None = None
     for place, array in computed.metrics.get(metric, {}).items():
         for _, value in by_case(computed, metric, array, cases, place):
-            if found is None:
-                found = value
+            if governing_value is None:
+                governing_value = value
             else:
-                unknown = np.isnan(found) | np.isnan(value)
-                found = where(unknown, np.nan, pick(found, value))
-    return found
+                unknown = np.isnan(governing_value) | np.isnan(value)
+                governing_value = where(unknown, np.nan, pick(governing_value, value))
+    return governing_value
 
 
 def governing(metric: str, computed: MetricArrays, v: Values, subject: PreparedDesign) -> Array:
@@ -558,11 +563,11 @@ def governing(metric: str, computed: MetricArrays, v: Values, subject: PreparedD
     """
     sense = sense_of(metric, subject)
     if sense is not None:
-        found = extreme(computed, metric, v.cases, sense)
-        return np.full(1, np.nan) if found is None else found
+        value = extreme(computed, metric, v.cases, sense)
+        return np.full(1, np.nan) if value is None else value
     least = extreme(computed, metric, v.cases, "min")
     most = extreme(computed, metric, v.cases, "max")
     if least is None or most is None:
         return np.full(1, np.nan)
-    lowest, highest = (v[f"requirements.{metric}.{one}"] for one in ("min", "max"))
+    lowest, highest = (v[f"requirements.{metric}.{side}"] for side in ("min", "max"))
     return where(margin(least, lowest, "min") <= margin(most, highest, "max"), least, most)

@@ -71,7 +71,7 @@ def _case_limit(case: LoadCase) -> MetricLimit:
     """The force of a load case, or its torque if it acts through the linkage."""
     at = f"load_cases[{case.name}]"
     if case.through_linkage:
-        placed = case.angle is not None or case.position != "worst"
+        at_position = case.angle is not None or case.position != "worst"
         return MetricLimit(
             name=f"torque[{case.name}]",
             metric="joint_torque_min",
@@ -80,7 +80,7 @@ def _case_limit(case: LoadCase) -> MetricLimit:
             origin="case",
             case=case.name,
             source="load case",
-            places=(OWN_PLACE,) if placed else ENDS,
+            places=(OWN_PLACE,) if at_position else ENDS,
         )
     path, lever = f"{at}.force", None
     if case.force is None:
@@ -146,12 +146,12 @@ def geometry_limits() -> list[MetricLimit]:
 
 def all_limits(design: Design, plugins: Iterable[Plugin] = ()) -> list[MetricLimit]:
     """All limits of a design: requirements, check list, geometry and user constraints."""
-    own = [
+    constraints = [
         MetricLimit(plugin.name, plugin.name, plugin.sense, constant=0.0, source="user constraint")
         for plugin in plugins
         if plugin.sense is not None
     ]
-    return requirement_limits(design) + own + check_limits(design) + geometry_limits()
+    return requirement_limits(design) + constraints + check_limits(design) + geometry_limits()
 
 
 def margin(value: Array, limit: Array, sense: Sense) -> Array:
@@ -282,13 +282,15 @@ def allowances(
     """
     factors = {}
     for name, material in materials.items():
-        own = {key: numbers[f"materials.{name}.{key}"] for key in material.numbers}
+        stated = {key: numbers[f"materials.{name}.{key}"] for key in material.numbers}
         for key, entry in material.properties.items():
             if "strength" not in key:
                 continue
             for cold, temperature in zip((True, False), temperatures, strict=True):
                 factors[name, key, cold] = float(
-                    allowable_factor(own, key, basis=entry.basis, temperature=temperature, wet=wet)
+                    allowable_factor(
+                        stated, key, basis=entry.basis, temperature=temperature, wet=wet
+                    )
                 )
     return factors
 

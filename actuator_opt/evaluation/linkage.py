@@ -128,10 +128,10 @@ def demand(v: Values, design: Design, lever_arm: Array = None) -> Demand:
             speeds.append(v[at + "speed"])
     mass = v["load.mass"]
     if lever_arm is not None:
-        felt = linkage.reflected_inertia(
+        reflected = linkage.reflected_inertia(
             inertia=v["load.inertia"], lever_arm=lever_arm, lever_slope=0.0
         )
-        mass = mass + felt.mass
+        mass = mass + reflected.mass
     return Demand(stacked(forces), stacked(speeds), mass)
 
 
@@ -140,24 +140,24 @@ def demands(
 ) -> dict[str, Demand]:
     """Demand of every load case: worst, where its force is largest, and at both stops."""
     if joint is None:
-        asked = demand(v, design)
-        return {WORST: asked, WORKING: asked}
-    found = arms(joint, positions)
-    stops = {end: demand(v, design, found[end]) for end in ENDS}
-    working = demand(v, design, minimum(*(found[end] for end in ENDS)))
-    fastest = demand(v, design, found[LARGEST]).speed
+        case_demand = demand(v, design)
+        return {WORST: case_demand, WORKING: case_demand}
+    lever_arms = arms(joint, positions)
+    stops = {end: demand(v, design, lever_arms[end]) for end in ENDS}
+    working = demand(v, design, minimum(*(lever_arms[end] for end in ENDS)))
+    fastest = demand(v, design, lever_arms[LARGEST]).speed
     return {WORST: replace(working, speed=fastest), WORKING: working, **stops}
 
 
-def at_stop(asked: dict[str, Demand], push: Array) -> Demand:
+def at_stop(demands: dict[str, Demand], push: Array) -> Demand:
     """Demand of every load case at the stop in its direction."""
-    if ENDS[0] not in asked:
-        return asked[WORST]
-    back, out = (asked[end] for end in ENDS)
+    if ENDS[0] not in demands:
+        return demands[WORST]
+    retracted, extended = (demands[end] for end in ENDS)
     return Demand(
-        where(push, out.force, back.force),
-        where(push, out.speed, back.speed),
-        where(push, out.mass, back.mass),
+        where(push, extended.force, retracted.force),
+        where(push, extended.speed, retracted.speed),
+        where(push, extended.mass, retracted.mass),
     )
 
 

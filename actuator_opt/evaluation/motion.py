@@ -201,16 +201,16 @@ def _dynamic_stiffness(
     positions: Array,
     out: MetricArrays,
 ) -> None:
-    shaken = np.array([case.frequency is not None for case in design.load_cases])
-    if not shaken.any():
+    excited = np.array([case.frequency is not None for case in design.load_cases])
+    if not excited.any():
         for name in ("dynamic_stiffness", "dynamic_phase"):
             out.skip(name, "no load case with excitation: add load_cases[NAME].frequency")
         return
     parts = linear.dynamic_stiffness(model=model, frequency=v.case("frequency", 1.0))
     values = magnitude(parts.real, parts.imaginary)
-    out.put("dynamic_stiffness", _by_place(names, values, positions), cases=shaken)
+    out.put("dynamic_stiffness", _by_place(names, values, positions), cases=excited)
     phase = angle(parts.imaginary, parts.real)
-    out.put("dynamic_phase", _by_place(names, phase, positions), cases=shaken)
+    out.put("dynamic_phase", _by_place(names, phase, positions), cases=excited)
 
 
 def _position_loop(
@@ -245,10 +245,10 @@ def _position_loop(
     put("gain_margin", margin)
     out.put("position_gain", gain)
     if wanted is None or "phase_margin" in wanted or "bandwidth" in wanted:
-        found = loop.margins(loop=position_open_loop, gain=gain)
-        put("phase_margin", where(real(margin) > 1, found.phase_margin, -found.phase_margin))
+        margins = loop.margins(loop=position_open_loop, gain=gain)
+        put("phase_margin", where(real(margin) > 1, margins.phase_margin, -margins.phase_margin))
         # an unstable loop has no bandwidth
-        put("bandwidth", where(real(margin) > 1, found.bandwidth, 0.0))
+        put("bandwidth", where(real(margin) > 1, margins.bandwidth, 0.0))
 
 
 LEAST_GAIN = 1e-3
@@ -283,8 +283,8 @@ def warnings(
         )
     if "ultimate_gain" in out.metrics:
         yield from _loop(v, motion, out)
-        own = design.valve
-        if own is not None and own.tank_leakage_drop not in (None, own.leakage_drop):
+        valve = design.valve
+        if valve is not None and valve.tank_leakage_drop not in (None, valve.leakage_drop):
             yield (
                 "ultimate_gain",
                 "tank edges and supply edges leak differently: the holding pressures assume equal "
@@ -317,9 +317,8 @@ def _loop(v: Values, motion: Motion, out: MetricArrays) -> Iterable[tuple[str, s
     if near:
         yield (
             "bandwidth",
-            f"at {near} of {len(widths)} places the closed loop falls to -3 dB only at or "
-            "above the "
-            "load resonance: there it oscillates and does not follow the signal",
+            f"at {near} of {len(widths)} places the closed loop falls to -3 dB only at or above "
+            "the load resonance: there it oscillates and does not follow the signal",
         )
     least = min(float(np.min(np.real(x))) for x in out.metrics["ultimate_gain"].values())
     margin = min(float(np.min(np.real(x))) for x in out.metrics["gain_margin"].values())
@@ -357,8 +356,8 @@ def _ports(
                 "the holding valve; write end: valve to include it",
             )
     slow = np.ravel(np.real(state.speed)) == 0
-    shaken = [case.frequency is not None for case in design.load_cases]
-    if motion.throttles and np.any(slow & np.array(shaken)):
+    excited = [case.frequency is not None for case in design.load_cases]
+    if motion.throttles and np.any(slow & np.array(excited)):
         yield (
             "dynamic_stiffness",
             "a throttle in a case with excitation but no speed: taken at creeping flow",
@@ -376,17 +375,17 @@ def _ports(
 
 def _lines(design: Design, motion: Motion, out: MetricArrays) -> Iterable[tuple[str, str]]:
     """Lines too long for a lumped element at the frequencies of interest."""
-    asked = {f"load case {case.name}": case.frequency or 0.0 for case in design.load_cases}
+    frequencies = {f"load case {case.name}": case.frequency or 0.0 for case in design.load_cases}
     if motion.spool is not None:
-        asked["the valve's spool"] = float(np.max(np.real(motion.spool[0])))
-    what, fastest = max(asked.items(), key=lambda one: one[1])
+        frequencies["the valve's spool"] = float(np.max(np.real(motion.spool[0])))
+    source, fastest = max(frequencies.items(), key=lambda item: item[1])
     for place, resonance in out.metrics.get("line_resonance", {}).items():
         limit = 4 * LONGEST * float(np.min(np.real(resonance)))
         if fastest > limit:
             metric = "dynamic_stiffness" if "dynamic_stiffness" in out.metrics else "bandwidth"
             yield (
                 metric,
-                f"{place}: a single lumped element, valid to {limit:.0f} Hz, but {what} has "
+                f"{place}: a single lumped element, valid to {limit:.0f} Hz, but {source} has "
                 f"{fastest:.4g} Hz: the result is rough, the report compares it with transmission "
                 "lines",
             )

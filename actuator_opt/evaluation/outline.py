@@ -19,8 +19,8 @@ from ..base.numeric import Array
 from ..design.material import Material
 from ..design.model import Design
 from ..joints.joint import EndDimensions, EndSpan, Polygon, rectangle
-from . import geometry as geometry_module, outline
-from .geometry import Geometry, Groove, RetentionNumbers, end_at, end_of, joint_of, taken
+from . import geometry as geometry_module
+from .geometry import Geometry, Groove, RetentionNumbers, end_at, end_of, groove_totals, joint_of
 from .kernel import PreparedDesign
 from .result import Outline
 from .rods import end_material
@@ -35,7 +35,7 @@ def _grooves(
     start: float, length: float, grooves: Sequence[Groove]
 ) -> Iterator[tuple[Groove, float, float]]:
     """Axial intervals of all grooves in order, evenly spaced over a part."""
-    used, count, _ = taken(grooves)
+    used, count, _ = groove_totals(grooves)
     land = (length - float(used)) / (round(float(count)) + 1)
     x = start + land
     for groove in grooves:
@@ -318,8 +318,8 @@ class Template:
 
     def at(self, dimensions: Array) -> Array:
         """The numbers (numbers, designs) at dimensions (dimensions, designs)."""
-        found: Array = self.numbers[:, None] + self.slopes @ (dimensions - self.origin[:, None])
-        return found
+        numbers: Array = self.numbers[:, None] + self.slopes @ (dimensions - self.origin[:, None])
+        return numbers
 
 
 @dataclass(frozen=True)
@@ -356,34 +356,35 @@ def shapes(
     templates: list[Template] = []
     which = np.full(count, -1)
     moving = np.flatnonzero(np.ptp(dimensions, axis=1) > 0)
-    left = [k for k in range(count) if np.isfinite(actual[k][1]).all()]
-    while left and len(templates) < MOST:
-        first = left[0]
+    unmatched = [k for k in range(count) if np.isfinite(actual[k][1]).all()]
+    while unmatched and len(templates) < MOST:
+        first = unmatched[0]
         template = _template(parts[first], actual[first], moving)
-        told = template.at(dimensions[:, left])
-        like = _form(template.outlines)
+        predicted = template.at(dimensions[:, unmatched])
+        form = _form(template.outlines)
         fits = [
-            _form(actual[k][0]) == like and bool(np.abs(told[:, j] - actual[k][1]).max() < SAME)
-            for j, k in enumerate(left)
+            _form(actual[k][0]) == form
+            and bool(np.abs(predicted[:, j] - actual[k][1]).max() < SAME)
+            for j, k in enumerate(unmatched)
         ]
-        which[[k for k, fit in zip(left, fits, strict=True) if fit]] = len(templates)
+        which[[k for k, fit in zip(unmatched, fits, strict=True) if fit]] = len(templates)
         templates.append(template)
-        left = [k for k, fit in zip(left, fits, strict=True) if not fit]
+        unmatched = [k for k, fit in zip(unmatched, fits, strict=True) if not fit]
     return Shapes(dimensions, tuple(templates), which)
 
 
 def same_dimensions(
-    one: tuple[PreparedDesign, Mapping[str, Array]],
-    other: tuple[PreparedDesign, Mapping[str, Array]],
+    first: tuple[PreparedDesign, Mapping[str, Array]],
+    second: tuple[PreparedDesign, Mapping[str, Array]],
     count: int,
 ) -> bool:
     """Whether two prepared designs with their varied inputs have the same dimensions."""
-    found = []
-    for subject, varied in (one, other):
+    dimensions = []
+    for subject, varied in (first, second):
         geometry = geometry_module.derive(subject.values(varied), subject.design)
-        found.append([np.broadcast_to(value, (count,)) for value in _leaves(geometry)])
-    return len(found[0]) == len(found[1]) and bool(
-        np.allclose(found[0], found[1], rtol=0.0, atol=SAME, equal_nan=True)
+        dimensions.append([np.broadcast_to(value, (count,)) for value in _leaves(geometry)])
+    return len(dimensions[0]) == len(dimensions[1]) and bool(
+        np.allclose(dimensions[0], dimensions[1], rtol=0.0, atol=SAME, equal_nan=True)
     )
 
 
@@ -401,14 +402,14 @@ class _Parts:
         values = self.dimensions.astype(float)
         if moved is not None:
             values[moved] += STEP
-        some = iter(values.tolist())
-        one = _changed(self.geometry, lambda _: next(some))
+        dimension_values = iter(values.tolist())
+        geometry = _changed(self.geometry, lambda _: next(dimension_values))
         design = self.subject.design
-        found = outline.outlines(design, self.subject.materials, one)
-        found = tuple(part for part in found if part.part not in self.hidden)
-        numbers = [c for part in found for shape in part.polygons for point in shape for c in point]
-        lengths = outline.lengths(design, one)
-        return found, np.array([*numbers, *(lengths[name] for name in LENGTHS)])
+        drawn = outlines(design, self.subject.materials, geometry)
+        drawn = tuple(part for part in drawn if part.part not in self.hidden)
+        numbers = [c for part in drawn for shape in part.polygons for point in shape for c in point]
+        values_of = lengths(design, geometry)
+        return drawn, np.array([*numbers, *(values_of[name] for name in LENGTHS)])
 
 
 def _template(parts: _Parts, drawn: tuple[tuple[Outline, ...], Array], moving: Array) -> Template:
@@ -428,14 +429,14 @@ def _form(outlines: tuple[Outline, ...]) -> list[object]:
 
 def _leaves(geometry: Geometry) -> list[Array]:
     """All numbers of the dimensions, in a fixed order."""
-    found: list[Array] = []
+    leaves: list[Array] = []
 
     def keep(value: Array) -> Array:
-        found.append(value)
+        leaves.append(value)
         return value
 
     _changed(geometry, keep)
-    return found
+    return leaves
 
 
 def _changed(geometry: Geometry, change: _Change) -> Geometry:
@@ -444,7 +445,7 @@ def _changed(geometry: Geometry, change: _Change) -> Geometry:
     for field in fields(Geometry):
         value = getattr(geometry, field.name)
         if isinstance(value, tuple):
-            values[field.name] = tuple(_changed_one(one, change) for one in value)
+            values[field.name] = tuple(_changed_entry(entry, change) for entry in value)
         elif isinstance(value, EndDimensions):
             values[field.name] = _changed_fit(value, change)
         else:
@@ -458,11 +459,11 @@ def _changed_fit(fit: EndDimensions, change: _Change) -> EndDimensions:
         radius=change(fit.radius),
         length=change(fit.length),
         wall=change(fit.wall),
-        own=tuple(change(one) for one in fit.own),
+        own=tuple(change(size) for size in fit.own),
     )
 
 
-def _changed_one(value: Groove | Array, change: _Change) -> Groove | Array:
+def _changed_entry(value: Groove | Array, change: _Change) -> Groove | Array:
     if not isinstance(value, Groove):
         return change(value)
     return replace(value, **{name: change(getattr(value, name)) for name in _GROOVE})

@@ -6,7 +6,7 @@ cure, and hot, where the matrix is weakest. Each `Climate` has the allowables of
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,13 +22,14 @@ from ..models.strength_modes import PlyRatios, PlyStrength, Stress
 from .limits import MaterialValues
 from .values import Values
 
-_STRENGTHS = (
+STRENGTHS = (
     "strength_1_tension",
     "strength_1_compression",
     "strength_2_tension",
     "strength_2_compression",
     "strength_12",
 )
+"""Strengths of a ply, in the order of `PlyStrength`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,19 +103,25 @@ class Layer:
             shear_modulus_12=c["shear_modulus_12"],
             thickness=self.thickness,
             angle=self.angle,
-            strength=_of_one(self.strengths, climate, _of_all),
-            yield_strength=_of_one(self.yields, climate, _axis),
+            strength=_of_climate(self.strengths, climate, _of_all),
+            yield_strength=_of_climate(self.yields, climate, _axis),
             material=self.name,
         )
 
 
-def _of_one(values: Sequence[Any], climate: int | None, every: Callable[..., Any]) -> Any:
+def stress_of(parts: Iterable[Array]) -> Stress:
+    """Ply stresses along 1, 2 and 3 and in shear 12, as a tuple of four."""
+    along, across, through, shear = parts
+    return along, across, through, shear
+
+
+def _of_climate(values: Sequence[Any], climate: int | None, combine: Callable[..., Any]) -> Any:
     """The value of a climate; without a climate all values or the only value; None if missing."""
     if not values:
         return None
     if climate is not None:
         return values[climate]
-    return values[0] if len(values) == 1 else every(values)
+    return values[0] if len(values) == 1 else combine(values)
 
 
 def _axis(values: Sequence[Array]) -> Array:
@@ -125,17 +132,17 @@ def _axis(values: Sequence[Array]) -> Array:
 def _of_all(strengths: Sequence[PlyStrength]) -> PlyStrength:
     """Ply strengths of all climates."""
 
-    def one(name: str) -> Array:
+    def of_climates(name: str) -> Array:
         return _axis([getattr(strength, name) for strength in strengths])
 
-    known = all(strength.shear_23 is not None for strength in strengths)
+    has_shear_23 = all(strength.shear_23 is not None for strength in strengths)
     return PlyStrength(
-        one("tension_1"),
-        one("compression_1"),
-        one("tension_2"),
-        one("compression_2"),
-        one("shear_12"),
-        one("shear_23") if known else None,
+        of_climates("tension_1"),
+        of_climates("compression_1"),
+        of_climates("tension_2"),
+        of_climates("compression_2"),
+        of_climates("shear_12"),
+        of_climates("shear_23") if has_shear_23 else None,
     )
 
 
@@ -160,9 +167,9 @@ def layers(
     missing: list[str],
 ) -> list[Layer]:
     """Layers of a wall; `at` is the PATH of its lay-up; `missing` collects unknown strengths."""
-    found = []
-    for i, entry in enumerate(layup):
-        name = entry.material
+    wall_layers = []
+    for i, ply in enumerate(layup):
+        name = ply.material
         constants = stock.ply_constants(name)
         isotropic = stock.material(name).isotropic
         strengths: list[PlyStrength] = []
@@ -175,7 +182,7 @@ def layers(
                 if value is not None:
                     yields.append(value)
                 continue
-            values = [stock.allowable(name, key, cold=state.cold) for key in _STRENGTHS]
+            values = [stock.allowable(name, key, cold=state.cold) for key in STRENGTHS]
             if all(value is not None for value in values):
                 across = stock.allowable(name, "strength_23", cold=state.cold)
                 tension_1, compression_1, tension_2, compression_2, shear = values
@@ -186,7 +193,7 @@ def layers(
             missing.append(
                 f"{name} has no yield strength" if isotropic else f"{name} lacks ply strengths"
             )
-        found.append(
+        wall_layers.append(
             Layer(
                 label=f"layup[{i}] {name}",
                 name=name,
@@ -194,14 +201,14 @@ def layers(
                 constants=constants,
                 solid=_solid(constants),
                 angle=v[f"{at}[{i}].angle"],
-                balanced=entry.balanced,
+                balanced=ply.balanced,
                 thickness=v[f"{at}[{i}].thickness"],
                 strengths=tuple(strengths),
                 yields=tuple(yields),
                 fatigue=None if isotropic else stock.allowable(name, "fatigue_strength"),
             )
         )
-    return found
+    return wall_layers
 
 
 def _solid(constants: dict[str, Array]) -> Solid:
@@ -213,20 +220,22 @@ def _solid(constants: dict[str, Array]) -> Solid:
 
 def worst(values: Array, axes: tuple[int, ...]) -> Array:
     """The largest by real part over some axes, with the derivative branch of each design."""
-    kept = [i for i in range(values.ndim) if i not in axes]
-    moved = np.transpose(values, (*axes, *kept)).reshape(-1, *(values.shape[i] for i in kept))
-    if len(moved) == 1:
-        return moved[0]
-    pick = np.argmax(real(moved), axis=0)
-    return np.take_along_axis(moved, pick[None], axis=0)[0]
+    other_axes = [i for i in range(values.ndim) if i not in axes]
+    flattened = np.transpose(values, (*axes, *other_axes)).reshape(
+        -1, *(values.shape[i] for i in other_axes)
+    )
+    if len(flattened) == 1:
+        return flattened[0]
+    pick = np.argmax(real(flattened), axis=0)
+    return np.take_along_axis(flattened, pick[None], axis=0)[0]
 
 
 def grouped(modes: Mapping[str, Array]) -> dict[str, Array]:
     """Utilisations of mutually exclusive modes merged: both fibre modes as "fibre"."""
     groups: dict[str, Array] = {}
-    for mode, used in modes.items():
+    for mode, utilisation in modes.items():
         group = mode.partition(" ")[0]
-        groups[group] = maximum(groups[group], used) if group in groups else used
+        groups[group] = maximum(groups[group], utilisation) if group in groups else utilisation
     return groups
 
 
@@ -243,9 +252,9 @@ def utilisations(
     extra = stress[0].ndim - 3
 
     def column(key: str) -> Array:
-        own = [layer.constants[key] for layer in plies]
+        values = [layer.constants[key] for layer in plies]
         shape = (len(plies), 1, *(1,) * (extra - 1), -1)
-        return np.stack(np.broadcast_arrays(*own)).reshape(shape)
+        return np.stack(np.broadcast_arrays(*values)).reshape(shape)
 
     across = all(strength.shear_23 is not None for layer in plies for strength in layer.strengths)
     strength = PlyStrength(
@@ -257,15 +266,17 @@ def utilisations(
         shear_23=_strengths(plies, "shear_23", extra) if across else None,
     )
     elastic = None
-    own = CRITERIA[criterion]
-    if own.by_strain:
+    failure_criterion = CRITERIA[criterion]
+    if failure_criterion.by_strain:
         elastic = PlyRatios(
             poissons_ratio_12=column("poissons_ratio_12"),
             poissons_ratio_13=column("poissons_ratio_13"),
             poissons_ratio_23=column("poissons_ratio_23"),
             modulus_ratio=column("youngs_modulus_2") / column("youngs_modulus_1"),
         )
-    return own.modes(stress=stress, strength=strength, residual=residual, elastic=elastic)
+    return failure_criterion.modes(
+        stress=stress, strength=strength, residual=residual, elastic=elastic
+    )
 
 
 def _strengths(plies: Sequence[Layer], name: str, extra: int) -> Array:

@@ -49,28 +49,28 @@ class View:
         """The number at a PATH (``cylinder.bore``), a float or an array of designs."""
         if path not in self._values:
             raise KeyError(f"no number at {path}")
-        return self._one(self._values[path])
+        return self._for_design(self._values[path])
 
     def metric(self, name: str) -> Array:
         """A computed metric; its worst value over places."""
         if name not in self._metrics:
             raise KeyError(f"no metric {name}")
         places = list(self._metrics[name].values())
-        known = METRICS.get(name)
-        pick = minimum if known is not None and known.worst == "min" else maximum
+        quantity = METRICS.get(name)
+        pick = minimum if quantity is not None and quantity.worst == "min" else maximum
         worst = places[0]
         for place in places[1:]:
             worst = pick(worst, place)
-        return self._one(worst)
+        return self._for_design(worst)
 
-    def _one(self, value: Array) -> Array:
-        """A value for the function: for all designs, or for one (a number, or one per case)."""
+    def _for_design(self, value: Array) -> Array:
+        """A value for all designs, or for a single design: a number, or a number per case."""
         shape = np.shape(value)
         if self._design is None or not shape:
             return value
         index, count = self._design
-        found = value[..., index if shape[-1] == count else 0]
-        return found if found.ndim == 0 else found[:, None]
+        number = value[..., index if shape[-1] == count else 0]
+        return number if number.ndim == 0 else number[:, None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,15 +104,15 @@ class Plugin:
         count = _designs(values)
         with contextlib.redirect_stdout(sys.stderr):
             try:
-                found = self._asked(values, metrics)
+                returned = self._result(values, metrics)
             except PluginError as error:
-                answer = self._one_by_one(values, metrics, count, error)
-                if not lenient and np.isnan(answer.value).all():
+                value = self._one_by_one(values, metrics, count, error)
+                if not lenient and np.isnan(value.value).all():
                     raise
-                return answer
-            return PluginValue(_checked(self, found, values, count))
+                return value
+            return PluginValue(_checked(self, returned, values, count))
 
-    def _asked(
+    def _result(
         self,
         values: Values,
         metrics: Mapping[str, Mapping[str, Array]],
@@ -132,19 +132,19 @@ class Plugin:
         count: int,
         first: PluginError,
     ) -> PluginValue:
-        nothing = np.full(1, np.nan * (1 + 1j) if _complex(values) else np.nan)
+        missing = np.full(1, np.nan * (1 + 1j) if _complex(values) else np.nan)
         columns: list[Array] = []
         raised: list[PluginError] = []
         for k in range(count) if values.varied else ():
             try:
-                found = self._asked(values, metrics, (k, count))
-                columns.append(np.atleast_1d(_checked(self, found, values, 1)))
+                returned = self._result(values, metrics, (k, count))
+                columns.append(np.atleast_1d(_checked(self, returned, values, 1)))
             except PluginError as error:
-                columns.append(nothing)
+                columns.append(missing)
                 raised.append(error)
         if len(raised) == len(columns):
             raised = [first]
-        value = np.concatenate(np.broadcast_arrays(*(columns or [nothing])), axis=-1)
+        value = np.concatenate(np.broadcast_arrays(*(columns or [missing])), axis=-1)
         return PluginValue(value, str(raised[0].diagnostics[0]) if raised else "")
 
 
@@ -168,12 +168,12 @@ class PluginError(InputError):
 def _line(error: BaseException, file: str) -> tuple[str, int | None]:
     """The last line of user code that an exception passed."""
     frames = [f for f in traceback.extract_tb(error.__traceback__) if f.filename != __file__]
-    own = [f for f in frames if file and Path(f.filename).resolve() == Path(file).resolve()]
-    last = (own or frames)[-1] if frames else None
+    user_frames = [f for f in frames if file and Path(f.filename).resolve() == Path(file).resolve()]
+    last = (user_frames or frames)[-1] if frames else None
     return file or (last.filename if last else ""), last.lineno if last else None
 
 
-def _said(error: BaseException) -> str:
+def _one_line(error: BaseException) -> str:
     """An exception in one line."""
     detail = error.args[0] if isinstance(error, KeyError) and error.args else error
     try:
@@ -188,7 +188,7 @@ def _fault(plugin: Plugin, error: BaseException) -> PluginError:
     remedy = "correct the function, or guard its input"
     if isinstance(error, TypeError):
         remedy = "use operators and NumPy functions; float(), int() and math do not accept arrays"
-    return PluginError(Diagnostic(f"{plugin.name} raised {_said(error)}", remedy, file, line))
+    return PluginError(Diagnostic(f"{plugin.name} raised {_one_line(error)}", remedy, file, line))
 
 
 def _designs(values: Values) -> int:
@@ -201,10 +201,10 @@ def _complex(values: Values) -> bool:
     return any(np.iscomplexobj(value) for value in values.varied.values())
 
 
-def _checked(plugin: Plugin, found: object, values: Values, designs: int) -> Array:
+def _checked(plugin: Plugin, returned: object, values: Values, designs: int) -> Array:
     """The result of a user function, checked for a number per design (and case)."""
     try:
-        array = np.asarray(found)
+        array = np.asarray(returned)
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # rows of unequal length, or an unusual object
@@ -213,7 +213,7 @@ def _checked(plugin: Plugin, found: object, values: Values, designs: int) -> Arr
     plain = not _complex(values)
     message = ""
     if array.dtype.kind not in "biufc":
-        message = f"returned {type(found).__name__}, not a number"
+        message = f"returned {type(returned).__name__}, not a number"
     elif plain and array.dtype.kind == "c":
         message = "returned a complex number"
     elif (
@@ -251,14 +251,14 @@ def metric(
         raise InputError(f"{name} is a built-in metric; choose another name")
     if dimension not in BASE:
         raise InputError(f"{dimension} is not a dimension; use one of {', '.join(BASE)}")
-    shown = unit_name or BASE[dimension]
-    if shown:
+    display_unit = unit_name or BASE[dimension]
+    if display_unit:
         try:
-            unit(shown, dimension)
+            unit(display_unit, dimension)
         except UnitError as error:
             raise InputError(f"metric {name}: {error}") from None
-    shown_as = label or name.replace("_", " ")
-    quantity = Quantity(name, name, dimension, shown, shown_as, worst="max")
+    display_label = label or name.replace("_", " ")
+    quantity = Quantity(name, name, dimension, display_unit, display_label, worst="max")
 
     def mark(function: Callable[[View], Array]) -> Callable[[View], Array]:
         setattr(function, _MARK, Plugin(name, quantity, function))
@@ -284,36 +284,36 @@ def constraint(
 
 def collect(*functions: Callable[[View], Array]) -> tuple[Plugin, ...]:
     """Plugins that `metric` or `constraint` declared on functions of a script."""
-    found = []
+    plugins = []
     for function in functions:
         plugin = getattr(function, _MARK, None)
         if plugin is None:
             name = getattr(function, "__name__", "?")
             raise InputError(f"{name} is not declared; decorate it with @metric or @constraint")
-        found.append(plugin)
-    return tuple(found)
+        plugins.append(plugin)
+    return tuple(plugins)
 
 
 def _marked(values: Iterable[object]) -> list[Plugin]:
     """Plugins among the values of a module; values that raise on access are skipped."""
-    found = []
+    plugins = []
     for value in values:
         with contextlib.suppress(Exception):
             plugin = getattr(value, _MARK, None) if callable(value) else None
             if type(plugin) is Plugin:
-                found.append(plugin)
-    return found
+                plugins.append(plugin)
+    return plugins
 
 
 def load(path: str | Path) -> tuple[Plugin, ...]:
     """Plugins of a Python file."""
     path = Path(path)
     try:
-        known = path.is_file()
+        is_file = path.is_file()
     except OSError as error:
         reason = f"cannot be read: {error.strerror or type(error).__name__}"
         raise InputError(Diagnostic(reason, "give the path of a Python file", str(path))) from None
-    if not known:
+    if not is_file:
         raise InputError(Diagnostic("no such file", "give the path of a Python file", str(path)))
     spec = importlib.util.spec_from_file_location(f"_plugin_{path.stem}", path)
     if spec is None or spec.loader is None:
@@ -336,7 +336,9 @@ def load(path: str | Path) -> tuple[Plugin, ...]:
         ) from None
     except BaseException as error:  # user code may raise anything
         line = _line(error, str(path))[1]
-        raise InputError(Diagnostic(_said(error), "correct the file", str(path), line)) from None
+        raise InputError(
+            Diagnostic(_one_line(error), "correct the file", str(path), line)
+        ) from None
     if not plugins:
         raise InputError(
             Diagnostic(

@@ -29,16 +29,16 @@ Ratio = Callable[[Values, Design, Geometry], Array | None]
 class Proportion:
     """A ratio with a usual range in sensible designs.
 
-    `path` is the value to check, `what` the words after the number, `source` the reason for the
-    range; `of` returns one or several numbers, or None if not applicable.
+    `path` is the value to check, `meaning` the words after the number, `source` the reason for the
+    range; `ratio` returns one or several numbers, or None if not applicable.
     """
 
     path: str
-    what: str
+    meaning: str
     least: float
     most: float
     source: str
-    of: Ratio
+    ratio: Ratio
 
     def beyond(self, number: float) -> str | None:
         """Warning about a number; None if within the range."""
@@ -51,7 +51,7 @@ class Proportion:
         elif self.least in (0.0, -inf):
             usual = f"at most {high}"
         return (
-            f"{self.path} is out of proportion: {_plain(number)} {self.what}, usual is {usual} "
+            f"{self.path} is out of proportion: {_plain(number)} {self.meaning}, usual is {usual} "
             f"({self.source}); check its unit and decimal point"
         )
 
@@ -112,7 +112,7 @@ def _skirt(of: Callable[[Geometry], Array]) -> Ratio:
     return ratio
 
 
-def _joined(joint: Joint, number: Callable[[End], Array]) -> Ratio:
+def _joint_ratio(joint: Joint, number: Callable[[End], Array]) -> Ratio:
     def ratio(v: Values, design: Design, g: Geometry) -> Array | None:
         return number(end_at(design, Numbers(v), g)) if joint_of(design) is joint else None
 
@@ -242,8 +242,8 @@ TABLE: tuple[Proportion, ...] = (
     ),
     *(
         Proportion(
-            usual.path, usual.what, usual.least, usual.most, usual.source,
-            _joined(joint, usual.number),
+            usual.path, usual.meaning, usual.least, usual.most, usual.source,
+            _joint_ratio(joint, usual.number),
         )
         for joint in JOINTS.values()
         for usual in joint.usual
@@ -268,7 +268,7 @@ def warnings(subject: PreparedDesign, v: Values, g: Geometry | None = None) -> I
     """A sentence for each implausible value."""
     g = geometry.derive(v, subject.design) if g is None else g
     for proportion in TABLE:
-        ratio = proportion.of(v, subject.design, g)
+        ratio = proportion.ratio(v, subject.design, g)
         numbers: Iterable[float] = [] if ratio is None else np.ravel(np.real(ratio)).tolist()
         texts = [proportion.beyond(number) for number in numbers if np.isfinite(number)]
         yield from dict.fromkeys(text for text in texts if text is not None)

@@ -1,9 +1,8 @@
 """The Evaluation: all metrics of a design with its requirements, for printing and export.
 
-Reserve of a design: limits met without reserve, and the expected yield.
-
-An optimum lies on its limits and meets them at nominal dimensions; many actuators built to it
-violate a limit.
+It also states the reserve of a design: limits met without reserve, and the expected yield. An
+optimum lies on its limits and meets them at nominal dimensions; many actuators built to it violate
+a limit.
 """
 
 from __future__ import annotations
@@ -21,8 +20,8 @@ from .dynamics_study import DynamicsStudy
 from .wall_study import WallStudy
 
 NO_RESERVE = 1e-3
-"""Margin below which a met limit has no reserve. A choice: a single tolerance is as wide.
-IT7 of a diameter of 20 mm is 21 um, 0.1 % of it (ISO 286-1). Optima end within 1e-6 of a limit."""
+"""Margin below which a met limit has no reserve. A choice: the width of a single tolerance, IT7 of
+20 mm is 21 um or 0.1 % (ISO 286-1). Optima end within 1e-6 of a limit."""
 NO_ROOM = 1e-6
 """The same for a limit of 0, whose margin is the distance itself in SI: the tolerance of `met`."""
 MOST_NAMED = 5
@@ -87,15 +86,15 @@ class YieldEstimate:
         if self.value is None or self.lower is None or self.upper is None:
             return f"Yield not estimated ({self.why}): `actuator-opt uncertainty` computes it."
         shown = f"{_percent(self.lower)} to {_percent(self.upper)} %, {self.draws} samples"
-        said = (
+        text = (
             f"About {_percent(self.value)} % of the actuators built to this design would meet "
             f"every requirement ({shown})"
         )
         if self.with_checks is not None and self.with_checks < self.value:
-            said += f", {_percent(self.with_checks)} % every check as well"
+            text += f", {_percent(self.with_checks)} % every check as well"
         if self.worst is not None and self.worst_fails:
-            said += f"; {self.worst} fails most, in {_percent(self.worst_fails)} %"
-        return f"{said}."
+            text += f"; {self.worst} fails most, in {_percent(self.worst_fails)} %"
+        return f"{text}."
 
 
 UNKNOWN = YieldEstimate(why="an evaluation does not sample")
@@ -111,18 +110,18 @@ def sentences(names: Sequence[str], estimate: YieldEstimate, *, movable: bool) -
     estimate : the yield
     movable : whether the design has variables, so that `optimise` can add reserves
     """
-    said = []
+    lines = []
     if names:
         more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
         named = ", ".join(names[:MOST_NAMED])
-        said.append(f"Without reserve (margin below {100 * NO_RESERVE:g} %): {named}{more}.")
-    said.append(estimate.sentence)
-    known = estimate.value is not None
-    if movable and (names or (known and estimate.value != 1)):
-        said.append("`actuator-opt optimise --yield 0.99` adds a reserve to every limit.")
-    elif known and estimate.value != 1:
-        said.append("`actuator-opt uncertainty` shows the causes of scatter.")
-    return tuple(said)
+        lines.append(f"Without reserve (margin below {100 * NO_RESERVE:g} %): {named}{more}.")
+    lines.append(estimate.sentence)
+    estimated = estimate.value is not None
+    if movable and (names or (estimated and estimate.value != 1)):
+        lines.append("`actuator-opt optimise --yield 0.99` adds a reserve to every limit.")
+    elif estimated and estimate.value != 1:
+        lines.append("`actuator-opt uncertainty` shows the causes of scatter.")
+    return tuple(lines)
 
 
 def _percent(share: float) -> str:
@@ -185,7 +184,7 @@ class Requirement:
 
     @property
     def state(self) -> State:
-        """Whether it is met, and with reserve (`reserve.NO_RESERVE`)."""
+        """Whether it is met, and with reserve (`NO_RESERVE`)."""
         if not self.met:
             return "missed"
         return "no_reserve" if without_reserve(self.margin, self.limit) else "met"
@@ -210,7 +209,7 @@ class Check:
 
     @property
     def state(self) -> State:
-        """Its status, and whether it is met with reserve (`reserve.NO_RESERVE`)."""
+        """Its status, and whether it is met with reserve (`NO_RESERVE`)."""
         if self.status != "met":
             return self.status
         return "no_reserve" if without_reserve(self.margin, self.limit) else "met"
@@ -311,12 +310,13 @@ class Evaluation(Displayed):
     @property
     def tight(self) -> tuple[str, ...]:
         """Names of the limits met without reserve: requirements, then checks."""
-        own = {(row.metric, row.sense, row.limit) for row in self.requirements}
+        required = {(row.metric, row.sense, row.limit) for row in self.requirements}
         names = [row.name for row in self.requirements if row.state == "no_reserve"]
         names += [
             check.name
             for check in self.checks
-            if check.state == "no_reserve" and (check.metric, check.sense, check.limit) not in own
+            if check.state == "no_reserve"
+            and (check.metric, check.sense, check.limit) not in required
         ]
         return tuple(dict.fromkeys(names))
 
@@ -350,8 +350,8 @@ class Evaluation(Displayed):
         total, met = len(self.requirements), sum(row.met for row in self.requirements)
         missed = [check.name for check in self.checks if check.status == "missed"]
         more = f" and {len(missed) - 1} more" if len(missed) > 1 else ""
-        but = f", but missed: {missed[0]}{more}" if missed and met == total else ""
-        return f"{met} of {total} requirements met{but}"
+        exception = f", but missed: {missed[0]}{more}" if missed and met == total else ""
+        return f"{met} of {total} requirements met{exception}"
 
     def __str__(self) -> str:
         """Requirements and metrics as a table."""

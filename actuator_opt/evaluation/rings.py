@@ -54,8 +54,8 @@ class Ring:
     @property
     def sizes(self) -> SealSizes:
         """Its numbers and laws, as inputs of seal types and friction laws."""
-        own = self.element
-        return SealSizes(self.numbers, own.law, own.hardness_model, self.name == "rod")
+        element = self.element
+        return SealSizes(self.numbers, element.law, element.hardness_model, self.name == "rod")
 
     @property
     def label(self) -> str:
@@ -80,8 +80,8 @@ def hardness_modulus(v: Values, compound: str, law: str) -> Array:
     """Young's modulus of a compound from its hardness, at measuring temperature."""
     at = f"materials.{compound}."
     modulus = elastomer.MODULUS_LAWS[law].modulus(hardness=v[f"{at}hardness"])
-    own = f"{at}hardness_modulus_factor"
-    return modulus * v[own] if own in v else modulus
+    factor = f"{at}hardness_modulus_factor"
+    return modulus * v[factor] if factor in v else modulus
 
 
 def face_modulus(v: Values, compound: str, law: str, temperature: Array) -> Array:
@@ -121,33 +121,36 @@ def rings(
     }
     law, coefficient = pressure_law(design.fluid, stock, state.temperature)
     drain = v["supply.return_pressure"]
-    oiled = {
+    oil_numbers = {
         "speed": state.speed,
         "viscosity": state.dynamic_viscosity,
         "viscosity_coefficient": coefficient,
     }
-    found = []
+    sealing_rings = []
     for name, grooves, diameter in places(geometry):
         elements = getattr(design.seals, name).elements()
         pressure, total = across[name]
         for groove in grooves:
-            tail = groove.path.removeprefix(f"seals.{name}.")
-            if groove.role != "element" or elements[tail].count == 0:
+            key = groove.path.removeprefix(f"seals.{name}.")
+            if groove.role != "element" or elements[key].count == 0:
                 continue
-            own = _numbers(v, elements[tail], groove, diameter, state.temperature)
-            grown = SEAL_STEP * growth if name == "piston" else 0.0
-            held = pressure if tail == "" else 0.0 * pressure
-            own["pressure"] = held
-            own["outer_pressure"] = (total - pressure) / 2
-            if elements[tail].friction_law.film:
-                own |= oiled
-                own["return_pressure"] = where(state.push, state.driven_pressure, drain)
-            own["squeeze_left"] = gland.squeeze_after(
-                squeeze=own["squeeze"], section=groove.section, growth=grown, tolerance=0.0
+            numbers = _numbers(v, elements[key], groove, diameter, state.temperature)
+            ring_growth = SEAL_STEP * growth if name == "piston" else 0.0
+            ring_pressure = pressure if key == "" else 0.0 * pressure
+            numbers["pressure"] = ring_pressure
+            numbers["outer_pressure"] = (total - pressure) / 2
+            if elements[key].friction_law.film:
+                numbers |= oil_numbers
+                numbers["return_pressure"] = where(state.push, state.driven_pressure, drain)
+            numbers["squeeze_left"] = gland.squeeze_after(
+                squeeze=numbers["squeeze"],
+                section=groove.section,
+                growth=ring_growth,
+                tolerance=0.0,
             )
             roughness = {"counterface_roughness": v[f"seals.{name}.counterface_roughness"]}
-            found.append(Ring(name, elements[tail], groove, own | roughness, law))
-    return tuple(found)
+            sealing_rings.append(Ring(name, elements[key], groove, numbers | roughness, law))
+    return tuple(sealing_rings)
 
 
 _OWN = ("friction_coefficient", "breakaway_ratio", "stribeck_speed")
@@ -205,10 +208,10 @@ def static_profile(ring: Ring, nodes: int) -> tuple[Array, Array]:
     position = np.linspace(0.0, 1.0, nodes)
     pressure, outer = ring["pressure"], ring["outer_pressure"]
     if real(pressure) >= 0:
-        found = seal_contact(ring)
-        return found.profile_width, outer + found.profile(position)
-    found = seal_contact(ring.at(pressure=-pressure))  # sealed from the other side
-    return found.profile_width, outer + pressure + found.profile(1 - position)
+        contact = seal_contact(ring)
+        return contact.profile_width, outer + contact.profile(position)
+    contact = seal_contact(ring.at(pressure=-pressure))  # sealed from the other side
+    return contact.profile_width, outer + pressure + contact.profile(1 - position)
 
 
 ROOM = 293.15
@@ -242,25 +245,25 @@ def gland_metrics(
         for end in ("min", "max")
     )
     least, most = minimum(cold, hot), maximum(cold, hot)
-    found = {"extrusion_factor": _extrusion(v, stock, ring, clearance + aside + growth)}
+    metrics = {"extrusion_factor": _extrusion(v, stock, ring, clearance + aside + growth)}
     if ring.element.seal_type.round_ring:  # limits of squeeze apply to round rings
-        found["seal_squeeze"] = squeezes(ring, growth=growth, aside=0.0, ratio=least)[0]
-        found["seal_squeeze_max"] = squeezes(ring, growth=0.0, aside=0.0, ratio=most)[1]
+        metrics["seal_squeeze"] = squeezes(ring, growth=growth, aside=0.0, ratio=least)[0]
+        metrics["seal_squeeze_max"] = squeezes(ring, growth=0.0, aside=0.0, ratio=most)[1]
     if ring.element.seal_type.o_ring_gland:
-        found["seal_fill"] = _fill(ring) * most
-        found["seal_stretch"] = ring["stretch"]
-        found["seal_section"] = ring["section"]
-    return found
+        metrics["seal_fill"] = _fill(ring) * most
+        metrics["seal_stretch"] = ring["stretch"]
+        metrics["seal_section"] = ring["section"]
+    return metrics
 
 
 def _fill(ring: Ring) -> Array:
     """Largest fill of an O-ring's groove at assembly, with the shallowest groove."""
-    backs = sum(piece.area for piece in ring.groove.pieces[1:]) / ring["gland_depth"]
+    back_up_width = sum(piece.area for piece in ring.groove.pieces[1:]) / ring["gland_depth"]
     return gland.gland_fill(
         section=gland.stretched_section(
             section=ring["section"] + ring["section_tolerance"], stretch=ring["stretch"]
         ),
-        groove_width=ring["groove_width"] - backs,
+        groove_width=ring["groove_width"] - back_up_width,
         gland_depth=ring["gland_depth"] - ring["tolerance"],
     )
 
@@ -277,15 +280,15 @@ def squeezes(ring: Ring, *, growth: Array, aside: Array, ratio: Array) -> tuple[
     `ratio` is ring over groove volume; `aside` the eccentricity of rod or piston.
     """
     section = ring["section"]
-    thin = gland.stretched_section(section=section, stretch=ring["stretch"])
-    spread = {
+    stretched = gland.stretched_section(section=section, stretch=ring["stretch"])
+    tolerances = {
         "section_tolerance": ring["section_tolerance"],
         "depth_tolerance": ring["tolerance"],
         "eccentricity": aside,
     }
-    grown = 1 - (section * (1 - ring["squeeze"]) + growth) / thin
-    loosest, _ = gland.squeeze_extremes(squeeze=grown, section=thin, **spread)
-    _, tightest = gland.squeeze_extremes(squeeze=ring["squeeze"], section=section, **spread)
+    squeeze = 1 - (section * (1 - ring["squeeze"]) + growth) / stretched
+    loosest, _ = gland.squeeze_extremes(squeeze=squeeze, section=stretched, **tolerances)
+    _, tightest = gland.squeeze_extremes(squeeze=ring["squeeze"], section=section, **tolerances)
     return (
         gland.squeeze_at_volume(squeeze=loosest, volume_ratio=ratio),
         gland.squeeze_at_volume(squeeze=tightest, volume_ratio=ratio),

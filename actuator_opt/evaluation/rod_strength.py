@@ -7,7 +7,7 @@ inside chamber B is under its pressure while pulling.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import TypeAlias
@@ -29,15 +29,12 @@ from .values import Values
 FIXED_PINNED = 0.6992
 """Effective length factor of a column fixed at one end, pinned at the other: pi/4.4934."""
 
-
 GRAVITY = 9.80665
 """Standard gravity, m/s^2 (3rd CGPM, 1901)."""
 
-
 NEAR = 0.75
-"""Share of the critical load beyond which a moment grows along its tangent: a choice, so
-that designs far beyond buckling, which the buckling check rejects, have finite results."""
-
+"""Share of the critical load beyond which a moment grows along its tangent. A choice: designs far
+beyond buckling, which the buckling check rejects, then have finite results."""
 
 LEAST = 1e-6
 """Least length outside the head (m), to avoid a pole for a rod of zero length."""
@@ -54,10 +51,10 @@ class Beam:
         """The moment under a push [N]; beyond `NEAR` of the critical load along its tangent."""
         share = push / self.critical
         near = minimum(share, NEAR)
-        bent = column.amplified_moment(
+        amplified = column.amplified_moment(
             bending_moment=self.moment, axial_force=near, critical_load=1.0
         )
-        return bent + self.moment * (share - near) / (1 - NEAR) ** 2
+        return amplified + self.moment * (share - near) / (1 - NEAR) ** 2
 
 
 def lengths(g: Geometry, state: LoadState) -> tuple[Array, Array]:
@@ -83,10 +80,10 @@ def derive(
 ) -> Beam:
     """Column and beam at the position of every case, with the actuator horizontal (a choice)."""
     segments = lengths(g, state)
-    own = _weight(v, design, g, state, rod, parts, segments)
+    weight_moment = _weight(v, design, g, state, rod, parts, segments)
     return Beam(
         critical=critical_load(design, wall, rod, segments),
-        moment=own + state.side_load * overhang(g, state),
+        moment=weight_moment + state.side_load * overhang(g, state),
     )
 
 
@@ -186,8 +183,8 @@ def compute(
     out: MetricArrays,
 ) -> None:
     """Strength of the layers, and of the wall against local buckling."""
-    bent = beam.under(push)
-    _layers(design, section, (bent, beam.moment), supply, push, pull, out)
+    push_moment = beam.under(push)
+    _layers(design, section, (push_moment, beam.moment), supply, push, pull, out)
     if not section.hollow:
         out.skip("local_buckling_factor", "the rod is solid")
         return
@@ -197,9 +194,9 @@ def compute(
         "thickness": section.wall,
         "radius": section.middle,
     }
-    used = push / shell_buckling.local_shell_force(**shell)
-    used = used + bent / shell_buckling.local_shell_moment(**shell)
-    out.put("local_buckling_factor", 1 / used)
+    utilisation = push / shell_buckling.local_shell_force(**shell)
+    utilisation = utilisation + push_moment / shell_buckling.local_shell_moment(**shell)
+    out.put("local_buckling_factor", 1 / utilisation)
 
 
 def _layers(
@@ -215,7 +212,7 @@ def _layers(
     if not section.layers:
         out.skip("rod_factor", "the rod is a single metal: see yield_factor")
         return
-    pressed, drawn = (
+    push_bending, pull_bending = (
         column.bending_axial_force(
             bending_moment=moment,
             radius=section.outer_diameter / 2,
@@ -224,10 +221,14 @@ def _layers(
         )
         for moment in moments
     )
-    loads = [(side * pressed - push, 0.0) for side in (1, -1)]
-    loads += [(pull + side * drawn, outside) for side in (1, -1) for outside in (0.0, supply)]
+    loads = [(side * push_bending - push, 0.0) for side in (1, -1)]
+    loads += [
+        (pull + side * pull_bending, outside) for side in (1, -1) for outside in (0.0, supply)
+    ]
     forces, pressures = (
-        np.stack(np.broadcast_arrays(*[np.atleast_2d(load[k] + 0.0 * drawn) for load in loads]))
+        np.stack(
+            np.broadcast_arrays(*[np.atleast_2d(load[k] + 0.0 * pull_bending) for load in loads])
+        )
         for k in (0, 1)
     )
     factors = _factors(design, section, forces, pressures)
@@ -254,26 +255,26 @@ def _factors(
             _load(section, brittle, forces, pressures),
             _residual(section, brittle),
         )
-        for group, used in plies.grouped(modes).items():
+        for group, utilisation in plies.grouped(modes).items():
             for k, i in enumerate(brittle):
-                factors |= _rows(section, f"{section.layers[i].label} {group}", used[:, k])
+                factors |= _rows(section, f"{section.layers[i].label} {group}", utilisation[:, k])
     for i, layer in enumerate(section.layers):
         if layer.yields:
-            strengths = np.broadcast_arrays(*[np.atleast_1d(one) for one in layer.yields])
-            used = strength.yield_utilisation(
+            strengths = np.broadcast_arrays(*[np.atleast_1d(value) for value in layer.yields])
+            utilisation = strength.yield_utilisation(
                 stress=_load(section, [i], forces, pressures),
                 yield_strength=np.stack(strengths)[None, None, :, None, None],
                 residual=_residual(section, [i]),
             )
-            factors |= _rows(section, f"{layer.label} yield", used[:, 0])
+            factors |= _rows(section, f"{layer.label} yield", utilisation[:, 0])
     return factors
 
 
-def _rows(section: RodSection, label: str, used: Array) -> dict[str, Array]:
+def _rows(section: RodSection, label: str, utilisation: Array) -> dict[str, Array]:
     """A factor for each climate and direction of (faces, climates, sides, cases, designs)."""
     rows = {}
     for direction, sides in DIRECTIONS.items():
-        multiple = load_multiplier(plies.worst(used[:, :, sides], (0, 2)))
+        multiple = load_multiplier(plies.worst(utilisation[:, :, sides], (0, 2)))
         for i, state in enumerate(section.climates):
             place = ", ".join(x for x in (state.name, direction) if x)
             rows[f"{label}, {place}"] = multiple[i]
@@ -291,7 +292,7 @@ def cycles(
     if not section.layers:
         size = {"outer_diameter": section.outer_diameter, "inner_diameter": section.inner_diameter}
         return {"rod": Cycle(design.rod.material, (push + pull) / rod.section_area(**size), 0.0)}
-    found = {}
+    metal_cycles = {}
     for i, layer in enumerate(section.layers):
         if not layer.isotropic:
             continue
@@ -300,20 +301,20 @@ def cycles(
             np.broadcast_arrays(*[np.atleast_2d(x + 0.0 * supply) for x in (0.0, 0.0, supply)])
         )
         ends = [part[:, 0, :, :, 0] for part in _load(section, [i], forces, pressures)]
-        rest = _residual(section, [i])
+        residual = _residual(section, [i])
         equivalent = partial(strength.yield_utilisation, yield_strength=1.0)
-        span = equivalent(stress=_stress([part[:, :, 1:] - part[:, :, :1] for part in ends]))
-        if rest is not None:
-            ends = [part + own[:, 0, :, :, 0] for part, own in zip(ends, rest, strict=True)]
-        drawn = equivalent(stress=_stress([part[:, :, 1:] for part in ends]))
-        mean = plies.worst(maximum(drawn - span / 2, 0.0 * span), (0, 1, 2))
-        found[f"rod, {layer.label}"] = Cycle(layer.name, plies.worst(span, (0, 1, 2)), mean)
-    return found
-
-
-def _stress(parts: Sequence[Array]) -> Stress:
-    one, two, three, slip = parts
-    return one, two, three, slip
+        span = equivalent(
+            stress=plies.stress_of([part[:, :, 1:] - part[:, :, :1] for part in ends])
+        )
+        if residual is not None:
+            ends = [
+                part + residual_part[:, 0, :, :, 0]
+                for part, residual_part in zip(ends, residual, strict=True)
+            ]
+        pulled = equivalent(stress=plies.stress_of([part[:, :, 1:] for part in ends]))
+        mean = plies.worst(maximum(pulled - span / 2, 0.0 * span), (0, 1, 2))
+        metal_cycles[f"rod, {layer.label}"] = Cycle(layer.name, plies.worst(span, (0, 1, 2)), mean)
+    return metal_cycles
 
 
 def _unit_load(section: RodSection, rows: list[int], load: int) -> list[Array]:
@@ -325,7 +326,7 @@ def _unit_load(section: RodSection, rows: list[int], load: int) -> list[Array]:
 def _load(section: RodSection, rows: list[int], forces: Array, pressures: Array) -> Stress:
     """Stresses of the load, (faces, layers, 1, sides, cases, designs)."""
     units = (_unit_load(section, rows, load) for load in (FORCE, OUTSIDE))
-    return _stress([f * forces + p * pressures for f, p in zip(*units, strict=True)])
+    return plies.stress_of([f * forces + p * pressures for f, p in zip(*units, strict=True)])
 
 
 def _residual(section: RodSection, rows: list[int]) -> Stress | None:
@@ -335,4 +336,4 @@ def _residual(section: RodSection, rows: list[int]) -> Stress | None:
     change = np.stack(
         np.broadcast_arrays(*[np.atleast_1d(state.change) for state in section.climates])
     )[:, None, None]
-    return _stress([part * change for part in _unit_load(section, rows, WARMTH)])
+    return plies.stress_of([part * change for part in _unit_load(section, rows, WARMTH)])

@@ -124,8 +124,8 @@ def _tube(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> RodS
     missing: list[str] = []
     states = plies.climates(v, design)
     layers = plies.layers(v, stock, design.rod.layup, "rod.layup", states, missing)
-    known = all(layer.expansions is not None for layer in layers)
-    if not known:
+    expands = all(layer.expansions is not None for layer in layers)
+    if not expands:
         states = tuple(replace(state, change=0.0) for state in states)
     tube = layered_tube(
         layers=[layer.as_tube() for layer in layers], inner_radius=g.rod_inner_diameter / 2
@@ -159,7 +159,7 @@ def _tube(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> RodS
         mass_per_length=_mass(v, design, g),
         shell_modulus=modulus,
         shell_ratio=ratio,
-        expansion=state.axial_strain[WARMTH] if known else None,
+        expansion=state.axial_strain[WARMTH] if expands else None,
         end_material=end_material(design),
         layers=layers,
         climates=states,
@@ -174,8 +174,7 @@ def _unit(tube: LayeredTube, state: TubeState) -> Stress:
     if not tube.twisting:
         return plus
     minus = ply_stresses_at_faces(tube=tube, state=state, opposite=True)
-    one, two, three, slip = (np.concatenate(both) for both in zip(plus, minus, strict=True))
-    return one, two, three, slip
+    return plies.stress_of([np.concatenate(both) for both in zip(plus, minus, strict=True)])
 
 
 def _shell(tube: LayeredTube, layers: Sequence[Layer]) -> tuple[Array, Array]:
@@ -205,9 +204,9 @@ def _mass(v: Values, design: Design, g: Geometry) -> Array:
     """Mass per length of the layers."""
     total: Array = 0.0
     bore = g.rod_inner_diameter
-    for entry, thickness in zip(design.rod.layup, g.rod_thicknesses, strict=True):
+    for ply, thickness in zip(design.rod.layup, g.rod_thicknesses, strict=True):
         total = total + mass.tube_mass(
-            density=v[f"materials.{entry.material}.density"],
+            density=v[f"materials.{ply.material}.density"],
             inner_diameter=bore,
             outer_diameter=bore + 2 * thickness,
             length=1.0,

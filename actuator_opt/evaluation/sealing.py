@@ -18,7 +18,8 @@ from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..seals.contact import SealContact
 from ..seals.kinds import TYPES
 from .barrel import SEAL_STEP, Wall
-from .film import FilmTable, Key, Running, Stroke, of_place, running as run
+from .film import Stroke, of_place
+from .film_tables import FilmTable, Key, Running, running as films_running
 from .geometry import Geometry, Groove
 from .limits import MaterialValues, MetricArrays
 from .rings import INCOMPRESSIBLE, Place, Ring, face_modulus, gland_metrics, places, seal_contact
@@ -47,7 +48,7 @@ def compute(
     moving = np.atleast_2d(real(state.speed))[:, 0] > 0
     for ring in rings:
         grown = full_growth if ring.name == "piston" else 0.0
-        contact = seal_contact(_share(ring, films))
+        contact = seal_contact(_at_interseal_pressure(ring, films))
         rows = gland_metrics(v, design, stock, geometry, state, ring, grown) | {
             "contact_width": contact.width,
             "contact_pressure": contact.peak,
@@ -59,18 +60,18 @@ def compute(
         }
         law, film = ring.element.friction_law, films.get(ring.label)
         if law.film is None:
-            own = law.friction(ring.sizes, contact, _row_load(ring, contact), state.speed)
+            ring_friction = law.friction(ring.sizes, contact, _row_load(ring, contact), state.speed)
         else:
-            own = law.film(ring.sizes, contact, film)
+            ring_friction = law.film(ring.sizes, contact, film)
         if film is not None:
             rows["film_thickness"] = film.thickness
-        total = total + own
-        out.friction_parts[ring.label] = own.running
+        total = total + ring_friction
+        out.friction_parts[ring.label] = ring_friction.running
         for metric, value in rows.items():
             by_metric.setdefault(metric, {})[ring.label] = value
-    beside = _beside(v, design, geometry, state)
-    total = total + beside
-    out.friction_parts["wipers and guides"] = beside.running
+    other_friction = _wipers_and_guides(v, design, geometry, state)
+    total = total + other_friction
+    out.friction_parts["wipers and guides"] = other_friction.running
     for metric, by_place in by_metric.items():
         out.put(metric, by_place, cases=moving if metric == "film_thickness" else None)
     for name in ("seal_squeeze", "seal_squeeze_max", "seal_fill", "seal_stretch", "seal_section"):
@@ -96,37 +97,37 @@ def films_of(
 ) -> dict[str, Running]:
     """Films of all rings on a stroke."""
     places: tuple[Place, ...] = ("piston", "rod")
-    found: dict[str, Running] = {}
+    films: dict[str, Running] = {}
     for place in places:
-        own = of_place(rings, place)
-        running = run(tables, own, stroke, cases)
-        found |= dict(zip((ring.label for ring in own), running, strict=False))
-    return found
+        place_rings = of_place(rings, place)
+        running = films_running(tables, place_rings, stroke, cases)
+        films |= dict(zip((ring.label for ring in place_rings), running, strict=False))
+    return films
 
 
 def compute_film(
-    geometry: Geometry, state: LoadState, there: Films, back: Films, out: MetricArrays
+    geometry: Geometry, state: LoadState, drive: Films, return_: Films, out: MetricArrays
 ) -> None:
     """Results of both strokes: oil left outside, interseal pressure.
 
     The oil left outside per double stroke is the oil dragged out minus the oil drawn back.
     """
     moving = real(state.speed) > 0
-    if "rod seal" in there and "rod seal" in back:
+    if "rod seal" in drive and "rod seal" in return_:
         time = geometry.stroke / where(moving, state.speed, 1.0)
-        lost = maximum((there["rod seal"].flow + back["rod seal"].flow) * time, 0.0)
-        out.put("rod_leakage", lost, cases=moving[:, 0])
+        leakage = maximum((drive["rod seal"].flow + return_["rod seal"].flow) * time, 0.0)
+        out.put("rod_leakage", leakage, cases=moving[:, 0])
     pairs = {
         label.removesuffix(" secondary seal"): film.between - ATMOSPHERIC_PRESSURE
-        for label, film in there.items()
+        for label, film in drive.items()
         if label.endswith(" secondary seal")
     }
     if pairs:
         out.put("inter_seal_pressure", pairs, cases=moving[:, 0])
-    asked = 'needs the oil film: write "friction: film" in seals.rod'
+    remedy = 'needs the oil film: write "friction: film" in seals.rod'
     out.skip("film_thickness", 'needs the oil film: write "friction: film" in a seal')
-    out.skip("rod_leakage", asked)
-    out.skip("inter_seal_pressure", f"{asked} and add seals.rod.secondary")
+    out.skip("rod_leakage", remedy)
+    out.skip("inter_seal_pressure", f"{remedy} and add seals.rod.secondary")
 
 
 def _row_load(ring: Ring, contact: SealContact) -> Array:
@@ -138,29 +139,31 @@ def _row_load(ring: Ring, contact: SealContact) -> Array:
     return contact.line_load + (count - 1) * idle.line_load
 
 
-def _share(ring: Ring, films: Films) -> Ring:
+def _at_interseal_pressure(ring: Ring, films: Films) -> Ring:
     """The ring with its share of the pressure, if a pair has an interseal pressure."""
     film = films.get(ring.label)
     if film is None:
         return ring
-    settled = real(film.between) > 0
-    between = where(settled, film.between, ATMOSPHERIC_PRESSURE) - ATMOSPHERIC_PRESSURE
+    paired = real(film.between) > 0
+    between = where(paired, film.between, ATMOSPHERIC_PRESSURE) - ATMOSPHERIC_PRESSURE
     if ring.label.endswith("secondary seal"):
-        held = where(settled, between - ring["outer_pressure"], 0.0)
+        pressure = where(paired, between - ring["outer_pressure"], 0.0)
     else:
-        held = where(settled, ring["pressure"] + ring["outer_pressure"] - between, ring["pressure"])
-    return ring.at(pressure=absolute(held))
+        pressure = where(
+            paired, ring["pressure"] + ring["outer_pressure"] - between, ring["pressure"]
+        )
+    return ring.at(pressure=absolute(pressure))
 
 
-def _beside(v: Values, design: Design, geometry: Geometry, state: LoadState) -> Friction:
+def _wipers_and_guides(v: Values, design: Design, geometry: Geometry, state: LoadState) -> Friction:
     """Coulomb friction of wipers, and of guide rings under the side load."""
     total: Array = sum((wiper.friction for wiper in wipers(v, design, geometry, state)), 0.0)
-    carried = side_reactions(geometry, state)
+    reactions = side_reactions(geometry, state)
     for name, grooves, _ in places(geometry):
         for groove in grooves:
             if groove.role == "guide":
                 total = total + retention.guide_friction(
-                    force=carried[name],
+                    force=reactions[name],
                     friction_coefficient=v[f"{groove.path}friction_coefficient"],
                 )
     return Friction(total, total, 0.0)
@@ -178,13 +181,13 @@ def wipers(
     v: Values, design: Design, geometry: Geometry, state: LoadState
 ) -> tuple[WiperFriction, ...]:
     """Friction of all wipers: the lip of a U-cup without pressure."""
-    found = []
+    all_wipers = []
     for name, grooves, diameter in places(geometry):
         wiper = getattr(design.seals, name).wiper
         for groove in grooves:
             if groove.role == "wiper" and wiper is not None:
-                found.append(_wiper(v, wiper, groove, diameter, state.temperature))
-    return tuple(found)
+                all_wipers.append(_wiper(v, wiper, groove, diameter, state.temperature))
+    return tuple(all_wipers)
 
 
 def _wiper(
@@ -204,10 +207,10 @@ def _wiper(
     )
     stated = f"{at}friction_coefficient"
     coefficient = v[stated] if stated in v else v[f"{compound}friction_coefficient"]
-    rubbed = friction.seal_friction(
+    coulomb = friction.seal_friction(
         line_load=load, diameter=diameter, friction_coefficient=coefficient
     )
-    return WiperFriction(at, coefficient, rubbed)
+    return WiperFriction(at, coefficient, coulomb)
 
 
 SHARES = (0.25, 0.5, 0.75, 1.0)
@@ -248,22 +251,24 @@ def contacts(ring: Ring, supply: float) -> tuple[MountedContact, ...]:
     """
     elements = ring.element.seal_type.elements
     if elements is None:
-        known = " or ".join(article(one.name) for one in TYPES.values() if one.elements)
+        types = " or ".join(
+            article(seal_type.name) for seal_type in TYPES.values() if seal_type.elements
+        )
         raise ActuatorError(
             Diagnostic(
                 f"{ring.label}: no finite elements for a {ring.element.type}",
-                f"use them for {known}, or state your own profiles",
+                f"use them for {types}, or state your own profiles",
             )
         )
-    found = elements.solve(ring.sizes, room(ring), [share * supply for share in SHARES])
-    if found.failure:
+    solution = elements.solve(ring.sizes, room(ring), [share * supply for share in SHARES])
+    if solution.failure:
         raise Unsolvable(
             Diagnostic(
-                f"{ring.label}: finite elements: {found.failure}",
+                f"{ring.label}: finite elements: {solution.failure}",
                 "lower the squeeze or the pressure, or widen the groove",
             )
         )
-    return found.contacts
+    return solution.contacts
 
 
 def profiles(mounted_contacts: Iterable[MountedContact]) -> tuple[ContactProfile, ...]:
@@ -278,11 +283,13 @@ def profiles(mounted_contacts: Iterable[MountedContact]) -> tuple[ContactProfile
 
 def _profile(pressure: float, positions: np.ndarray, stresses: np.ndarray) -> ContactProfile:
     """A profile with fewer points, rounded to 10 nm and 10 Pa; it ends at the outer pressure."""
-    places = positions - positions[0]
-    keep = np.unique(np.linspace(0, len(places) - 1, min(POINTS, len(places))).round().astype(int))
-    held = np.maximum(stresses, 0.0)
+    offsets = positions - positions[0]
+    indices = np.unique(
+        np.linspace(0, len(offsets) - 1, min(POINTS, len(offsets))).round().astype(int)
+    )
+    pressures = np.maximum(stresses, 0.0)
     return ContactProfile(
         pressure=float(pressure),
-        positions=tuple(float(x) for x in places[keep].round(8)),
-        stresses=tuple(float(x) for x in held[keep].round(-1)),
+        positions=tuple(float(x) for x in offsets[indices].round(8)),
+        stresses=tuple(float(x) for x in pressures[indices].round(-1)),
     )

@@ -114,18 +114,18 @@ class Springs:
         swing_a, swing_b = g.area_a * b + g.area_b * ab, -(g.area_a * ab + g.area_b * a)
         seals = 0.0 if self.seals is None else self.seals
         whole = g.area_a * swing_a - g.area_b * swing_b + seals * det
-        moved = det / whole  # displacement, pressures of A and B under a unit force
+        displacement = det / whole  # displacement, pressures of A and B under a unit force
         force_a, force_b = swing_a / whole, swing_b / whole
         parts = {}
         for cause, give in self.chambers.items():
-            one = give.at(position, g.stroke)
+            compliance = give.at(position, g.stroke)
             parts[cause] = (
-                force_a * force_a * one.a
-                + force_b * force_b * one.b
-                + 2 * force_a * force_b * one.ab
+                force_a * force_a * compliance.a
+                + force_b * force_b * compliance.b
+                + 2 * force_a * force_b * compliance.ab
             )
         if self.seals is not None:
-            parts["seals"] = moved * moved * seals
+            parts["seals"] = displacement * displacement * seals
         return parts
 
     def _published(self, position: Array) -> dict[str, Array]:
@@ -133,7 +133,7 @@ class Springs:
         g = self.geometry
         square_a, square_b = g.area_a * g.area_a, g.area_b * g.area_b
 
-        def both(a: Array, b: Array) -> Array:
+        def in_series(a: Array, b: Array) -> Array:
             """Compliance of two parallel springs; an empty chamber is rigid."""
             return a * b / (a + b)
 
@@ -145,7 +145,7 @@ class Springs:
 
         oil_a = sum(side_a(cause) for cause in self.oil)
         oil_b = sum(side_b(cause) for cause in self.oil)
-        oil = both(oil_a, oil_b)
+        oil = in_series(oil_a, oil_b)
         parts = {
             "oil A": oil * oil_b / (oil_a + oil_b),
             "oil B": oil * oil_a / (oil_a + oil_b),
@@ -156,10 +156,10 @@ class Springs:
             )
             return parts | {"barrel": 1 / bulge}
         # eq. 23 uses the annulus for the wall of chamber B, not the bore
-        parts["barrel"] = both(side_a("barrel"), side_b("barrel") * g.area_b / g.area_a)
+        parts["barrel"] = in_series(side_a("barrel"), side_b("barrel") * g.area_b / g.area_a)
         for cause in ("pipes", "hoses"):
             if cause in self.chambers:
-                parts[cause] = both(side_a(cause), side_b(cause))
+                parts[cause] = in_series(side_a(cause), side_b(cause))
         return parts
 
     def stiffness(self, position: Array) -> Array:
@@ -182,11 +182,11 @@ def _stretch(design: Design, g: Geometry, wall: Wall, extra: Array) -> Give:
     shortening = wall.swelling.shortening * wall.path.share
     cap = design.cylinder.mount.startswith("cap")
     area = g.area_b if cap else g.area_a
-    own = area * area * wall.swelling.stretch * wall.path.share * g.barrel_length
+    barrel_stretch = area * area * wall.swelling.stretch * wall.path.share * g.barrel_length
     twice, once = 2 * shortening * area, shortening * area
     if cap:
-        return Give(b0=own + twice * extra, b1=twice, c1=once)
-    return Give(a0=own, a1=twice, c0=once * (g.stroke + extra), c1=-once)
+        return Give(b0=barrel_stretch + twice * extra, b1=twice, c1=once)
+    return Give(a0=barrel_stretch, a1=twice, c0=once * (g.stroke + extra), c1=-once)
 
 
 def springs(
@@ -318,9 +318,8 @@ def warnings(s: Springs) -> Iterable[tuple[str, str]]:
             if give is not None and not (np.all(give.a0) and np.all(give.b0)):
                 yield (
                     "stiffness_min",
-                    f"as published, {cause} on one chamber only have no effect: the missing "
-                    "ones of the "
-                    "other chamber are added as infinitely stiff",
+                    f"as published, {cause} on a single chamber have no effect: the other chamber "
+                    "counts as infinitely stiff",
                 )
     if s.seals is not None:
         yield (

@@ -18,9 +18,9 @@ from ..design.kinds import Fraction
 from ..design.material import Material, bulk_modulus_law, viscosity_law
 from ..design.model import Design, FluidSection
 from ..metrics.table import OIL_FED
-from ..models import fluid, oil_laws as density_models, retention, stiffness
+from ..models import fluid, oil_laws, retention, stiffness
 from ..models.oil_laws import BULK_MODULUS_LAWS, VISCOSITY_LAWS
-from . import linkage as joint_module, state as oil_laws
+from . import linkage as joint_module
 from .geometry import Geometry
 from .limits import MaterialValues, MetricArrays
 from .linkage import WORST, Demand, DrivenJoint
@@ -84,9 +84,9 @@ def oil_density(
     name = section.material
     rho = stock.get(name, "density")
     expansion = stock.get(name, "volume_expansion")
-    known = stock.material(name).numbers
-    if expansion is not None and "density_temperature" in known:
-        rho = density_models.density_thermal(
+    numbers = stock.material(name).numbers
+    if expansion is not None and "density_temperature" in numbers:
+        rho = oil_laws.density_thermal(
             reference_density=rho,
             volume_expansion=expansion,
             temperature=temperature,
@@ -94,7 +94,7 @@ def oil_density(
         )
     if pressure is None:
         return rho
-    law = BULK_MODULUS_LAWS[bulk_modulus_law(section.bulk_modulus_law, known)]
+    law = BULK_MODULUS_LAWS[bulk_modulus_law(section.bulk_modulus_law, numbers)]
     return law.density(_properties(stock, name), rho, temperature, pressure)
 
 
@@ -193,7 +193,7 @@ class LoadState:
     """Piston position of every case; None for the worst."""
     reach: Array
     """Piston position for column and side load: stated, or the full stroke (worst)."""
-    asked: dict[str, Demand]
+    demands: dict[str, Demand]
     """Demands of the load: worst, where its force is largest, and at both stops of a joint."""
     force: Array
     """Worst demand: for a linkage without stated position at the least lever arm."""
@@ -257,8 +257,8 @@ def _reach(geometry: Geometry, positions: Sequence[Array | None]) -> Array:
 
 def _stated(v: Values, design: Design, field: str, otherwise: Array) -> Array:
     """A held pressure of every case: stated, or `otherwise`."""
-    own = np.array([[getattr(case, field) is not None] for case in design.load_cases])
-    return where(own, v.case(field, 0.0), otherwise) if own.any() else otherwise
+    stated = np.array([[getattr(case, field) is not None] for case in design.load_cases])
+    return where(stated, v.case(field, 0.0), otherwise) if stated.any() else otherwise
 
 
 def _holding(
@@ -282,7 +282,7 @@ def holding(
     v: Values, design: Design, stock: MaterialValues, geometry: Geometry, s: LoadState, end: str
 ) -> LoadState:
     """The state with the demand of the load at one stop of a joint, holding."""
-    force = s.asked[end].force
+    force = s.demands[end].force
     holding_a, holding_b = _holding(v, design, geometry, s.push, force)
     return replace(
         s,
@@ -299,8 +299,8 @@ def derive(v: Values, design: Design, stock: MaterialValues, geometry: Geometry)
     push = np.array([[case.direction == "push"] for case in design.load_cases])
     joint = joint_module.derive(v, design, geometry)
     positions = _positions(v, design, geometry, joint)
-    asked = joint_module.demands(v, design, joint, positions)
-    force = asked[WORST].force
+    demands = joint_module.demands(v, design, joint, positions)
+    force = demands[WORST].force
     supply, drain = v["supply.pressure"], v["supply.return_pressure"]
     driven = v.case("pressure", supply)
     temperature = v.case("temperature", v["fluid.temperature"])
@@ -314,9 +314,9 @@ def derive(v: Values, design: Design, stock: MaterialValues, geometry: Geometry)
         joint=joint,
         positions=positions,
         reach=_reach(geometry, positions),
-        asked=asked,
+        demands=demands,
         force=force,
-        speed=asked[WORST].speed,
+        speed=demands[WORST].speed,
         side_load=v.case("side_load"),
         temperature=temperature,
         driven_pressure=driven,
@@ -338,7 +338,7 @@ def compute(
     section: FluidSection, stock: MaterialValues, state: LoadState, out: MetricArrays
 ) -> None:
     """Margin of the chambers to boiling of the oil, in every case."""
-    limit = oil_laws.vapour_pressure(stock, section.material, state.temperature)
+    limit = vapour_pressure(stock, section.material, state.temperature)
     if limit is None:
         why = f"{section.material} has no vapour_pressure: add it under materials"
         out.skip("cavitation_margin", why)

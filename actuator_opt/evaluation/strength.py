@@ -19,7 +19,7 @@ from ..models import end_plate, retention, rod
 from . import rod_strength, rods
 from .barrel import Wall
 from .barrel.wall import largest_area
-from .geometry import Geometry, Groove, Numbers, clamped, end_at, joint_of, taken
+from .geometry import Geometry, Groove, Numbers, clamped, end_at, groove_totals, joint_of
 from .limits import MaterialValues, MetricArrays
 from .rod_strength import Beam
 from .rods import RodSection
@@ -32,14 +32,16 @@ NO_RETENTION = "no retention stated: add retention"
 
 
 @dataclass(frozen=True, slots=True)
-class Held:
+class LoadedJoint:
     """The joint of caps and head under load."""
 
     joint: Joint
     loaded: Loaded
 
 
-def held(v: Values, design: Design, stock: MaterialValues, g: Geometry, wall: Wall) -> Held | None:
+def joint_under_load(
+    v: Values, design: Design, stock: MaterialValues, g: Geometry, wall: Wall
+) -> LoadedJoint | None:
     """The joint of a design under the largest force; None without retention."""
     joint = joint_of(design)
     if joint is None:
@@ -53,7 +55,7 @@ def held(v: Values, design: Design, stock: MaterialValues, g: Geometry, wall: Wa
         expansion=None if wall.expansion is None else wall.expansion[0],
         clamp=wall.path.clamp,
     )
-    return Held(joint, loaded)
+    return LoadedJoint(joint, loaded)
 
 
 def compute(
@@ -65,31 +67,33 @@ def compute(
     wall: Wall,
     section: RodSection,
     beam: Beam,
-    held: Held | None,
+    loaded_joint: LoadedJoint | None,
     out: MetricArrays,
 ) -> None:
     """All strength metrics."""
     supply = v["supply.pressure"]
     push, pull = supply * g.area_a, supply * g.area_b
     yields, bursts = wall.yield_pressure, wall.burst_pressure
-    if held is not None:
-        beside = held.joint.wall(held.loaded)
-        yields, bursts = {**yields, **beside.yields}, {**bursts, **beside.bursts}
+    if loaded_joint is not None:
+        joint_walls = loaded_joint.joint.wall(loaded_joint.loaded)
+        yields, bursts = {**yields, **joint_walls.yields}, {**bursts, **joint_walls.bursts}
     _pressure_factors(v, wall, supply, yields, bursts, out)
     parts = {place: p / supply for place, p in yields.items()}
     parts |= rod_strength.yields(stock, design, g, state, section, beam)
-    parts |= {} if held is None else held.joint.yields(held.loaded)
+    parts |= {} if loaded_joint is None else loaded_joint.joint.yields(loaded_joint.loaded)
     parts |= _fitting_yield(v, stock, design, section, push)
     out.put("yield_factor", parts)
     out.put("buckling_factor", beam.critical / push)
     rod_strength.compute(design, section, beam, supply, push, pull, out)
     _rod_end(v, stock, design, section, pull, out)
-    found = NO_RETENTION if held is None else held.joint.strength(held.loaded)
-    _retention(found, out)
+    joint_strength = (
+        NO_RETENTION if loaded_joint is None else loaded_joint.joint.strength(loaded_joint.loaded)
+    )
+    _retention(joint_strength, out)
     fittings = rods.fittings(v, stock, design, section)
     _fittings(stock, fittings, push, out)
     thermal = {
-        "caps": found if isinstance(found, str) else found.thermal,
+        "caps": joint_strength if isinstance(joint_strength, str) else joint_strength.thermal,
         "rod fittings": fittings if isinstance(fittings, str) else fittings.thermal(stock),
     }
     rods.thermal(v, design, thermal, out)
@@ -162,23 +166,23 @@ def _rod_end(
     out.put("thread_factor", strength / stress)
 
 
-def _retention(found: Strength | str, out: MetricArrays) -> None:
+def _retention(joint_strength: Strength | str, out: MetricArrays) -> None:
     """Retention of caps and head: elastic limit and breaking load over the largest axial force."""
-    if isinstance(found, str):
-        out.skip("retention_factor", found)
-        out.skip("retention_burst_factor", found)
+    if isinstance(joint_strength, str):
+        out.skip("retention_factor", joint_strength)
+        out.skip("retention_burst_factor", joint_strength)
     else:
-        out.put("retention_factor", dict(found.working))
-        out.put("retention_burst_factor", dict(found.burst))
+        out.put("retention_factor", dict(joint_strength.working))
+        out.put("retention_burst_factor", dict(joint_strength.burst))
 
 
-def own(held: Held | None, out: MetricArrays) -> None:
+def joint_metrics(loaded_joint: LoadedJoint | None, out: MetricArrays) -> None:
     """Metrics of the joint; metrics of other joints get a reason."""
-    found = {} if held is None else held.joint.own(held.loaded)
+    metrics = {} if loaded_joint is None else loaded_joint.joint.own(loaded_joint.loaded)
     for joint in JOINTS.values():
         for name, absent in joint.metrics.items():
-            if name in found:
-                out.put(name, found[name])
+            if name in metrics:
+                out.put(name, metrics[name])
             else:
                 out.skip(name, absent)
 
@@ -250,7 +254,7 @@ def _guided(grooves: Sequence[Groove], length: Array) -> Array:
     for groove in grooves:
         if groove.role == "guide":
             return groove.count * groove.width
-    return length - taken(grooves)[0]
+    return length - groove_totals(grooves)[0]
 
 
 def _guides(
@@ -276,13 +280,13 @@ def _guides(
         ("head", design.head, design.seals.rod),
         ("piston", design.piston, design.seals.piston),
     ):
-        own = part.bearing or part.material
-        material = own if seal.guide is None else seal.guide.material
+        bearing = part.bearing or part.material
+        material = bearing if seal.guide is None else seal.guide.material
         allowed = stock.allowable(material, "bearing_strength")
         if allowed is None:
             out.skip("bearing_factor", f"{material} has no bearing strength")
             return
         loaded = real(pressures[place]) > 0
-        safe = where(loaded, pressures[place], 1.0 + 0 * pressures[place])
-        factors[place] = where(loaded, allowed / safe, float("inf"))
+        pressure = where(loaded, pressures[place], 1.0 + 0 * pressures[place])
+        factors[place] = where(loaded, allowed / pressure, float("inf"))
     out.put("bearing_factor", factors)

@@ -1,4 +1,4 @@
-"""Doubts about a result: exceeded ranges, unverified data, and the model of each number."""
+"""Validity of a result: exceeded ranges, unverified data, and the model of each number."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from ..models import contact_profile, gland, laminate, rough_surface, seals
 from ..models.strength import CRITERIA
 from . import linkage as joint, motion, proportions, springs, state
 from .barrel import LAMINATES, kind
-from .film import FilmTable
+from .film_tables import FilmTable
 from .kernel import ModelRun, PreparedDesign
 from .result import Metric, ModelUse, Unverified
 from .rings import Ring, extrusion_end, seal_contact
@@ -68,8 +68,8 @@ def describe(function: Callable[..., object]) -> ModelDocumentation:
 def function_of(name: str) -> Callable[..., object]:
     """Model function of a name in the table of metrics, ``"forces.push_force"``."""
     module, _, function = name.partition(".")
-    found: Callable[..., object] = getattr(import_module(f"{formulas.__name__}.{module}"), function)
-    return found
+    model: Callable[..., object] = getattr(import_module(f"{formulas.__name__}.{module}"), function)
+    return model
 
 
 def model_of(
@@ -80,7 +80,7 @@ def model_of(
     `wall` is the barrel's model, `criterion` that of its plies.
     """
     row = ROWS.get(metric)
-    if row is None:  # a user's own
+    if row is None:  # a metric of the user
         return None
     name = row.by_wall.get(wall) or row.model  # type: ignore[call-overload]
     for pattern, other in row.at.items():
@@ -100,12 +100,12 @@ _SURROGATES = {
 }
 
 
-def seal_warnings(subject: PreparedDesign, v: Values, done: ModelRun) -> Iterable[tuple[str, str]]:
-    """(metric, text) of all doubts about the seals."""
-    for ring in done.rings:
+def seal_warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tuple[str, str]]:
+    """(metric, sentence) of all warnings about the seals."""
+    for ring in run.rings:
         yield from _contact(subject, ring)
-        yield from _limits(subject, done, ring, float(v["supply.pressure"]))
-    if "rod_leakage" in done.computed.metrics:
+        yield from _limits(subject, run, ring, float(v["supply.pressure"]))
+    if "rod_leakage" in run.computed.metrics:
         yield from _leak_at_rest(subject)
     for (place, case, stroke), table in subject.films.items():
         yield from _film(f"film of the {place} seals ({v.cases[case]}, {stroke})", table)
@@ -146,19 +146,19 @@ def _leak_at_rest(subject: PreparedDesign) -> Iterable[tuple[str, str]]:
     ):
         yield (
             "rod_leakage",
-            "the film of the rod seals also leaks on the instroke: an averaged film passes "
-            "oil at any "
-            "gap, even at rest, where a real elastomer seal is tight; rod_leakage is too high",
+            "the film of the rod seals also leaks on the instroke: an averaged film passes oil at "
+            "any gap, even at rest, where a real elastomer seal is tight; rod_leakage is too high",
         )
 
 
 def _film(name: str, table: FilmTable) -> Iterable[tuple[str, str]]:
     """A surrogate with a large error, beyond its box, or with points without solution."""
-    for what, metric in _SURROGATES.items():
-        if table.errors[what] > FILM_ERROR:
+    for quantity, metric in _SURROGATES.items():
+        if table.errors[quantity] > FILM_ERROR:
+            error = 100 * table.errors[quantity]
             yield (
                 metric,
-                f"{name}: the surrogate's {what} is up to {100 * table.errors[what]:.1f} % from "
+                f"{name}: the surrogate's {quantity} is up to {error:.1f} % from "
                 "the solved films within the bounds",
             )
     if not table.surrogate.covers(table.row.inputs()):
@@ -172,23 +172,23 @@ def _film(name: str, table: FilmTable) -> Iterable[tuple[str, str]]:
 
 
 def _limits(
-    subject: PreparedDesign, done: ModelRun, ring: Ring, supply: float
+    subject: PreparedDesign, run: ModelRun, ring: Ring, supply: float
 ) -> Iterable[tuple[str, str]]:
     """Pressure and speed beyond the limits of the compound, extrusion beyond its data."""
     compound = subject.materials[ring.element.compound]
-    known = compound.numbers
-    fastest = float(np.max(np.real(done.state.speed)))
-    if not ring.element.back_ups and supply > known.get("pressure_max", np.inf):
+    limits = compound.numbers
+    fastest = float(np.max(np.real(run.state.speed)))
+    if not ring.element.back_ups and supply > limits.get("pressure_max", np.inf):
         yield (
             "",
             f"{ring.label}: {supply / 1e5:.0f} bar, but {compound.name} allows "
-            f"{known['pressure_max'] / 1e5:.0f} bar without a back-up ring",
+            f"{limits['pressure_max'] / 1e5:.0f} bar without a back-up ring",
         )
-    if fastest > known.get("speed_max", np.inf):
+    if fastest > limits.get("speed_max", np.inf):
         yield (
             "",
             f"{ring.label}: {fastest:.2g} m/s, but {compound.name} allows "
-            f"{known['speed_max']:.2g} m/s",
+            f"{limits['speed_max']:.2g} m/s",
         )
     end = extrusion_end(ring, subject.materials)
     if supply > end * (1 + 1e-9):
@@ -200,12 +200,12 @@ def _limits(
 
 
 def seal_models(
-    rings: Iterable[Ring], subject: PreparedDesign, said: Iterable[str]
+    rings: Iterable[Ring], subject: PreparedDesign, texts: Iterable[str]
 ) -> Iterable[ModelUse]:
-    """Models of all sealing rings; `said` are the texts of the warnings."""
-    said = tuple(said)
+    """Models of all sealing rings; `texts` are the texts of the warnings."""
+    texts = tuple(texts)
     for ring in rings:
-        doubted = any(text.startswith(ring.label) for text in said)
+        doubted = any(text.startswith(ring.label) for text in texts)
         yield _contact_model(ring, doubted=doubted)
     if subject.films:
         worst = max(table.errors["friction"] for table in subject.films.values())
@@ -258,10 +258,10 @@ def kind_of(subject: PreparedDesign) -> str:
     return kind(subject.design, subject.materials)
 
 
-def warnings(subject: PreparedDesign, v: Values, done: ModelRun) -> Iterable[tuple[str, str]]:
-    """(metric, sentence) for everything outside its range or doubtful."""
-    g = done.geometry
-    thin = float(np.max(done.wall.thin_ratio))
+def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tuple[str, str]]:
+    """(metric, sentence) for each model or value outside its range."""
+    g = run.geometry
+    thin = float(np.max(run.wall.thin_ratio))
     if kind_of(subject) == "thin_laminate" and thin > laminate.THIN_WALL_LIMIT:
         text = (
             f"thin-laminate barrel at t/r = {thin:.3f} (reliable to {laminate.THIN_WALL_LIMIT}): "
@@ -271,18 +271,18 @@ def warnings(subject: PreparedDesign, v: Values, done: ModelRun) -> Iterable[tup
         for metric in WALL_FED:
             yield metric, text
     yield from (("", text) for text in proportions.warnings(subject, v, g))
-    yield from _wall_warnings(subject, done)
-    if done.held is not None:
-        yield from done.held.joint.warnings(done.held.loaded, METRICS)
-    yield from _rod_warnings(subject, done)
-    yield from _bond_warnings(done)
-    for part, what in (
+    yield from _wall_warnings(subject, run)
+    if run.joint is not None:
+        yield from run.joint.joint.warnings(run.joint.loaded, METRICS)
+    yield from _rod_warnings(subject, run)
+    yield from _bond_warnings(run)
+    for part, assumption in (
         ("head", "material and length of the piston"),
         ("caps", f"the piston's material, thickness {PLAIN_CAP:g} bore"),
     ):
         if part not in subject.design.model_fields_set:
-            yield "", f"no {part} stated: assumed {what}"
-    lives = [np.min(np.real(x)) for x in done.computed.metrics.get("cycle_life", {}).values()]
+            yield "", f"no {part} stated: assumed {assumption}"
+    lives = [np.min(np.real(x)) for x in run.computed.metrics.get("cycle_life", {}).values()]
     if lives and np.isfinite(min(lives)) and min(lives) > LONGEST_LIFE:
         yield (
             "cycle_life",
@@ -290,13 +290,13 @@ def warnings(subject: PreparedDesign, v: Values, done: ModelRun) -> Iterable[tup
             "treat it as a lower bound; adhesive and plies are not included",
         )
     section = subject.design.fluid
-    yield from state.warnings(section, subject.materials[section.material], v.cases, done.state)
-    yield from seal_warnings(subject, v, done)
-    yield from springs.warnings(done.springs)
-    yield from joint.warnings(subject.design, done.state.joint)
-    yield from motion.warnings(v, subject.design, done.motion, done.state, done.computed)
-    if done.wall.missing:
-        yield "burst_factor", f"barrel: {done.wall.missing[0]}"
+    yield from state.warnings(section, subject.materials[section.material], v.cases, run.state)
+    yield from seal_warnings(subject, v, run)
+    yield from springs.warnings(run.springs)
+    yield from joint.warnings(subject.design, run.state.joint)
+    yield from motion.warnings(v, subject.design, run.motion, run.state, run.computed)
+    if run.wall.missing:
+        yield "burst_factor", f"barrel: {run.wall.missing[0]}"
     yield from _measured(subject, v)
     for material in subject.materials.values():
         if material.warning:
@@ -313,18 +313,18 @@ def warnings(subject: PreparedDesign, v: Values, done: ModelRun) -> Iterable[tup
 
 def _measured(subject: PreparedDesign, v: Values) -> Iterable[tuple[str, str]]:
     """Values outside the bounds of their test record."""
-    for path, known in subject.design.measured.items():
+    for path, bounds in subject.design.measured.items():
         value = float(np.real(np.squeeze(v[path]))) if path in v else None
-        if value is not None and not known.lower <= value <= known.upper:
+        if value is not None and not bounds.lower <= value <= bounds.upper:
             text = quantity_of(path, subject.design).text
             yield (
                 "",
-                f"{path}: {text(value)} is outside the bounds from {known.record}, "
-                f"{text(known.lower)} to {text(known.upper)}: the record does not support it",
+                f"{path}: {text(value)} is outside the bounds from {bounds.record}, "
+                f"{text(bounds.lower)} to {text(bounds.upper)}: the record does not support it",
             )
 
 
-def _wall_warnings(subject: PreparedDesign, done: ModelRun) -> Iterable[tuple[str, str]]:
+def _wall_warnings(subject: PreparedDesign, run: ModelRun) -> Iterable[tuple[str, str]]:
     """Effects that the wall model leaves out."""
     laminated = kind_of(subject) in LAMINATES
     environment = subject.design.environment
@@ -333,22 +333,22 @@ def _wall_warnings(subject: PreparedDesign, done: ModelRun) -> Iterable[tuple[st
             "",
             "no cure temperature stated: first ply and yield exclude cooling stresses",
         )
-    elif laminated and done.wall.expansion is None:
+    elif laminated and run.wall.expansion is None:
         yield (
             "",
-            f"first ply and yield exclude cooling stresses: {done.wall.why_no_mismatch}",
+            f"first ply and yield exclude cooling stresses: {run.wall.why_no_mismatch}",
         )
     if laminated and not all(ply.balanced for ply in subject.design.barrel.layup):
         yield "", "bending and buckling treat single plies of the wall as balanced pairs"
-    worked = done.wall.autofrettage
+    autofrettage = run.wall.autofrettage
     if subject.design.barrel.autofrettage_pressure is not None:
-        if worked is None:
+        if autofrettage is None:
             yield (
                 "",
                 "autofrettage is ignored: it needs the exact tube, a metal liner and "
                 "balanced pairs",
             )
-        elif float(np.min(np.real(worked.axial_margin))) < 0:
+        elif float(np.min(np.real(autofrettage.axial_margin))) < 0:
             yield (
                 "reverse_yield_factor",
                 "autofrettage also yields the liner axially: the axial residual strain is "
@@ -356,9 +356,9 @@ def _wall_warnings(subject: PreparedDesign, done: ModelRun) -> Iterable[tuple[st
             )
 
 
-def _rod_warnings(subject: PreparedDesign, done: ModelRun) -> Iterable[tuple[str, str]]:
+def _rod_warnings(subject: PreparedDesign, run: ModelRun) -> Iterable[tuple[str, str]]:
     """Effects that the strength of the rod leaves out."""
-    rod = done.rod
+    rod = run.rod
     if rod.layers and not rod.cured:
         why = "no cure temperature stated"
         if rod.expansion is None:
@@ -367,7 +367,7 @@ def _rod_warnings(subject: PreparedDesign, done: ModelRun) -> Iterable[tuple[str
         yield "rod_factor", f"the rod's layers exclude cooling stresses: {why}"
     if rod.missing:
         yield "rod_factor", f"rod: {rod.missing[0]}"
-    factors = done.computed.metrics["buckling_factor"][""]
+    factors = run.computed.metrics["buckling_factor"][""]
     if float(np.min(np.real(factors))) < 1 / NEAR:
         for metric in ("yield_factor", "rod_factor", "local_buckling_factor"):
             yield (
@@ -377,9 +377,9 @@ def _rod_warnings(subject: PreparedDesign, done: ModelRun) -> Iterable[tuple[str
             )
 
 
-def _bond_warnings(done: ModelRun) -> Iterable[tuple[str, str]]:
+def _bond_warnings(run: ModelRun) -> Iterable[tuple[str, str]]:
     """The bond with the highest combined shear of force and temperature, if above its strength."""
-    metrics = done.computed.metrics
+    metrics = run.computed.metrics
     sums = {}
     for place, metric in (("caps", "retention_factor"), ("rod fittings", "fitting_factor")):
         heat = [x for at, x in metrics.get("bond_thermal_factor", {}).items() if place in at]
@@ -394,8 +394,7 @@ def _bond_warnings(done: ModelRun) -> Iterable[tuple[str, str]]:
             "",
             f"bond of the {place}: the elastic edge shears of force and of temperature add up to "
             f"{sums[place]:.2f} times the strength; each is checked alone, because a ductile "
-            "adhesive "
-            "yields and relieves both",
+            "adhesive yields and relieves both",
         )
 
 
@@ -404,37 +403,37 @@ def models(
     subject: PreparedDesign,
     rings: tuple[Ring, ...],
     outside: set[str],
-    said: Iterable[str],
+    texts: Iterable[str],
 ) -> Iterable[ModelUse]:
     """All models of computed metrics, with their values.
 
     A model is extrapolated if used outside its own range; a metric that only inherits such a value
-    is marked in its own row, not here. `said` are the texts of the warnings.
+    is marked in its own row, not here. `texts` are the texts of the warnings.
     """
-    said = tuple(said)
+    texts = tuple(texts)
     wall, criterion = kind_of(subject), subject.design.barrel.criterion
-    seen: dict[str, ModelUse] = {}
+    uses: dict[str, ModelUse] = {}
     for name, metric in metrics.items():
         model = model_of(name, wall=wall, criterion=criterion, place=metric.place)
         if model is None or metric.value is None:
             continue
-        used = metric.quantity.text(metric.value)
-        at = f"{name} = {used}" + (f" ({metric.case})" if metric.case else "")
-        if model.name in seen:
-            old = seen[model.name]
+        value = metric.quantity.text(metric.value)
+        at = f"{name} = {value}" + (f" ({metric.case})" if metric.case else "")
+        if model.name in uses:
+            old = uses[model.name]
             at = f"{old.used_at}; {at}"
-        seen[model.name] = ModelUse(
+        uses[model.name] = ModelUse(
             model.name,
             model.summary,
             model.reference,
             model.valid,
             at,
-            name not in (outside & OWN) and (model.name not in seen or seen[model.name].in_range),
+            name not in (outside & OWN) and (model.name not in uses or uses[model.name].in_range),
         )
-    yield from seen.values()
-    yield from seal_models(rings, subject, said)
+    yield from uses.values()
+    yield from seal_models(rings, subject, texts)
     liquid = subject.design.fluid
-    for function, what in state.laws(liquid, subject.materials[liquid.material]):
+    for function, quantity in state.laws(liquid, subject.materials[liquid.material]):
         model = describe(function)
         yield ModelUse(
             model.name,
@@ -442,7 +441,7 @@ def models(
             model.reference,
             model.valid,
             f"{liquid.material}, chambers up to {subject.design.supply.pressure / 1e5:.0f} bar",
-            not any(text.startswith(f"{what}:") for text in said),
+            not any(text.startswith(f"{quantity}:") for text in texts),
         )
 
 

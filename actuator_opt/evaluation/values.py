@@ -8,6 +8,9 @@ variable that no model reads is a fault of the design file.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import fields, is_dataclass
+from math import isfinite
+from typing import Any
 
 import numpy as np
 
@@ -34,8 +37,8 @@ class Values:
 
     def __getitem__(self, path: str) -> Array:
         self.read.add(path)
-        found = self.varied.get(path)
-        return self._numbers[path] if found is None else found
+        array = self.varied.get(path)
+        return self._numbers[path] if array is None else array
 
     def get(self, path: str, default: Array) -> Array:
         """The number at `path`, or `default` if the design does not state it."""
@@ -63,3 +66,16 @@ def of_case(value: Array, index: int) -> float:
     """The number of a case from an array (cases, 1), (1, 1) or a float."""
     array = np.atleast_2d(np.asarray(value))
     return float(array[min(index, array.shape[0] - 1), 0])
+
+
+def plain(value: Any) -> Any:
+    """Data classes, arrays and sequences as plain data for JSON; None for values not finite."""
+    if is_dataclass(value):
+        return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
+    if isinstance(value, Mapping):
+        return {key: plain(entry) for key, entry in value.items()}
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, (list, tuple)):
+        return [plain(entry) for entry in value]
+    return None if isinstance(value, float) and not isfinite(value) else value

@@ -27,7 +27,7 @@ def _barrel(v: Values, design: Design, g: Geometry) -> Array:
 def _piston(v: Values, design: Design, g: Geometry) -> Array:
     density = v[f"materials.{design.piston.material}.density"]
     diameter = g.bore - 2 * g.piston_clearance
-    removed = sum(
+    groove_volume = sum(
         groove.count
         * mass.piston_groove_volume(
             diameter=diameter, depth=groove.gland_depth - g.piston_clearance, width=groove.width
@@ -35,7 +35,7 @@ def _piston(v: Values, design: Design, g: Geometry) -> Array:
         for groove in g.piston_grooves
     )
     disc = mass.disc_mass(density=density, diameter=diameter, thickness=g.piston_length)
-    return disc - density * removed
+    return disc - density * groove_volume
 
 
 def _plate(density: Array, g: Geometry, hole: Array) -> Array:
@@ -48,7 +48,7 @@ def _plate(density: Array, g: Geometry, hole: Array) -> Array:
 def _gland(v: Values, design: Design, g: Geometry) -> Array:
     density = v[f"materials.{design.head.material}.density"]
     hole = g.rod_diameter + 2 * g.head_clearance
-    removed = sum(
+    groove_volume = sum(
         groove.count
         * mass.rod_groove_volume(
             diameter=hole, depth=groove.gland_depth - g.head_clearance, width=groove.width
@@ -58,14 +58,14 @@ def _gland(v: Values, design: Design, g: Geometry) -> Array:
     plug = mass.tube_mass(
         density=density, inner_diameter=hole, outer_diameter=g.bore, length=g.head_length
     )
-    return plug - density * removed
+    return plug - density * groove_volume
 
 
 def _seals(v: Values, g: Geometry) -> Array:
     rings: Array = 0.0
-    placed = [(groove, g.bore, -1) for groove in g.piston_grooves]
-    placed += [(groove, g.rod_diameter, 1) for groove in g.rod_grooves]
-    for groove, counterface, side in placed:
+    placed_grooves = [(groove, g.bore, -1) for groove in g.piston_grooves]
+    placed_grooves += [(groove, g.rod_diameter, 1) for groove in g.rod_grooves]
+    for groove, counterface, side in placed_grooves:
         for piece in groove.pieces:
             ring = mass.ring_mass(
                 density=v[f"materials.{piece.material}.density"],
@@ -108,7 +108,7 @@ def parts(
     if design.clevis is not None:
         density = v[f"materials.{design.clevis.material}.density"]
         clevises = 2 * density * mass.eye_volume(pin_diameter=g.pin_diameter)
-    found = {
+    masses = {
         "barrel": _barrel(v, design, g),
         "rod": rod.mass_per_length * g.rod_length,
         "piston": _piston(v, design, g),
@@ -120,14 +120,14 @@ def parts(
         "clevises": clevises,
     }
     joint = joint_of(design)
-    joined = {} if joint is None else joint.mass(end_at(design, Numbers(v), g), stock)
-    for part, added in joined.items():
+    additions = {} if joint is None else joint.mass(end_at(design, Numbers(v), g), stock)
+    for part, addition in additions.items():
         if part == "caps":
-            found["cap"], found["head"] = found["cap"] + added, found["head"] + added
+            masses["cap"], masses["head"] = masses["cap"] + addition, masses["head"] + addition
         else:
-            found[part] = found[part] + 2 * added
-    found["caps"] = found.pop("cap") + found.pop("head")
-    return {part: found[part] for part in PARTS}
+            masses[part] = masses[part] + 2 * addition
+    masses["caps"] = masses.pop("cap") + masses.pop("head")
+    return {part: masses[part] for part in PARTS}
 
 
 def oil(v: Values, design: Design, geometry: Geometry, position: Array = 0.0) -> Array:

@@ -35,26 +35,18 @@ from ..version import VERSION
 
 AXES = 8
 """Number of parallel axes shown at first."""
-
-
-TOLD = 3
-"""Most failure reasons that are listed."""
-
-
+REASONS = 3
+"""Maximum number of failure reasons listed."""
 MOST = 1e30
-"""Largest margin that is stored, which single precision can represent."""
-
-
+"""Largest stored margin, which single precision can represent."""
 MM = 1000.0
-
-
 _WORDS = {"bore": "bore ⌀", "rod": "rod ⌀", "closed_length": "closed length"}
 
 
 def payload(explored: Explored, *, design: str, plugins: Sequence[str]) -> dict[str, Any]:
     """All data of the page, as JSON."""
     columns = _columns(explored)
-    limits, held = _limits(explored)
+    limits, further_checks = _limits(explored)
     command = ["actuator-opt", "report", design]
     for file in plugins:
         command += ["--plugin", file]
@@ -69,7 +61,7 @@ def payload(explored: Explored, *, design: str, plugins: Sequence[str]) -> dict[
         "command": command,
         "where": f"Run it in the folder of {design}, the base design beside this page.",
         "limits": limits,
-        "held": held,
+        "held": further_checks,
         "shapes": _shapes(explored),
         "design": explored.kept.design,
         "start": _start(explored, columns)
@@ -83,10 +75,10 @@ def _base64(values: Array, kind: str) -> str:
 
 def _column(name: str, label: str, unit: str, values: Array) -> dict[str, Any]:
     """A column in its display unit; a single number if all rows are equal."""
-    told: dict[str, Any] = {"name": name, "label": label, "unit": unit_text(unit)}
+    column: dict[str, Any] = {"name": name, "label": label, "unit": unit_text(unit)}
     if np.isfinite(values[0]) and (values == values[0]).all():
-        return told | {"value": float(np.float32(values[0]))}
-    return told | {"data": _base64(values, "<f4")}
+        return column | {"value": float(np.float32(values[0]))}
+    return column | {"data": _base64(values, "<f4")}
 
 
 def _columns(explored: Explored) -> list[dict[str, Any]]:
@@ -96,21 +88,21 @@ def _columns(explored: Explored) -> list[dict[str, Any]]:
     """
     study, numbers = explored.study, explored.numbers
     count = len(study.order)
-    found = [_texts(explored, path) for path in explored.kept.texts]
+    columns = [_texts(explored, path) for path in explored.kept.texts]
     for k, column in enumerate(study.columns[:count]):
         quantity = quantity_of(column.name, study.design)
-        shown = quantity.to_display(numbers[:, k])
-        found.append(_column(column.name, column.name, quantity.unit, np.asarray(shown)))
+        values = quantity.to_display(numbers[:, k])
+        columns.append(_column(column.name, column.name, quantity.unit, np.asarray(values)))
     percent = np.round(100 * numbers[:, -3], 9) + 0.0  # no rounding errors of zero on the axis
     margin = _column("least_margin", "least margin of all", "%", percent)
-    found.append(margin | {"better": MORE_IS_BETTER})
+    columns.append(margin | {"better": MORE_IS_BETTER})
     for k, name in enumerate(study.metrics, count):
         quantity = study.quantity(name)
         values = quantity.to_display(numbers[:, k])
         if not np.isnan(values).all():
-            told = _column(name, quantity.label, quantity.unit, np.asarray(values))
-            found.append(told | {"better": better(study, name)})
-    return found
+            metric_column = _column(name, quantity.label, quantity.unit, np.asarray(values))
+            columns.append(metric_column | {"better": better(study, name)})
+    return columns
 
 
 def _texts(explored: Explored, path: str) -> dict[str, Any]:
@@ -123,23 +115,23 @@ def _texts(explored: Explored, path: str) -> dict[str, Any]:
 
 def _exact(explored: Explored) -> list[dict[str, Any]]:
     """Varied inputs in SI with all digits, for the command."""
-    found = []
+    columns = []
     for path in explored.kept.texts:
         column = _texts(explored, path)
-        found.append({"path": path, "texts": column["texts"], "codes": column["codes"]})
+        columns.append({"path": path, "texts": column["texts"], "codes": column["codes"]})
     for k in range(len(explored.study.order)):
         name = explored.study.columns[k].name
-        found.append({"path": name, "data": _base64(explored.numbers[:, k], "<f8")})
-    return found
+        columns.append({"path": name, "data": _base64(explored.numbers[:, k], "<f8")})
+    return columns
 
 
 def _limits(explored: Explored) -> tuple[list[dict[str, Any]], str]:
-    """Limits that exclude designs, those of the user first; and the number of other limits."""
+    """Limits that exclude designs, the user's limits first; and a sentence on the other limits."""
     study = explored.study
     base = prepare(study.design, plugins=study.plugins).values()
     quantities = with_own(study.plugins)
     varied = {axis.path for axis in study.plan.axes}
-    found, held = [], 0
+    limits, met_count = [], 0
     order = sorted(
         range(len(explored.limits)),
         key=lambda k: explored.limits[k].origin not in ("requirement", "case"),
@@ -147,15 +139,15 @@ def _limits(explored: Explored) -> tuple[list[dict[str, Any]], str]:
     for k in order:
         limit, margin = explored.limits[k], explored.margins[k]
         if (margin >= -1e-6).all() and limit.origin not in ("requirement", "case"):
-            held += 1
+            met_count += 1
             continue
-        moved = limit.path in varied or limit.lever in varied
-        bound = None if moved else float(limit.value(base))
+        varies = limit.path in varied or limit.lever in varied
+        bound = None if varies else float(limit.value(base))
         quantity = quantities[limit.metric]
         words = f"{SENSES[limit.sense]} a varying limit"
         if bound is not None:
             words = limit_text(quantity, limit.sense, bound)
-        found.append(
+        limits.append(
             {
                 "name": limit.name,
                 "text": f"{_label(limit, quantity, study.plugins)} {words}",
@@ -164,7 +156,7 @@ def _limits(explored: Explored) -> tuple[list[dict[str, Any]], str]:
                 "margin": _base64(np.clip(margin, -MOST, MOST), "<f4"),
             }
         )
-    return found, f"Every design meets {held} further checks." if held else ""
+    return limits, f"Every design meets {met_count} further checks." if met_count else ""
 
 
 def _label(limit: MetricLimit, quantity: Quantity, plugins: Sequence[Plugin]) -> str:
@@ -182,86 +174,87 @@ def _start(explored: Explored, columns: list[dict[str, Any]]) -> dict[str, Any]:
     varied = [axis.path for axis in study.plan.axes if axis.path in place]
     numbers = [column.name for column in study.columns[: len(study.order)]]
     goal = next((name for name in study.goal.weights if name in place), "least_margin")
-    asked = [metric for metric in study.design.requirements if metric in place]
-    wanted = explored.shown
-    first = (*varied[: AXES - max(3, len(wanted))], *wanted, goal, *asked)
+    requirements = [metric for metric in study.design.requirements if metric in place]
+    shown_metrics = explored.shown
+    first = (*varied[: AXES - max(3, len(shown_metrics))], *shown_metrics, goal, *requirements)
     shown = [k for k in first if "value" not in columns[place[k]]]
-    last = [] if wanted else [margin]  # zero for every design of a front
+    last = [] if shown_metrics else [margin]  # zero for every design of a front
     axes = sorted({*(place[name] for name in dict.fromkeys(shown[: AXES - len(last)])), *last})
-    moved = next((k for k in numbers if "value" not in columns[place[k]]), varied[0])
-    across = next((k for k in asked if k != goal and "value" not in columns[place[k]]), moved)
-    if wanted:
-        across, goal, moved = (*wanted, moved)[:3]
+    varied_input = next((k for k in numbers if "value" not in columns[place[k]]), varied[0])
+    metrics = (k for k in requirements if k != goal and "value" not in columns[place[k]])
+    across = next(metrics, varied_input)
+    if shown_metrics:
+        across, goal, varied_input = (*shown_metrics, varied_input)[:3]
     return {
         "x": place[across],
         "y": place[goal],
-        "c": margin if across == moved else place[moved],
+        "c": margin if across == varied_input else place[varied_input],
         "axes": axes,
         "asked": bool((explored.numbers[:, -1] == 1.0).any()),
     }
 
 
 def _summary(explored: Explored) -> str:
-    """Contents of the page, omitted rows and failed designs."""
+    """Summary of the rows: designs shown, omitted, failed and damaged."""
     kept = explored.kept
-    good, shown = kept.rows - explored.failed, len(explored.numbers)
+    evaluated, shown = kept.rows - explored.failed, len(explored.numbers)
     feasible = int((explored.numbers[:, -1] == 1.0).sum())
-    words = f"{explored.origin}, {good} design{'s' * (good != 1)} evaluated"
+    words = f"{explored.origin}, {evaluated} design{'s' * (evaluated != 1)} evaluated"
     if explored.thinned:
         words += (
-            f"; {shown} are shown: one in {-(-good // explored.most)}, spread evenly, "
+            f"; {shown} are shown: one in {-(-evaluated // explored.most)}, spread evenly, "
             f"and the {BEST} best feasible"
         )
     words += f". {feasible} of these meet every requirement and check."
     if explored.failed:
         reasons = list(kept.failures.items())
-        told = "; ".join(f"{times} times {reason}" for reason, times in reasons[:TOLD])
-        more = f"; and {len(reasons) - TOLD} more reasons" if len(reasons) > TOLD else ""
-        words += f" {explored.failed} failed and have no results: {told}{more}."
+        listing = "; ".join(f"{times} times {reason}" for reason, times in reasons[:REASONS])
+        more = f"; and {len(reasons) - REASONS} more reasons" if len(reasons) > REASONS else ""
+        words += f" {explored.failed} failed and have no results: {listing}{more}."
     if explored.damaged:
         words += f" {explored.damaged} damaged and left out."
     return f"{pretty(words)} Models of version {VERSION}."
 
 
 def _shapes(explored: Explored) -> dict[str, Any]:
-    """Templates, the dimensions that move them, and the template of every row."""
+    """Templates, the dimensions that change them, and the template of every row."""
     count = len(explored.numbers)
-    which = np.full(count, -1)
+    template_of = np.full(count, -1)
     slots: list[Array] = []
-    known: dict[str, int] = {}
+    numbers_by_text: dict[str, int] = {}
     for group in explored.groups:
         shapes = group.shapes
         moving = [k for k, row in enumerate(shapes.dimensions) if np.ptp(row) > 0]
-        used = [
+        effective = [
             k for k in moving if any(template.slopes[:, k].any() for template in shapes.templates)
         ]
-        while len(slots) < len(used):
+        while len(slots) < len(effective):
             slots.append(np.zeros(count))
-        for slot, k in enumerate(used):
+        for slot, k in enumerate(effective):
             slots[slot][group.places] = MM * shapes.dimensions[k]
         for number, template in enumerate(shapes.templates):
-            text = json.dumps(_template(template, used), separators=(",", ":"))
+            text = json.dumps(_template(template, effective), separators=(",", ":"))
             rows = group.places[shapes.which == number]
-            which[rows] = known.setdefault(text, len(known))
+            template_of[rows] = numbers_by_text.setdefault(text, len(numbers_by_text))
     hidden = any(axis.path.startswith("rod.fitting.") for axis in explored.study.plan.axes)
     return {
         "dimensions": [_base64(slot, "<f4") for slot in slots],
-        "templates": [json.loads(text) for text in known],
-        "which": _base64(which, "<i2"),
+        "templates": [json.loads(text) for text in numbers_by_text],
+        "which": _base64(template_of, "<i2"),
         "lengths": [_WORDS.get(name, name) for name in LENGTHS],
         "hidden": "the rod's fittings, because their dimensions vary" if hidden else "",
     }
 
 
-def _template(template: Template, used: list[int]) -> dict[str, Any]:
+def _template(template: Template, dimensions: list[int]) -> dict[str, Any]:
     """A template in mm: its numbers at zero dimensions, and their slopes by each dimension."""
-    zero = template.numbers - template.slopes[:, used] @ template.origin[used]
-    rows, places = np.nonzero(template.slopes[:, used])
+    zero = template.numbers - template.slopes[:, dimensions] @ template.origin[dimensions]
+    rows, places = np.nonzero(template.slopes[:, dimensions])
     return {
         "parts": [_part(outline) for outline in template.outlines],
         "numbers": [round(MM * float(value), 5) + 0.0 for value in zero],
         "slopes": [
-            [int(row), int(k), round(float(template.slopes[row, used[k]]), 7)]
+            [int(row), int(k), round(float(template.slopes[row, dimensions[k]]), 7)]
             for row, k in zip(rows, places, strict=True)
         ],
     }
@@ -291,8 +284,8 @@ class ExplorerFile:
 
     def to_dict(self) -> dict[str, object]:
         """The JSON form."""
-        told: dict[str, object] = {"path": str(self.path), "sha256": self.sha256}
-        return told | ({"remarks": list(self.remarks)} if self.remarks else {})
+        data: dict[str, object] = {"path": str(self.path), "sha256": self.sha256}
+        return data | ({"remarks": list(self.remarks)} if self.remarks else {})
 
 
 def page(explored: Explored, *, design: str, plugins: Sequence[str] = ()) -> str:
@@ -315,7 +308,7 @@ def page(explored: Explored, *, design: str, plugins: Sequence[str] = ()) -> str
         "SCRIPT_HASH": _hash(script),
         "DATA": _json(data),
     }
-    return re.sub("@([A-Z_]+)@", lambda found: parts[found[1]], _text("page.html"))
+    return re.sub("@([A-Z_]+)@", lambda match: parts[match[1]], _text("page.html"))
 
 
 def design_beside(target: Path) -> Path:
@@ -372,6 +365,6 @@ def _hash(text: str) -> str:
 
 
 def _json(data: dict[str, Any]) -> str:
-    """JSON in which nothing parses as markup."""
+    """JSON without characters of markup."""
     text = encoded(data, ensure_ascii=False, separators=(",", ":"))
-    return re.sub("[<>&\u2028\u2029]", lambda found: _ESCAPES[found[0]], text)
+    return re.sub("[<>&\u2028\u2029]", lambda match: _ESCAPES[match[0]], text)

@@ -1,12 +1,8 @@
 """The longitudinal section as DXF: true lengths in mm, hatched, dimensioned, one layer per part.
 
-Dimensions of the section as DIMENSION entities: diameters above the parts, lengths below.
-
-They measure the drawing itself (DIMLFAC 1): if a line is moved in CAD, its dimension follows.
-
-Layout of the section's dimensions without overlaps, independent of the file format.
-
-All lengths are in mm of the drawing; `DrawingSizes` gives the size of letters and gaps.
+Diameters are above the parts, lengths below, without overlaps. Dimensions are DIMENSION entities
+that measure the drawing (DIMLFAC 1): if a line is moved in CAD, its dimension follows. All lengths
+are in mm of the drawing; `DrawingSizes` has the sizes of letters and gaps.
 """
 
 from __future__ import annotations
@@ -107,16 +103,17 @@ def rows(lengths: Sequence[Length], paper: DrawingSizes) -> list[Placed]:
     Extension lines of a length cross all rows nearer to the parts, so a text must not overlap the
     ends of lengths in its own row or further out.
     """
-    ordered = sorted(set(lengths), key=lambda one: (round(one.end - one.start, 6), one.start))
-    ends = sorted({x for one in ordered for x in (one.start, one.end)})
+    ordered = sorted(set(lengths), key=lambda x: (round(x.end - x.start, 6), x.start))
+    ends = sorted({x for length in ordered for x in (length.start, length.end)})
     taken: list[list[tuple[float, float]]] = []
     placed = []
-    for one in ordered:
-        middle, outside = _middle(one, paper, [x for x in ends if x not in (one.start, one.end)])
-        half = paper.width(one.text) / 2 + paper.letter / 2
+    for length in ordered:
+        others = [x for x in ends if x not in (length.start, length.end)]
+        middle, outside = _middle(length, paper, others)
+        half = paper.width(length.text) / 2 + paper.letter / 2
         arrows = 2 * paper.arrow if outside else 0.0
-        low = min(one.start - arrows, middle - half)
-        high = max(one.end + arrows, middle + half)
+        low = min(length.start - arrows, middle - half)
+        high = max(length.end + arrows, middle + half)
         free = (
             row for row, spans in enumerate(taken) if all(high <= a or low >= b for a, b in spans)
         )
@@ -124,7 +121,7 @@ def rows(lengths: Sequence[Length], paper: DrawingSizes) -> list[Placed]:
         if row == len(taken):
             taken.append([])
         taken[row].append((low, high))
-        placed.append(Placed(one, row, middle, outside))
+        placed.append(Placed(length, row, middle, outside))
     return placed
 
 
@@ -181,12 +178,12 @@ def set_up(document: Any, paper: DrawingSizes) -> None:
 
 def reach(profiles: Sequence[Profile], x: float) -> float:
     """Largest radius of the parts at an axial position."""
-    found = [
+    radii = [
         max(r for _, r in profile)
         for profile in profiles
         if min(a for a, _ in profile) - 1e-9 <= x <= max(a for a, _ in profile) + 1e-9
     ]
-    return max(found, default=0.0)
+    return max(radii, default=0.0)
 
 
 def _stations(lengths: Mapping[str, float]) -> dict[str, tuple[float, float]]:
@@ -210,8 +207,8 @@ def _stations(lengths: Mapping[str, float]) -> dict[str, tuple[float, float]]:
 
 
 def _dimension_words(name: str, span: tuple[float, float]) -> str:
-    told = {"stroke": "stroke ", "closed length": "closed length "}.get(name, "")
-    return told + number(span[1] - span[0])
+    prefix = {"stroke": "stroke ", "closed length": "closed length "}.get(name, "")
+    return prefix + number(span[1] - span[0])
 
 
 def lengths_below(
@@ -240,14 +237,14 @@ def lengths_below(
     base = -max(r for profile in profiles for _, r in profile) - 1.2 * paper.row
     lowest = base
     for placed in rows(lengths, paper):
-        one, y = placed.length, base - placed.row * paper.row
-        ends = [(x, -reach(profiles, x)) for x in (one.start, one.end)]
-        value = number(one.end - one.start)
+        length, y = placed.length, base - placed.row * paper.row
+        ends = [(x, -reach(profiles, x)) for x in (length.start, length.end)]
+        value = number(length.end - length.start)
         dimension = space.add_linear_dim(
-            base=(one.start, y),
+            base=(length.start, y),
             p1=ends[0],
             p2=ends[1],
-            text=one.text.replace(value, "<>"),
+            text=length.text.replace(value, "<>"),
             dimstyle=STYLE,
             dxfattribs={"layer": LAYER},
         )
@@ -255,15 +252,15 @@ def lengths_below(
         dimension.set_location((placed.middle, height), leader=False, relative=False)
         dimension.render()
         if placed.outside:
-            half = paper.width(one.text) / 2
-            far = placed.middle + (half if placed.middle > one.end else -half)
-            near = one.end if placed.middle > one.end else one.start
+            half = paper.width(length.text) / 2
+            far = placed.middle + (half if placed.middle > length.end else -half)
+            near = length.end if placed.middle > length.end else length.start
             space.add_line((near, y), (far, y), dxfattribs={"layer": LAYER})
         lowest = min(lowest, y)
     return lowest
 
 
-def _wanted(evaluated: Mapping[str, float], profiles: Sequence[Profile]) -> list[_Diameter]:
+def _diameters(evaluated: Mapping[str, float]) -> list[_Diameter]:
     """Diameters of rod, bore and barrel at the chamber, and of the plate."""
     spans = _stations(evaluated)
     low, high = spans["stroke"]
@@ -273,35 +270,37 @@ def _wanted(evaluated: Mapping[str, float], profiles: Sequence[Profile]) -> list
         "bore": "bore",
         "barrel_outer_diameter": "barrel",
     }
-    asked = [(key, name) for key, name in names.items() if evaluated[key] > 0]
-    found = [
-        _Diameter(low + (high - low) * (2 * k + 1) / (2 * len(asked)), 1000 * evaluated[key], name)
-        for k, (key, name) in enumerate(asked)
+    keys = [key for key in names if evaluated[key] > 0]
+    step = (high - low) / (2 * len(keys))
+    diameters = [
+        _Diameter(low + step * (2 * k + 1), 1000 * evaluated[key], names[key])
+        for k, key in enumerate(keys)
     ]
     if "plate" in spans:
-        found.append(_Diameter(sum(spans["plate"]) / 2, 1000 * evaluated["plate_outer"], "cap"))
+        diameters.append(_Diameter(sum(spans["plate"]) / 2, 1000 * evaluated["plate_outer"], "cap"))
     if evaluated["pin"] > 0:
-        found.append(_Diameter(0.0, 1000 * evaluated["pin"], "pin"))
-    return sorted(found, key=lambda one: one.x)
+        diameters.append(_Diameter(0.0, 1000 * evaluated["pin"], "pin"))
+    return sorted(diameters, key=lambda diameter: diameter.x)
 
 
 def diameters_above(
     space: Any, evaluated: Mapping[str, float], profiles: Sequence[Profile], paper: DrawingSizes
 ) -> float:
     """Draw diameters, with texts in one row above the parts; returns the highest y used."""
-    wanted = _wanted(evaluated, profiles)
+    diameters = _diameters(evaluated)
     top = max(r for profile in profiles for _, r in profile)
-    widths = [paper.width(one.shown) for one in wanted]
+    widths = [paper.width(diameter.shown) for diameter in diameters]
     gaps = [(a + b) / 2 + 2 * paper.letter for a, b in pairwise(widths)]
     elbow, row = top + 3 * paper.scale, top + 9 * paper.scale
-    for one, middle in zip(wanted, spread([one.x for one in wanted], gaps), strict=True):
-        half = one.value / 2
+    middles = spread([diameter.x for diameter in diameters], gaps)
+    for diameter, middle in zip(diameters, middles, strict=True):
+        half = diameter.value / 2
         dimension = space.add_linear_dim(
-            base=(one.x, 0.0),
-            p1=(one.x, -half),
-            p2=(one.x, half),
+            base=(diameter.x, 0.0),
+            p1=(diameter.x, -half),
+            p2=(diameter.x, half),
             angle=90,
-            text=one.text,
+            text=diameter.text,
             dimstyle=STYLE,
             override={"dimse1": 1, "dimse2": 1, "dimtih": 1, "dimtoh": 1},
             dxfattribs={"layer": LAYER},
@@ -310,7 +309,7 @@ def diameters_above(
         dimension.set_location((middle, centre), leader=False, relative=False)
         dimension.dimension.dxf.text_rotation = 0.0
         dimension.render()
-        corners = [(one.x, half), (one.x, elbow), (middle, row)]
+        corners = [(diameter.x, half), (diameter.x, elbow), (middle, row)]
         space.add_lwpolyline(corners, dxfattribs={"layer": LAYER})
     return row + 2 * paper.letter
 
@@ -339,7 +338,7 @@ def paper_for(length: float) -> DrawingSizes:
     >>> paper_for(200.0).scale, paper_for(880.0).scale
     (1.0, 5.0)
     """
-    return DrawingSizes(next((one for one in _SCALES if length <= one * _SHEET), _SCALES[-1]))
+    return DrawingSizes(next((scale for scale in _SCALES if length <= scale * _SHEET), _SCALES[-1]))
 
 
 def layer_name(part: str) -> str:
@@ -389,18 +388,18 @@ def _cut(evaluation: Evaluation, outline: Outline) -> list[list[_Corner]]:
 
 
 def _hatches(outlines: Sequence[Outline]) -> dict[tuple[str, str], tuple[float, float]]:
-    found: dict[tuple[str, str], tuple[float, float]] = {}
+    styles: dict[tuple[str, str], tuple[float, float]] = {}
     for kind, table in (("metal", _METAL), ("composite", _COMPOSITE), ("polymer", _POLYMER)):
         names = dict.fromkeys(outline.material for outline in outlines if outline.kind == kind)
         for index, name in enumerate(names):
-            found[kind, name] = table[index % len(table)]
-    return found
+            styles[kind, name] = table[index % len(table)]
+    return styles
 
 
 def _hatch(
     space: Any,
     lines: Sequence[Sequence[_Corner]],
-    look: tuple[float, float] | None,
+    style: tuple[float, float] | None,
     attributes: Mapping[str, Any],
     *,
     nested: bool,
@@ -408,15 +407,15 @@ def _hatch(
     """Hatch closed lines, jointly if nested; fill them if no hatch style is given."""
     for group in [lines] if nested else [[line] for line in lines]:
         hatch = space.add_hatch(dxfattribs={**attributes, "hatch_style": 0})
-        if look is None:
+        if style is None:
             hatch.set_solid_fill()
             hatch.dxf.color = 256
         else:
-            angle, spacing = look
-            line = [[angle, (0.0, 0.0), _across(angle, spacing), []]]
-            hatch.set_pattern_fill("ACTUATOR", color=256, definition=line)
-        for index, one in enumerate(group):
-            hatch.paths.add_polyline_path(one, is_closed=True, flags=16 if index else 1)
+            angle, spacing = style
+            pattern = [[angle, (0.0, 0.0), _across(angle, spacing), []]]
+            hatch.set_pattern_fill("ACTUATOR", color=256, definition=pattern)
+        for index, line in enumerate(group):
+            hatch.paths.add_polyline_path(line, is_closed=True, flags=16 if index else 1)
 
 
 def _across(angle: float, spacing: float) -> tuple[float, float]:
@@ -453,7 +452,7 @@ def _axis(space: Any, first: float, last: float, paper: DrawingSizes) -> None:
 
 def _words(
     space: Any, evaluation: Evaluation, outlines: Sequence[Outline], paper: DrawingSizes,
-    corner: tuple[float, float], made: str,
+    corner: tuple[float, float], origin: str,
 ) -> None:  # fmt: skip
     """Title and parts list, line by line below the dimensions."""
     space.doc.layers.add("text", color=7, lineweight=18)
@@ -462,7 +461,7 @@ def _words(
     lines = [
         evaluation.name,
         f"Section, retracted. Lengths in mm, drawn 1:1; text height for print at {size}.",
-        made,
+        origin,
         "",
         *(f"{title(outline.part)}: {outline.material}" for outline in outlines),
         "",
@@ -542,9 +541,9 @@ def dxf(evaluation: Evaluation, *, program: str, date: str | None = None) -> byt
         diameters_above(space, lengths, profiles, paper)
         skirts = _skirts(outlines, 1000 * (lengths["eye_offset"] + lengths["plate"]))
         lowest = lengths_below(space, lengths, skirts, profiles, paper)
-        made = ", ".join(part for part in (program, date) if part)
+        origin = ", ".join(part for part in (program, date) if part)
         corner = (first, lowest - 1.5 * paper.row)
-        _words(space, evaluation, outlines, paper, corner, made)
+        _words(space, evaluation, outlines, paper, corner, origin)
         _ordered_classes(document)
         text = io.StringIO()
         document.write(text)

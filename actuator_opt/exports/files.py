@@ -53,8 +53,8 @@ def _content(evaluation: Evaluation, name: str, date: str | None) -> bytes:
     if name == "step":
         from .step import bodies, step
 
-        made = step(bodies(evaluation), name=evaluation.name, program=program, date=date)
-        return made.encode("ascii")
+        text = step(bodies(evaluation), name=evaluation.name, program=program, date=date)
+        return text.encode("ascii")
     if name == "dxf":
         from .dxf import dxf
 
@@ -89,8 +89,8 @@ def write_exports(
     ------
     InputError : a part cannot be drawn, or the folder is not writable; no file is left
     """
-    asked = require_formats(formats)
-    contents = {f"{stem}.{name}": _content(evaluation, name, date) for name in asked}
+    names = require_formats(formats)
+    contents = {f"{stem}.{name}": _content(evaluation, name, date) for name in names}
     write_all(folder, contents, what="the export")
     return [
         ExportFile(folder / name, hashlib.sha256(content).hexdigest())

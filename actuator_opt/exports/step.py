@@ -87,12 +87,12 @@ def _turn(a: Point, b: Point, c: Point) -> float:
 def tidy(profile: Sequence[Point]) -> Profile:
     """The same polygon anticlockwise from its lowest corner, without collinear corners."""
     corners = [a for a, b in edges(profile) if a != b]
-    around = [(corners[k - 1], b, corners[(k + 1) % len(corners)]) for k, b in enumerate(corners)]
-    kept = [b for a, b, c in around if _turn(a, b, c) != 0]
-    if area(kept) < 0:
-        kept.reverse()
-    first = kept.index(min(kept)) if kept else 0
-    return tuple(kept[first:] + kept[:first])
+    triples = [(corners[k - 1], b, corners[(k + 1) % len(corners)]) for k, b in enumerate(corners)]
+    turns = [b for a, b, c in triples if _turn(a, b, c) != 0]
+    if area(turns) < 0:
+        turns.reverse()
+    first = turns.index(min(turns)) if turns else 0
+    return tuple(turns[first:] + turns[:first])
 
 
 def _between(point: Point, edge: _Edge) -> bool:
@@ -139,18 +139,18 @@ def joined(polygons: Iterable[Profile]) -> list[Profile]:
     for polygon in polygons:
         loop = tidy(polygon)
         while True:
-            found = next(((one, w) for one in loops if (w := _joined(one, loop))), None)
-            if found is None:
+            pair = next(((other, w) for other in loops if (w := _joined(other, loop))), None)
+            if pair is None:
                 break
-            loops.remove(found[0])
-            loop = found[1]
+            loops.remove(pair[0])
+            loop = pair[1]
         loops.append(loop)
     return sorted(loops)
 
 
-def _crosses(one: _Edge, other: _Edge) -> bool:
+def _crosses(first: _Edge, second: _Edge) -> bool:
     """Whether two edges that are not neighbours intersect."""
-    (a, b), (c, d) = one, other
+    (a, b), (c, d) = first, second
     sides = _turn(a, b, c) * _turn(a, b, d), _turn(c, d, a) * _turn(c, d, b)
     apart = any(
         max(a[k], b[k]) < min(c[k], d[k]) or max(c[k], d[k]) < min(a[k], b[k]) for k in (0, 1)
@@ -158,10 +158,10 @@ def _crosses(one: _Edge, other: _Edge) -> bool:
     return not apart and max(sides) <= 0
 
 
-def sound(profile: Profile) -> bool:
+def bounds_solid(profile: Profile) -> bool:
     """Whether a polygon bounds a solid of revolution: nonzero area, no crossing.
 
-    It may touch the axis along one edge only: a point would pinch it, two edges would make a void.
+    It may touch the axis along a single edge: a point would pinch it, two edges enclose a void.
     """
     sides = edges(profile)
     if len(sides) < 3 or area(profile) <= 0 or min(r for _, r in profile) < 0:
@@ -197,16 +197,16 @@ def _bars(outline: Outline) -> SolidBody:
 
 def _bodies(outline: Outline) -> Iterator[SolidBody]:
     part = outline.part
-    own = title(part)
+    label = title(part)
     loops = joined(millimetres(polygon) for polygon in outline.polygons)
-    names = _NAMES.get(part, (own,))
+    names = _NAMES.get(part, (label,))
     for index, loop in enumerate(loops):
-        if not sound(loop):
-            raise _fault(own)
-        name = names[index] if len(names) == len(loops) else f"{own} {index + 1}"
+        if not bounds_solid(loop):
+            raise _fault(label)
+        name = names[index] if len(names) == len(loops) else f"{label} {index + 1}"
         start = loop[0][0]
-        moved = tuple((round(x - start, _DIGITS), r) for x, r in loop)
-        yield SolidBody(name, part, outline.material, moved, ((start, 0.0, 0.0),))
+        profile = tuple((round(x - start, _DIGITS), r) for x, r in loop)
+        yield SolidBody(name, part, outline.material, profile, ((start, 0.0, 0.0),))
 
 
 def bodies(evaluation: Evaluation) -> list[SolidBody]:
@@ -329,9 +329,9 @@ class _Skin:
         curve = r.add(f"LINE('',{r.point(*start)},{vector})")
         return r.add(f"EDGE_CURVE('',{self.corners[start]},{self.corners[end]},{curve},.T.)")
 
-    def _loop(self, used: Sequence[tuple[str, bool]]) -> str:
+    def _loop(self, edges: Sequence[tuple[str, bool]]) -> str:
         r = self.records
-        sides = [r.add(f"ORIENTED_EDGE('',*,*,{one},.{'FT'[way]}.)") for one, way in used]
+        sides = [r.add(f"ORIENTED_EDGE('',*,*,{edge},.{'FT'[sense]}.)") for edge, sense in edges]
         return r.add(f"EDGE_LOOP('',{listed(sides)})")
 
     def face(self, start: Point, end: Point) -> str:
@@ -342,17 +342,18 @@ class _Skin:
             rims.sort(key=lambda rim: -rim[2])
             kinds = ("FACE_OUTER_BOUND", "FACE_BOUND")
             bounds = [
-                r.add(f"{kind}('',{self._loop([(one, way)])},.T.)")
-                for kind, (one, way, _) in zip(kinds, rims, strict=False)
+                r.add(f"{kind}('',{self._loop([(circle, sense)])},.T.)")
+                for kind, (circle, sense, _) in zip(kinds, rims, strict=False)
             ]
             outwards = 1.0 if end[1] > start[1] else -1.0
             surface = r.add(f"PLANE('',{r.frame(r.point(start[0], 0.0), outwards)})")
             return r.add(f"ADVANCED_FACE('',{listed(bounds)},{surface},.T.)")
         seam = self._seam(start, end)
-        used: list[tuple[str, bool]] = []
-        for forth in (True, False):
-            used += [(seam, forth), *((one, way) for one, way, _ in rims if way is forth)]
-        bound = r.add(f"FACE_OUTER_BOUND('',{self._loop(used)},.T.)")
+        loop: list[tuple[str, bool]] = []
+        for forward in (True, False):
+            loop.append((seam, forward))
+            loop += [(circle, sense) for circle, sense, _ in rims if sense is forward]
+        bound = r.add(f"FACE_OUTER_BOUND('',{self._loop(loop)},.T.)")
         same = "T" if end[0] < start[0] else "F"
         return r.add(f"ADVANCED_FACE('',({bound}),{self._round(start, end)},.{same}.)")
 
@@ -394,8 +395,8 @@ class _Product:
     def shaped(self, kind: str, items: Iterable[str]) -> None:
         """Assign the shape."""
         r = self._records
-        made = f"{kind}({text(self.name)},{listed(items)},{self._space})"
-        self.representation = r.add(made)
+        record = f"{kind}({text(self.name)},{listed(items)},{self._space})"
+        self.representation = r.add(record)
         r.add(f"SHAPE_DEFINITION_REPRESENTATION({self._shape},{self.representation})")
 
 
@@ -439,14 +440,14 @@ def _placed(
         f"NEXT_ASSEMBLY_USAGE_OCCURRENCE({text(name)},{text(name)},'',"
         f"{whole.definition},{part.definition},$)"
     )
-    used = r.add(f"PRODUCT_DEFINITION_SHAPE('','',{use})")
+    usage = r.add(f"PRODUCT_DEFINITION_SHAPE('','',{use})")
     move = r.add(f"ITEM_DEFINED_TRANSFORMATION('','',{home},{place})")
     relation = r.add(
         f"(REPRESENTATION_RELATIONSHIP('','',{part.representation},{whole.representation})"
         f"REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION({move})"
         "SHAPE_REPRESENTATION_RELATIONSHIP())"
     )
-    r.add(f"CONTEXT_DEPENDENT_SHAPE_REPRESENTATION({relation},{used})")
+    r.add(f"CONTEXT_DEPENDENT_SHAPE_REPRESENTATION({relation},{usage})")
 
 
 def step(bodies: Sequence[SolidBody], *, name: str, program: str, date: str | None = None) -> str:

@@ -29,7 +29,7 @@ from .words import plain
 TOLERANCE = "0.000001"
 """Largest violation of a margin that counts as met, in formulas."""
 _TIGHT = "yes, no reserve"
-"""Verdict of a limit that is met without reserve (`reserve.NO_RESERVE`)."""
+"""Verdict of a limit that is met without reserve (`evaluation.result.NO_RESERVE`)."""
 
 _EPOCH = (1980, 1, 1, 0, 0, 0)
 """Earliest time of a zip archive: same input, same bytes."""
@@ -60,7 +60,7 @@ _FIRST = 5
 
 @dataclass(frozen=True, slots=True)
 class _Scale:
-    """Unit of a row. A unit with an offset (degC) has no ratios: SI then."""
+    """Unit of a row: the display unit; SI if that has an offset (degC) and so no ratios."""
 
     name: str
     factor: float
@@ -93,9 +93,9 @@ def _format(value: float | None) -> str:
 
 
 class _Sheet:
-    """A sheet that is filled row by row; texts are never read as formulas.
+    """A sheet that is filled row by row; programs never read its texts as formulas.
 
-    Columns have the stated width, or more if texts below the head need it.
+    Columns have the stated width, or more if texts below the head need more.
     """
 
     def __init__(self, book: Any, title: str, widths: Sequence[float]) -> None:
@@ -196,13 +196,13 @@ def _limits(
     book: Any, title: str, evaluation: Evaluation, rows: Sequence[Requirement | Check]
 ) -> None:
     """A sheet of limits: limit, result, margin and verdict, with live formulas."""
-    one = "requirement" if title == "Requirements" else "check"
+    kind = "requirement" if title == "Requirements" else "check"
     widths = (25, 20, 7, 9, 14, 14, 24, 7, 12, 16, 16)
     sheet = _Sheet(book, title, widths)
     last = _FIRST + len(rows) - 1
     sheet.put("A1", f"{evaluation.name}: {title.lower()}", bold=True)
-    sheet.put("A2", f"every {one} met" if rows else f"no {one} with a limit", bold=True)
-    sheet.head(_FIRST - 1, (one, *_LIMITS))
+    sheet.put("A2", f"every {kind} met" if rows else f"no {kind} with a limit", bold=True)
+    sheet.head(_FIRST - 1, (kind, *_LIMITS))
     if not rows:
         return
     cells = f"H{_FIRST}:H{last}"
@@ -218,12 +218,12 @@ def _limits(
 
 def _section(book: Any, evaluation: Evaluation) -> None:
     """The longitudinal section as a picture below the requirements."""
-    drawn = section(evaluation)
+    drawing = section(evaluation)
     picture = library("openpyxl.drawing.image").Image(
-        io.BytesIO(images(drawn.ink, "section")["section.png"])
+        io.BytesIO(images(drawing.ink, "section")["section.png"])
     )
-    picture.width = round(drawn.ink.width * _PIXELS)
-    picture.height = round(drawn.ink.height * _PIXELS)
+    picture.width = round(drawing.ink.width * _PIXELS)
+    picture.height = round(drawing.ink.height * _PIXELS)
     sheet = book.worksheets[0]
     sheet.add_image(picture, f"A{sheet.max_row + 2}")
 
@@ -242,8 +242,8 @@ def _variables(book: Any, evaluation: Evaluation) -> None:
         for column, text in zip("ABC", (path, quantity.label, quantity.unit), strict=True):
             sheet.put(f"{column}{at}", text)
         for column, number in zip("DEF", (bounds.lower, value, bounds.upper), strict=True):
-            known = None if isinstance(number, str) else number
-            sheet.put(f"{column}{at}", None if known is None else quantity.to_display(known))
+            finite = None if isinstance(number, str) else number
+            sheet.put(f"{column}{at}", None if finite is None else quantity.to_display(finite))
         sheet.formula(f"G{at}", f'IF(F{at}>D{at},(E{at}-D{at})/(F{at}-D{at}),"")', "0%")
 
 
@@ -316,10 +316,10 @@ def _packed(book: Any) -> bytes:
     raw, clean = io.BytesIO(), io.BytesIO()
     with zipfile.ZipFile(raw, "w") as archive:
         library("openpyxl.writer.excel").ExcelWriter(book, archive).write_data()
-    with zipfile.ZipFile(raw) as archive, zipfile.ZipFile(clean, "w") as own:
+    with zipfile.ZipFile(raw) as archive, zipfile.ZipFile(clean, "w") as copy:
         for name in archive.namelist():
             entry = zipfile.ZipInfo(name, _EPOCH)
-            own.writestr(entry, archive.read(name), zipfile.ZIP_DEFLATED)
+            copy.writestr(entry, archive.read(name), zipfile.ZIP_DEFLATED)
     return clean.getvalue()
 
 

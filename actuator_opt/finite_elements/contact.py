@@ -8,7 +8,7 @@ from . import equilibrium
 from .equilibrium import Booleans, ElementState, NotConverged
 from .material import Floats
 from .mesh import Integers
-from .result import contact_end
+from .result import MountedContact, contact_end, stress_field
 from .section import Assembly
 
 HOLDING = 0.05
@@ -63,7 +63,7 @@ def both_ways(boundary: Integers, start: int) -> tuple[Integers, Integers]:
     return np.roll(boundary, -start), np.roll(boundary[::-1], start + 1)
 
 
-def reached(
+def wetted(
     chain: Integers, barrier: Floats, state: ElementState, pressure: float
 ) -> tuple[Integers, int | None]:
     """Nodes of a chain that the fluid reaches, and the index of the first node at the outer wall.
@@ -92,7 +92,7 @@ def profile_on_face(
     state: ElementState,
     places: Floats,
     boundary: Integers,
-    held: Booleans,
+    touching: Booleans,
     pressure: float,
     force: Floats,
 ) -> tuple[float, Floats, Floats, float]:
@@ -102,17 +102,17 @@ def profile_on_face(
     ----------
     section, state, places : the solution
     boundary : boundary nodes of the sliding body in order, anticlockwise: rising x on the face
-    held : whether a node is in contact with the sliding face
+    touching : whether a node is in contact with the sliding face
     pressure : pressure of the fluid
     force : force of the sliding face on every node
     """
-    inside = np.flatnonzero(held[boundary] & (state.wet[boundary] == 0))
-    if not len(inside):
+    dry = np.flatnonzero(touching[boundary] & (state.wet[boundary] == 0))
+    if not len(dry):
         raise NotConverged("the ring does not touch the sliding face")
-    along = places[boundary[inside], 0]
-    turn = int(inside[np.argmin(along)])
+    along = places[boundary[dry], 0]
+    turn = int(dry[np.argmin(along)])
     chain = np.roll(boundary, -turn)
-    count = (int(inside[np.argmax(along)]) - turn) % len(boundary) + 1
+    count = (int(dry[np.argmax(along)]) - turn) % len(boundary) + 1
     nodes, open_nodes, after = chain[:count], chain[[-1, -2]], chain[[count, count + 1]]
     x = places[nodes, 0]
     start = contact_end(float(x[0]), places[open_nodes, 1], places[open_nodes, 0])
@@ -122,11 +122,56 @@ def profile_on_face(
     lent = (1 / 3 if turn % 2 else 2 / 3) * (x[0] - before)
     share = np.abs(equilibrium.shares(section, places)[nodes, 0])
     inner = force[nodes] / (share * section.radii(places)[nodes])
-    apart = (x - start > 1e-6) & (end - x > 1e-6)
-    positions = np.concatenate(([0.0], x[apart] - start, [end - start]))
+    distinct = (x - start > 1e-6) & (end - x > 1e-6)
+    positions = np.concatenate(([0.0], x[distinct] - start, [end - start]))
     return (
         start,
         positions,
-        np.concatenate(([pressure], inner[apart], [0.0])),
+        np.concatenate(([pressure], inner[distinct], [0.0])),
         float(np.sum(force[nodes]) + pressure * (before + lent - start)),
+    )
+
+
+def mounted_contact(
+    section: Assembly,
+    state: ElementState,
+    boundary: Integers,
+    pressure: float,
+    length: float,
+    modulus: float,
+    *,
+    wall: float = 0.0,
+) -> MountedContact:
+    """Contact on the sliding face, with dimensions.
+
+    Parameters
+    ----------
+    section, state : the solution, in units of length and modulus
+    boundary : boundary nodes of the sliding body in order, anticlockwise
+    pressure : sealed pressure in units of the modulus
+    length, modulus : the units [m], [Pa]
+    wall : position of the outer groove wall in units of length
+    """
+    force = state.reaction.reshape(-1, 2)
+    start, positions, contact_pressure, line_load = profile_on_face(
+        section,
+        state,
+        section.places(state.values),
+        boundary,
+        state.at_lower.reshape(-1, 2)[:, 1],
+        pressure,
+        force[:, 1],
+    )
+    upper = state.at_upper.reshape(-1, 2)
+    return MountedContact(
+        pressure=pressure * modulus,
+        positions=positions * length,
+        contact_pressure=contact_pressure * modulus,
+        width=float(positions[-1]) * length,
+        line_load=line_load * length * modulus,
+        peak_pressure=float(np.max(contact_pressure)) * modulus,
+        opposite_load=float(-np.sum(force[upper[:, 1], 1])) * length * modulus,
+        side_load=float(-np.sum(force[upper[:, 0], 0])) * length * modulus,
+        start=(start - wall) * length,
+        field=stress_field(section, state.values, length, modulus),
     )

@@ -34,7 +34,6 @@ from .section import Assembly
 SLOPES = np.array([[-1.5, 2.0, -0.5], [-0.5, 0.0, 0.5], [0.5, -2.0, 1.5]])
 """d(position)/d(xi) at the three nodes of an edge from their positions, xi from -1 to 1."""
 
-
 SIMPSON = np.array([1.0, 4.0, 1.0]) / 3
 
 
@@ -104,7 +103,7 @@ class PairContribution:
 
 
 @dataclass(frozen=True, slots=True)
-class _Under:
+class _SurfacePoints:
     """The surface under every upper node: three nodes, shape functions, slope."""
 
     nodes: Integers
@@ -133,22 +132,22 @@ class ContactPair:
         ends = places[self.edges, 0]
         low, high = ends[:, 2], ends[:, 0]
         order = np.argsort(low)
-        found = order[np.clip(np.searchsorted(low[order], x, side="right") - 1, 0, len(low) - 1)]
-        inside = (x >= low[found]) & (x <= high[found])
-        a, m, b = ends[found].T
+        edge = order[np.clip(np.searchsorted(low[order], x, side="right") - 1, 0, len(low) - 1)]
+        inside = (x >= low[edge]) & (x <= high[edge])
+        a, m, b = ends[edge].T
         local = np.clip((2 * x - a - b) / (b - a), -1.0, 1.0)
         for _ in range(6):
             value = a * local * (local - 1) / 2 + m * (1 - local**2) + b * local * (local + 1) / 2
             slope = a * (local - 0.5) - 2 * m * local + b * (local + 0.5)
             local = np.clip(local - (value - x) / slope, -1.5, 1.5)
-        return found.astype(np.int64), local, inside
+        return edge.astype(np.int64), local, inside
 
-    def _under(self, places: Floats) -> _Under:
-        found, local, inside = self._locate(places)
+    def _surface_points(self, places: Floats) -> _SurfacePoints:
+        edge, local, inside = self._locate(places)
         shape = np.stack((local * (local - 1) / 2, 1 - local**2, local * (local + 1) / 2), axis=1)
         slope = np.stack((local - 0.5, -2 * local, local + 0.5), axis=1)
-        nodes = self.edges[found]
-        return _Under(
+        nodes = self.edges[edge]
+        return _SurfacePoints(
             nodes,
             inside,
             shape,
@@ -159,7 +158,7 @@ class ContactPair:
 
     def gap(self, places: Floats) -> Floats:
         """Distance of every upper node above the surface; infinite beside it [m]."""
-        under = self._under(places)
+        under = self._surface_points(places)
         above = places[self.upper, 1] - under.place[:, 1]
         return np.asarray(np.where(under.inside, above, np.inf))
 
@@ -168,8 +167,8 @@ class ContactPair:
     ) -> tuple[Booleans, Floats]:
         """Touching nodes and their forces; nodes under tension separate."""
         gap = self.gap(places)
-        after = np.where(touching, force > -pull, gap < -1e-10) & np.isfinite(gap)
-        return after, np.where(after, force, 0.0)
+        touches = np.where(touching, force > -pull, gap < -1e-10) & np.isfinite(gap)
+        return touches, np.where(touches, force, 0.0)
 
     def _surface_slopes(self, places: Floats, unknowns: int) -> tuple[Floats, csr_matrix]:
         """Slope of the surface at its nodes, averaged at corners; and its derivative."""
@@ -194,11 +193,11 @@ class ContactPair:
     ) -> PairContribution:
         """Gaps, directions and stiffness of the touching nodes."""
         chosen = np.flatnonzero(touching)
-        under = self._under(places)
+        under = self._surface_points(places)
         nodes, shape = under.nodes[chosen], under.shape[chosen]
         turn, along = under.shape_slope[chosen], under.along[chosen]
-        four = np.concatenate((self.upper[chosen, None], nodes), axis=1)
-        columns = (2 * four[:, :, None] + np.arange(2)).reshape(len(chosen), 8)
+        contact_nodes = np.concatenate((self.upper[chosen, None], nodes), axis=1)
+        columns = (2 * contact_nodes[:, :, None] + np.arange(2)).reshape(len(chosen), 8)
 
         def sparse(entries: Floats) -> csr_matrix:
             place = np.repeat(np.arange(len(chosen)), 8), columns.ravel()
@@ -351,11 +350,11 @@ class NotConverged(Exception):
 
 def _update_walls(problem: ElementProblem, state: ElementState, force: Floats, pull: float) -> bool:
     """Hold nodes that pass a bound, release nodes under tension; whether anything changed."""
-    bounds, moved = problem.bounds, state.values[: problem.section.displacements]
-    held = bounds.lower == bounds.upper
+    bounds, displacements = problem.bounds, state.values[: problem.section.displacements]
+    fixed = bounds.lower == bounds.upper
     slack = 1e-10
-    lower = np.where(state.at_lower, force > -pull, moved < bounds.lower - slack) | held
-    upper = np.where(state.at_upper, force < pull, moved > bounds.upper + slack) & ~held
+    lower = np.where(state.at_lower, force > -pull, displacements < bounds.lower - slack) | fixed
+    upper = np.where(state.at_upper, force < pull, displacements > bounds.upper + slack) & ~fixed
     changed = bool(np.any(lower != state.at_lower) or np.any(upper != state.at_upper))
     state.at_lower, state.at_upper = lower, upper
     return changed
@@ -406,14 +405,14 @@ def _step(
     fixed = np.zeros(section.unknowns, dtype=bool)
     fixed[: section.displacements] = state.at_lower | state.at_upper
     target = np.where(state.at_lower, bounds.lower, bounds.upper)
-    held, free = np.flatnonzero(fixed), np.flatnonzero(~fixed)
+    bound, free = np.flatnonzero(fixed), np.flatnonzero(~fixed)
     move = np.zeros(section.unknowns)
-    move[held] = target[held] - state.values[held]
+    move[bound] = target[bound] - state.values[bound]
     rows = stiffness[free]
     right = np.concatenate(
         (
-            -force[free] - rows[:, held] @ move[held],
-            -links.gap - links.rows[:, held] @ move[held],
+            -force[free] - rows[:, bound] @ move[bound],
+            -links.gap - links.rows[:, bound] @ move[bound],
         )
     )
     matrix = rows[:, free]
@@ -470,10 +469,10 @@ def solve(problem: ElementProblem, start: ElementState, pressure: float) -> Elem
         external, blocks = load(section, places, pressure * wet)
         force = section.internal(state.values) - external - links.directions.T @ links.force
         changed |= _update_walls(problem, state, force[:size], pull)
-        held = state.at_lower | state.at_upper
-        state.reaction = np.where(held, force[:size], 0.0)
+        at_wall = state.at_lower | state.at_upper
+        state.reaction = np.where(at_wall, force[:size], 0.0)
         stiffness = section.stiffness(state.values, blocks) + links.stiffness
-        move, added, error = _step(problem, state, force, stiffness, links)
+        move, force_change, error = _step(problem, state, force, stiffness, links)
         moved = float(np.max(np.abs(move[:size])))
         if not changed and error < TOLERANCE and moved < SMALLEST_MOVE:
             problem.iterations += iteration
@@ -481,18 +480,18 @@ def solve(problem: ElementProblem, start: ElementState, pressure: float) -> Elem
             return state
         share = _damped(problem, state, move)
         state.values = state.values + share * move
-        after = links.force + share * added
+        link_force = links.force + share * force_change
         if problem.level is not None:
-            after, state.level_force = after[:-1], float(after[-1])
+            link_force, state.level_force = link_force[:-1], float(link_force[-1])
         if problem.pair is not None:
             state.pair_force = np.zeros_like(state.pair_force)
-            state.pair_force[state.touching] = after
+            state.pair_force[state.touching] = link_force
     problem.iterations += MOST_ITERATIONS
     raise NotConverged(f"no equilibrium within {MOST_ITERATIONS} iterations")
 
 
 def raise_pressure(
-    problem: ElementProblem, state: ElementState, reached: float, wanted: float
+    problem: ElementProblem, state: ElementState, current: float, target: float
 ) -> ElementState:
     """Equilibrium at a higher pressure, with adaptive load steps.
 
@@ -501,21 +500,21 @@ def raise_pressure(
     NotConverged
         With the reached pressure and the reason.
     """
-    step = min(FIRST_STEP, wanted - reached)
-    while reached < wanted:
-        trial = min(wanted, reached + step)
-        if wanted - trial < 0.1 * step:
-            trial = wanted
+    step = min(FIRST_STEP, target - current)
+    while current < target:
+        trial = min(target, current + step)
+        if target - trial < 0.1 * step:
+            trial = target
         try:
-            found = solve(problem, state, trial)
-            if np.sum(found.touching & ~np.roll(found.touching, 1)) > 1:
+            next_state = solve(problem, state, trial)
+            if np.sum(next_state.touching & ~np.roll(next_state.touching, 1)) > 1:
                 raise NotConverged("the contact between the rings opens in its interior")
         except NotConverged as reason:
             step /= 2
             if step < SHORTEST_STEP:
-                raise NotConverged(f"{reason} beyond {reached:.3g} of the modulus") from reason
+                raise NotConverged(f"{reason} beyond {current:.3g} of the modulus") from reason
             continue
-        state, reached, step = found, trial, step * GROWTH
+        state, current, step = next_state, trial, step * GROWTH
         problem.steps += 1
     return state
 
@@ -532,14 +531,14 @@ def check_inputs(
     rubber: MooneyRivlin,
     pressures: Sequence[float],
     elements_around: int,
-    *more: tuple[bool, str, str],
+    *further: tuple[bool, str, str],
 ) -> None:
     """Check all inputs; a one-line error for an invalid input.
 
     Parameters
     ----------
     section, squeeze, rubber, pressures, elements_around : as for the seals
-    more : further checks: condition of the fault, message, remedy
+    further : further checks: condition of the fault, message, remedy
     """
     rising = all(b > a for a, b in zip((0.0, *pressures), pressures, strict=False))
     checks = (
@@ -560,11 +559,11 @@ def check_inputs(
             f"{elements_around} elements around the section",
             "give a multiple of 4, at least 16",
         ),
-        *more,
+        *further,
     )
-    found = [Diagnostic(message, remedy) for wrong, message, remedy in checks if wrong]
-    if found:
-        raise ActuatorError(found)
+    diagnostics = [Diagnostic(message, remedy) for wrong, message, remedy in checks if wrong]
+    if diagnostics:
+        raise ActuatorError(diagnostics)
 
 
 class ElementSeal(Protocol):
@@ -603,15 +602,15 @@ def follow(
     length, modulus : the units [m], [Pa]
     """
     contacts: list[MountedContact] = []
-    failure, reached = None, 0.0
+    failure, current = None, 0.0
     try:
         state = seal.mount(squeeze, groove_width)
         contacts.append(seal.contact(state, 0.0, length, modulus))
         state = seal.release(state)
         for pressure in pressures:
-            state = raise_pressure(seal.problem, state, reached, pressure / modulus)
-            reached = pressure / modulus
-            contacts.append(seal.contact(state, reached, length, modulus))
+            state = raise_pressure(seal.problem, state, current, pressure / modulus)
+            current = pressure / modulus
+            contacts.append(seal.contact(state, current, length, modulus))
     except NotConverged as reason:
         failure = str(reason)
     problem = seal.problem

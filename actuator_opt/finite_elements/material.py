@@ -112,16 +112,16 @@ def stress(gradient: Floats, multiplier: Floats, c10: Floats, c01: Floats) -> Fl
 def tangent(gradient: Floats, multiplier: Floats, c10: Floats, c01: Floats) -> Floats:
     """Derivative of `stress` by F at fixed multiplier, 5 x 5 on the last axes [Pa]."""
     inverse, volume = inverse_transpose(gradient)
-    tensor, against = full(gradient), full(inverse)
+    tensor, inverse_tensor = full(gradient), full(inverse)
     i, j = _ROWS[:, None], _COLUMNS[:, None]
     k, m = _ROWS[None, :], _COLUMNS[None, :]
     same_row, same_column = (i == k).astype(float), (j == m).astype(float)
-    crossed = against[..., i, m] * against[..., k, j]
+    crossed = inverse_tensor[..., i, m] * inverse_tensor[..., k, j]
     right = np.swapaxes(tensor, -1, -2) @ tensor
     left = tensor @ np.swapaxes(tensor, -1, -2)
     first = np.sum(gradient**2, axis=-1)
     c10, c01 = c10[..., None, None], c01[..., None, None]
-    hold = (multiplier * volume)[..., None, None]
+    volumetric = (multiplier * volume)[..., None, None]
     second = (
         2 * gradient[..., :, None] * gradient[..., None, :]
         + first[..., None, None] * same_row * same_column
@@ -132,8 +132,8 @@ def tangent(gradient: Floats, multiplier: Floats, c10: Floats, c01: Floats) -> F
     return np.asarray(
         2 * c10 * same_row * same_column
         + 2 * c01 * second
-        + (2 * (c10 + 2 * c01) - hold) * crossed
-        + hold * inverse[..., :, None] * inverse[..., None, :]
+        + (2 * (c10 + 2 * c01) - volumetric) * crossed
+        + volumetric * inverse[..., :, None] * inverse[..., None, :]
     )
 
 

@@ -14,9 +14,9 @@ from .contact import (
     boundary_nodes,
     level_pair,
     middle_node,
-    profile_on_face,
-    reached,
+    mounted_contact,
     wall_pressing,
+    wetted,
 )
 from .equilibrium import (
     SQUEEZE_STEP,
@@ -29,7 +29,7 @@ from .equilibrium import (
 )
 from .material import Floats, MooneyRivlin
 from .mesh import disc
-from .result import MountedContact, SealSolution, stress_field
+from .result import MountedContact, SealSolution
 from .section import Assembly, MeshedBody
 
 MOST_FILL = 0.98
@@ -69,7 +69,7 @@ class RoundRing:
         start = int(np.argmin(places[self.boundary, 0]))
         wet = np.zeros(len(places))
         for chain in both_ways(self.boundary, start):
-            part, last = reached(chain, barrier, state, pressure)
+            part, last = wetted(chain, barrier, state, pressure)
             wet[part] = 1.0
         if last is None or wet[self.boundary].all():
             raise NotConverged("the fluid passes the ring")
@@ -87,9 +87,9 @@ class RoundRing:
             bounds.upper[2 * self.boundary + 1] = 1 - part - self.section.nodes[self.boundary, 1]
             state = equilibrium.solve(self.problem, state, 0.0)
             self.problem.steps += 1
-        return self._lean(state, groove_width)
+        return self._add_groove_walls(state, groove_width)
 
-    def _lean(self, state: ElementState, groove_width: float) -> ElementState:
+    def _add_groove_walls(self, state: ElementState, groove_width: float) -> ElementState:
         """Walls of the groove; a narrow groove squeezes the ring between them."""
         bounds, place = self.problem.bounds, self.section.places(state.values)
         bounds.lower[2 * self.centre], bounds.upper[2 * self.centre] = -np.inf, np.inf
@@ -112,26 +112,8 @@ class RoundRing:
         self, state: ElementState, pressure: float, length: float, modulus: float
     ) -> MountedContact:
         """Contact on the sliding face, with dimensions."""
-        places = self.section.places(state.values)
-        force = state.reaction.reshape(-1, 2)
-        held = state.at_lower.reshape(-1, 2)[:, 1]
-        profile = profile_on_face(
-            self.section, state, places, self.boundary, held, pressure, force[:, 1]
-        )
-        start, positions, contact_pressure, line_load = profile
-        top = state.at_upper.reshape(-1, 2)[:, 1]
-        side = state.at_upper.reshape(-1, 2)[:, 0]
-        return MountedContact(
-            pressure=pressure * modulus,
-            positions=positions * length,
-            contact_pressure=contact_pressure * modulus,
-            width=float(positions[-1]) * length,
-            line_load=line_load * length * modulus,
-            peak_pressure=float(np.max(contact_pressure)) * modulus,
-            opposite_load=float(-np.sum(force[top, 1])) * length * modulus,
-            side_load=float(-np.sum(force[side, 0])) * length * modulus,
-            start=(start - self.wall) * length,
-            field=stress_field(self.section, state.values, length, modulus),
+        return mounted_contact(
+            self.section, state, self.boundary, pressure, length, modulus, wall=self.wall
         )
 
 

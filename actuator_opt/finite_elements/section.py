@@ -61,8 +61,8 @@ class Assembly:
         self.displacements = 2 * len(self.nodes)
         self.unknowns = self.displacements + corner_total
         self.sliding_radius, self.outward = sliding_radius, outward
-        each = [np.full(len(body.mesh.triangles), k) for k, body in enumerate(bodies)]
-        owner = np.concatenate(each)
+        owners = [np.full(len(body.mesh.triangles), k) for k, body in enumerate(bodies)]
+        owner = np.concatenate(owners)
         c10, c01, softness = (
             np.array(values)[owner][:, None]
             for values in zip(
@@ -96,8 +96,12 @@ class Assembly:
 
     def _pattern(self) -> None:
         """Positions of all element and edge entries in a sparse matrix."""
-        own = (2 * self.triangles[:, :, None] + np.arange(2)).reshape(len(self.triangles), 12)
-        self.element_unknowns = np.concatenate((own, self.displacements + self.corners), axis=1)
+        displacement_dofs = (2 * self.triangles[:, :, None] + np.arange(2)).reshape(
+            len(self.triangles), 12
+        )
+        self.element_unknowns = np.concatenate(
+            (displacement_dofs, self.displacements + self.corners), axis=1
+        )
         chain = np.concatenate(self.edges)
         self.edge_unknowns = (2 * chain[:, :, None] + np.arange(2)).reshape(len(chain), 6)
         rows, columns = [], []
@@ -145,9 +149,9 @@ class Assembly:
         flat = np.swapaxes(self.flat_shape, 1, 2)
         block[:, :12, :12] = flat @ weighted.reshape(count, points * 5, 12)
         inverse, volume = material.inverse_transpose(gradient)
-        hold = (inverse * (volume * self.weights)[..., None])[..., None]
-        hold = (hold * self.corner_values[None, :, None, :]).reshape(count, points * 5, 3)
-        block[:, :12, 12:] = flat @ hold
+        coupling = (inverse * (volume * self.weights)[..., None])[..., None]
+        coupling = (coupling * self.corner_values[None, :, None, :]).reshape(count, points * 5, 3)
+        block[:, :12, 12:] = flat @ coupling
         block[:, 12:, :12] = np.swapaxes(block[:, :12, 12:], 1, 2)
         soft = np.einsum("ep,pa,pb->eab", self.weights, self.corner_values, self.corner_values)
         block[:, 12:, 12:] = -soft * self.softness[:, :, None]

@@ -14,9 +14,9 @@ from .contact import (
     boundary_nodes,
     level_pair,
     middle_node,
-    profile_on_face,
-    reached,
+    mounted_contact,
     wall_pressing,
+    wetted,
 )
 from .equilibrium import (
     SQUEEZE_STEP,
@@ -30,7 +30,7 @@ from .equilibrium import (
 )
 from .material import Floats, MooneyRivlin
 from .mesh import SlideRing, disc, slide_ring
-from .result import MountedContact, SealSolution, stress_field
+from .result import MountedContact, SealSolution
 from .section import Assembly, MeshedBody
 
 COARSE = 0.12
@@ -105,7 +105,7 @@ class StepRing:
         start = int(np.argmin(places[self.round, 0]))
         lower, upper = both_ways(self.round, start)
         for chain in (upper, lower):
-            part, last = reached(chain, barrier, state, pressure)
+            part, last = wetted(chain, barrier, state, pressure)
             wet[part] = 1.0
         if len(part) in (last, len(lower)):
             raise NotConverged("the fluid passes between the rings")
@@ -115,7 +115,7 @@ class StepRing:
             self.back_wet = self._wet_back(places, float(np.mean(places[list(front), 0])))
         wet += self.back_wet
         face, _ = both_ways(self.flat, self.sealed_end)
-        part, last = reached(face, barrier, state, pressure)
+        part, last = wetted(face, barrier, state, pressure)
         if len(part) == last:
             raise NotConverged("the fluid passes the slide ring")
         wet[part] = 1.0
@@ -178,25 +178,7 @@ class StepRing:
         self, state: ElementState, pressure: float, length: float, modulus: float
     ) -> MountedContact:
         """Contact on the rod, with dimensions."""
-        places = self.section.places(state.values)
-        force = state.reaction.reshape(-1, 2)
-        held = state.at_lower.reshape(-1, 2)[:, 1]
-        start, positions, contact_pressure, line_load = profile_on_face(
-            self.section, state, places, self.flat, held, pressure, force[:, 1]
-        )
-        upper = state.at_upper.reshape(-1, 2)
-        return MountedContact(
-            pressure=pressure * modulus,
-            positions=positions * length,
-            contact_pressure=contact_pressure * modulus,
-            width=float(positions[-1]) * length,
-            line_load=line_load * length * modulus,
-            peak_pressure=float(np.max(contact_pressure)) * modulus,
-            opposite_load=float(-np.sum(force[upper[:, 1], 1])) * length * modulus,
-            side_load=float(-np.sum(force[upper[:, 0], 0])) * length * modulus,
-            start=start * length,
-            field=stress_field(self.section, state.values, length, modulus),
-        )
+        return mounted_contact(self.section, state, self.flat, pressure, length, modulus)
 
 
 def squeezed_step_ring(

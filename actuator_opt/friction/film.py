@@ -14,14 +14,16 @@ from .law import Friction, MovingFilm
 
 def _friction(seal: SealSizes, contact: SealContact, film: MovingFilm | None) -> Friction:
     """Friction on an oil film; at rest the oil is squeezed out and the contact is dry."""
-    own = seal["asperity_friction"]
+    asperity_friction = seal["asperity_friction"]
     dry = friction.seal_friction(
-        line_load=contact.line_load, diameter=seal["diameter"], friction_coefficient=own
+        line_load=contact.line_load,
+        diameter=seal["diameter"],
+        friction_coefficient=asperity_friction,
     )
     if film is None:
         return Friction(dry, dry, 0.0)
-    sliding = film.viscous + own * film.load
-    slope = film.viscous_slope + own * film.load_slope
+    sliding = film.viscous + asperity_friction * film.load
+    slope = film.viscous_slope + asperity_friction * film.load_slope
     moving = real(seal["speed"]) > 0
     touching = real(seal["squeeze_left"]) > 0
     return Friction(

@@ -15,7 +15,7 @@ from typing import Any, Literal
 import numpy as np
 
 from ..base.errors import Diagnostic, InputError
-from ..base.fitting import WEAK, Parameter, quantile
+from ..base.fitting import WEAK, Parameter, quantile, rated
 from ..base.tables import Displayed
 from ..evaluation import PreparedDesign, compute
 from ..models import bending_test, column, rod
@@ -36,13 +36,13 @@ class Specimen:
     ----------
     span : L between the supports [m]
     outer_diameter, inner_diameter : of the round section [m]
-    second_moment : I about the neutral axis, or of `equivalent_second_moment`, in place of the
-        diameters [m^4]
-    depth : of such a section in the plane of bending [m]; without it strains are unknown
+    second_moment : I about the neutral axis in place of the diameters [m^4], also from
+        `equivalent_second_moment`
+    depth : height of that section in the plane of bending [m]; without it strains are unknown
     shear_modulus : G of the round section [Pa]
     poissons_ratio : of its shear coefficient [-]
     shear_compliance : 1/(kappa G A), in place of `shear_modulus` [1/N]
-    local_compliance : C of indentation, supports and frame, deflection per force [m/N]
+    local_compliance : C, deflection per force by indentation, supports and frame [m/N]
     expected_modulus : the material's value, for comparison [Pa]
     """
 
@@ -61,13 +61,14 @@ class Specimen:
         """Reject invalid dimensions."""
         above = ("span", "outer_diameter", "second_moment", "depth", "shear_modulus")
         for name in (*above, "expected_modulus"):
-            one = getattr(self, name)
-            if one is not None and not (isfinite(one) and one > 0):
-                _refuse(f"{name} is {one:g}, it must be above 0", f"state the {name} measured")
+            value = getattr(self, name)
+            if value is not None and not (isfinite(value) and value > 0):
+                _refuse(f"{name} is {value:g}, it must be above 0", f"state the {name} measured")
         for name in ("inner_diameter", "shear_compliance", "local_compliance"):
-            one = getattr(self, name)
-            if one is not None and not (isfinite(one) and one >= 0):
-                _refuse(f"{name} is {one:g}, it must not be below 0", f"state the {name} measured")
+            value = getattr(self, name)
+            if value is not None and not (isfinite(value) and value >= 0):
+                message = f"{name} is {value:g}, it must not be below 0"
+                _refuse(message, f"state the {name} measured")
         outer = self.outer_diameter
         if (outer is None) == (self.second_moment is None):
             _refuse(
@@ -115,7 +116,7 @@ class Specimen:
 
 
 def specimen_of(subject: PreparedDesign, part: Part, span: float) -> Specimen:
-    """A part of a design as a bar; of a single metal its moduli too, G = E/(2 (1 + nu)).
+    """A part of a design as a bar, with its moduli if it is of one metal, G = E/(2 (1 + nu)).
 
     Parameters
     ----------
@@ -173,24 +174,25 @@ error of the span counts three times, one of the diameter four)."""
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BendingResult(Displayed):
-    """Results of a bending test, SI; bounds cover the record only.
+    """Results of a bending test, SI.
 
-    In addition, an error of the span counts three times, of a solid bar's diameter four times.
+    The bounds cover the record only. An error of the span counts three times in addition, an error
+    of a solid bar's diameter four times.
 
     Parameters
     ----------
     slope : k_0, mean of loading and unloading [N/m]
-    loading, unloading : slopes of each [N/m]; None if the record has none
+    loading, unloading : slopes of loading and unloading [N/m]; None if not in the record
     as_published : E = k_0 L^3/(48 I), uncorrected [Pa]
-    modulus : the same, corrected for known shear and indentation [Pa]
+    modulus : E corrected for known shear and indentation [Pa]
     taken_off : corrections made: "shear", "dents"
     shear_share : 12 E I/(kappa G A L^2), deflection by shear over that by bending; None if unknown
-    strains : range of the slope, in the outer fibre; None if the depth is unknown
-    deflections : the same as deflections from zero force [m]
+    strains : of the outer fibre between which the slope is taken; None if the depth is unknown
+    deflections : from zero force, between which the slope is taken [m]
     bent : change of slope along the straight part over the slope
     hysteresis : work lost over work done on loading, mean of the cycles; None if not available
-    cycles : of loading, of unloading or of both
-    samples : in the straight part
+    cycles : number of loadings or unloadings
+    samples : number in the straight part
     doubts : caveats of the modulus
     """
 
@@ -212,7 +214,7 @@ class BendingResult(Displayed):
     doubts: tuple[str, ...]
 
     def to_dict(self) -> dict[str, Any]:
-        """As plain data for JSON, SI; what has no value is null."""
+        """As plain data for JSON, SI; a missing value is null."""
         height = self.specimen.height
         return {
             "record": self.record.name,
@@ -260,8 +262,8 @@ def bending(record: Record, specimen: Specimen) -> BendingResult:
     Raises
     ------
     InputError
-        a channel missing or constant, too few samples, a wrong sign, compliance above the measured
-        one
+        a channel missing or constant, too few samples, a wrong sign, or a stated compliance above
+        the measured compliance
 
     References
     ----------
@@ -269,21 +271,22 @@ def bending(record: Record, specimen: Specimen) -> BendingResult:
     """
     loop = Loop(record)
     zeros, low, high, by_strain = _range(loop, specimen)
-    found = straight(loop, zeros, low, high)
-    result = _result(loop, specimen, found)
-    noise = scatter(found.parts)
-    doubts = _doubts_of_record(result, by_strain=by_strain, cut=found.cut, noise=noise)
+    straight_part = straight(loop, zeros, low, high)
+    result = _result(loop, specimen, straight_part)
+    noise = scatter(straight_part.parts)
+    doubts = _doubts_of_record(result, by_strain=by_strain, cut=straight_part.cut, noise=noise)
     if loop.both:
         way = "bent both ways: the slope is taken from the side bent further, starting where"
         doubts.append(f"{way} the force is zero")
     return replace(result, doubts=(*_doubts_of_specimen(result), *doubts))
 
 
-def _result(loop: Loop, specimen: Specimen, found: Straight) -> BendingResult:
+def _result(loop: Loop, specimen: Specimen, straight_part: Straight) -> BendingResult:
     """Properties of the specimen from the straight part, without caveats."""
-    record, parts, ends = loop.record, found.parts, found.ends
-    slope = _parameter(slopes(parts, 1, record), found.unsure)
-    ways = {way: mean(one).value for way, one in by_way(parts, 1).items()}
+    record, parts, ends = loop.record, straight_part.parts, straight_part.ends
+    slope = _parameter(slopes(parts, 1, record), straight_part.unsure)
+    terms = by_way(parts, 1)
+    branch_slopes = {loading: mean(group).value for loading, group in terms.items()}
     published = _modulus(slope, specimen, published=True)
     modulus = _modulus(slope, specimen)
     if not isfinite(modulus.value):
@@ -294,31 +297,32 @@ def _result(loop: Loop, specimen: Specimen, found: Straight) -> BendingResult:
         )
     shear, slender = specimen.shear, 12 * specimen.inertia / specimen.span**2
     share = None if shear is None else slender * modulus.value * shear
-    known, one = {"shear": shear, "dents": specimen.local_compliance}, specimen.deflection(1.0)
+    compliances = {"shear": shear, "dents": specimen.local_compliance}
+    unit = specimen.deflection(1.0)
     return BendingResult(
         record=record,
         specimen=specimen,
         slope=slope,
-        loading=ways.get(True),
-        unloading=ways.get(False),
+        loading=branch_slopes.get(True),
+        unloading=branch_slopes.get(False),
         as_published=published,
         modulus=modulus,
-        taken_off=tuple(name for name, x in known.items() if x is not None),
+        taken_off=tuple(name for name, compliance in compliances.items() if compliance is not None),
         shear_share=share,
-        strains=None if one is None else (ends[0] / one, ends[1] / one),
+        strains=None if unit is None else (ends[0] / unit, ends[1] / unit),
         deflections=ends,
-        bent=found.bent,
+        bent=straight_part.bent,
         hysteresis=loop.hysteresis(),
-        cycles=max(len(one) for one in by_way(parts, 1).values()),
-        samples=sum(x.deflection.size for x in parts),
+        cycles=max(len(group) for group in terms.values()),
+        samples=sum(part.deflection.size for part in parts),
         doubts=(),
     )
 
 
 def _range(loop: Loop, specimen: Specimen) -> tuple[list[float], float, float, bool]:
-    """Zero of every branch and the range from there; whether strain limits are used."""
+    """Zeros of the branches, the range of deflection from zero, whether strains limit the range."""
     zeros = loop.begins()
-    first, last = (specimen.deflection(one) for one in STRAINS)
+    first, last = (specimen.deflection(strain) for strain in STRAINS)
     low = high = 0.0
     by_strain = False
     for _ in range(8):
@@ -336,17 +340,17 @@ def _parameter(term: Term, unsure: float) -> Parameter:
     """A slope with its bounds, widened by its change along the part."""
     error = float(np.sqrt(term.variance))
     half = quantile(term.freedom) * error + unsure * abs(term.value)
-    near = half <= WEAK * abs(term.value)
-    return Parameter(term.value, term.value - half, term.value + half, error, bool(near))
+    identifiable = half <= WEAK * abs(term.value)
+    return Parameter(term.value, term.value - half, term.value + half, error, bool(identifiable))
 
 
 def _modulus(slope: Parameter, specimen: Specimen, *, published: bool = False) -> Parameter:
     """The modulus for a slope and its bounds."""
 
-    def of(one: float) -> float:
+    def modulus(stiffness: float) -> float:
         return float(
             bending_test.bending_modulus(
-                slope=one,
+                slope=stiffness,
                 span=specimen.span,
                 second_moment=specimen.inertia,
                 shear_compliance=0.0 if published else specimen.shear or 0.0,
@@ -354,52 +358,51 @@ def _modulus(slope: Parameter, specimen: Specimen, *, published: bool = False) -
             )
         )
 
-    value, low = of(slope.value), -inf if slope.lower <= 0 else of(slope.lower)
-    high = of(slope.upper)
+    value, low = modulus(slope.value), -inf if slope.lower <= 0 else modulus(slope.lower)
+    high = modulus(slope.upper)
     high = high if isfinite(high) else inf
-    steep = (value / slope.value) ** 2 * 48 * specimen.inertia / specimen.span**3
-    near = max(high - value, value - low) <= WEAK * value
-    return Parameter(value, low, high, steep * slope.standard_error, near)
+    rate = (value / slope.value) ** 2 * 48 * specimen.inertia / specimen.span**3
+    return rated(value, low, high, rate * slope.standard_error)
 
 
 def _doubts_of_record(
     result: BendingResult, *, by_strain: bool, cut: bool, noise: float
 ) -> list[str]:
     """Caveats of the slope."""
-    found = []
-    for name, one in (("slope", result.slope), ("modulus", result.modulus)):
-        if not one.identifiable:
-            found.append(f"the {name} is {one.verdict}")
+    doubts = []
+    for name, parameter in (("slope", result.slope), ("modulus", result.modulus)):
+        if not parameter.identifiable:
+            doubts.append(f"the {name} is {parameter.verdict}")
             break
     strains = result.strains
     if strains is None:
-        found.append(
+        doubts.append(
             "the depth of the section is not known: the slope is taken between "
             f"{_percent(SHARES[0])} and {_percent(SHARES[1])} of the highest force, not between "
             "strains"
         )
     elif not by_strain:
-        found.append(
+        doubts.append(
             f"the test does not cover the strains {100 * STRAINS[0]:g} to {100 * STRAINS[1]:g} "
             f"%: the slope is taken between {100 * strains[0]:.2g} and {100 * strains[1]:.2g} %"
         )
     if cut:
         low, high = (1e3 * deflection for deflection in result.deflections)
         words = "force over deflection is curved: the slope is taken from its straight part"
-        found.append(f"{words}, from {low:.3g} to {high:.3g} mm")
+        doubts.append(f"{words}, from {low:.3g} to {high:.3g} mm")
     if abs(result.bent) > BENT:
-        found.append(
+        doubts.append(
             f"the slope changes by {_percent(result.bent)} along the part used: yielding, slip, "
             "or settling supports"
         )
     if result.unloading is None or result.loading is None:
         way = "loading" if result.unloading is None else "unloading"
-        found.append(f"{way} only: support friction and creep change the slope")
+        doubts.append(f"{way} only: support friction and creep change the slope")
     elif abs(result.loading - result.unloading) > APART * result.slope.value:
         ways = ["loading", "unloading"]
         share = (result.loading - result.unloading) / result.slope.value
         first, second = ways if share > 0 else reversed(ways)
-        found.append(
+        doubts.append(
             f"{first} is {_percent(abs(share))} steeper than {second}: support friction, creep "
             "or damage; the mean is used"
         )
@@ -407,16 +410,16 @@ def _doubts_of_record(
         words = (
             "the hysteresis cannot be determined, as unloading returns more work than loading took"
         )
-        found.append(f"{words}: F_L lags w, or one drifts")
+        doubts.append(f"{words}: F_L lags w, or one drifts")
     if noise > NOISY:
         words = "force and deflection scatter: noise of the deflection alone would make the slope"
-        found.append(f"{words} {_percent(noise)} too low")
-    return found
+        doubts.append(f"{words} {_percent(noise)} too low")
+    return doubts
 
 
 def _doubts_of_specimen(result: BendingResult) -> list[str]:
     """Caveats of shear and indentation."""
-    found = []
+    doubts = []
     specimen, share = result.specimen, result.shear_share
     height, stated = specimen.height, specimen.expected_modulus
     ratio = 1.0 if stated is None else result.modulus.value / stated
@@ -424,21 +427,21 @@ def _doubts_of_specimen(result: BendingResult) -> list[str]:
         part = _percent(ratio) if ratio <= 10 else "more than 1000 %"
         part = "less than 1 %" if ratio < 0.01 else part
         words = f"the modulus is {part} of the material's value, {1e-09 * stated:.4g} GPa"
-        found.append(f"{words}: check part, span and units")
+        doubts.append(f"{words}: check part, span and units")
     if share is None:
-        found.append(
+        doubts.append(
             "not corrected for shear, as no shear modulus is stated: the modulus is too low"
         )
     elif share > SHEARED:
         words = f"shear deflection is {_percent(share)} of that by bending"
-        found.append(f"{words}: the modulus depends on it")
+        doubts.append(f"{words}: the modulus depends on it")
     if height is not None and specimen.span < SLENDER * height:
-        found.append(
+        doubts.append(
             f"the span is {specimen.span / height:.1f} depths, less than {SLENDER:g}: shear and "
             "indentation are significant"
         )
     if specimen.local_compliance is None:
-        found.append(
+        doubts.append(
             "not corrected for indentation at rollers and supports: the modulus is too low"
         )
-    return found
+    return doubts

@@ -1,17 +1,17 @@
 """Bounds by resampling instead of the linearised model: a wild bootstrap of points and windows.
 
-Points of steady sliding are few, and a single one often determines a parameter (the slowest F_S,
-the fastest sigma_2). Drawing points with replacement would lose it, so their residuals are drawn
-instead [Wu1986]. Each has the variance implied by itself and its own error: for independent noise
-of unit weight, E[noise_i^2 | residuals] = r_i^2 + h_i s^2, h_i the leverage, s^2 the sum of squares
-over n - p [derived]. Where the fit bends to a point, its own error counts; else its residual.
-Windows about reversals are blocks, as their samples are correlated: all residuals of one are drawn
-together. To first order this is the bootstrap of whole windows, but every draw keeps both
+Points of steady sliding are few, and a single point often determines a parameter: the slowest F_S,
+the fastest sigma_2. Drawing points with replacement would lose that point, so residuals are drawn
+instead [Wu1986]. The noise of a point has the variance E[noise_i^2 | residuals] = r_i^2 + h_i s^2
+for independent noise of unit weight: r_i its residual, h_i its leverage, s^2 the sum of squares
+over n - p [derived]. Where the fit follows a point closely, s^2 dominates; else the residual.
+Windows about reversals are blocks, as their samples are correlated: all residuals of a window are
+drawn together. To first order this is the bootstrap of whole windows, but every draw keeps both
 directions and the sharpest reversals.
 
-Each draw also scales the noise by sqrt(nu/chi^2_nu), as its size is known from only nu spare points
-or windows; for a linear model the bounds are then Student's t. Every draw is fitted again from the
-optimum, F_S and v_s from three starts, by damped Gauss-Newton steps within the search limits.
+Each draw also scales the noise by sqrt(nu/chi^2_nu), as its size is known from only nu degrees of
+freedom; for a linear model the bounds are then Student's t. Every draw is fitted again from the
+optimum, with three starting values of v_s, by damped Gauss-Newton steps within the search limits.
 Bounds are percentiles: they respect the limits, follow skewed parameters, and do not depend on the
 parametrisation. The acceleration of BCa needs fits without one point at a time, which do not exist
 where that point alone determines a parameter.
@@ -27,36 +27,25 @@ from dataclasses import replace
 import numpy as np
 
 from ..base.errors import Diagnostic, InputError
-from ..base.fitting import CONFIDENCE, WEAK, FitSearch, Parameter, quantile, relaxed
+from ..base.fitting import CONFIDENCE, FitSearch, Parameter, quantile, rated, relaxed
 from ..base.numeric import STEP as COMPLEX_STEP, Array
 from .balance import Sliding
 from .conditioning import ConditionedRecord
-from .lugre import (
-    BENDS,
-    LAG,
-    LOGARITHMIC,
-    STEP,
-    SYMBOLS,
-    TRAVELS,
-    LuGreFit,
-    Windows,
-    sizes,
-    windows,
-)
+from .lugre import BENDS, LOGARITHMIC, STEP, SYMBOLS, TRAVELS, LuGreFit, sizes
 from .points import SETTLED, FrictionPoint
 from .stribeck_fit import EXPONENTS, SPEEDS, STATIC_MOST, Steady, StribeckFit
+from .windows import LAG, Windows, windows
 
 FEWEST = 80
-"""Least number of resamples, so that the bound is the second from each end, not the outermost."""
+"""Least number of resamples: bounds are then the second values from the ends, not the outermost."""
 STARTS = (1.0, 1 / 3, 3.0)
-"""Initial Stribeck speeds of a refit relative to the optimum (a choice: half a decade either
-way)."""
+"""Initial Stribeck speeds of a refit over the optimum (a choice: half a decade either way)."""
 STEPS, LUGRE_STEPS = 40, 8
-"""Steps of a fit, and of one with the slopes of the optimum (a choice: the bounds of the synthetic
-records do not change beyond)."""
+"""Steps of a Stribeck fit, and of a LuGre fit with the slopes at the optimum (a choice: more steps
+do not change the bounds of the synthetic records)."""
 LEAST_WINDOWS = 3
-"""Least number of windows to draw from (a choice: with two the noise follows from one
-difference)."""
+"""Least number of windows to draw from (a choice: with two, a single difference would determine the
+noise)."""
 ROWS = 256
 """Draws integrated at once (a choice: some 100 MB)."""
 RANK = 1e-10
@@ -66,7 +55,7 @@ LOGS = ("stribeck_speed", "bristle_stiffness")
 PHYSICAL = ("static", "viscous", "bristle_damping")
 """Parameters with a physical lower limit: F_C for F_S, else 0."""
 SIGNED = ("offset", "pressure_slope", "lag")
-"""Parameters that may be 0: bounds that include 0 do not mean they are unknown."""
+"""Parameters that may be 0, so bounds that include 0 do not mean that they are unknown."""
 AT_END = 1e-6
 """Relative distance from a search limit that counts as reached."""
 
@@ -85,18 +74,19 @@ def resampled(
     """Both models of a record with bounds by resampling.
 
     Values stay; bounds, standard errors (half the bounds over Student's t) and verdicts change. A
-    parameter left open by the linearised model stays open, and so does one whose draws reach a
-    search limit. A parameter that is not identifiable keeps the wider of both bounds: its optimum
-    lies in a flat valley, and draws show the scatter about it, not the valley. The same applies to
-    LuGre if F_C is open or no lag is fitted, as its bounds then contain more than scatter. The
-    Stribeck curve's covariance stays that of the linearised model.
+    parameter without bounds in the linearised model remains without, and a parameter loses its
+    bounds if its draws reach a search limit. A parameter that is not identifiable keeps the wider
+    of both bounds: its optimum lies in a flat valley, and draws show the scatter about the optimum,
+    not the valley. The same applies to LuGre if F_C is unbounded or no lag is fitted, as the
+    linearised bounds then contain more than scatter. The covariance of the Stribeck curve stays
+    that of the linearised model.
 
     Parameters
     ----------
     slidings, motion, points : data of both fits
     stribeck, lugre : the fits, or the reason for a missing fit
-    count : of resamples
-    seed : of the draws; the same seed gives the same bounds
+    count : number of resamples
+    seed : seed of the draws; the same seed gives the same bounds
     settling : distance after a reversal from which sliding is steady [m], as in the fits
 
     Returns
@@ -111,16 +101,16 @@ def resampled(
     if count < FEWEST:
         message = f"{count} resamples are too few for 2.5 % tails"
         raise InputError(Diagnostic(message, f"use {FEWEST} or more, usually 200"))
-    first, second = (np.random.default_rng(one) for one in np.random.SeedSequence(seed).spawn(2))
-    curve_known = stribeck if isinstance(stribeck, StribeckFit) else None
+    curve_rng, window_rng = map(np.random.default_rng, np.random.SeedSequence(seed).spawn(2))
+    curve = stribeck if isinstance(stribeck, StribeckFit) else None
     if isinstance(lugre, LuGreFit):
-        reference = 0.0 if curve_known is None else curve_known.reference_pressure
-        slowest = np.inf if curve_known is None else min(point.speed for point in points)
-        found = windows(slidings, motion, reference, slowest, settling)
-        if found is not None:
-            lugre = _lugre(found, points, curve_known, lugre, count, second)
-    if curve_known is not None:
-        stribeck = resampled_stribeck(points, curve_known, count=count, rng=first)
+        reference = 0.0 if curve is None else curve.reference_pressure
+        slowest = np.inf if curve is None else min(point.speed for point in points)
+        reversals = windows(slidings, motion, reference, slowest, settling)
+        if reversals is not None:
+            lugre = _lugre(reversals, points, curve, lugre, count, window_rng)
+    if curve is not None:
+        stribeck = resampled_stribeck(points, curve, count=count, rng=curve_rng)
     return stribeck, lugre
 
 
@@ -137,30 +127,30 @@ def resampled_stribeck(
     search = _search(names, values, steady.largest, {"coulomb": (1e-6 * steady.largest, np.inf)})
 
     def model(rows: Array) -> Array:
-        own = {name: x[:, None] for name, x in natural(names, rows, values).items()}
-        return steady.predict(own) / errors
+        parameters = {name: x[:, None] for name, x in natural(names, rows, values).items()}
+        return steady.predict(parameters) / errors
 
     def slopes(rows: Array) -> Array:
         steps = 1j * COMPLEX_STEP * np.eye(rows.shape[1])
         return np.stack([np.imag(model(rows + step)) / COMPLEX_STEP for step in steps], axis=-1)
 
     best = searched(names, values)[None]
-    rest = fit.residuals / errors
-    spread = _spreads(slopes(best)[0], rest, float(np.sum(rest**2)) / spare)
+    residuals = fit.residuals / errors
+    spread = _spreads(slopes(best)[0], residuals, float(np.sum(residuals**2)) / spare)
     noise = spread * rng.standard_normal((count, spread.size)) * _scales(rng, spare, count)
     starts = STARTS if "stribeck_speed" in names else STARTS[:1]
     target = np.tile(model(best) + noise, (len(starts), 1))
     rows = np.repeat(best, target.shape[0], axis=0)
     if "stribeck_speed" in names:
         rows[:, names.index("stribeck_speed")] += np.repeat(np.log(starts), count)
-    found, cost = relaxed(lambda x, at: model(x) - target[at], slopes, rows, search, STEPS)
-    least = np.argmin(cost.reshape(-1, count), axis=0)
-    found = found.reshape(-1, count, best.size)[least, np.arange(count)]
-    return replace(fit, parameters=_bounded(fit.parameters, search, found, values, spare))
+    optima, cost = relaxed(lambda x, at: model(x) - target[at], slopes, rows, search, STEPS)
+    best_start = np.argmin(cost.reshape(-1, count), axis=0)
+    optima = optima.reshape(-1, count, best.size)[best_start, np.arange(count)]
+    return replace(fit, parameters=_bounded(fit.parameters, search, optima, values, spare))
 
 
 def _lugre(
-    found: Windows,
+    reversals: Windows,
     points: Sequence[FrictionPoint],
     stribeck: StribeckFit | None,
     fit: LuGreFit,
@@ -168,23 +158,23 @@ def _lugre(
     rng: np.random.Generator,
 ) -> LuGreFit:
     """A LuGre model with bounds by resampling points and windows."""
-    blocks = found.velocity.shape[0]
+    blocks = reversals.velocity.shape[0]
     if blocks < LEAST_WINDOWS:
         doubt = f"{blocks} windows are too few to resample: bounds are from the linearised model"
         return replace(fit, doubts=(*fit.doubts, doubt))
-    problem = LuGreResiduals(found, points, stribeck, fit)
+    problem = LuGreResiduals(reversals, points, stribeck, fit)
     best = searched(tuple(fit.parameters), fit.values)
-    rest = problem.misfit(best[None])[0]
+    residuals = problem.misfit(best[None])[0]
     jacobian = problem.slopes(best)
-    steady = rest.size - blocks * found.kept.size
+    steady = residuals.size - blocks * reversals.kept.size
     spare = max(steady - (0 if stribeck is None else len(stribeck.parameters)), 1)
-    variance = float(np.sum(rest[:steady] ** 2)) / spare
-    spread = _spreads(jacobian, rest, variance)[:steady]
+    variance = float(np.sum(residuals[:steady] ** 2)) / spare
+    spread = _spreads(jacobian, residuals, variance)[:steady]
     noise = np.concatenate(
         [
             spread * rng.standard_normal((count, steady)) * _scales(rng, spare, count),
-            np.repeat(rng.standard_normal((count, blocks)), found.kept.size, axis=1)
-            * rest[steady:]
+            np.repeat(rng.standard_normal((count, blocks)), reversals.kept.size, axis=1)
+            * residuals[steady:]
             * np.sqrt(blocks / (blocks - 1))
             * _scales(rng, blocks - 1, count),
         ],
@@ -192,23 +182,29 @@ def _lugre(
     )
     rows = []
     for first in range(0, count, ROWS):
-        target = rest + noise[first : first + ROWS]
+        target = residuals + noise[first : first + ROWS]
 
         def misfit(x: Array, at: Array, target: Array = target) -> Array:
             return problem.misfit(x) - target[at]
 
-        begin = np.repeat(best[None], target.shape[0], axis=0)
-        rows.append(
-            relaxed(misfit, lambda _: jacobian[None], begin, problem.search, LUGRE_STEPS)[0]
-        )
-    unseen = {"lag", "bristle_damping"} <= set(fit.held)
+        starts = np.repeat(best[None], target.shape[0], axis=0)
+        optima, _ = relaxed(misfit, lambda _: jacobian[None], starts, problem.search, LUGRE_STEPS)
+        rows.append(optima)
+    no_lag = {"lag", "bristle_damping"} <= set(fit.held)
     open_level = not np.isfinite(fit.parameters["coulomb"].upper)
-    wider = tuple(fit.parameters) if unseen or open_level else tuple(SYMBOLS)
+    wider = tuple(fit.parameters) if no_lag or open_level else tuple(SYMBOLS)
     parameters = _bounded(
-        fit.parameters, problem.search, np.concatenate(rows), fit.values, blocks - 1, wider
+        fit.parameters,
+        problem.search,
+        np.concatenate(rows),
+        fit.values,
+        blocks - 1,
+        wider,
     )
-    was = {f"{SYMBOLS[n]} is {fit.parameters[n].verdict}" for n in _bristles(fit.parameters)}
-    doubts = [doubt for doubt in fit.doubts if doubt not in was]
+    old_verdicts = {
+        f"{SYMBOLS[n]} is {fit.parameters[n].verdict}" for n in _bristles(fit.parameters)
+    }
+    doubts = [doubt for doubt in fit.doubts if doubt not in old_verdicts]
     doubts += [
         f"{SYMBOLS[name]} is {parameters[name].verdict}"
         for name in _bristles(parameters)
@@ -218,6 +214,7 @@ def _lugre(
 
 
 def _bristles(parameters: Mapping[str, Parameter]) -> list[str]:
+    """Names of the bristle parameters that are fitted."""
     return [name for name in LOGARITHMIC[:2] if name in parameters]
 
 
@@ -226,21 +223,21 @@ class LuGreResiduals:
 
     def __init__(
         self,
-        found: Windows,
+        reversals: Windows,
         points: Sequence[FrictionPoint],
         stribeck: StribeckFit | None,
         fit: LuGreFit,
     ) -> None:
         self.names, self.values = tuple(fit.parameters), fit.values
         best = searched(self.names, self.values)
-        level = min(max(self.values["static"], self.values["coulomb"]), found.largest)
+        level = min(max(self.values["static"], self.values["coulomb"]), reversals.largest)
         travel = BENDS * level / self.values["bristle_stiffness"]
-        chosen = found.chosen(natural(self.names, best[None], self.values))
-        self.windows = chosen.resolved(travel)
-        self.spread, self.largest, self.steady = fit.misfit, found.largest, None
+        parameters = natural(self.names, best[None], self.values)
+        self.windows = reversals.chosen(parameters).resolved(travel)
+        self.spread, self.largest, self.steady = fit.misfit, reversals.largest, None
         if stribeck is not None:
             self.steady = Steady(points, stribeck.errors * stribeck.scatter)
-        soft, stiff = (np.log(self.largest / one) for one in reversed(TRAVELS))
+        soft, stiff = (np.log(self.largest / deflection) for deflection in reversed(TRAVELS))
         ends = {
             "coulomb": (1e-3 * self.largest, np.inf),
             "bristle_stiffness": (soft, stiff),
@@ -251,11 +248,11 @@ class LuGreResiduals:
     def misfit(self, rows: Array) -> Array:
         """Weighted residuals (rows, residuals)."""
         values = natural(self.names, rows, self.values)
-        lanes = (self.windows.misfit(values) / self.spread).reshape(rows.shape[0], -1)
+        misfits = (self.windows.misfit(values) / self.spread).reshape(rows.shape[0], -1)
         if self.steady is None:
-            return lanes
+            return misfits
         steady = {n: x[:, None] for n, x in values.items() if n not in SYMBOLS}
-        return np.concatenate([self.steady.residual(steady), lanes], axis=1)
+        return np.concatenate([self.steady.residual(steady), misfits], axis=1)
 
     def slopes(self, best: Array) -> Array:
         """Derivatives at the optimum by central differences (residuals, searched)."""
@@ -272,8 +269,8 @@ def _search(
     largest: float,
     ends: Mapping[str, tuple[float, float]],
 ) -> FitSearch:
-    """Limits of the search; an optimum on a limit lies within it."""
-    usual = {
+    """Limits of the search, moved outwards where the optimum lies beyond."""
+    limits = {
         "static": (0.0, STATIC_MOST * largest),
         "stribeck_speed": (float(np.log(SPEEDS[0])), float(np.log(SPEEDS[1]))),
         "exponent": EXPONENTS,
@@ -281,30 +278,30 @@ def _search(
         "bristle_damping": (0.0, np.inf),
     } | dict(ends)
     best = searched(names, values)
-    pairs = [usual.get(name, (-np.inf, np.inf)) for name in names]
+    pairs = [limits.get(name, (-np.inf, np.inf)) for name in names]
     low = np.minimum([pair[0] for pair in pairs], best)
     return FitSearch(names, low, np.maximum([pair[1] for pair in pairs], best))
 
 
 def searched(names: Sequence[str], values: Mapping[str, float]) -> Array:
-    """Searched numbers of parameters: logarithms, and F_S as its excess over F_C."""
-    own = dict(values)
-    own["static"] = own.get("static", own["coulomb"]) - own["coulomb"]
-    return np.array([np.log(own[n]) if n in LOGS else own[n] for n in names])
+    """Parameters as searched: some by logarithm, F_S as its excess over F_C."""
+    numbers = dict(values)
+    numbers["static"] = numbers.get("static", numbers["coulomb"]) - numbers["coulomb"]
+    return np.array([np.log(numbers[n]) if n in LOGS else numbers[n] for n in names])
 
 
 def natural(names: Sequence[str], rows: Array, values: Mapping[str, float]) -> dict[str, Array]:
-    """Parameters (rows,) from searched numbers (rows, searched), the others unchanged."""
-    own = {
+    """Parameters (rows,) from searched numbers (rows, searched); other parameters are unchanged."""
+    searched_values = {
         name: np.exp(column) if name in LOGS else column
         for name, column in zip(names, rows.T, strict=True)
     }
-    found = {name: np.full(rows.shape[0], x) for name, x in values.items()} | own
-    if "static" in own:
-        found["static"] = found["coulomb"] + own["static"]
+    parameters = {name: np.full(rows.shape[0], x) for name, x in values.items()} | searched_values
+    if "static" in searched_values:
+        parameters["static"] = parameters["coulomb"] + searched_values["static"]
     elif "static" not in values or values["static"] == values["coulomb"]:
-        found["static"] = found["coulomb"]
-    return found
+        parameters["static"] = parameters["coulomb"]
+    return parameters
 
 
 def _spreads(slopes: Array, residuals: Array, variance: float) -> Array:
@@ -325,39 +322,38 @@ def _scales(rng: np.random.Generator, freedom: int, count: int) -> Array:
 def _bounded(
     parameters: Mapping[str, Parameter],
     search: FitSearch,
-    found: Array,
+    rows: Array,
     values: Mapping[str, float],
     spare: int,
     wider: Sequence[str] = (),
 ) -> dict[str, Parameter]:
-    """Parameters with percentile bounds; without bounds if draws reach an open search limit.
+    """Parameters with percentile bounds; infinite bounds if draws reach an unphysical search limit.
 
-    Those named in `wider` keep the wider of both bounds.
+    Parameters named in `wider` keep the wider of both bounds.
     """
-    count = found.shape[0]
-    own = natural(search.names, found, values)
+    count = rows.shape[0]
+    samples = natural(search.names, rows, values)
     tail = max(int((count + 1) * (1 - CONFIDENCE) / 2), 1)
-    unseen = np.zeros(count, dtype=bool)
+    without_rise = np.zeros(count, dtype=bool)
     if "static" in search.names:
-        unseen = found[:, search.names.index("static")] <= AT_END * values["coulomb"]
+        without_rise = rows[:, search.names.index("static")] <= AT_END * values["coulomb"]
     result = dict(parameters)
     for k, name in enumerate(search.names):
-        was = parameters[name]
-        if not np.isfinite(was.standard_error):
+        parameter = parameters[name]
+        if not np.isfinite(parameter.standard_error):
             continue
-        value, draws = was.value, own[name].copy()
-        near = AT_END * max(abs(found[:, k]).max(), 1e-300)
+        value, draws = parameter.value, samples[name].copy()
+        tolerance = AT_END * max(abs(rows[:, k]).max(), 1e-300)
         if name not in PHYSICAL:
-            draws[found[:, k] <= search.low[k] + near] = -np.inf
-        draws[found[:, k] >= search.high[k] - near] = np.inf
+            draws[rows[:, k] <= search.low[k] + tolerance] = -np.inf
+        draws[rows[:, k] >= search.high[k] - tolerance] = np.inf
         if name in ("stribeck_speed", "exponent"):
-            draws[unseen] = np.resize([-np.inf, np.inf], int(unseen.sum()))
+            draws[without_rise] = np.resize([-np.inf, np.inf], int(without_rise.sum()))
         draws.sort()
         low, high = min(draws[tail - 1], value), max(draws[count - tail], value)
-        if name in wider or (name not in SIGNED and was.verdict == "not identifiable"):
-            low, high = min(low, was.lower), max(high, was.upper)
+        if name in wider or (name not in SIGNED and parameter.verdict == "not identifiable"):
+            low, high = min(low, parameter.lower), max(high, parameter.upper)
         with np.errstate(invalid="ignore"):
             error = (high - low) / (2 * quantile(spare))
-        sure = max(high - value, value - low) <= WEAK * abs(value)
-        result[name] = Parameter(value, float(low), float(high), float(error), bool(sure))
+        result[name] = rated(value, float(low), float(high), float(error))
     return result

@@ -23,11 +23,11 @@ from .result import Identification
 from .stribeck_fit import StribeckFit
 
 FARTHER = 1.05
-"""Duty relative to the record's speed or pressure that is reported (a choice: less is no
-extrapolation)."""
+"""Speed or pressure of the design over that of the record above which extrapolation is reported (a
+choice)."""
 MISFIT = 0.1
-"""Deviation of the contact law at other pressures, as a share of F_C, that is reported (a choice: a
-third of what makes a parameter weakly identifiable)."""
+"""Deviation of the contact law at other pressures, as a share of F_C, above which it is reported (a
+choice: a third of the bounds that make a parameter weakly identifiable)."""
 
 
 def of_curve(
@@ -41,9 +41,9 @@ def of_curve(
             "friction, which is the mean"
         )
     yield from _shape(points, stribeck)
-    apart = level - float(np.mean(level) / np.mean(stated)) * stated
-    worst = int(np.argmax(np.abs(apart)))
-    share = float(apart[worst] / np.mean(level))
+    deviation = level - float(np.mean(level) / np.mean(stated)) * stated
+    worst = int(np.argmax(np.abs(deviation)))
+    share = float(deviation[worst] / np.mean(level))
     if abs(share) > MISFIT:
         yield (
             f"the measured friction deviates from the contact law by {100 * share:+.0f} % of F_C "
@@ -54,25 +54,23 @@ def of_curve(
 
 def _shape(points: Sequence[FrictionPoint], stribeck: StribeckFit) -> Iterator[str]:
     """Deviation of the Stribeck exponent from the design's, and the resulting error of friction."""
-    found = stribeck.parameters.get("exponent")
-    if found is None or found.lower <= STRIBECK_EXPONENT <= found.upper:
+    exponent = stribeck.parameters.get("exponent")
+    if exponent is None or exponent.lower <= STRIBECK_EXPONENT <= exponent.upper:
         return
     values = {name: stribeck.values[name] for name in ("coulomb", "static", "stribeck_speed")}
     speed = np.array([point.speed for point in points])
-    own, other = (
-        friction.stribeck_level(speed=speed, exponent=one, **values)
-        for one in (found.value, STRIBECK_EXPONENT)
-    )
-    worst = float(np.max(np.abs(other / own - 1)))
+    fitted = friction.stribeck_level(speed=speed, exponent=exponent.value, **values)
+    assumed = friction.stribeck_level(speed=speed, exponent=STRIBECK_EXPONENT, **values)
+    worst = float(np.max(np.abs(assumed / fitted - 1)))
     yield (
-        f"the exponent of the Stribeck curve is {found.value:.2f} ({found.lower:.2f} to "
-        f"{found.upper:.2f}), but {STRIBECK_EXPONENT:g} in the design: error up to "
+        f"the exponent of the Stribeck curve is {exponent.value:.2f} ({exponent.lower:.2f} to "
+        f"{exponent.upper:.2f}), but {STRIBECK_EXPONENT:g} in the design: error up to "
         f"{100 * worst:.0f} % at the record's speeds"
     )
 
 
 def extrapolated(bench: Bench, points: Sequence[FrictionPoint]) -> Iterator[str]:
-    """Duties of the design beyond the record."""
+    """Speeds and pressures of the design beyond those of the record."""
     fastest = max(case.speed for case in bench.design.load_cases)
     speed, pressure = max(point.speed for point in points), max(point.pressure for point in points)
     if fastest > FARTHER * speed or bench.supply_pressure > FARTHER * pressure:
@@ -83,34 +81,35 @@ def extrapolated(bench: Bench, points: Sequence[FrictionPoint]) -> Iterator[str]
         )
 
 
-def weak(known: Mapping[str, Parameter]) -> Iterator[str]:
-    """Weakly determined numbers."""
-    names = [name for name, one in known.items() if not one.identifiable]
+def weakly_known(parameters: Mapping[str, Parameter]) -> Iterator[str]:
+    """Names of weakly known parameters, in one line."""
+    names = [name for name, parameter in parameters.items() if not parameter.identifiable]
     if names:
         yield f"only weakly known (bounds beyond 30 %): {', '.join(names)}"
 
 
 KEYS = ("friction_coefficient", "breakaway_ratio", "stribeck_speed", "viscous_friction")
 """Seal keys that a record can determine."""
-_ASKED = ("coulomb", "static", "stribeck_speed", "viscous")
+_FIT_NAMES = ("coulomb", "static", "stribeck_speed", "viscous")
 """Fit parameters behind these keys."""
 RISEN = 0.05
-"""Share of the friction at one speed due to the rise towards rest that is reported (a choice: the
-error of a good record)."""
+"""Rise of friction towards rest at the record's speed, as a share, above which it is reported (a
+choice: the error of a good record)."""
 
 
 @dataclass(frozen=True, slots=True)
-class Learned:
+class SealParameter:
     """One cylinder parameter from a record, and its distribution over the seals.
 
     Parameters
     ----------
-    name : of the design's key: friction_coefficient, breakaway_ratio, stribeck_speed or
+    name : key in the design: friction_coefficient, breakaway_ratio, stribeck_speed or
         viscous_friction
-    known : of the cylinder, SI; for friction_coefficient, the factor on the stated values
-    shares : of each seal by PATH: its value over that of the cylinder
+    known : value and bounds for the cylinder, SI; for friction_coefficient, the factor on the
+        stated values
+    shares : value of each seal over that of the cylinder, by PATH
     before : value stated in the design or taken from the compound, by PATH
-    source : the fit it comes from
+    source : name of the fit
     """
 
     name: str
@@ -120,18 +119,18 @@ class Learned:
     source: str
 
     def values(self) -> dict[str, float]:
-        """By PATH, SI."""
+        """Values by PATH, SI."""
         return {path: self.known.value * share for path, share in self.shares.items()}
 
     def bounds(self) -> dict[str, tuple[float, float]]:
         """Bounds by PATH, within the valid range of the design."""
         least, most = INPUTS[self.name].lower, INPUTS[self.name].upper
 
-        def within(value: float) -> float:
+        def limited(value: float) -> float:
             return min(max(value, least), most)
 
         return {
-            path: (within(self.known.lower * share), within(self.known.upper * share))
+            path: (limited(self.known.lower * share), limited(self.known.upper * share))
             for path, share in self.shares.items()
         }
 
@@ -161,30 +160,31 @@ class Calibration:
     ----------
     identification : of the record
     learned : parameters from the record
-    left : by key, the reason why the design's value stays
-    coulomb, stated : Coulomb friction measured, and as stated in the design, at the record's mean
-        pressures [N]
+    left : reason why the design's value stays, by key
+    coulomb, stated : Coulomb friction, measured and by the design, mean over the points [N]
     doubts : caveats of the numbers
     """
 
     identification: Identification
-    learned: tuple[Learned, ...]
+    learned: tuple[SealParameter, ...]
     left: Mapping[str, str]
     coulomb: float
     stated: float
     doubts: tuple[str, ...]
 
     def values(self) -> dict[str, float]:
-        """New numbers by PATH, SI."""
-        return {path: value for one in self.learned for path, value in one.values().items()}
+        """New values by PATH, SI."""
+        return {
+            path: value for parameter in self.learned for path, value in parameter.values().items()
+        }
 
     def measured(self) -> dict[str, TestBounds]:
-        """Their bounds by PATH."""
+        """Bounds of the new values by PATH."""
         name = self.identification.record.file_name
         return {
             path: TestBounds(lower=low, upper=high, record=name)
-            for one in self.learned
-            for path, (low, high) in one.bounds().items()
+            for parameter in self.learned
+            for path, (low, high) in parameter.bounds().items()
         }
 
 
@@ -192,14 +192,14 @@ def calibration(identification: Identification) -> Calibration:
     """Return the seal friction parameters from a record of their design.
 
     The coefficients of all rings and wipers change by one factor, so that the design's Coulomb
-    friction at the steady points' pressures equals the measured one; a cylinder record cannot
-    separate piston from rod. F_S/F_C and v_s apply to every ring, sigma_2 is distributed by
-    circumference. Each parameter comes from the fit with the tightest bounds, else it stays. A
-    record of one speed gives the factor alone.
+    friction at the pressures of the steady points equals the measured friction; a cylinder record
+    cannot separate piston from rod. F_S/F_C and v_s apply to every ring; sigma_2 is distributed by
+    circumference. Each parameter comes from the fit with the tightest bounds; it stays if no fit
+    determines it. A record of one speed gives the factor alone.
 
     Parameters
     ----------
-    identification : with points of steady sliding
+    identification : identification with points of steady sliding
 
     Returns
     -------
@@ -219,25 +219,26 @@ def calibration(identification: Identification) -> Calibration:
         )
     coulomb = np.asarray(bench.coulomb(*_pressures(points)))
     if isinstance(identification.stribeck, StribeckFit):
-        learned, left, level = _from_fits(identification, identification.stribeck, coulomb)
+        candidates, reasons, level = _from_fits(identification, identification.stribeck, coulomb)
         doubts = [*identification.stribeck.doubts]
         doubts += of_curve(points, identification.stribeck, level, coulomb)
     else:
-        learned, level, doubts = _from_level(bench, points)
-        left = dict.fromkeys(KEYS[1:], identification.stribeck)
-    kept = []
-    for one in learned:
-        why = _beyond_range(one)
-        if why is None:
-            kept.append(one)
+        candidates, level, doubts = _from_level(bench, points)
+        reasons = dict.fromkeys(KEYS[1:], identification.stribeck)
+    parameters = []
+    for parameter in candidates:
+        reason = _beyond_range(parameter)
+        if reason is None:
+            parameters.append(parameter)
         else:
-            left[one.name] = why
-    if not kept:
+            reasons[parameter.name] = reason
+    if not parameters:
+        causes = "; ".join(dict.fromkeys(reasons.values()))
         raise identification.record.fault(
-            f"the record determines no seal parameter: {'; '.join(dict.fromkeys(left.values()))}",
+            f"the record determines no seal parameter: {causes}",
             "record plateaus of several constant speeds, in both directions",
         )
-    doubts += weak({one.name: one.known for one in kept})
+    doubts += weakly_known({parameter.name: parameter.known for parameter in parameters})
     doubts += extrapolated(bench, points)
     if len(bench.rings) + len(bench.wipers) > 1:
         doubts.append(
@@ -246,21 +247,25 @@ def calibration(identification: Identification) -> Calibration:
         )
     return Calibration(
         identification,
-        tuple(kept),
-        left,
+        tuple(parameters),
+        reasons,
         float(np.mean(level)),
         float(np.mean(coulomb)),
         tuple(dict.fromkeys(doubts)),
     )
 
 
-def _beyond_range(learned: Learned) -> str | None:
-    """Why a design cannot state a number, or None."""
-    quantity = INPUTS[learned.name]
-    out = [v for v in learned.values().values() if not quantity.lower <= v <= quantity.upper]
-    if not out:
+def _beyond_range(parameter: SealParameter) -> str | None:
+    """Why a design cannot state a parameter, or None."""
+    quantity = INPUTS[parameter.name]
+    outside = [
+        value
+        for value in parameter.values().values()
+        if not quantity.lower <= value <= quantity.upper
+    ]
+    if not outside:
         return None
-    return f"measured {quantity.text(out[0])}, but a design accepts {quantity.range_text()}"
+    return f"measured {quantity.text(outside[0])}, but a design accepts {quantity.range_text()}"
 
 
 def refuse_films(design: Design) -> None:
@@ -269,7 +274,7 @@ def refuse_films(design: Design) -> None:
     Raises
     ------
     InputError
-        names the seal's PATH
+        with the PATH of the seal
     """
     for place in ("piston", "rod"):
         for tail, element in getattr(design.seals, place).elements().items():
@@ -292,47 +297,47 @@ def _pressures(points: Sequence[FrictionPoint]) -> tuple[Array, Array]:
 
 def _from_fits(
     identification: Identification, stribeck: StribeckFit, stated: Array
-) -> tuple[list[Learned], dict[str, str], Array]:
-    """Parameters from the Stribeck curve and the bristles, and the Coulomb level by point.
+) -> tuple[list[SealParameter], dict[str, str], Array]:
+    """Parameters from both fits, reasons for missing ones, and the Coulomb level by point.
 
     The factor is the mean measured level over the mean of the design. Its bounds also cover the
     ratio at every point, so a contact law with another pressure dependence widens them.
     """
     bench = identification.bench
-    known = {name: _best(identification, name) for name in _ASKED}
+    fits = {name: _best(identification, name) for name in _FIT_NAMES}
     pressure = np.array([point.pressure for point in identification.points])
-    coulomb = known["coulomb"]
+    coulomb = fits["coulomb"]
     middle = (stribeck.parameters["coulomb"] if coulomb is None else coulomb[0]).value
     slope = stribeck.values["pressure_slope"]
     level = middle + slope * (pressure - stribeck.reference_pressure)
-    learned: list[Learned] = []
-    left: dict[str, str] = {}
+    parameters: list[SealParameter] = []
+    reasons: dict[str, str] = {}
     if coulomb is None:
-        left["friction_coefficient"] = "the record cannot separate Coulomb from viscous friction"
+        reasons["friction_coefficient"] = "the record cannot separate Coulomb from viscous friction"
     else:
         factor = float(np.mean(level) / np.mean(stated))
-        found = _times(coulomb[0], factor / middle)
+        _, lower, upper, error, _ = _scaled(coulomb[0], factor / middle)
         low, high = float(np.min(level / stated)), float(np.max(level / stated))
-        found = rated(factor, min(found.lower, low), max(found.upper, high), found.standard_error)
-        learned.append(_coefficient(found, bench, coulomb[1]))
-    static, speed, viscous = (known[name] for name in _ASKED[1:])
+        factor_bounds = rated(factor, min(lower, low), max(upper, high), error)
+        parameters.append(_coefficient(factor_bounds, bench, coulomb[1]))
+    static, speed, viscous = (fits[name] for name in _FIT_NAMES[1:])
     if static is None or speed is None or coulomb is None:
-        why = "the record does not show how friction rises towards rest"
-        left |= {"breakaway_ratio": why, "stribeck_speed": why}
+        reason = "the record does not show how friction rises towards rest"
+        reasons |= {"breakaway_ratio": reason, "stribeck_speed": reason}
     else:
         ratio = _ratio(static[0], coulomb[0])
-        learned.append(_alike("breakaway_ratio", ratio, bench, static[1]))
-        learned.append(_alike("stribeck_speed", speed[0], bench, speed[1]))
+        parameters.append(_same_for_rings("breakaway_ratio", ratio, bench, static[1]))
+        parameters.append(_same_for_rings("stribeck_speed", speed[0], bench, speed[1]))
     if viscous is None:
-        left["viscous_friction"] = "the record does not show how friction rises with speed"
+        reasons["viscous_friction"] = "the record does not show how friction rises with speed"
     else:
-        learned.append(_viscous(viscous[0], bench, viscous[1]))
-    return learned, left, level
+        parameters.append(_viscous(viscous[0], bench, viscous[1]))
+    return parameters, reasons, level
 
 
 def _from_level(
     bench: Bench, points: Sequence[FrictionPoint]
-) -> tuple[list[Learned], Array, list[str]]:
+) -> tuple[list[SealParameter], Array, list[str]]:
     """The factor alone, from friction at one speed; other speeds follow the design.
 
     If the speed is within the design's Stribeck rise, the upper bound assumes no rise.
@@ -348,7 +353,7 @@ def _from_level(
     error = max(scatter, float(np.mean(errors))) / sqrt(factors.size)
     half = quantile(max(factors.size - 1, 1)) * error
     rise = float(np.mean(level / coulomb))
-    known = rated(value, value - half, rise * value + half, error)
+    parameter = rated(value, value - half, rise * value + half, error)
     at = f"{1e3 * float(np.mean(speed)):.3g} mm/s"
     doubts = [
         f"friction measured at {at} only: its viscous part at other speeds comes from the design"
@@ -358,29 +363,30 @@ def _from_level(
             f"the design's breakaway ratio and Stribeck speed make friction at {at} {rise:.2f} "
             "times its Coulomb part: the factor depends on them"
         )
-    return [_coefficient(known, bench, f"friction at {at}")], value * coulomb, doubts
+    return [_coefficient(parameter, bench, f"friction at {at}")], value * coulomb, doubts
 
 
 def _best(identification: Identification, name: str) -> tuple[Parameter, str] | None:
-    """A parameter from the fit with the tightest bounds, with the fit's name, or None."""
+    """A parameter from the fit with the tightest bounds, and the fit's name; None if unknown."""
     fits = (("Stribeck fit", identification.stribeck), ("LuGre fit", identification.lugre))
-    found = [
+    candidates = [
         (fit.parameters[name], source)
         for source, fit in fits
-        if isinstance(fit, (StribeckFit, LuGreFit)) and name in fit.parameters
+        if isinstance(fit, (StribeckFit, LuGreFit))
+        and name in fit.parameters
+        and fit.parameters[name].verdict != "not identifiable"
     ]
-    found = [one for one in found if one[0].verdict != "not identifiable"]
-    return min(found, key=lambda one: one[0].standard_error / one[0].value, default=None)
+    return min(candidates, key=lambda pair: pair[0].standard_error / pair[0].value, default=None)
 
 
-def _times(parameter: Parameter, factor: float) -> Parameter:
+def _scaled(parameter: Parameter, factor: float) -> Parameter:
     """A parameter in another unit, `factor` > 0."""
-    value, lower, upper, error, known = parameter
-    return Parameter(factor * value, factor * lower, factor * upper, factor * error, known)
+    value, lower, upper, error, identifiable = parameter
+    return Parameter(factor * value, factor * lower, factor * upper, factor * error, identifiable)
 
 
 def _ratio(over: Parameter, under: Parameter) -> Parameter:
-    """F_S/F_C, with both bounds taken as independent; in logarithms, so positive."""
+    """F_S/F_C with bounds, of independent errors; by logarithms, which keep it positive."""
     ratio = over.value / under.value
     up = hypot(log(over.upper / over.value), log(under.value / under.lower))
     down = hypot(log(over.value / over.lower), log(under.upper / under.value))
@@ -388,28 +394,28 @@ def _ratio(over: Parameter, under: Parameter) -> Parameter:
     return rated(ratio, ratio * exp(-down), ratio * exp(up), error)
 
 
-def _coefficient(factor: Parameter, bench: Bench, source: str) -> Learned:
+def _coefficient(factor: Parameter, bench: Bench, source: str) -> SealParameter:
     """One factor for all coefficients of rings and wipers."""
     stated = {ring.groove.path: float(ring["friction_coefficient"]) for ring in bench.rings}
     stated |= {wiper.path: float(wiper.coefficient) for wiper in bench.wipers}
     shares = {f"{path}friction_coefficient": value for path, value in stated.items()}
-    return Learned("friction_coefficient", factor, shares, shares, source)
+    return SealParameter("friction_coefficient", factor, shares, shares, source)
 
 
-def _alike(name: str, known: Parameter, bench: Bench, source: str) -> Learned:
+def _same_for_rings(name: str, parameter: Parameter, bench: Bench, source: str) -> SealParameter:
     """The same value for every ring."""
-    before = {f"{ring.groove.path}{name}": float(ring[name]) for ring in bench.rings}
-    return Learned(name, known, dict.fromkeys(before, 1.0), before, source)
+    stated = {f"{ring.groove.path}{name}": float(ring[name]) for ring in bench.rings}
+    return SealParameter(name, parameter, dict.fromkeys(stated, 1.0), stated, source)
 
 
-def _viscous(known: Parameter, bench: Bench, source: str) -> Learned:
+def _viscous(parameter: Parameter, bench: Bench, source: str) -> SealParameter:
     """Distribution of sigma_2 by circumference."""
-    whole = sum(float(ring["diameter"]) for ring in bench.rings)
-    paths = [f"{ring.groove.path}viscous_friction" for ring in bench.rings]
-    return Learned(
+    total = sum(float(ring["diameter"]) for ring in bench.rings)
+    rings = {f"{ring.groove.path}viscous_friction": ring for ring in bench.rings}
+    return SealParameter(
         "viscous_friction",
-        known,
-        {path: float(r["diameter"]) / whole for path, r in zip(paths, bench.rings, strict=True)},
-        {path: float(r["viscous_friction"]) for path, r in zip(paths, bench.rings, strict=True)},
+        parameter,
+        {path: float(ring["diameter"]) / total for path, ring in rings.items()},
+        {path: float(ring["viscous_friction"]) for path, ring in rings.items()},
         source,
     )

@@ -9,35 +9,35 @@ import numpy as np
 from ..base.numeric import Array
 
 SPIKE, QUANTA, RANGE = 6.0, 3.0, 1e-3
-"""A spike exceeds its neighbours' median by so many robust standard deviations, by so many sensor
-steps, and by this share of the channel's range (choices: one normal sample in 5e8 is as far;
-rounding alone makes two steps; usual noise of pressures is as high as that share)."""
+"""Least height of a spike over its neighbours' median: in robust standard deviations, in sensor
+steps, and as a share of the channel's range (choices: one normal sample in 5e8 lies as far out;
+rounding alone makes two steps; the usual noise of pressures reaches that share)."""
 JUMP, BURST, FLANK = 0.7, 0.45, 0.3
-"""A spike rises within a sample by this share of its height; by `BURST` if its flanks do not
-continue outside with `FLANK` of the step at its edge (choices: three adjacent stray samples rise by
-half or more, the top of a triangle as wide as the median's window by a third, of a half sine by
-0.6)."""
+"""Least share of its height by which a spike rises within a sample. `BURST` suffices if the channel
+does not continue outside the spike with `FLANK` of the step at its edge (choices: three adjacent
+stray samples rise by half or more, the top of a triangle as wide as the median's window by a third,
+of a half sine by 0.6)."""
 WINDOW = 5e-3
-"""Half the width of the neighbourhood [s] (a choice: a sixth of a 30 Hz period)."""
+"""Half the width of a sample's neighbourhood [s] (a choice: a sixth of a 30 Hz period)."""
 SAMPLED = 100_000
-"""Samples used for a channel's spread (a choice: to 1 %)."""
+"""Samples used for the spread of a channel (a choice: accurate to 1 %)."""
 LEVELS = 20_000
-"""Samples used for a sensor's resolution (a choice: some per step of a fine one)."""
+"""Samples used for the resolution of a sensor (a choice: several per step of a fine sensor)."""
 CROWD, GARBAGE = 0.15, 0.5
-"""Shares of spikes in two windows above which the rest is doubtful, or useless (choices: of 5 %
-random strays half occur once in 1e10 samples, of 10 % once in 1e6; noise as high as the range is
-three quarters spikes)."""
+"""Shares of spikes in two windows above which the other samples are doubtful, and useless (choices:
+with 5 % random strays the second occurs once in 1e10 samples, with 10 % once in 1e6; noise as high
+as the range gives three quarters spikes)."""
 HELD = 6
-"""Least number of constant samples at a channel's end to count as clipped (a choice: the filter
-removes shorter ones, a fifth of a 30 Hz period at 1 kHz)."""
+"""Least number of equal samples at an end of the channel's range to count as clipped (a choice: a
+fifth of a 30 Hz period at 1 kHz; the filter removes shorter runs)."""
 FLICKER = 0.6
-"""Noise in sensor steps above which a constant level is no coincidence (a choice: a true plateau
-would leave its step in two of five samples)."""
+"""Noise in sensor steps above which a constant level is no coincidence (a choice: on a true plateau
+two of five samples would leave their step)."""
 LIVE = 0.2
-"""Share of a channel away from its ends that is needed to judge by the rest (a choice: four times
-as many as strays)."""
+"""Least share of samples away from the ends of the range for noise to be judged by them (a choice:
+four times as many as strays)."""
 TURNS = 0.3
-"""Share of its steps after which a noisy channel reverses (a choice: half the 2/3 of white
+"""Share of its steps after which a noisy channel reverses (a choice: half of the 2/3 of white
 noise)."""
 ROBUST = 1.4826
 """Standard deviation of a normal variable over its median deviation, 1/0.67449 [derived]."""
@@ -50,14 +50,14 @@ class Quality(NamedTuple):
     spikes: int
     clipped: int
     resolution: float
-    """Resolution of the sensor, SI; negligible if it shows none."""
+    """Resolution of the sensor, SI; negligible if the samples show none."""
     noise: float
     """Standard deviation of a sample that the filter removes, SI."""
 
     def told(self, name: str, samples: int) -> list[str]:
         """Notes on the samples removed from a channel."""
         counts = ((self.missing, "missing"), (self.spikes, "spikes"), (self.clipped, "clipped"))
-        return [f"{name}: {n} of {samples} samples are {what}" for n, what in counts if n]
+        return [f"{name}: {n} of {samples} samples are {fault}" for n, fault in counts if n]
 
 
 def clean(values: Array, step: float, *, pressure: bool) -> tuple[Array, Quality]:
@@ -67,7 +67,8 @@ def clean(values: Array, step: float, *, pressure: bool) -> tuple[Array, Quality
     ----------
     values : raw samples, NaN where missing
     step : of time [s]
-    pressure : a chamber open to the tank stays at its least pressure, which is not clipping
+    pressure : whether the channel is a pressure: its least value is then not clipping, as a chamber
+        open to the tank stays there
 
     Returns
     -------
@@ -78,50 +79,52 @@ def clean(values: Array, step: float, *, pressure: bool) -> tuple[Array, Quality
     absent = ~np.isfinite(values)
     if absent.all():
         return values, Quality(values.size, 0, 0, 0.0, 0.0)
-    kept = values[~absent]
+    present = values[~absent]
     size = 2 * int(np.clip(round(WINDOW / step), 2, 5)) + 1
-    middle = median_filter(kept, size=size, mode="nearest")
-    quantum = resolution(middle) or resolution(kept)
-    live = _live(kept)
-    least = _least(kept, middle, quantum, live)
-    spikes = _spikes(kept, middle, least)
-    spikes |= _strays(kept, spikes, quantum, live)
-    spikes |= _garbage(kept, spikes, least, size)
-    clipped = _clipped(kept, spikes, quantum, pressure=pressure)
+    middle = median_filter(present, size=size, mode="nearest")
+    quantum = resolution(middle) or resolution(present)
+    live = _live(present)
+    least = _least(present, middle, quantum, live)
+    spikes = _spikes(present, middle, least)
+    spikes |= _strays(present, spikes, quantum, live)
+    spikes |= _garbage(present, spikes, least, size)
+    clipped = _clipped(present, spikes, quantum, pressure=pressure)
     spikes &= ~clipped
-    out = np.full(values.shape, np.nan)
-    out[~absent] = np.where(spikes | clipped, np.nan, kept)
-    counts = values.size - kept.size, int(spikes.sum()), int(clipped.sum())
-    return out, Quality(*counts, quantum, 0.0)
+    cleaned = np.full(values.shape, np.nan)
+    cleaned[~absent] = np.where(spikes | clipped, np.nan, present)
+    counts = values.size - present.size, int(spikes.sum()), int(clipped.sum())
+    return cleaned, Quality(*counts, quantum, 0.0)
 
 
 def resolution(values: Array) -> float:
     """Resolution of a sensor: the least gap between recurring levels.
 
-    Give the running median: a stray sample makes levels anywhere, the median hardly any. Where
-    levels seldom come back there is no step to speak of: the lowest hundredth of the gaps and of
-    the steps from sample to sample, the less.
+    Apply to the running median, as stray samples add levels anywhere. If levels seldom recur, the
+    resolution is the lowest hundredth of the gaps or of the steps from sample to sample, whichever
+    is less.
     """
     count = min(LEVELS, values.size)  # a random sample of each part, as an even stride could alias
     parts = np.arange(count) + np.random.default_rng(0).random(count)
-    picked = values[(parts * (values.size / count)).astype(int)]
-    levels, counts = np.unique(picked, return_counts=True)
+    sample = values[(parts * (values.size / count)).astype(int)]
+    levels, counts = np.unique(sample, return_counts=True)
     least = 1e-9 * float(levels[-1] - levels[0])  # smaller differences are rounding
-    counts = np.minimum(counts, 5)  # a rest counts no more than a pass
+    counts = np.minimum(counts, 5)  # standstill counts no more than motion
     again = counts > 1
     gaps = np.diff(levels[again])
     gaps = gaps[gaps > least]
     if gaps.size and counts[again].sum() > 0.5 * counts.sum():
         return float(gaps.min())
     steps = np.abs(np.diff(values[: 50 * LEVELS]))
-    found = [_hundredth(one[one > least]) for one in (np.diff(levels), steps)]
-    return min((one for one in found if one > 0), default=0.0)
+    gaps_by_source = [
+        _hundredth(differences[differences > least]) for differences in (np.diff(levels), steps)
+    ]
+    return min((gap for gap in gaps_by_source if gap > 0), default=0.0)
 
 
 def _hundredth(values: Array) -> float:
-    return (
-        float(np.partition(values, values.size // 100)[values.size // 100]) if values.size else 0.0
-    )
+    """The lowest hundredth of some values; zero without any."""
+    place = values.size // 100
+    return float(np.partition(values, place)[place]) if values.size else 0.0
 
 
 def _levels(values: Array) -> tuple[Array, Array]:
@@ -131,25 +134,25 @@ def _levels(values: Array) -> tuple[Array, Array]:
 
 
 def _live(values: Array) -> Array:
-    """Samples away from the channel's ends, which carry no noise information.
+    """Samples away from the ends of the channel's range, where noise may be cut off.
 
-    All samples if only few are left: the channel is then one level with strays.
+    All samples if only few lie away from the ends: the channel is then one level with strays.
     """
     first, length = _levels(values)
-    held = length >= HELD
-    if not held.any():
+    constant = length >= HELD
+    if not constant.any():
         return np.ones(values.shape, dtype=bool)
     level = values[first]
-    ends = (level == level[held].min()) | (level == level[held].max())
-    live = np.repeat(~(ends & held), length)
+    ends = (level == level[constant].min()) | (level == level[constant].max())
+    live = np.repeat(~(ends & constant), length)
     return live if np.mean(live) > LIVE else np.ones_like(live)
 
 
 def _spread(values: Array, live: Array) -> float:
-    """Robust standard deviation of some samples."""
-    some = values[live]
-    some = some[:: max(1, some.size // SAMPLED)]
-    return ROBUST * float(np.median(np.abs(some))) if some.size else 0.0
+    """Robust standard deviation of the live samples about zero."""
+    sample = values[live]
+    sample = sample[:: max(1, sample.size // SAMPLED)]
+    return ROBUST * float(np.median(np.abs(sample))) if sample.size else 0.0
 
 
 def runs(flags: Array) -> tuple[Array, Array]:
@@ -163,13 +166,13 @@ def _least(values: Array, middle: Array, quantum: float, live: Array) -> float:
     apart = np.abs(values - middle)
     if not np.any(middle != middle[0]) and np.mean(apart > 0) < 0.01:
         return 0.0  # a constant with a few strays
-    some = np.sort(values[:: max(1, values.size // LEVELS)])
-    low, high = some[some.size // 100], some[-1 - some.size // 100]
+    sample = np.sort(values[:: max(1, values.size // LEVELS)])
+    low, high = sample[sample.size // 100], sample[-1 - sample.size // 100]
     return max(SPIKE * _spread(apart, live), QUANTA * quantum, RANGE * float(high - low))
 
 
 def _spikes(values: Array, middle: Array, least: float) -> Array:
-    """Samples far from their neighbours' median that rise abruptly, unlike any true peak."""
+    """Samples far from their neighbours' median that rise more abruptly than any true peak."""
     apart = np.abs(values - middle)
     out = apart > least
     at = np.flatnonzero(out)
@@ -187,31 +190,31 @@ def _strays(values: Array, spikes: Array, quantum: float, live: Array) -> Array:
 
     A stray h bends the line by -h/2, h, -h/2; a step by h/2, -h/2, a kink once.
     """
-    at = np.flatnonzero(~spikes)
-    if at.size < 5:
+    sound = np.flatnonzero(~spikes)
+    if sound.size < 5:
         return np.zeros(values.shape, dtype=bool)
-    gone = np.flatnonzero(spikes)
+    spike_places = np.flatnonzero(spikes)
     straight = values.copy()
-    straight[gone] = np.interp(gone, at, values[at])
+    straight[spike_places] = np.interp(spike_places, sound, values[sound])
     bent = np.zeros(values.shape)
     bent[1:-1] = straight[1:-1] - (straight[2:] + straight[:-2]) / 2
     least = max(SPIKE * _spread(bent, live), QUANTA * quantum)
-    found = np.flatnonzero(np.abs(bent) > least)
-    found = found[(found > 1) & (found < values.size - 2)]
-    found = found[~spikes[found]]
+    strays = np.flatnonzero(np.abs(bent) > least)
+    strays = strays[(strays > 1) & (strays < values.size - 2)]
+    strays = strays[~spikes[strays]]
     for side in (-1, 1):
-        share = -bent[found + side] / bent[found]
-        found = found[(share > 0.25) & (share < 0.75)]
-    out = np.zeros(values.shape, dtype=bool)
-    out[found] = True
-    return out
+        share = -bent[strays + side] / bent[strays]
+        strays = strays[(share > 0.25) & (share < 0.75)]
+    mask = np.zeros(values.shape, dtype=bool)
+    mask[strays] = True
+    return mask
 
 
 def _garbage(values: Array, spikes: Array, least: float, size: int) -> Array:
     """Further unreliable samples where spikes are dense.
 
-    In a short group, samples outside the range before and after it, if that is calm; in a long one
-    all.
+    In a short group, samples outside the range of the channel before and after, if the channel is
+    calm there. In a long group all samples.
     """
     from scipy.ndimage import maximum_filter1d, uniform_filter1d  # slow import, rarely used
 
@@ -219,14 +222,14 @@ def _garbage(values: Array, spikes: Array, least: float, size: int) -> Array:
     dense = uniform_filter1d(spikes.astype(np.float32), wide, mode="constant")
     out = np.zeros(values.shape, dtype=bool)
     for a, b in zip(*runs(dense > CROWD), strict=True):
-        before, behind = slice(max(a - wide, 0), a), slice(b, b + wide)
-        left, right = values[before][~spikes[before]], values[behind][~spikes[behind]]
+        before, after = slice(max(a - wide, 0), a), slice(b, b + wide)
+        left, right = values[before][~spikes[before]], values[after][~spikes[after]]
         if min(left.size, right.size) < size or b - a > 4 * wide:
             continue
         ends = sorted((np.sort(left[-size:])[size // 2], np.sort(right[:size])[size // 2]))
         outside = (values[a:b] < ends[0] - least) | (values[a:b] > ends[1] + least)
         if np.any(outside & ~spikes[a:b]):
-            rough = max(float(np.max(np.abs(np.diff(one, 2)))) for one in (left, right))
+            rough = max(float(np.max(np.abs(np.diff(side, 2)))) for side in (left, right))
             out[a:b] = outside & (rough <= 2 * least)  # else the channel itself varies fast
     core = dense > GARBAGE
     return out | maximum_filter1d(core, wide) if core.any() else out
@@ -253,47 +256,47 @@ def _peaks(values: Array, apart: Array, first: Array, last: Array) -> tuple[Arra
 def _clipped(values: Array, spikes: Array, quantum: float, *, pressure: bool) -> Array:
     """Samples at the limit of a sensor's range.
 
-    A channel is clipped if it stays at its highest or lowest level longer than anywhere else, and
-    either its noise rules that out, or it arrives at full speed.
+    A channel is clipped if it stays at its highest or lowest level longer than at any other, and
+    its noise rules this out or it reaches the level without slowing down.
     """
-    out = np.zeros(values.shape, dtype=bool)
+    mask = np.zeros(values.shape, dtype=bool)
     first, length = _levels(values)
     level = values[first]
-    held = length >= HELD
-    if values.size < 4 * HELD or not held.any():
-        return out
-    ends = (level[held].max(),) if pressure else (level[held].max(), level[held].min())
-    free = ~np.isin(level, [level[held].min(), level[held].max()])
+    constant = length >= HELD
+    if values.size < 4 * HELD or not constant.any():
+        return mask
+    ends = (level[constant].max(),) if pressure else (level[constant].max(), level[constant].min())
+    free = ~np.isin(level, [level[constant].min(), level[constant].max()])
     if length[free].sum() < LIVE * values.size:  # hardly more than two levels: nothing to compare
-        return out
+        return mask
     turns = np.sign(np.diff(values[np.repeat(free, length)]))
     turns = turns[turns != 0]
     restless = turns.size > 1 and float(np.mean(turns[1:] != turns[:-1])) > TURNS
     noise = _noise(values, np.repeat(free, length))
-    stay = _stay(noise, quantum)
+    chance_of_stay = _stay(noise, quantum)
     for end in ends:
-        beyond = (values > end) if end == level[held].max() else (values < end)
-        here = held & (level == end)
+        beyond = (values > end) if end == level[constant].max() else (values < end)
+        here = constant & (level == end)
         if np.mean(beyond & ~spikes) > 0.005 or length[here].max() < 4 * length[free].max():
             continue
         longest = float(length[here].max())  # 1e-4: by chance in one record of ten thousand
-        chance = values.size * stay**longest < 1e-4
+        chance = values.size * chance_of_stay**longest < 1e-4
         flickers = restless and noise > FLICKER * quantum and chance
         if flickers or _abrupt(values, first[here], length[here], quantum):
             for a, n in zip(first[here], length[here], strict=True):
-                out[a : a + n] = True
-    return out
+                mask[a : a + n] = True
+    return mask
 
 
 def _noise(values: Array, free: Array) -> float:
-    """Standard deviation of white noise, by second differences, whose noise is sqrt 6 of it."""
+    """Standard deviation of white noise; second differences have sqrt 6 times as much."""
     bent = values[2:] - 2 * values[1:-1] + values[:-2]
     bent = bent[free[2:] & free[1:-1] & free[:-2]]
     return ROBUST * float(np.median(np.abs(bent))) / np.sqrt(6) if bent.size else 0.0
 
 
 def _stay(noise: float, quantum: float) -> float:
-    """Probability that noise leaves a sample on its step, P(|n| < q/2)."""
+    """Probability that a noisy sample stays on its step, P(|n| < q/2)."""
     from math import erf
 
     return erf(quantum / (2 * np.sqrt(2) * noise)) if noise > 0 else 1.0
@@ -304,13 +307,19 @@ def _abrupt(values: Array, first: Array, length: Array, quantum: float) -> bool:
 
     The level cuts the last step short; of the two before, the later is no smaller.
     """
-    came = first[first >= 3]
-    goes = (first + length - 1)[first + length + 3 <= values.size]
+    arrivals = first[first >= 3]
+    departures = (first + length - 1)[first + length + 3 <= values.size]
     later = np.concatenate(
-        [values[came - 1] - values[came - 2], values[goes + 1] - values[goes + 2]]
+        [
+            values[arrivals - 1] - values[arrivals - 2],
+            values[departures + 1] - values[departures + 2],
+        ]
     )
     early = np.concatenate(
-        [values[came - 2] - values[came - 3], values[goes + 2] - values[goes + 3]]
+        [
+            values[arrivals - 2] - values[arrivals - 3],
+            values[departures + 2] - values[departures + 3],
+        ]
     )
     later, early = np.abs(later), np.abs(early)
     steps = np.abs(np.diff(values))

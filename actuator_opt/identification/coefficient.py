@@ -1,4 +1,4 @@
-"""The friction coefficient of a record, with its contact law."""
+"""The friction coefficient of a record, by the contact law of the design."""
 
 from __future__ import annotations
 
@@ -14,12 +14,9 @@ from .balance import Sliding
 from .conditioning import ConditionedRecord
 
 WINDOW = 0.1
-"""Averaging time of friction and contact force [s] (a choice: six independent samples at 30 Hz; a
-single one is ill-posed)."""
-
-
+"""Averaging time of friction and contact force [s] (a choice: six independent samples at 30 Hz)."""
 LEAST_SPEED = 1e-3
-"""Least mean speed of a window [m/s] (a choice: ten steps of 10 um in it show its direction)."""
+"""Least mean speed of a window [m/s] (a choice: ten sensor steps of 10 um show its direction)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +28,7 @@ class Coefficient:
     value, lower, upper : [-], 95 % bounds of the median
     contact_force : N, normal force of all rings, median over the windows [N]
     contact_pressure : N over the rings' contact areas [Pa]
-    windows : how many
+    windows : number of windows
     law : contact laws of the rings
     speeds : lowest and highest mean speed of the windows [m/s]
     """
@@ -56,8 +53,8 @@ def coefficient(
 
     Parameters
     ----------
-    slidings, motion : friction along the record
-    bench : the rings
+    slidings, motion : friction along the record, and its sample time
+    bench : rings of the design
 
     Returns
     -------
@@ -90,7 +87,7 @@ def coefficient(
 
 
 def _windows(sliding: Sliding, motion: ConditionedRecord) -> Array:
-    """Friction along motion, both pressures and speed of every window (windows, 4)."""
+    """Friction in the direction of motion, both pressures, speed: means of windows (windows, 4)."""
     size = max(round(WINDOW / motion.sample_time), 1)
     piece = sliding.piece
     count = piece.time.size // size
@@ -99,8 +96,7 @@ def _windows(sliding: Sliding, motion: ConditionedRecord) -> Array:
         return values[: count * size].reshape(count, size)
 
     way = np.sign(piece.velocity)
-    kept = np.all(cut(sliding.moving), axis=1) & (np.abs(np.sum(cut(way), axis=1)) == size)
-    kept &= np.mean(np.abs(cut(piece.velocity)), axis=1) > LEAST_SPEED
-    second = piece.channels.get("p2", np.zeros_like(piece.time))
-    parts = (sliding.friction * way, piece["p1"], second, np.abs(piece.velocity))
-    return np.stack([np.mean(cut(part), axis=1)[kept] for part in parts], axis=1)
+    valid = np.all(cut(sliding.moving), axis=1) & (np.abs(np.sum(cut(way), axis=1)) == size)
+    valid &= np.mean(np.abs(cut(piece.velocity)), axis=1) > LEAST_SPEED
+    channels = (sliding.friction * way, *piece.pressures, np.abs(piece.velocity))
+    return np.stack([np.mean(cut(channel), axis=1)[valid] for channel in channels], axis=1)

@@ -1,4 +1,4 @@
-"""One column of a CSV file over its time: the input of a simulation."""
+"""One column of a CSV file over time, as input of a simulation."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ def parse_column(
 
     Parameters
     ----------
-    text : of the file
-    header : of the column; ``"U [V]"`` states the unit of a column ``U`` without one
-    dimension : of the quantity, "voltage"
-    name : of the file, for messages
+    text : text of the file
+    header : header of the column; ``"U [V]"`` states the unit of a column ``U`` without a unit
+    dimension : dimension of the quantity, "voltage"
+    name : name of the file, for messages
     units : of columns whose header states none
 
     Raises
     ------
     InputError
-        no such column, no time, no unit or one of another dimension, contradictory units, times
+        no such column, no time, no unit or a unit of another dimension, contradictory units, times
         that do not increase, no samples
     """
     sheet = read_sheet(text, name)
@@ -50,30 +50,39 @@ def parse_column(
             raise fault(message, "rename all but one") from None
         remedy = shown(remedy_for(header, names), 200)
         raise fault(f'no column "{shown(header)}"', remedy) from None
-    own = cells[place][1]
-    if own and unit and own != unit and header.strip() != sheet.header[place].strip():
-        message = f'column "{shown(sheet.header[place])}" is in {shown(own)}, not {shown(unit)}'
-        raise fault(message, f'name it "{shown(cells[place][0])} [{shown(own)}]"')
-    clock = next((k for k, (one, _) in enumerate(cells) if one.strip().lower() in _TIMES), None)
-    if clock is None:
+    header_unit = cells[place][1]
+    if (
+        header_unit
+        and unit
+        and header_unit != unit
+        and header.strip() != sheet.header[place].strip()
+    ):
+        message = (
+            f'column "{shown(sheet.header[place])}" is in {shown(header_unit)}, not {shown(unit)}'
+        )
+        raise fault(message, f'name it "{shown(cells[place][0])} [{shown(header_unit)}]"')
+    time_place = next(
+        (k for k, cell in enumerate(cells) if cell[0].strip().lower() in _TIMES), None
+    )
+    if time_place is None:
         raise fault("no column t", 'add one with its unit, "t [s]"')
-    moment, title = cells[clock], cells[place][0]
+    time_cell, title = cells[time_place], cells[place][0]
     unit = unit or units.of(title, dimension)
     if not unit:
         raise fault(f'column "{shown(header)}" states no unit', 'name it with one, e.g. "U [V]"')
     try:
         columns = [
-            converted(moment[1] or units.of(moment[0], "time") or "s", "time", clock),
+            converted(time_cell[1] or units.of(time_cell[0], "time") or "s", "time", time_place),
             converted(unit, dimension, place),
         ]
-        for column, named in zip(columns, (moment[0], title), strict=True):
-            if other := contradicted(column, named, units):
-                message = f'column "{shown(named)}" is in {column.unit.name}, not {other}'
+        for column, column_name in zip(columns, (time_cell[0], title), strict=True):
+            if other := contradicted(column, column_name, units):
+                message = f'column "{shown(column_name)}" is in {column.unit.name}, not {other}'
                 raise InputError(Diagnostic(message, "correct one of them", file=units.name))
     except UnitError as error:
         message = f'column "{shown(header)}": {shown(error.message, 120)}'
         raise fault(message, shown(error.remedy, 120)) from None
-    table, lines = numbers(sheet, [clock, place])
+    table, lines = numbers(sheet, [time_place, place])
     t, x = (column.values(table[:, k]) for k, column in enumerate(columns))
     if np.count_nonzero(np.isfinite(x)) < FEWEST:
         raise fault(

@@ -87,22 +87,22 @@ def _yaml(text: str, file: str) -> dict[str, str]:
 
 
 def _csv(text: str, file: str) -> dict[str, str]:
-    found: dict[str, str] = {}
+    unit_by_column: dict[str, str] = {}
     faults: list[Diagnostic] = []
     for number, line in enumerate(text.splitlines(), 1):
         if not line.strip() or line.lstrip().startswith("#"):
             continue
-        separator = next((one for one in "\t;," if one in line), ",")
+        separator = next((sign for sign in "\t;," if sign in line), ",")
         cells = [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
         message, remedy = "", "write the column and its unit, e.g. p1,bar"
         if len(cells) != 2 or not all(cells):
             message = f'"{shown(line)}" is not a column with its unit'
-        elif cells[0] in found:
+        elif cells[0] in unit_by_column:
             message, remedy = f'column "{shown(cells[0])}" is named twice', "delete one line"
         if message:
             faults.append(Diagnostic(message, remedy, file=file, line=number))
         else:
-            found[cells[0]] = cells[1]
+            unit_by_column[cells[0]] = cells[1]
     if faults:
         raise InputError(faults)
-    return found
+    return unit_by_column

@@ -1,8 +1,8 @@
 """Conditioning of a raw record to evenly sampled, filtered motion: gaps, spikes, clipping.
 
 Every channel passes the same zero-phase filter once, so the force balance holds for filtered values
-and yields the friction through that filter. Velocity and acceleration are central differences of
-the filtered position.
+and gives filtered friction. Velocity and acceleration are central differences of the filtered
+position.
 """
 
 from __future__ import annotations
@@ -19,26 +19,27 @@ from .cleaning import ROBUST, Quality, clean, runs
 from .record import CHANNELS, Record
 
 CUTOFF, ORDER = 30.0, 4
-"""Cut-off [Hz] of the zero-phase Butterworth filter [Huang2017], and its order per pass (a choice,
+"""Cut-off of the zero-phase Butterworth filter [Huang2017] [Hz], and its order per pass (a choice,
 as the source gives only the cut-off)."""
 SLOWEST = 3.0
-"""Least samples per period of the cut-off (a choice: the cut-off is then 2/3 of Nyquist's)."""
+"""Least samples per period of the cut-off (a choice: the cut-off is then 2/3 of the Nyquist
+frequency)."""
 SHORTEST = 6.0
-"""Least length of a section in periods of the cut-off (a choice: `EDGE` at each end leaves a
-third)."""
+"""Least length of a section in periods of the cut-off (a choice: without `EDGE` at each end a third
+of it remains)."""
 EDGE = 2.0
 """Periods of the cut-off at both ends of a section where the filter is inaccurate (a choice: there
 a step response is within 0.2 %)."""
 BRIDGE = 5
-"""Missing samples that are interpolated linearly; more if they last less than a quarter of a period
-of the cut-off (choices: 5 ms at 1 kHz; such a chord misses a sine at a tenth of the cut-off by 0.3
-%)."""
+"""Successive missing samples that are interpolated linearly; more if they last less than a quarter
+of a period of the cut-off (choices: 5 ms at 1 kHz; a chord of that length misses a sine at a tenth
+of the cut-off by 0.3 %)."""
 ORDERS = 10
 """Highest order of a pass (a choice: above it the filter rings for longer than `EDGE`)."""
 CROWDED = 3.0
-"""Mean over usual time step (a choice: even steps then have three times the samples)."""
+"""Largest mean over median time step (a choice: even steps then have three times the samples)."""
 SAMPLED = 100_000
-"""Samples of a section used for its noise (a choice: to 0.3 %)."""
+"""Samples of a section used for its noise (a choice: accurate to 0.3 %)."""
 LATEST = 0.1
 """Largest lag that is corrected [s] (a choice: twenty times that of a pressure sensor)."""
 NEEDED = ("p1", "p2", "x", "F_L")
@@ -64,10 +65,16 @@ class RecordSection:
     def __contains__(self, name: object) -> bool:
         return name in self.channels
 
+    @property
+    def pressures(self) -> tuple[Array, Array]:
+        """Pressures of both chambers; zero at the rod end without a channel p2."""
+        first = self["p1"]
+        return first, self.channels.get("p2", np.zeros_like(first))
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ConditionedRecord:
-    """A conditioned record: its sections, and the notes on conditioning."""
+    """A conditioned record: its sections, the filter, and notes on conditioning."""
 
     pieces: tuple[RecordSection, ...]
     sample_time: float
@@ -77,7 +84,18 @@ class ConditionedRecord:
     quality: dict[str, Quality]
     notes: tuple[str, ...]
     cleaned: dict[str, Array]
-    """Channels without spikes and clipped samples, before the filter (samples of the record)."""
+    """Unfiltered channels without spikes and clipped samples (samples of the record)."""
+
+    @property
+    def band(self) -> float:
+        """Share of a sample's white noise that passes the filter, 2 f_c dt, at most 1."""
+        return min(2 * self.cutoff * self.sample_time, 1.0)
+
+    def sections(self, *, cutoff: float, sample_time: float) -> Array:
+        """Second-order sections of the filter for another cut-off [Hz] or sample time [s]."""
+        return low_pass(
+            cutoff=cutoff, order=self.order, sample_time=sample_time, compensated=self.compensated
+        )
 
 
 def pass_cutoff(*, cutoff: float, order: int) -> float:
@@ -85,7 +103,7 @@ def pass_cutoff(*, cutoff: float, order: int) -> float:
 
     Parameters
     ----------
-    cutoff : required of both passes [Hz]
+    cutoff : cut-off of both passes together [Hz]
     order : n of each pass
 
     Returns
@@ -107,8 +125,8 @@ def pass_cutoff(*, cutoff: float, order: int) -> float:
 def low_pass(*, cutoff: float, order: int, sample_time: float, compensated: bool) -> Array:
     """Second-order sections of one pass; both passes together have the exact gain at `cutoff`.
 
-    The bilinear transform maps f to tan(pi f dt); the compensated cut-off allows for this. Far
-    below the Nyquist frequency it is f_c/(sqrt 2 - 1)^(1/2n).
+    The bilinear transform maps f to tan(pi f dt), which the compensated cut-off takes into account.
+    Far below the Nyquist frequency it is f_c/(sqrt 2 - 1)^(1/2n).
     """
     from scipy.signal import butter  # slow import, rarely used
 
@@ -141,28 +159,28 @@ def condition(
 
     Parameters
     ----------
-    record : raw
-    cutoff, order : of the zero-phase Butterworth filter [Hz], of each of its two passes
+    record : raw record
+    cutoff, order : of the zero-phase Butterworth filter [Hz], the order of each of its two passes
     compensated : whether both passes together are -3 dB at the cut-off, else -6 dB
-    pressure_lag : time lag of the pressures, corrected [s]
-    before : the same record with other settings, already cleaned
+    pressure_lag : time lag of the pressures to correct [s]
+    before : the same record with other settings, whose cleaned channels are used
 
     Returns
     -------
-    the motion
+    the conditioned record
 
     Raises
     ------
     InputError
         time that does not increase, samples too few or too far apart, or no uninterrupted section
     """
-    _choices(record, cutoff, order, pressure_lag)
+    _check_settings(record, cutoff, order, pressure_lag)
     if "x" not in record:
         raise record.fault("no column x, the position", 'name it with --column "x=..."')
-    time = _time(record)
+    time = _increasing_time(record)
     steps = np.diff(time)
     step = float(np.median(steps))
-    _sampling(record, time, step, cutoff)
+    _check_sampling(record, time, step, cutoff)
     notes = list(record.notes)
     if before is None:
         cleaned, quality = _cleaned(record, step)
@@ -184,20 +202,20 @@ def condition(
                 "give one line per sample, at even times",
                 first,
             )
-        own = {name: one[first:last] for name, one in cleaned.items()}
-        pieces.append(_piece(time[first:last], own, step, cutoff, sections, pressure_lag))
+        section = {name: values[first:last] for name, values in cleaned.items()}
+        pieces.append(_piece(time[first:last], section, step, cutoff, sections, pressure_lag))
     if not pieces:
-        raise _nothing(record, quality, SHORTEST / cutoff)
+        raise _no_section(record, quality, SHORTEST / cutoff)
     gaps = len(pieces) + len(dropped) - 1
     if gaps:
         short = f", {sum(dropped):.3g} s too short to use" if dropped else ""
         notes.append(f"{gaps} gaps; {len(pieces)} sections used{short}")
     notes += _timing(steps, step, cutoff)
     quality = {
-        name: one._replace(noise=_noise(time, record[name], name, pieces))
-        for name, one in quality.items()
+        name: channel._replace(noise=_noise(time, record[name], name, pieces))
+        for name, channel in quality.items()
     }
-    notes += [note for name, one in quality.items() for note in one.told(name, time.size)]
+    notes += [note for name, channel in quality.items() for note in channel.told(name, time.size)]
     return ConditionedRecord(
         tuple(pieces), step, cutoff, order, compensated, quality, tuple(notes), cleaned
     )
@@ -232,7 +250,7 @@ def _cleaned(record: Record, step: float) -> tuple[dict[str, Array], dict[str, Q
     return cleaned, quality
 
 
-def _choices(record: Record, cutoff: float, order: int, lag: float) -> None:
+def _check_settings(record: Record, cutoff: float, order: int, lag: float) -> None:
     """Reject invalid filter settings."""
     if not (math.isfinite(cutoff) and cutoff > 0):
         raise record.fault(f"a cut-off of {cutoff:g} Hz", 'give one above zero: --cutoff "30 Hz"')
@@ -246,7 +264,7 @@ def _choices(record: Record, cutoff: float, order: int, lag: float) -> None:
         )
 
 
-def _time(record: Record) -> Array:
+def _increasing_time(record: Record) -> Array:
     """The time of every sample, increasing."""
     time = record.time
     if time.size < 2:
@@ -266,30 +284,27 @@ def _time(record: Record) -> Array:
     return time
 
 
-def _nothing(record: Record, quality: dict[str, Quality], shortest: float) -> InputError:
-    """The error that no uninterrupted section is left, with its cause."""
+def _no_section(record: Record, quality: dict[str, Quality], shortest: float) -> InputError:
+    """The error of a record without an uninterrupted section, with its cause."""
     worst = max(
         (
-            (one.missing + one.spikes + one.clipped, name)
-            for name, one in quality.items()
+            (channel.missing + channel.spikes + channel.clipped, name)
+            for name, channel in quality.items()
             if name in NEEDED
         ),
         default=(0, ""),
     )
-    why = "gaps in time"
+    cause = "gaps in time"
     if worst[0] > BRIDGE:
-        one = quality[worst[1]]
-        why = (
-            f"{worst[1]} has {one.missing} missing, {one.spikes} stray and {one.clipped} clipped "
-            "samples"
-        )
+        missing, stray, clipped, *_ = quality[worst[1]]
+        cause = f"{worst[1]} has {missing} missing, {stray} stray and {clipped} clipped samples"
     return record.fault(
-        f"no section of {shortest:.2g} s is uninterrupted: {why}",
+        f"no section of {shortest:.2g} s is uninterrupted: {cause}",
         "repair the sensors, or give a longer record",
     )
 
 
-def _sampling(record: Record, time: Array, step: float, cutoff: float) -> None:
+def _check_sampling(record: Record, time: Array, step: float, cutoff: float) -> None:
     """Reject a record that the filter cannot handle."""
     span, shortest = float(time[-1] - time[0]), SHORTEST / cutoff
     if step * cutoff * SLOWEST > 1:
@@ -345,7 +360,7 @@ def _piece(
     sections: Array,
     pressure_lag: float,
 ) -> RecordSection:
-    """One section resampled at even time steps, filtered and differentiated."""
+    """One section, resampled at even time steps, filtered and differentiated."""
     count = int(np.floor((time[-1] - time[0]) / step + 1e-6)) + 1
     even = time[0] + step * np.arange(count)
     reach = round(3 / (cutoff * step))
@@ -366,69 +381,66 @@ def _piece(
 
 def _noise(time: Array, values: Array, name: str, pieces: Sequence[RecordSection]) -> float:
     """Robust standard deviation of a sample about the filtered channel."""
-    apart = []
+    deviations = []
     for piece in pieces:
         if name in piece:
             first, last = np.searchsorted(time, (piece.time[0], piece.time[-1] + 1e-9))
             known = np.flatnonzero(np.isfinite(values[first:last])) + first
             known = known[:: max(1, known.size // SAMPLED)]
-            apart.append(values[known] - np.interp(time[known], piece.time, piece[name]))
-    return float(ROBUST * np.median(np.abs(np.concatenate(apart)))) if apart else 0.0
+            deviations.append(values[known] - np.interp(time[known], piece.time, piece[name]))
+    return float(ROBUST * np.median(np.abs(np.concatenate(deviations)))) if deviations else 0.0
 
 
 CUTOFFS = (1 / 3, 1 / 8, 1 / 20)
-"""Lower cut-offs relative to the record's (a choice: down to 1.5 Hz, some ten times the pace of a
-slow test, 2 to 3 times apart)."""
+"""Lower cut-offs over that of the record (a choice: down to 1.5 Hz, some ten times the frequency of
+a slow test, in steps of 2 to 3)."""
 BENT = 1.5
-"""Mean square change of the position by a lower cut-off, relative to the sensor's errors, that is
-allowed (a choice: 1 if only errors are removed)."""
+"""Largest mean square change of the position by a lower cut-off over that of the sensor's errors (a
+choice: 1 if only errors are removed)."""
 PADDING = 1.5
-"""Periods of a lower cut-off beside a section that affect its filter (a choice: a step response is
-within 0.5 % there)."""
+"""Periods of a lower cut-off on either side of a section that affect the filter inside (a choice: a
+step response is within 0.5 % there)."""
 
 
 def velocities(piece: RecordSection, motion: ConditionedRecord, first: int, last: int) -> Array:
     """Velocity along a section at the record's cut-off and at lower ones.
 
-    A cut-off that moves the position by more than the sensor's errors is replaced by the cut-off
-    before.
+    A cut-off that moves the position by more than the sensor's errors is replaced by the next
+    higher one.
 
     Parameters
     ----------
-    piece, motion : conditioned record
-    first, last : first and one past the last sample of the section
+    piece, motion : section of a conditioned record, and the record
+    first, last : first and one past the last sample of interest
 
     Returns
     -------
-    velocities, the record's own first (cut-offs, samples) [m/s]
+    velocities (cut-offs, samples), that of the record's cut-off first [m/s]
     """
     step = motion.sample_time
-    own = piece.velocity[first:last]
-    allowed = BENT * position_error(own, motion)
-    found = [own]
+    velocity = piece.velocity[first:last]
+    allowed = BENT * position_error(velocity, motion)
+    candidates = [velocity]
     for share in CUTOFFS:
         cutoff = share * motion.cutoff
         more = round(PADDING / (cutoff * step))
         low, high = max(first - more, 0), min(last + more, piece.time.size)
         whole = piece["x"][low:high]
-        sections = low_pass(
-            cutoff=cutoff, order=motion.order, sample_time=step, compensated=motion.compensated
-        )
+        sections = motion.sections(cutoff=cutoff, sample_time=step)
         smooth = zero_phase(sections, whole, reach=2 * more)
         inside = slice(first - low, last - low)
         moved = float(np.mean((smooth - whole)[inside] ** 2))
-        found.append(np.gradient(smooth, step)[inside] if moved <= allowed else found[-1])
-    return np.stack(found)
+        candidates.append(np.gradient(smooth, step)[inside] if moved <= allowed else candidates[-1])
+    return np.stack(candidates)
 
 
 def position_error(velocity: Array, motion: ConditionedRecord) -> float:
     """Mean square error of the filtered position along a velocity [m^2].
 
-    White noise s^2 passes the filter by 2 f_c dt. Steps q pass fully, as q^2/12, if the rod takes
-    longer than 1/f_c for one; else as white noise [derived].
+    The filter passes a share 2 f_c dt of white noise s^2. The error q^2/12 of sensor steps q passes
+    fully if the rod takes longer than 1/f_c for a step; else it counts as white noise [derived].
     """
-    quality, cutoff = motion.quality["x"], motion.cutoff
-    band = min(2 * cutoff * motion.sample_time, 1.0)
+    quality, band = motion.quality["x"], motion.band
     step = quality.resolution**2 / 12
-    slow = np.abs(velocity) < cutoff * quality.resolution
+    slow = np.abs(velocity) < motion.cutoff * quality.resolution
     return float(np.mean(np.where(slow, step, band * step))) + band * quality.noise**2

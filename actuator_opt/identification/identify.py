@@ -1,6 +1,6 @@
 """Identification of friction, damping and models from a test record, with bounds.
 
-A lag between the pressures is reported where the record shows it and can be corrected.
+A lag of the pressures is reported if the record shows it, and corrected if possible.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from .balance import Sliding, check_signs, slide, velocity_noise
 from .bootstrap import resampled
 from .coefficient import coefficient
 from .conditioning import ConditionedRecord, condition
-from .doubtful import opened
-from .lugre import BENDS, LAG, LuGreFit, fit_lugre, settling_distance
+from .doubtful import unbounded
+from .lugre import BENDS, LuGreFit, fit_lugre, settling_distance
 from .points import (
     BLURRED,
     LASTING,
@@ -35,19 +35,14 @@ from .record import Record
 from .result import Identification, Mean, Settings
 from .straight import spectrum
 from .stribeck_fit import StribeckFit, different, fit_stribeck
+from .windows import LAG
 
 LEAST_LAG = 3e-4
 """Least lag worth correcting [s]."""
-
-
 EARLIEST = 6e-3
-"""Largest lead of the pressures over the position [s] (a choice: filters of a position sensor also
-have a lag, but bristles may look the same)."""
-
-
+"""Largest plausible lead of the pressures over the position [s] (a choice: filters of a position
+sensor also have a lag, but bristles may look the same)."""
 STATE = "state --pressure-lag if it is known"
-
-
 CANNOT = (
     "the record cannot show whether the pressures lag: raise --cutoff, reverse the rod more "
     f"slowly, or {STATE}"
@@ -55,24 +50,20 @@ CANNOT = (
 
 
 def lag_of(lugre: LuGreFit | str) -> Parameter | None:
-    """The lag that a model found; None if none was fitted."""
+    """The lag of the pressures fitted by a model; None if none was fitted."""
     return None if isinstance(lugre, str) else lugre.parameters.get("lag")
 
 
-def taken_off(parameter: Parameter | None) -> tuple[float, str]:
-    """The lag to correct [s], 0 for none, with a note.
+def lag_to_correct(parameter: Parameter | None) -> tuple[float, str]:
+    """The lag to correct [s], 0 for none, with a note that may be empty.
 
-    A lag is corrected if its 95 % bounds lie above zero. A negative one is not: sigma_0 z + sigma_1
+    A lag is corrected if its 95 % bounds lie above zero. A negative lag is not: sigma_0 z + sigma_1
     dz/dt is sigma_0 z advanced by sigma_1/sigma_0, so micro-damping looks like early pressures. The
-    record only gives the difference of the two.
+    record only gives the difference of both.
 
     Parameters
     ----------
-    parameter : the lag as fitted, with sigma_1 fixed at 0
-
-    Returns
-    -------
-    the lag, and a note that may be empty
+    parameter : the lag fitted with sigma_1 fixed at 0
     """
     if parameter is None:
         return 0.0, ""
@@ -96,37 +87,38 @@ def taken_off(parameter: Parameter | None) -> tuple[float, str]:
     return 0.0, ""
 
 
-def undone(parameter: Parameter, left: Parameter | None) -> str:
-    """Why a lag correction is undone because another lag remains; else empty."""
-    if left is None or left.lower <= 0 <= left.upper:
+def rejected_correction(parameter: Parameter, remaining: Parameter | None) -> str:
+    """Why a lag correction is rejected, as another lag remains; empty if it is accepted."""
+    if remaining is None or remaining.lower <= 0 <= remaining.upper:
         return ""
     return (
         f"correcting the pressures by {1000.0 * parameter.value:.2f} ms leaves a lag of "
-        f"{1000.0 * left.value:.2f} ms: the lag fits some other effect, so none is corrected; "
+        f"{1000.0 * remaining.value:.2f} ms: the lag fits some other effect, so none is corrected; "
         f"{STATE}"
     )
 
 
-def unparted(lugre: LuGreFit | str) -> LuGreFit | str:
-    """A model with sigma_1 for a record of unknown lag, from which it cannot be separated."""
+def with_uncertain_damping(lugre: LuGreFit | str) -> LuGreFit | str:
+    """The model of a record of unknown lag: its sigma_1 has no bounds."""
     if isinstance(lugre, str):
         return lugre
     doubt = "σ₁ is valid if no pressure lags: a lag τ adds σ₀ τ"
-    parameters = opened(lugre.parameters, ("bristle_damping",))
+    parameters = unbounded(lugre.parameters, ("bristle_damping",))
     return replace(lugre, parameters=parameters, doubts=(*lugre.doubts, doubt))
 
 
 LAWS = {"power_law": fit_power_law, "double_exponential": fit_double_exponential}
 """Models of the secant damping over speed."""
 LEAST_SPEEDS = 3
-"""Different speeds needed for a model of two parameters, one to spare."""
+"""Different speeds needed for a model of two parameters with a degree of freedom."""
 WARMER = 10.0
-"""Temperature difference that is reported [K] (a choice: rubber softens by some per cent)."""
+"""Temperature difference above which it is reported [K] (a choice: rubber softens by some per
+cent)."""
 OUTSIDE = 0.02
 """Share of the stroke by which a position may exceed its ends."""
 STEPS, NOISES = 2.0, 10.0
-"""Apparent travel of a rod at rest, in sensor steps and in standard deviations of the filtered
-position (a choice: the range of 10 000 normal samples is 8 deviations)."""
+"""Largest apparent travel of a rod at rest: in sensor steps, and in standard deviations of the
+filtered position (a choice: 10 000 normal samples span 8 standard deviations)."""
 PACE = 0.05
 """Share by which a channel v may differ from the slope of x (a choice)."""
 
@@ -138,7 +130,7 @@ def identify(record: Record, bench: Bench, settings: Settings | None = None) -> 
     ----------
     record : with p1, x and F_L (or `load_force`), p2 unless the rod is a plunger
     bench : the design tested
-    settings : evaluation settings
+    settings : settings of the identification; None for the default
 
     Returns
     -------
@@ -150,45 +142,43 @@ def identify(record: Record, bench: Bench, settings: Settings | None = None) -> 
         a missing channel, a record too short or too slow, wrong signs, no motion, travel beyond the
         stroke, or an invalid mass or lag
     """
-    own = settings or Settings()
-    _channels(record, bench, own)
-    mass = _mass(record, bench, own)
-    lag, known = own.pressure_lag or 0.0, own.pressure_lag is not None
-    motion, slidings = _read(record, bench, own, mass, lag, None)
-    _moving(record, motion, slidings, bench, mass)
+    settings = settings or Settings()
+    _check_channels(record, bench, settings)
+    mass = _mass(record, bench, settings)
+    lag, known = settings.pressure_lag or 0.0, settings.pressure_lag is not None
+    motion, slidings = _conditioned(record, bench, settings, mass, lag, None)
+    _check_motion(record, motion, slidings, bench, mass)
     area = float(bench.areas(np.float64(0.0))[0])
     points, stribeck, lugre = _models(slidings, motion, area, known)
-    settling, seen = settling_distance(lugre), None if known else lag_of(lugre)
-    late, note = taken_off(seen)
-    if late and seen is not None:
-        as_read = motion, slidings
-        motion, slidings = _read(record, bench, own, mass, late, motion)
+    settling, fitted_lag = settling_distance(lugre), None if known else lag_of(lugre)
+    correction, note = lag_to_correct(fitted_lag)
+    if correction and fitted_lag is not None:
+        uncorrected = motion, slidings
+        motion, slidings = _conditioned(record, bench, settings, mass, correction, motion)
         points, stribeck, lugre = _models(slidings, motion, area, False, settling)
-        if why := undone(seen, lag_of(lugre)):
-            late, note, (motion, slidings) = 0.0, why, as_read
-    unknown = bool(note) and not late and note != CANNOT
-    if unknown or (not late and settling > SETTLED):
+        if reason := rejected_correction(fitted_lag, lag_of(lugre)):
+            correction, note, (motion, slidings) = 0.0, reason, uncorrected
+    unknown = bool(note) and not correction and note != CANNOT
+    if unknown or (not correction and settling > SETTLED):
         points, stribeck, lugre = _models(slidings, motion, area, known or unknown, settling)
     if unknown:
-        lugre = unparted(lugre)
-    lag = late or lag
+        lugre = with_uncertain_damping(lugre)
     notes = [note] if note else []
-    if own.bootstrap:
-        count, seed = own.bootstrap, own.seed
-        fits = resampled(
+    if settings.bootstrap:
+        count, seed = settings.bootstrap, settings.seed
+        stribeck, lugre = resampled(
             slidings, motion, points, stribeck, lugre, count=count, seed=seed, settling=settling
         )
-        stribeck, lugre = fits
     mean, largest, slides = _sizes(slidings, motion, settling)
     return Identification(
         record=record,
         bench=bench,
-        settings=own,
+        settings=settings,
         motion=motion,
         slidings=tuple(slidings),
         mass=mass,
-        pressure_lag=lag,
-        lag_seen=seen,
+        pressure_lag=correction or lag,
+        lag_seen=fitted_lag,
         spectrum=spectrum(record, motion),
         mean=mean,
         largest=largest,
@@ -199,11 +189,18 @@ def identify(record: Record, bench: Bench, settings: Settings | None = None) -> 
         stribeck=stribeck,
         lugre=lugre,
         fits=_fits(points),
-        notes=(*motion.notes, *notes, *_remarks(record, bench, motion, slidings, points)),
+        notes=(
+            *motion.notes,
+            *notes,
+            *_outside(slidings, bench),
+            *_warmth(record, bench),
+            *_blurred(points, motion),
+            *_pace(motion),
+        ),
     )
 
 
-def _moving(
+def _check_motion(
     record: Record,
     motion: ConditionedRecord,
     slidings: Sequence[Sliding],
@@ -213,8 +210,8 @@ def _moving(
     """Reject a record of a rod at rest, beyond its stroke, or with wrong signs."""
     travel = max(float(np.ptp(piece["x"][piece.sound])) for piece in motion.pieces)
     quality = motion.quality["x"]
-    band = min(2 * motion.cutoff * motion.sample_time, 1.0)
-    if travel <= max(STEPS * quality.resolution, NOISES * quality.noise * np.sqrt(band)):
+    noise = quality.noise * np.sqrt(motion.band)
+    if travel <= max(STEPS * quality.resolution, NOISES * noise):
         raise record.fault(
             f"the rod never moves: x changes by {1000.0 * travel:.2g} mm, within its resolution "
             "and noise",
@@ -227,22 +224,6 @@ def _moving(
         )
     if any(sliding.moving.any() for sliding in slidings):
         check_signs(slidings, bench, mass=mass, name=record.name)
-
-
-def _remarks(
-    record: Record,
-    bench: Bench,
-    motion: ConditionedRecord,
-    slidings: Sequence[Sliding],
-    points: Sequence[FrictionPoint],
-) -> list[str]:
-    """Notes for the reader, beyond the quality of the record."""
-    return [
-        *_outside(slidings, bench),
-        *_warmth(record, bench),
-        *_blurred(points, motion),
-        *_pace(motion),
-    ]
 
 
 def _outside(slidings: Sequence[Sliding], bench: Bench) -> list[str]:
@@ -284,22 +265,22 @@ def _warmth(record: Record, bench: Bench) -> list[str]:
 
 
 def _pace(motion: ConditionedRecord) -> list[str]:
-    """A note if channel v is not the slope of x, by least squares over moving samples.
+    """A note if channel v is not the slope of x.
 
-    v = k dx/dt, k = sum v x'/sum x'^2 with the noise of x' taken off.
+    v = k dx/dt by least squares, k = sum v x'/sum x'^2, the latter less the noise of x'.
     """
-    both = [
+    pairs = [
         (piece["v"][piece.sound], piece.velocity[piece.sound])
         for piece in motion.pieces
         if "v" in piece
     ]
-    if not both:
+    if not pairs:
         return []
-    stated, found = (np.concatenate(one) for one in zip(*both, strict=True))
-    power = float(np.mean(found**2)) - velocity_noise(motion) ** 2
-    if power <= 0.5 * float(np.mean(found**2)):  # too close to noise to judge
+    stated, slopes = (np.concatenate(arrays) for arrays in zip(*pairs, strict=True))
+    power = float(np.mean(slopes**2)) - velocity_noise(motion) ** 2
+    if power <= 0.5 * float(np.mean(slopes**2)):  # too close to noise to judge
         return []
-    slope = float(np.mean(stated * found)) / power
+    slope = float(np.mean(stated * slopes)) / power
     if abs(slope - 1) <= PACE:
         return []
     slope = round(slope, 2) + 0.0  # avoids -0.00
@@ -320,13 +301,13 @@ def _models(
     return points, stribeck, lugre
 
 
-def _channels(record: Record, bench: Bench, settings: Settings) -> None:
+def _check_channels(record: Record, bench: Bench, settings: Settings) -> None:
     """Reject a record that lacks a channel of the force balance, or states it twice."""
     bent = ", or --span for a bending test" if "w" in record else ""
-    for name, what in (("p1", "pressure of the cap end"), ("x", "position")):
+    for name, label in (("p1", "pressure of the cap end"), ("x", "position")):
         if name not in record:
             raise record.fault(
-                f"no column {name}, the {what}", f'name it with --column "{name}=..."{bent}'
+                f"no column {name}, the {label}", f'name it with --column "{name}=..."{bent}'
             )
     if "p2" not in record and not bench.plunger:
         raise record.fault(
@@ -354,7 +335,7 @@ def _mass(record: Record, bench: Bench, settings: Settings) -> float:
     return bench.mass + (0.0 if "F_L" in record else bench.load_mass)
 
 
-def _read(
+def _conditioned(
     record: Record,
     bench: Bench,
     settings: Settings,
@@ -362,7 +343,7 @@ def _read(
     lag: float,
     before: ConditionedRecord | None,
 ) -> tuple[ConditionedRecord, list[Sliding]]:
-    """The conditioned record with its friction; `before` is the same with another lag."""
+    """The conditioned record and its friction; `before` is the record with another lag."""
     motion = condition(
         record,
         cutoff=settings.cutoff,
@@ -377,23 +358,27 @@ def _read(
 def _sizes(
     slidings: Sequence[Sliding], motion: ConditionedRecord, settling: float
 ) -> tuple[Mean, float, bool]:
-    """Mean |F_r| in sliding, by batch means, its largest value, and whether the rod slides.
+    """Mean |F_r| in sliding, with bounds from batch means; largest |F_r|; whether the rod slides.
 
     Until the rod has moved `BENDS` breakaway travels after a reversal or rest it is in pre-sliding,
     which only counts for the largest value. Without sliding the mean is that of the moving rod.
     """
-    bent = BENDS / SETTLING * settling
+    distance = BENDS / SETTLING * settling
     moving = any(sliding.moving.any() for sliding in slidings)
-    whole = [sliding.moving if moving else sliding.piece.sound for sliding in slidings]
-    every = [np.abs(sliding.friction[at]) for sliding, at in zip(slidings, whole, strict=True)]
-    parts = [np.abs(sliding.friction[settled(sliding, bent)]) for sliding in slidings]
-    slides = any(part.size for part in parts)
-    friction = np.concatenate(parts if slides else every)
+    masks = [sliding.moving if moving else sliding.piece.sound for sliding in slidings]
+    all_friction = [
+        np.abs(sliding.friction[at]) for sliding, at in zip(slidings, masks, strict=True)
+    ]
+    sliding_friction = [
+        np.abs(sliding.friction[settled(sliding, distance)]) for sliding in slidings
+    ]
+    slides = any(part.size for part in sliding_friction)
+    friction = np.concatenate(sliding_friction if slides else all_friction)
     batches = int(np.clip(independent(friction.size, motion) / 5, 2, 20))
-    means = np.array([np.mean(one) for one in np.array_split(friction, batches)])
+    means = np.array([np.mean(batch) for batch in np.array_split(friction, batches)])
     half = quantile(batches - 1) * float(np.std(means, ddof=1)) / float(np.sqrt(batches))
     middle = float(np.mean(friction))
-    largest = float(np.max(np.concatenate(every)))
+    largest = float(np.max(np.concatenate(all_friction)))
     return Mean(middle, middle - half, middle + half), largest, slides
 
 
@@ -401,15 +386,17 @@ def _fits(points: Sequence[FrictionPoint]) -> dict[str, LawFit | str]:
     """Fits of the secant damping over speed, weighted by relative errors."""
     speeds = different([point.speed for point in points])
     if len(speeds) < LEAST_SPEEDS:
-        why = f"{len(speeds)} different speeds: a model of damping over speed needs {LEAST_SPEEDS}"
-        return dict.fromkeys(LAWS, why)
+        reason = (
+            f"{len(speeds)} different speeds: a model of damping over speed needs {LEAST_SPEEDS}"
+        )
+        return dict.fromkeys(LAWS, reason)
     speed = np.array([point.speed for point in points])
     damping = np.array([point.damping for point in points])
-    found: dict[str, LawFit | str] = {}
+    fits: dict[str, LawFit | str] = {}
     for name, fit in LAWS.items():
         positive = damping > 0
         try:
-            found[name] = fit(speed[positive], damping[positive], 1 / damping[positive] ** 2)
+            fits[name] = fit(speed[positive], damping[positive], 1 / damping[positive] ** 2)
         except InputError as error:
-            found[name] = error.diagnostics[0].message
-    return found
+            fits[name] = error.diagnostics[0].message
+    return fits

@@ -1,4 +1,4 @@
-"""Steady sliding: friction over speed and pressure, from plateaus or sweeps."""
+"""Points of steady sliding: friction over speed and pressure, from plateaus or sweeps."""
 
 from __future__ import annotations
 
@@ -12,34 +12,34 @@ from .balance import Sliding
 from .conditioning import ConditionedRecord, velocities
 
 STEADY, FLOOR = 0.04, 2e-5
-"""Speed tolerance of a plateau, relative and absolute [m/s] (choices: viscous friction then changes
-by at most that share; two steps of 10 um in a second)."""
+"""Speed tolerance of a plateau, relative and in m/s (choices: viscous friction then changes by at
+most that share; two sensor steps of 10 um in a second)."""
 LASTING = 0.15
-"""Least duration of a plateau [s]; its first and last fifth are excluded, and samples that have not
-slid `SETTLED` if enough remain (choices: five independent samples are left at 30 Hz; the adjacent
-ramps reach into the fifths)."""
+"""Least duration of a plateau [s]. Its first and last fifth are excluded, also its samples before
+the settling distance if enough others remain (choices: at 30 Hz five independent samples remain;
+the adjacent ramps reach into the fifths)."""
 ALIKE = 0.06
 """Relative speed difference within which plateaus merge into one point (a choice: more than
 `STEADY`, less than the steps between speeds of a test)."""
 PER_DECADE = 8
-"""Points per decade of speed in a sweep (a choice: a third apart, so that a Stribeck part that
-falls within a decade shows in several)."""
+"""Points per decade of speed in a sweep (a choice: a third apart, so that several points show a
+Stribeck part that falls within a decade)."""
 BLURRED = 1.0
-"""Least periods of the cut-off at both ends of a plateau that the filter mixes with the adjacent
-ramps (a choice: there a step response is within 2 %)."""
+"""Periods of the cut-off at both ends of a plateau that the filter mixes with the adjacent ramps (a
+choice: there a step response is within 2 %)."""
 SETTLED = 5e-4
 """Distance after a reversal from which sliding is steady [m] (a choice: ten breakaway travels of 50
-um); with known bristles `SETTLING` of the record's own."""
+um). With known bristles it is `SETTLING` times their breakaway travel, if this is more."""
 SLIDES = 2e-4
 """Least travel of a plateau [m] (a choice: four breakaway travels of 50 um; less may be bristle
 deflection)."""
 SETTLING = 8.0
 """Breakaway travels F_S/sigma_0 after which sliding is steady (a choice: 2 e^-8 is below 0.1 %)."""
 LEVELS = 0.1
-"""Pressures within this share of the highest are one level (a choice: less than the steps between
-loads of a test, more than friction itself changes them by)."""
+"""Share of the highest pressure within which pressures are one level (a choice: less than the steps
+between loads of a test, more than friction itself changes them by)."""
 PRIOR = 8
-"""Weight of the record's usual scatter in a point's own, in independent samples (a choice: some
+"""Weight of the record's usual scatter in that of a point, in independent samples (a choice: some
 points have four)."""
 
 Kind = Literal["plateau", "sweep"]
@@ -49,8 +49,8 @@ class FrictionPoint(NamedTuple):
     """Friction in steady sliding, with the sign of the velocity; SI.
 
     `error` is the standard error of the friction; `weight` its duration [s]; `pressure` the higher
-    of both chambers, gauge; `spread` the standard deviation of the velocities in a sweep's point:
-    where the curve bends, the mean friction is not that of the mean velocity.
+    of both chambers, gauge. `spread` is the standard deviation of the velocities in a point of a
+    sweep: where the curve bends, the mean friction is not that of the mean velocity.
     """
 
     velocity: float
@@ -79,60 +79,62 @@ def steady_points(
 ) -> tuple[FrictionPoint, ...]:
     """Points of steady sliding: from plateaus if present, else from sweeps through the speeds.
 
-    A record counts as plateaus if these contain three speeds or most of the moving time.
+    Plateaus are used if they have three speeds or more than 40 % of the moving time.
 
     Parameters
     ----------
     slidings : friction by section
-    motion : gives the filter's memory
+    motion : conditioned record, with its filter
     settling : distance after a reversal from which sliding is steady [m]
 
     Returns
     -------
     points in order of direction, pressure and speed
     """
-    found = [one for sliding in slidings for one in _plateaus(sliding, motion, settling)]
-    moderated = _moderated([one for one, _ in found], motion)
+    pairs = [pair for sliding in slidings for pair in _plateaus(sliding, motion, settling)]
+    moderated = _moderated([point for point, _ in pairs], motion)
     plateaus = [
-        one._replace(error=float(np.hypot(one.error, left)))
-        for one, (_, left) in zip(moderated, found, strict=True)
+        point._replace(error=float(np.hypot(point.error, remainder)))
+        for point, (_, remainder) in zip(moderated, pairs, strict=True)
     ]
     merged = _merged(plateaus)
     moving = sum(float(sliding.moving.sum()) for sliding in slidings) * motion.sample_time
-    held = sum(one.weight for one in plateaus)
-    speeds = {round(np.log(one.speed) / ALIKE) for one in merged}
-    if merged and (len(speeds) >= 3 or held > 0.4 * moving):
+    constant = sum(point.weight for point in plateaus)
+    speeds = {round(np.log(point.speed) / ALIKE) for point in merged}
+    if merged and (len(speeds) >= 3 or constant > 0.4 * moving):
         return _ordered(merged)
     return _ordered(_swept(slidings, motion, settling)) or _ordered(merged)
 
 
 def _ordered(points: Sequence[FrictionPoint]) -> tuple[FrictionPoint, ...]:
-    return tuple(sorted(points, key=lambda one: (one.velocity < 0, one.pressure, one.speed)))
+    return tuple(
+        sorted(points, key=lambda point: (point.velocity < 0, point.pressure, point.speed))
+    )
 
 
 def independent(count: float, motion: ConditionedRecord) -> float:
     """Independent samples among `count` filtered ones: 2 f_c per second."""
-    return max(count * min(2 * motion.cutoff * motion.sample_time, 1.0), 1.0)
+    return max(count * motion.band, 1.0)
 
 
 def _moderated(points: Sequence[FrictionPoint], motion: ConditionedRecord) -> list[FrictionPoint]:
-    """Points with errors shrunk towards the record's usual scatter, as few samples are unreliable.
+    """Points with scatter shrunk towards the record's median, as few samples are unreliable.
 
     s^2 = (n_0 s_0^2 + n s_i^2)/(n_0 + n), s_0^2 the median [Smyth2004].
     """
     if not points:
         return []
     count = np.array([max(2 * motion.cutoff * point.weight - 1, 1.0) for point in points])
-    own = np.array([point.error for point in points]) ** 2 * count
-    drawn = (PRIOR * np.median(own) + count * own) / (PRIOR + count)
-    errors = np.sqrt(drawn / count)
+    variance = np.array([point.error for point in points]) ** 2 * count
+    variance = (PRIOR * np.median(variance) + count * variance) / (PRIOR + count)
+    errors = np.sqrt(variance / count)
     return [point._replace(error=float(error)) for point, error in zip(points, errors, strict=True)]
 
 
 def _plateaus(
     sliding: Sliding, motion: ConditionedRecord, settling: float
 ) -> Iterator[tuple[FrictionPoint, float]]:
-    """Sections of constant velocity, with the remainder of the bristles' settling."""
+    """Points of sections with constant velocity, each with the error by unsettled bristles [N]."""
     from scipy.signal import savgol_filter
 
     step = motion.sample_time
@@ -146,9 +148,8 @@ def _plateaus(
     i, count = 0, velocity.size
     while i + least <= count:
         head = slice(i, i + least)
-        off = np.flatnonzero(~usable[head] | (np.abs(velocity[head] - velocity[i]) > allowed[i]))
-        if off.size:
-            i += max(stride, 1)
+        if np.any(~usable[head] | (np.abs(velocity[head] - velocity[i]) > allowed[i])):
+            i += stride
             continue
         out = ~usable[i:] | (np.abs(velocity[i:] - velocity[i]) > allowed[i])
         last = i + (int(np.argmax(out)) if out.any() else out.size)
@@ -160,42 +161,39 @@ def _plateaus(
         if end - i - edge < least // 2:
             i = last
             continue
-        away = i + round(settling / (abs(float(velocity[i])) * step))
-        at = np.arange(max(i + edge, min(away, end - least // 2)), end)
-        found = _point(sliding, motion, at, "plateau")
-        yield (
-            found,
-            _unsettled(found.friction, sliding.piece["x"][at] - sliding.piece["x"][i], settling),
-        )
+        steady = i + round(settling / (abs(float(velocity[i])) * step))
+        at = np.arange(max(i + edge, min(steady, end - least // 2)), end)
+        point = _point(sliding, motion, at, "plateau")
+        travel = sliding.piece["x"][at] - sliding.piece["x"][i]
+        yield point, _unsettled(point.friction, travel, settling)
         i = last
 
 
-def _unsettled(friction: float, gone: Array, settling: float) -> float:
-    """Possible remainder of reversed bristles in a mean friction, 2 F mean e^(-8 d/settling) [N].
+def _unsettled(friction: float, distance: Array, settling: float) -> float:
+    """Possible error of a mean friction by reversing bristles, 2 F mean e^(-8 d/settling) [N].
 
     After a reversal friction is F (1 - 2 e^(-d sigma_0/F)) [derived from dz/dt = v (1 - sigma_0
-    z/F)], `SETTLING` times F/sigma_0 is the settling distance; d counts from the start of the
+    z/F)]. The settling distance is `SETTLING` times F/sigma_0; d counts from the start of the
     plateau.
     """
-    return float(2 * abs(friction) * np.mean(np.exp(-SETTLING * np.abs(gone) / settling)))
+    return float(2 * abs(friction) * np.mean(np.exp(-SETTLING * np.abs(distance) / settling)))
 
 
 def _point(sliding: Sliding, motion: ConditionedRecord, at: Array, kind: Kind) -> FrictionPoint:
-    """The mean over samples, with the standard error of filtered ones."""
+    """The mean over samples, with a standard error that allows for the filter's correlation."""
     piece = sliding.piece
-    friction = sliding.hydraulic[at] - sliding.resisting[at]
+    friction = sliding.friction[at]
     if kind == "plateau":
         velocity = float(np.polyfit(piece.time[at] - piece.time[at[0]], piece["x"][at], 1)[0])
     else:
         velocity = float(np.mean(piece.velocity[at]))
-    first = piece["p1"][at]
-    second = piece["p2"][at] if "p2" in piece else np.zeros_like(first)
+    first, second = piece.pressures
     size = independent(at.size, motion)
     return FrictionPoint(
         velocity,
         float(np.mean(sliding.pressure[at])),
-        float(np.mean(first)),
-        float(np.mean(second)),
+        float(np.mean(first[at])),
+        float(np.mean(second[at])),
         float(np.mean(friction)),
         float(np.std(friction) / np.sqrt(max(size - 1, 1))),
         at.size * motion.sample_time,
@@ -209,9 +207,9 @@ def _merged(points: Sequence[FrictionPoint]) -> list[FrictionPoint]:
     groups: list[list[FrictionPoint]] = []
     for point in sorted(points, key=lambda x: x.velocity):
         for group in groups:
-            lead = group[0]
-            like = abs(point.velocity / lead.velocity - 1) < ALIKE
-            if like and abs(point.pressure - lead.pressure) <= LEVELS * highest:
+            first = group[0]
+            alike = abs(point.velocity / first.velocity - 1) < ALIKE
+            if alike and abs(point.pressure - first.pressure) <= LEVELS * highest:
                 group.append(point)
                 break
         else:
@@ -220,18 +218,18 @@ def _merged(points: Sequence[FrictionPoint]) -> list[FrictionPoint]:
 
 
 def _mean(group: Sequence[FrictionPoint]) -> FrictionPoint:
-    """One point from several of similar velocity and pressure; includes their scatter."""
+    """One point from several of similar velocity and pressure; its error includes their scatter."""
     if len(group) == 1:
         return group[0]
-    weights = np.array([one.weight for one in group])
+    weights = np.array([point.weight for point in group])
     share = weights / weights.sum()
-    numbers = np.array([one[:5] for one in group])
+    numbers = np.array([point[:5] for point in group])
     middle = share @ numbers
-    within = np.sqrt(np.sum((share * np.array([one.error for one in group])) ** 2))
-    apart = np.sqrt(
+    within = np.sqrt(np.sum((share * np.array([point.error for point in group])) ** 2))
+    between = np.sqrt(
         np.sum(share**2 * (numbers[:, 4] - middle[4]) ** 2) * len(group) / (len(group) - 1)
     )
-    error = float(max(within, apart))
+    error = float(max(within, between))
     v, p, p1, p2, mean = map(float, middle)
     return FrictionPoint(v, p, p1, p2, mean, error, float(weights.sum()), group[0].kind)
 
@@ -241,8 +239,9 @@ def _swept(
 ) -> list[FrictionPoint]:
     """Means over bins of velocity and pressure, with equal weight of rising and falling speed.
 
-    A bin passed in one way only is left out, as a lag would count as friction there. The velocity
-    is that of the lowest cut-off the position allows; its resolution would blur slow bins.
+    A bin passed only with rising or only with falling speed is left out, as a lag would count as
+    friction there. The velocity is that of the lowest cut-off that the position allows, as the
+    resolution of the position would blur slow bins.
     """
     parts = [settled(sliding, settling) for sliding in slidings]
     if not any(at.size for at in parts):
@@ -257,47 +256,44 @@ def _swept(
     rising = all_of([pace * np.gradient(pace) for pace in paces]) > 0
     friction = all_of([sliding.friction for sliding in slidings])
     pressure = all_of([sliding.pressure for sliding in slidings])
-    first = all_of([piece["p1"] for piece in pieces])
-    second = all_of(
-        [piece["p2"] if "p2" in piece else np.zeros(piece.time.size) for piece in pieces]
-    )
+    first = all_of([piece.pressures[0] for piece in pieces])
+    second = all_of([piece.pressures[1] for piece in pieces])
     speed_bin = np.floor(PER_DECADE * np.log10(np.abs(velocity)))
     top = float(np.percentile(pressure, 99)) or 1.0
     level_bin = np.floor(pressure / (2 * LEVELS * top))
     keys = np.stack([velocity < 0, level_bin, speed_bin], axis=1)
-    found, inverse = np.unique(keys, axis=0, return_inverse=True)
+    bins, inverse = np.unique(keys, axis=0, return_inverse=True)
     order = np.argsort(inverse.reshape(-1), kind="stable")
     groups = np.split(order, np.cumsum(np.bincount(inverse.reshape(-1)))[:-1])
-    own: list[FrictionPoint] = []
-    for at in groups[: len(found)]:
-        halves = _alike(at, np.abs(velocity[at]), rising[at])
+    points: list[FrictionPoint] = []
+    for at in groups[: len(bins)]:
+        halves = _common_speeds(at, np.abs(velocity[at]), rising[at])
         if halves is None or min(independent(half.size, motion) for half in halves) < 3:
             continue
         for half in halves:
             size = independent(half.size, motion)
             line = np.polyfit(velocity[half], friction[half], 1)
-            rest = friction[half] - np.polyval(line, velocity[half])
-            v, p, p1, p2, mean = (
-                float(np.mean(one[half])) for one in (velocity, pressure, first, second, friction)
-            )
-            own.append(
+            residuals = friction[half] - np.polyval(line, velocity[half])
+            channels = (velocity, pressure, first, second, friction)
+            v, p, p1, p2, mean = (float(np.mean(channel[half])) for channel in channels)
+            points.append(
                 FrictionPoint(
                     v,
                     p,
                     p1,
                     p2,
                     mean,
-                    float(np.std(rest) / np.sqrt(max(size - 2, 1))),
+                    float(np.std(residuals) / np.sqrt(max(size - 2, 1))),
                     half.size * motion.sample_time,
                     "sweep",
                     float(np.std(velocity[half])),
                 )
             )
-    moderated = _moderated(own, motion)
-    return [_halves(both) for both in zip(moderated[::2], moderated[1::2], strict=True)]
+    moderated = _moderated(points, motion)
+    return [_balanced(both) for both in zip(moderated[::2], moderated[1::2], strict=True)]
 
 
-def _alike(at: Array, speed: Array, rising: Array) -> tuple[Array, Array] | None:
+def _common_speeds(at: Array, speed: Array, rising: Array) -> tuple[Array, Array] | None:
     """Samples of rising and of falling speed, over the speeds that both cover."""
     if rising.all() or not rising.any():
         return None
@@ -307,20 +303,19 @@ def _alike(at: Array, speed: Array, rising: Array) -> tuple[Array, Array] | None
     return at[inside & rising], at[inside & ~rising]
 
 
-def _halves(both: Sequence[FrictionPoint]) -> FrictionPoint:
-    """Rising and falling speed as one point of equal weights, so that a lag cancels.
+def _balanced(halves: Sequence[FrictionPoint]) -> FrictionPoint:
+    """One point from rising and falling speed with equal weights, so that a lag cancels.
 
-    To first order: a quarter of their difference counts as error (a choice).
+    It cancels to first order only: a quarter of the difference counts as error (a choice).
     """
-    numbers = np.mean([one[:5] for one in both], axis=0)
-    lagging = (both[0].friction - both[1].friction) / 4
-    error = float(np.sqrt(sum(one.error**2 for one in both) / 4 + lagging**2))
+    numbers = np.mean([point[:5] for point in halves], axis=0)
+    by_lag = (halves[0].friction - halves[1].friction) / 4
+    error = float(np.sqrt(sum(point.error**2 for point in halves) / 4 + by_lag**2))
     v, p, p1, p2, mean = map(float, numbers)
-    apart = (both[0].velocity - both[1].velocity) / 2
-    spread = float(np.sqrt((both[0].spread ** 2 + both[1].spread ** 2) / 2 + apart**2))
-    return FrictionPoint(
-        v, p, p1, p2, mean, error, sum(one.weight for one in both), "sweep", spread
-    )
+    between = (halves[0].velocity - halves[1].velocity) / 2
+    spread = float(np.sqrt((halves[0].spread ** 2 + halves[1].spread ** 2) / 2 + between**2))
+    weight = sum(point.weight for point in halves)
+    return FrictionPoint(v, p, p1, p2, mean, error, weight, "sweep", spread)
 
 
 def settled(sliding: Sliding, settling: float = SETTLED) -> Array:
@@ -331,22 +326,20 @@ def settled(sliding: Sliding, settling: float = SETTLED) -> Array:
     start = np.zeros(way.size, dtype=int)
     start[begins] = begins
     start = np.maximum.accumulate(start)
-    gone = np.abs(piece["x"] - piece["x"][start])
-    return np.flatnonzero(moving & (gone > settling))
+    distance = np.abs(piece["x"] - piece["x"][start])
+    return np.flatnonzero(moving & (distance > settling))
 
 
 def by_pressure(points: Sequence[FrictionPoint]) -> list[list[FrictionPoint]]:
-    """Points by level of pressure, the lowest first: each within `LEVELS` of the highest pressure.
+    """Points of steady sliding by level of pressure, the lowest first.
 
-    Parameters
-    ----------
-    points : of steady sliding
+    The pressures of a level differ by at most `LEVELS` times the highest pressure.
     """
     highest = max((point.pressure for point in points), default=0.0)
     groups: list[list[FrictionPoint]] = []
-    for one in sorted(points, key=lambda point: point.pressure):
-        if groups and one.pressure - groups[-1][0].pressure <= LEVELS * highest:
-            groups[-1].append(one)
+    for point in sorted(points, key=lambda point: point.pressure):
+        if groups and point.pressure - groups[-1][0].pressure <= LEVELS * highest:
+            groups[-1].append(point)
         else:
-            groups.append([one])
+            groups.append([point])
     return groups

@@ -18,9 +18,9 @@ from ..models.fluid import ATMOSPHERIC_PRESSURE
 from .column_units import NONE, ColumnUnits
 
 ABSENT = {"", "-", "--", "na", "n/a", "nan", "-nan", "null", "none", "#n/a", "inf", "-inf", "+inf"}
-"""Cells that mark a missing sample, in small letters."""
+"""Cells that mark a missing sample, in lower case."""
 _BATCH = 50_000
-"""Lines read at once (a choice: keeps a record of an hour within memory)."""
+"""Lines read at once (a choice: a record of an hour then fits in memory)."""
 _BINARY = re.compile(r"[\x00-\x08\x0e-\x1f\x7f]")
 _ZIP = b"PK\x03\x04"
 _COMMENT = re.compile(r"\s*#(?!n/a)", re.IGNORECASE)
@@ -63,12 +63,12 @@ class Sheet:
 
     Parameters
     ----------
-    name : of the file
+    name : name of the file
     header, header_line : cells of the header, and its line from 1
-    units : from a separate line below, by column; None without one
-    separator : of columns
-    lines, first : of the file, and the index of the first line of samples
-    width : columns, including those without a header
+    units : units by column from a separate line below the header; None without that line
+    separator : separator of the columns
+    lines, first : lines of the file, and the index of the first line of samples
+    width : number of columns, including those without a header
     """
 
     name: str
@@ -137,7 +137,7 @@ def numbers(sheet: Sheet, places: Sequence[int]) -> tuple[Array, Array]:
     InputError
         a line with too few or too many cells, or a cell of these columns that is not a number
     """
-    tables, found = [np.empty((0, len(places)))], [np.empty(0, dtype=int)]
+    tables, line_numbers = [np.empty((0, len(places)))], [np.empty(0, dtype=int)]
     for begin in range(sheet.first, len(sheet.lines), _BATCH):
         batch = sheet.lines[begin : begin + _BATCH]
         skipped = [k for k, line in enumerate(batch) if _skipped(line, sheet.separator)]
@@ -146,8 +146,8 @@ def numbers(sheet: Sheet, places: Sequence[int]) -> tuple[Array, Array]:
             batch = [sheet.lines[k - 1] for k in at.tolist()]
         if batch:
             tables.append(_batch(sheet, batch, at, places))
-            found.append(at)
-    return np.concatenate(tables), np.concatenate(found)
+            line_numbers.append(at)
+    return np.concatenate(tables), np.concatenate(line_numbers)
 
 
 def _batch(sheet: Sheet, lines: Sequence[str], at: Array, places: Sequence[int]) -> Array:
@@ -168,7 +168,7 @@ def _batch(sheet: Sheet, lines: Sequence[str], at: Array, places: Sequence[int])
 
 
 def _flat(sheet: Sheet, lines: Sequence[str], at: Array) -> tuple[list[str], int]:
-    """All cells of some lines in sequence, and their number per line."""
+    """All cells of some lines in sequence, and the number of cells per line."""
     separator, named = sheet.separator, len(sheet.header)
     count = lines[0].count(separator) + 1
     text = separator.join(lines)
@@ -214,7 +214,7 @@ def _number(cell: str, name: str, line: int) -> float:
 
 
 def _skipped(line: str, separator: str = ",") -> bool:
-    """Whether a line has no sample: blank, separators only, or a comment."""
+    """Whether a line has no sample: it is blank, a comment, or has separators only."""
     bare = line.strip(" ,\t\xa0" + separator)
     return not bare or ("#" in line and _COMMENT.match(line) is not None)
 
@@ -227,7 +227,7 @@ def _next(lines: Sequence[str], first: int) -> int:
 
 
 def _commented(lines: Sequence[str], at: int, name: str) -> tuple[int, str, int]:
-    """The header from the last comment above the first sample, if it has one."""
+    """The header in the last comment above the first sample: its line, text, next line."""
     above = [k for k in range(at) if lines[k].strip()]
     if above:
         header = lines[above[-1]].strip().lstrip("#").strip()
@@ -241,12 +241,12 @@ def _commented(lines: Sequence[str], at: int, name: str) -> tuple[int, str, int]
 
 
 def _separator(header: str, following: str) -> str:
-    """The column separator, which splits the header and the next line alike."""
-    found = [one for one in "\t;," if one in header]
-    for one in found:
-        if len(_cells(header, one)) == len(_cells(following, one)):
-            return one
-    return found[0] if found else ","
+    """The column separator, which splits the header and the next line into as many cells."""
+    candidates = [sign for sign in "\t;," if sign in header]
+    for sign in candidates:
+        if len(_cells(header, sign)) == len(_cells(following, sign)):
+            return sign
+    return candidates[0] if candidates else ","
 
 
 def _cells(line: str, separator: str) -> list[str]:
@@ -317,14 +317,15 @@ _HEADER = re.compile(
 _LONGEST = 200
 """Maximum letters of a header cell with a unit (a choice: longer text is not a header)."""
 _OPTIONAL = ("v", "T")
-"""Optional channels: a column called "Speed [rpm]" is another speed."""
+"""Channels left out if their unit is unsuitable: a column "Speed [rpm]" is another speed."""
 _ABSOLUTE = re.compile(
     r"(?i)(?P<unit>(?:[mkh]?pa|m?bar|psi))[\s_]*\(?(?P<kind>a|abs|absolute|g|gauge)\)?\.?"
 )
 _SIGNS = (("µ", "u"), ("μ", "u"), ("℃", "°C"), ("℉", "°F"), ("º", "°"))
 _SECONDS = {"sec": "s", "secs": "s", "second": "s", "seconds": "s", "msec": "ms"}
 _LARGEST = 1e30
-"""Larger values, SI, are missing samples: loggers write 1e38 (a choice)."""
+"""Largest value of a sample, SI; larger values are missing samples, as loggers write 1e38 (a
+choice)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -335,10 +336,10 @@ class Record:
     ----------
     time : (samples) [s]
     channels : by name of `CHANNELS`, without `t` (samples)
-    name : of the file
-    notes : what the reader left out
-    first_line : of the samples in the file; None for a record without a file
-    lines : of every sample in the file, if comments or blank lines lie between
+    name : name of the file
+    notes : notes on columns left out and units assumed
+    first_line : first line of samples in the file; None for a record without a file
+    lines : line of every sample in the file, if comments or blank lines lie between
     """
 
     time: Array
@@ -356,11 +357,11 @@ class Record:
 
     @property
     def file_name(self) -> str:
-        """Name of its file without folders, suitable for a page and a design file."""
+        """Name of the file without folders, suitable for a page and a design file."""
         return shown(Path(self.name).name.strip(), 100) or "record"
 
     def line(self, sample: int) -> int | None:
-        """Line of a sample in its file."""
+        """Line of a sample in the file."""
         if self.lines is not None:
             return int(self.lines[sample])
         return None if self.first_line is None else self.first_line + sample
@@ -383,20 +384,20 @@ def parse_record(
     """A record from the text of a CSV file.
 
     The first line that is not a comment names the columns with their units, ``p1 [bar]`` or ``p1
-    (bar)`` or ``p1 / bar``; units may also stand in a separate line below. Columns are separated by
+    (bar)`` or ``p1 / bar``; units may also be in a separate line below. Columns are separated by
     commas, semicolons or tabs; with the latter two, decimal commas are accepted. Absolute
     pressures, ``bara`` or ``psi abs``, become gauge by the standard atmosphere, with a note.
 
     Parameters
     ----------
-    text : of the file
-    name : of the file, for messages
+    text : text of the file
+    name : name of the file, for messages
     columns : header by channel, if it is not a known name; ``"Channel 3 [bar]"`` states the unit of
-        a column ``Channel 3`` without one
-    channels : those to read, including ``t``
-    units : of columns whose header states none
-    needed : channels that must have a unit, beside ``t`` and those of `columns`; others without one
-        are left out; default: all but ``v`` and ``T``
+        a column ``Channel 3`` without a unit
+    channels : channels to read, including ``t``
+    units : units of columns whose header states none
+    needed : channels that must have a unit, beside ``t`` and those of `columns`; other channels
+        without a unit are left out; default: all but ``v`` and ``T``
 
     Returns
     -------
@@ -409,18 +410,22 @@ def parse_record(
         cell that is not a number
     """
     sheet = read_sheet(text, name)
-    asked = set(channels) - set(_OPTIONAL) if needed is None else set(needed)
-    found, notes = _columns(sheet, columns or {}, channels, units, {"t", *asked, *(columns or {})})
-    table, lines = numbers(sheet, [one.place for one in found.values()])
+    required = set(channels) - set(_OPTIONAL) if needed is None else set(needed)
+    stated = columns or {}
+    by_channel, notes = _columns(sheet, stated, channels, units, {"t", *required, *stated})
+    table, lines = numbers(sheet, [column.place for column in by_channel.values()])
     if not lines.size:
         message = "no samples below the header"
         raise InputError(Diagnostic(message, "give one line per sample", file=name))
-    values = {channel: one.values(table[:, k]) for k, (channel, one) in enumerate(found.items())}
+    values = {
+        channel: column.values(table[:, k])
+        for k, (channel, column) in enumerate(by_channel.items())
+    }
     notes += [
         f"{channel}: absolute pressure, converted to gauge with the standard atmosphere of "
         "1.01325 bar"
-        for channel, one in found.items()
-        if one.absolute
+        for channel, column in by_channel.items()
+        if column.absolute
     ]
     first = int(lines[0])
     broken = int(lines[-1]) - first + 1 != lines.size
@@ -438,10 +443,10 @@ class RecordColumn(NamedTuple):
     def values(self, written: Array) -> Array:
         """SI values, pressures gauge; values that are not finite count as missing."""
         with np.errstate(over="ignore", invalid="ignore"):
-            found = np.asarray(self.unit.to_si(written))
+            values = np.asarray(self.unit.to_si(written))
             if self.absolute:
-                found = found - ATMOSPHERIC_PRESSURE
-            return np.where(np.abs(found) < _LARGEST, found, np.nan)
+                values = values - ATMOSPHERIC_PRESSURE
+            return np.where(np.abs(values) < _LARGEST, values, np.nan)
 
 
 def converted(unit: str, dimension: str, place: int) -> RecordColumn:
@@ -450,11 +455,11 @@ def converted(unit: str, dimension: str, place: int) -> RecordColumn:
 
 
 def header_cells(sheet: Sheet) -> list[tuple[str, str]]:
-    """Name and unit of every column; units may stand in a separate line."""
-    own = [_named(cell) for cell in sheet.header]
+    """Name and unit of every column; units may be in a separate line."""
+    cells = [_named(cell) for cell in sheet.header]
     if sheet.units is None:
-        return own
-    return [(name, unit or sheet.units[k]) for k, (name, unit) in enumerate(own)]
+        return cells
+    return [(name, unit or sheet.units[k]) for k, (name, unit) in enumerate(cells)]
 
 
 def _named(cell: str) -> tuple[str, str]:
@@ -467,7 +472,7 @@ def _named(cell: str) -> tuple[str, str]:
 
 
 def _plain(name: str) -> str:
-    """A name in lower case without blanks and symbols."""
+    """A name in lower case, without blanks and symbols."""
     return re.sub(r"[\W_]", "", name).lower()
 
 
@@ -480,17 +485,18 @@ def _unit(text: str, dimension: str) -> tuple[units.Unit, bool]:
     absolute = False
     if dimension == "pressure" and (match := _ABSOLUTE.fullmatch(text)) is not None:
         text, absolute = match["unit"], match["kind"].lower().startswith("a")
-        text = {one.lower(): one for one in units.units_of(dimension)}.get(text.lower(), text)
+        text = {name.lower(): name for name in units.units_of(dimension)}.get(text.lower(), text)
     try:
         return units.unit(text, dimension), absolute
     except units.UnitError:
-        alike = [one for one in units.units_of(dimension) if one.upper() == text]
+        alike = [name for name in units.units_of(dimension) if name.upper() == text]
         if len(alike) != 1:
             raise
         return units.unit(alike[0], dimension), absolute
 
 
-def _fits(text: str, dimension: str) -> bool:
+def _is_unit(text: str, dimension: str) -> bool:
+    """Whether a text is a unit of a dimension."""
     try:
         _unit(text, dimension)
     except units.UnitError:
@@ -499,10 +505,10 @@ def _fits(text: str, dimension: str) -> bool:
 
 
 def _channel(name: str, unit: str, channels: Mapping[str, Channel]) -> str | None:
-    """The channel of a header name; the unit decides between t and T."""
+    """The channel for a name in a header; the unit decides between t and T."""
     plain = _plain(name)
-    alike = [c for c, one in channels.items() if plain in (_plain(c), *one.others)]
-    fitting = [c for c in alike if _fits(unit, channels[c].dimension)]
+    alike = [c for c, known in channels.items() if plain in (_plain(c), *known.others)]
+    fitting = [c for c in alike if _is_unit(unit, channels[c].dimension)]
     if name in fitting or (name in alike and not fitting):
         return name
     if fitting or not alike:
@@ -510,25 +516,25 @@ def _channel(name: str, unit: str, channels: Mapping[str, Channel]) -> str | Non
     return None if unit and alike[0] in _OPTIONAL else alike[0]
 
 
-def column_of(sheet: Sheet, own: list[tuple[str, str]], header: str) -> tuple[int, str]:
+def column_of(sheet: Sheet, cells: list[tuple[str, str]], header: str) -> tuple[int, str]:
     """Column of a header named by the caller, and the unit stated with it.
 
     Raises
     ------
     LookupError
-        with the number of columns of that name
+        no or several columns of that name, with their number
     """
-    wanted, unit = _named(header)
-    names = [one[0] for one in own]
+    stated_name, unit = _named(header)
+    names = [cell[0] for cell in cells]
     for name, column_unit, among in (
         (header.strip(), "", sheet.header),
-        (wanted, unit, sheet.header),
-        (wanted, unit, names),
+        (stated_name, unit, sheet.header),
+        (stated_name, unit, names),
         (header.strip(), "", names),
     ):
         if among.count(name) == 1:
             place = among.index(name)
-            return place, column_unit or own[place][1]
+            return place, column_unit or cells[place][1]
         if among.count(name):
             raise LookupError(among.count(name))
     raise LookupError(0)
@@ -549,15 +555,14 @@ def _columns(
             line = sheet.header_line if file == sheet.name else None
             faults.append(Diagnostic(message, remedy, file=file, line=line))
 
-    own = header_cells(sheet)
-    places = _stated_places(sheet, own, stated, channels, fault)
-    before = own
-    own = [(name, unit or given.stated.get(name, "")) for name, unit in before]
-    _place_by_header(sheet, own, places, stated, channels, fault)
-    read: dict[str, RecordColumn] = {}
+    in_header = header_cells(sheet)
+    places = _stated_places(sheet, in_header, stated, channels, fault)
+    cells = [(name, unit or given.stated.get(name, "")) for name, unit in in_header]
+    _place_by_header(sheet, cells, places, stated, channels, fault)
+    columns: dict[str, RecordColumn] = {}
     unitless: list[int] = []
     for channel, i in places.items():
-        known, (name, unit) = channels[channel], own[i]
+        known, (name, unit) = channels[channel], cells[i]
         header, unit = shown(name), unit or given.of(name, known.dimension)
         if not unit and channel not in needed:
             unitless.append(i)
@@ -568,13 +573,13 @@ def _columns(
                 f'"{channel}={header} [{known.unit}]", or --units SI for all',
             )
         else:
-            place = sheet.name if before[i][1] or given.si else given.name
+            file = sheet.name if in_header[i][1] or given.si else given.name
             try:
-                read[channel] = converted(unit, known.dimension, i)
-                other = contradicted(read[channel], name, given)
+                columns[channel] = converted(unit, known.dimension, i)
+                other = contradicted(columns[channel], name, given)
             except units.UnitError as error:
                 message = f'column "{header}": {shown(error.message, 120)}'
-                fault(message, shown(error.remedy, 120), place)
+                fault(message, shown(error.remedy, 120), file)
             else:
                 if other:
                     message = (
@@ -584,17 +589,18 @@ def _columns(
                     fault(message, "correct one of them", given.name)
     if faults:
         raise InputError(faults)
-    notes = _column_notes(sheet, set(places.values()), [own[i][0] for i in unitless])
-    by_units = [shown(own[i][0]) for i in places.values() if i not in unitless and not before[i][1]]
-    if by_units:
-        whose = "SI units" if given.si else f"units of {shown(Path(given.name).name)}"
-        notes.append(f"{whose} used, as the header states none: {_list(by_units)}")
-    return read, notes
+    notes = _column_notes(sheet, set(places.values()), [cells[i][0] for i in unitless])
+    used = [i for i in places.values() if i not in unitless and not in_header[i][1]]
+    if used:
+        source = "SI units" if given.si else f"units of {shown(Path(given.name).name)}"
+        names = _list([shown(cells[i][0]) for i in used])
+        notes.append(f"{source} used, as the header states none: {names}")
+    return columns, notes
 
 
 def _place_by_header(
     sheet: Sheet,
-    own: list[tuple[str, str]],
+    cells: list[tuple[str, str]],
     places: dict[str, int],
     stated: Mapping[str, str],
     channels: Mapping[str, Channel],
@@ -603,25 +609,25 @@ def _place_by_header(
     """Add the channels named by the header to `places`; a channel named twice is an error."""
     taken = set(places.values())
     doubled = set()
-    for i, (header, unit) in enumerate(own):
-        found = _channel(header, unit, channels)
-        if found is None or found in stated or i in taken or found in doubled:
+    for i, (header, unit) in enumerate(cells):
+        channel = _channel(header, unit, channels)
+        if channel is None or channel in stated or i in taken or channel in doubled:
             continue
-        if found in places:
-            doubled.add(found)
-            one, other = sheet.header[places[found]], sheet.header[i]
+        if channel in places:
+            doubled.add(channel)
+            first, second = sheet.header[places[channel]], sheet.header[i]
             fault(
-                f'columns "{shown(one)}" and "{shown(other)}" are both {found}',
+                f'columns "{shown(first)}" and "{shown(second)}" are both {channel}',
                 "rename or delete one"
-                if one == other
-                else f'say which with --column "{found}=NAME", or rename one',
+                if first == second
+                else f'say which with --column "{channel}=NAME", or rename one',
             )
-        places.setdefault(found, i)
+        places.setdefault(channel, i)
     if "t" not in places and "t" not in stated:
         fault(
-            f"no column t; columns are {_list([one[0] for one in own])}",
+            f"no column t; columns are {_list([first[0] for first in cells])}",
             'name it with --column "t=NAME [s]"'
-            if len(own) > 1
+            if len(cells) > 1
             else 'separate columns by commas, semicolons or tabs, begin other lines with "#"',
         )
 
@@ -636,7 +642,7 @@ def _column_notes(sheet: Sheet, used: set[int], unitless: Sequence[str]) -> list
 
 
 def contradicted(column: RecordColumn, name: str, given: ColumnUnits) -> str:
-    """The unit in `given` that contradicts a column's own; empty if it agrees."""
+    """The unit in `given` that contradicts that of a column; empty if they agree."""
     stated = given.stated.get(name, "")
     if not stated:
         return ""
@@ -651,26 +657,26 @@ def contradicted(column: RecordColumn, name: str, given: ColumnUnits) -> str:
 
 def _stated_places(
     sheet: Sheet,
-    own: list[tuple[str, str]],
+    cells: list[tuple[str, str]],
     stated: Mapping[str, str],
     channels: Mapping[str, Channel],
     fault: Callable[[str, str], None],
 ) -> dict[str, int]:
-    """Columns named by the caller; their units are added to `own`."""
+    """Columns named by the caller; their units are added to `cells`."""
     places: dict[str, int] = {}
     for channel, header in stated.items():
         if channel not in channels:
             fault(f'"{shown(channel)}" is not a channel', f"use one of {', '.join(channels)}")
             continue
         try:
-            place, unit = column_of(sheet, own, header)
+            place, unit = column_of(sheet, cells, header)
         except LookupError as error:
-            wanted = shown(_named(header)[0])
+            stated_name = shown(_named(header)[0])
             if error.args[0]:
-                fault(f'{error.args[0]} columns are called "{wanted}"', "rename all but one")
+                fault(f'{error.args[0]} columns are called "{stated_name}"', "rename all but one")
             else:
-                remedy = shown(remedy_for(wanted, [one[0] for one in own]), 200)
-                fault(f'no column "{wanted}" for {channel}', remedy)
+                remedy = shown(remedy_for(stated_name, [cell[0] for cell in cells]), 200)
+                fault(f'no column "{stated_name}" for {channel}', remedy)
             continue
         for other, taken in places.items():
             if taken == place:
@@ -679,7 +685,7 @@ def _stated_places(
                     f'column "{title}" is given for both {other} and {channel}', "name two columns"
                 )
         places[channel] = place
-        own[place] = own[place][0], unit
+        cells[place] = cells[place][0], unit
     return places
 
 

@@ -31,12 +31,12 @@ class Settings:
     Parameters
     ----------
     cutoff, order, compensated : of the zero-phase filter
-    mass : inside the force sensor [kg]; default: rod, piston and fastening, without a force
-        channel also the design's load
-    load_force : on the rod, if no channel measures it [N]
-    pressure_lag : of the pressures [s]; None fits it to the record
-    bootstrap : resampled records for the bounds; 0 for those of the linearised model
-    seed : of the resampling
+    mass : moving mass inside the force sensor [kg]; default: rod, piston and fastening, without a
+        force channel also the load
+    load_force : force on the rod if no channel measures it [N]
+    pressure_lag : lag of the pressures [s]; None: fit it to the record
+    bootstrap : number of resamples for the bounds; 0: bounds of the linearised model
+    seed : seed of the resampling
     """
 
     cutoff: float = CUTOFF
@@ -69,14 +69,15 @@ class Identification(Displayed):
     mass : moving mass used, inside the force sensor [kg]
     pressure_lag : lag corrected in the pressures [s]
     lag_seen : lag of the pressures as fitted, before any correction [s]; None if not fitted;
-        infinite bounds if the record cannot show one
+        infinite bounds if the record does not show it
     spectrum : effect of the cut-off on motion and noise
-    mean, largest : of |F_r| in sliding, without pre-sliding sections, and overall [N]
-    slides : whether the rod slides at all; else the mean is that of the whole record
-    points : of steady sliding
-    coefficient, stribeck, lugre : or one line with the reason for none
-    fits : of the secant damping over speed, by name; one line if there is none
-    notes : what was left out, repaired or assumed
+    mean, largest : mean |F_r| in sliding without pre-sliding, and largest |F_r| of the record [N]
+    slides : whether the rod slides; else the mean is that of the whole record
+    area : piston area of the cap end [m^2]
+    points : points of steady sliding
+    coefficient, stribeck, lugre : results, or the reason for none
+    fits : fits of the secant damping over speed, by name, or the reason for none
+    notes : notes on samples left out, repaired or assumed
     """
 
     record: Record
@@ -102,19 +103,18 @@ class Identification(Displayed):
     def stiffness_along(self, sliding: Sliding) -> Array:
         """Stiffness with closed ports at the pressures along a section; NaN beyond the stroke."""
         piece, bench = sliding.piece, self.bench
-        second = piece["p2"] if "p2" in piece else 0.0 * piece["p1"]
         inside = (piece["x"] >= 0) & (piece["x"] <= bench.stroke)
-        return np.where(inside, bench.stiffness(piece["x"], piece["p1"], second), np.nan)
+        return np.where(inside, bench.stiffness(piece["x"], *piece.pressures), np.nan)
 
     def growth_along(self, sliding: Sliding) -> Array:
         """Growth of the bore radius at the piston seal along a section."""
         return self.bench.growth * sliding.pressure
 
     def series(self) -> dict[str, Array]:
-        """Quantities over time, one array each, for the CSV of the result, SI.
+        """Arrays of quantities over time by name, for the CSV of the result, SI.
 
-        `stiffness` with closed ports at the record's pressures, NaN if the position lies beyond the
-        stroke; `growth` of the bore radius at the piston seal.
+        `stiffness` is that with closed ports at the record's pressures, NaN if the position lies
+        beyond the stroke; `growth` is that of the bore radius at the piston seal.
         """
         pieces = [sliding.piece for sliding in self.slidings]
 
@@ -122,7 +122,7 @@ class Identification(Displayed):
             return np.concatenate(parts)
 
         first = joined([piece["p1"] for piece in pieces])
-        found = {
+        columns = {
             "time": joined([piece.time for piece in pieces]),
             "position": joined([piece["x"] for piece in pieces]),
             "velocity": joined([piece.velocity for piece in pieces]),
@@ -130,11 +130,11 @@ class Identification(Displayed):
             "pressure_1": first,
         }
         if "p2" in pieces[0]:
-            found["pressure_2"] = joined([piece["p2"] for piece in pieces])
-        found["friction"] = joined([sliding.friction for sliding in self.slidings])
-        found["stiffness"] = joined([self.stiffness_along(sliding) for sliding in self.slidings])
-        found["growth"] = joined([self.growth_along(sliding) for sliding in self.slidings])
-        return found
+            columns["pressure_2"] = joined([piece["p2"] for piece in pieces])
+        columns["friction"] = joined([sliding.friction for sliding in self.slidings])
+        columns["stiffness"] = joined([self.stiffness_along(sliding) for sliding in self.slidings])
+        columns["growth"] = joined([self.growth_along(sliding) for sliding in self.slidings])
+        return columns
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data for JSON, SI; a missing value is null, with its reason beside it."""
@@ -158,7 +158,7 @@ class Identification(Displayed):
             "damping": [_point(point) for point in self.points],
             "stiffness": _range(series["stiffness"]),
             "growth_at_seal": _range(series["growth"]),
-            "fits": {name: _fit(one) for name, one in self.fits.items()},
+            "fits": {name: _fit(fit) for name, fit in self.fits.items()},
             "mass": self.mass,
             "load_force": self.settings.load_force,
             "pressure_lag": self.pressure_lag,
@@ -174,36 +174,36 @@ class Identification(Displayed):
                 "compensated": self.motion.compensated,
                 **self.spectrum._asdict(),
             },
-            "channels": {name: one._asdict() for name, one in self.motion.quality.items()},
+            "channels": {name: quality._asdict() for name, quality in self.motion.quality.items()},
             "notes": list(self.notes),
         }
 
 
-def _coefficient(found: Coefficient | str) -> dict[str, Any]:
+def _coefficient(coefficient: Coefficient | str) -> dict[str, Any]:
     """The coefficient of friction, or null and the reason."""
-    if isinstance(found, str):
-        return {"mu": None, "mu_why": found}
+    if isinstance(coefficient, str):
+        return {"mu": None, "mu_why": coefficient}
     return {
         "mu": {
-            "value": found.value,
-            "lower": found.lower,
-            "upper": found.upper,
-            "contact_pressure": found.contact_pressure,
-            "contact_force": found.contact_force,
-            "contact_law": found.law,
-            "windows": found.windows,
+            "value": coefficient.value,
+            "lower": coefficient.lower,
+            "upper": coefficient.upper,
+            "contact_pressure": coefficient.contact_pressure,
+            "contact_force": coefficient.contact_force,
+            "contact_law": coefficient.law,
+            "windows": coefficient.windows,
         }
     }
 
 
-def _model(name: str, found: StribeckFit | LuGreFit | str) -> dict[str, Any]:
+def _model(name: str, fit: StribeckFit | LuGreFit | str) -> dict[str, Any]:
     """The parameters of a friction model, or null and the reason."""
-    if isinstance(found, str):
-        return {name: None, f"{name}_why": found}
+    if isinstance(fit, str):
+        return {name: None, f"{name}_why": fit}
     return {
-        name: {key: one.to_dict() for key, one in found.parameters.items()},
-        f"{name}_held": dict(found.held),
-        f"{name}_doubts": list(found.doubts),
+        name: {key: parameter.to_dict() for key, parameter in fit.parameters.items()},
+        f"{name}_held": dict(fit.held),
+        f"{name}_doubts": list(fit.doubts),
     }
 
 
@@ -224,7 +224,7 @@ def _fit(fit: LawFit | str) -> dict[str, Any]:
     if isinstance(fit, str):
         return {"why": fit}
     return {
-        "parameters": {name: one.to_dict() for name, one in fit.parameters.items()},
+        "parameters": {name: parameter.to_dict() for name, parameter in fit.parameters.items()},
         "r_squared": fit.r_squared,
         "doubts": list(fit.doubts),
     }

@@ -16,41 +16,42 @@ from .conditioning import ConditionedRecord
 from .record import Record
 
 TERMS = 8
-"""Cosines of a long-run variance (a choice: few enough for noise correlated over an eighth of a
-branch, at the price of bounds 18 % wider than those of known noise)."""
+"""Number of cosines for a long-run variance (a choice: few enough for noise correlated over an
+eighth of a branch, although bounds are then 18 % wider than with known noise)."""
 PER_TERM = 4
-"""Least spare samples per cosine (a choice: the longest correlation in short records)."""
+"""Least degrees of freedom per cosine (a choice: the longest correlation in short records)."""
 MEMORY = 0.99
 """Largest correlation of neighbouring residuals allowed for (a choice: beyond it the fit takes the
 noise for part of the slope)."""
 FEWEST = 5
-"""Least samples of a branch for a slope (a choice: three spare)."""
+"""Least samples of a branch for a slope (a choice: three degrees of freedom)."""
 OUTSTANDING, PART = 10.0, 0.02
-"""A spike exceeds five neighbours' median by so many robust standard deviations and by this share
-of the range (a choice: far outside noise, well inside what would move a slope)."""
+"""Least height of a spike over the median of five neighbours: in robust standard deviations, and as
+a share of the range (choices: far outside noise, too little to change a slope)."""
 
 SHARES = (0.2, 0.8)
 """Shares of the highest force for the slope if the test does not reach the strains or the depth is
 unknown (a choice: the toe and the reversal at the top lie outside)."""
 BENT = 0.02
-"""Allowed change of slope along the straight part (a choice: the chord is then within 1 % of the
+"""Largest change of slope along the straight part (a choice: the chord is then within 1 % of the
 tangents at both ends)."""
 FOLLOWS = 0.3
-"""Least correlation of force and deflection (a choice: 90 % of approach leave 0.46)."""
+"""Least correlation of force and deflection (a choice: it is 0.46 if 90 % of the record is approach
+without force)."""
 TOP, BEGUN = 0.9, 0.05
-"""Shares of the highest force: data after the last of the first is slip or failure; the second is
-where the search for zero begins (a choice: both beyond usual noise)."""
+"""Shares of the highest force: a loading ends at the last sample above the first, as slip or
+failure follows; the search for zero begins at the second (choices: both beyond usual noise)."""
 BACK = 0.25
-"""Share of a range that a return must cover to be an unloading, and that lies on either side of
-zero for a specimen bent both ways (a choice: both far from noise and from offsets)."""
+"""Share of the range by which the deflection must return for an unloading, and that lies on either
+side of zero for a specimen bent both ways (choices: both far from noise and from offsets)."""
 WON = 0.02
 """Share of its work that a loop may gain by noise and coarse samples (a choice as `BENT`)."""
 USUAL = (1e-12, 1e12)
-"""Largest ranges of force [N] and deflection [m] of any sensor and machine (a choice: far
-beyond)."""
+"""Least and largest range of force [N] and deflection [m] (a choice: far beyond those of any sensor
+and machine)."""
 CUTS = ((0.0, 1.0), (0.25, 1.0), (0.0, 0.75), (0.5, 1.0), (0.25, 0.75), (0.0, 0.5))
-"""Parts of the range tried in turn until one is straight (a choice: the longest first, cutting the
-toe before the top)."""
+"""Parts of the range, tested in turn until a part is straight (a choice: the longest first, without
+the toe before without the top)."""
 
 
 class DeflectionBranch(NamedTuple):
@@ -73,18 +74,18 @@ def despiked(values: Array) -> Array:
     from scipy.ndimage import maximum_filter1d, median_filter  # slow import, rarely used
 
     known = np.isfinite(values)
-    kept = values[known]
-    if kept.size < FEWEST:
+    known_values = values[known]
+    if known_values.size < FEWEST:
         return values
-    middle = median_filter(kept, size=5, mode="mirror")
-    apart = np.abs(kept - middle)
+    middle = median_filter(known_values, size=5, mode="mirror")
+    deviations = np.abs(known_values - middle)
     low, high = np.percentile(middle, (1, 99))
-    least = max(OUTSTANDING * ROBUST * float(np.median(apart)), PART * float(high - low))
+    least = max(OUTSTANDING * ROBUST * float(np.median(deviations)), PART * float(high - low))
     # the median lags where the channel reverses or ends
     passing = 2 * maximum_filter1d(np.abs(np.gradient(middle)), 5)
-    out = np.array(values, dtype=float)
-    out[known] = np.where(apart > least + passing, np.nan, kept)
-    return out
+    cleaned = np.array(values, dtype=float)
+    cleaned[known] = np.where(deviations > least + passing, np.nan, known_values)
+    return cleaned
 
 
 def branches(deflection: Array, least: float) -> list[DeflectionBranch]:
@@ -112,44 +113,45 @@ def branches(deflection: Array, least: float) -> list[DeflectionBranch]:
 def term(x: Array, y: Array, degree: int) -> Term:
     """Coefficient of x^degree of a least-squares polynomial, with correlated noise.
 
-    The variance is that of the scores c e (c the column orthogonal to lower powers, e the
-    residuals) at frequency zero, as the mean over the first cosines of the samples in order
-    [Mueller2007], [Lazarus2018]. Student's t has a degree of freedom for each. The loss by the fit
-    is compensated for noise with the residuals' correlation [derived]; the variance is at least
-    that of white noise.
+    The variance is that of the scores c e at frequency zero: c the column orthogonal to lower
+    powers, e the residuals. It is the mean over the first cosines of the samples in order
+    [Mueller2007], [Lazarus2018], each a degree of freedom of Student's t. The variance lost by the
+    fit is compensated for noise with the correlation of the residuals [derived]; the result is at
+    least that of white noise.
     """
     scale = float(np.ptp(x)) / 2
     size = (x - np.mean(x)) / scale
     basis, _ = np.linalg.qr(np.vander(size, degree + 1, increasing=True))
     column = basis[:, -1]
     along = float(column @ size**degree)
-    rest = y - basis @ (basis.T @ y)
+    residuals = y - basis @ (basis.T @ y)
     count = x.size
     terms = int(np.clip((count - degree - 1) // PER_TERM, 1, TERMS))
     phase = np.pi * (np.arange(count) + 0.5) / count
     waves = np.cos(np.arange(1, terms + 1)[:, None] * phase) * column
     free = waves - (waves @ basis) @ basis.T
-    memory = _memory(rest, degree)
-    seen = np.sum(free * _remembered(free, memory), axis=1)
-    meant = float(column @ _remembered(column, memory))
-    level = meant * float(np.mean((waves @ rest) ** 2 / seen))
-    white = float(np.sum(rest**2)) / (count - degree - 1)
+    memory = _correlation(residuals, degree)
+    seen = np.sum(free * _correlated(free, memory), axis=1)
+    meant = float(column @ _correlated(column, memory))
+    level = meant * float(np.mean((waves @ residuals) ** 2 / seen))
+    white = float(np.sum(residuals**2)) / (count - degree - 1)
     unit = along * scale**degree
     return Term(float(column @ y) / unit, max(level, white) / unit**2, terms)
 
 
-def _memory(rest: Array, degree: int) -> float:
-    """Correlation of neighbouring residuals, corrected for the loss by a polynomial's fit.
+def _correlation(residuals: Array, degree: int) -> float:
+    """Correlation of neighbouring residuals, corrected for the loss by the fit of a polynomial.
 
-    A constant takes (1 + 3 r)/n, a trend (2 + 4 r)/n [MarriottPope1954]; so on by degree.
+    Fitting a constant lowers it by (1 + 3 r)/n, a trend by (2 + 4 r)/n [MarriottPope1954], and so
+    on by degree.
     """
-    size, whole = rest.size, float(np.sum(rest**2))
-    seen = float(rest[1:] @ rest[:-1]) / whole if whole > 0 else 0.0
+    size, power = residuals.size, float(np.sum(residuals**2))
+    seen = float(residuals[1:] @ residuals[:-1]) / power if power > 0 else 0.0
     spare = max(size - degree - 3, 1)
     return float(np.clip((seen * size + degree + 1) / spare, 0.0, MEMORY))
 
 
-def _remembered(rows: Array, memory: float) -> Array:
+def _correlated(rows: Array, memory: float) -> Array:
     """Rows times the correlations memory^|i - j|."""
     from scipy.signal import lfilter  # slow import, rarely used
 
@@ -160,32 +162,33 @@ def _remembered(rows: Array, memory: float) -> Array:
 
 def mean(terms: Sequence[Term]) -> Term:
     """Mean of independent coefficients; degrees of freedom after Satterthwaite."""
-    variances = np.array([one.variance for one in terms]) / len(terms) ** 2
-    whole = float(np.sum(variances))
-    parts = float(np.sum(variances**2 / [one.freedom for one in terms]))
-    freedom = whole**2 / parts if parts > 0 else min(one.freedom for one in terms)
-    return Term(float(np.mean([one.value for one in terms])), whole, freedom)
+    variances = np.array([term.variance for term in terms]) / len(terms) ** 2
+    variance = float(np.sum(variances))
+    parts = float(np.sum(variances**2 / [term.freedom for term in terms]))
+    freedom = variance**2 / parts if parts > 0 else min(term.freedom for term in terms)
+    return Term(float(np.mean([term.value for term in terms])), variance, freedom)
 
 
 def pooled(groups: Sequence[Sequence[Term]]) -> Term:
-    """Mean of the means of groups; includes scatter of members beyond their noise.
+    """Mean of the means of groups; its variance includes scatter of the members beyond noise.
 
-    Beyond means by the F test at 95 %. Members with the same index in their groups, loading and
-    unloading of a cycle, are taken as correlated.
+    An F test at 95 % decides whether they scatter beyond noise. Members with the same index in
+    their groups, loading and unloading of a cycle, are taken as correlated.
     """
     from scipy.special import fdtri  # slow import, rarely used
 
-    found = mean([mean(group) for group in groups])
+    overall = mean([mean(group) for group in groups])
     spare = sum(len(group) - 1 for group in groups)
-    if spare == 0 or found.variance == 0:
-        return found
-    middles = [(one, mean(group).value) for group in groups for one in group]
-    ratio = sum((one.value - middle) ** 2 / one.variance for one, middle in middles) / spare
-    if ratio <= fdtri(spare, sum(one.freedom for group in groups for one in group), 0.95):
-        return found
-    several = [[one.value for one in group] for group in groups if len(group) > 1]
-    between = float(np.mean([np.var(one, ddof=1) / len(one) for one in several]))
-    return Term(found.value, max(between, found.variance), max(len(one) for one in several) - 1)
+    if spare == 0 or overall.variance == 0:
+        return overall
+    middles = [(member, mean(group).value) for group in groups for member in group]
+    squares = [(member.value - middle) ** 2 / member.variance for member, middle in middles]
+    freedom = sum(member.freedom for member, _ in middles)
+    if sum(squares) / spare <= fdtri(spare, freedom, 0.95):
+        return overall
+    several = [[member.value for member in group] for group in groups if len(group) > 1]
+    between = float(np.mean([np.var(values, ddof=1) / len(values) for values in several]))
+    return Term(overall.value, max(between, overall.variance), max(map(len, several)) - 1)
 
 
 class Part(NamedTuple):
@@ -197,10 +200,15 @@ class Part(NamedTuple):
 
 
 class Straight(NamedTuple):
-    """The straight part.
+    """The straight part of a record.
 
-    Its samples, its ends as deflections from zero force [m], the change of slope along it relative
-    to the slope, the part of that beyond noise, and whether part of the range was left out.
+    Parameters
+    ----------
+    parts : samples by branch
+    ends : deflections from zero force at both ends [m]
+    bent : change of slope along the part over the slope
+    unsure : share of `bent` beyond noise
+    cut : whether some of the range is left out
     """
 
     parts: list[Part]
@@ -215,11 +223,11 @@ class Loop:
 
     def __init__(self, record: Record) -> None:
         self.record = record
-        self.deflection, self.force, self.floor, self.both = _turned(*_channels(record))
+        self.deflection, self.force, self.floor, self.both = _oriented(*_channels(record))
         self.least = BACK * float(np.ptp(self.deflection))
-        self.branches = [self._kept(branch) for branch in branches(self.deflection, self.least)]
+        self.branches = [self._intact(branch) for branch in branches(self.deflection, self.least)]
 
-    def _kept(self, branch: DeflectionBranch) -> DeflectionBranch:
+    def _intact(self, branch: DeflectionBranch) -> DeflectionBranch:
         """A loading branch up to its highest force; slip or failure follows."""
         if not branch.loading:
             return branch
@@ -241,12 +249,12 @@ class Loop:
 
     def begins(self) -> list[float]:
         """Deflection at which the force of every branch is `BEGUN` of its highest."""
-        found = []
+        deflections = []
         for samples, _ in self.branches:
             force = self.force[samples] - self.floor
             at = int(np.argmin(np.abs(force - BEGUN * np.max(force))))
-            found.append(float(self.deflection[samples][at]))
-        return found
+            deflections.append(float(self.deflection[samples][at]))
+        return deflections
 
     def zeros(self, parts: Sequence[Part]) -> list[float]:
         """Deflection at which the straight line of every branch meets zero force."""
@@ -269,26 +277,28 @@ class Loop:
     def hysteresis(self) -> float | None:
         """Work lost over work done on loading, mean of the loops; None if not available.
 
-        From an unloading after a loading, or a reloading, over the deflections that both cover: the
-        integral of F dw around the loop over that of F dw above zero.
+        A loop is a loading with the next unloading, else an unloading with the next loading, over
+        the deflections that both cover. The share is the integral of F dw around the loop over the
+        positive part of that integral.
         """
         pairs, shares = list(pairwise(self.branches)), []
         for both in [pair for pair in pairs if pair[0].loading] or pairs:
-            passes = [self.deflection[one.samples] for one in both]
+            passes = [self.deflection[branch.samples] for branch in both]
             ends = max(np.min(w) for w in passes), min(np.max(w) for w in passes)
-            lost = done = 0.0
+            lost = supplied = 0.0
             for w, (samples, loading) in zip(passes, both, strict=True):
-                force, way = self.force[samples] - self.floor, 1.0 if loading else -1.0
-                lost += float(np.trapezoid(force, np.clip(w, *ends)))
-                done += float(np.trapezoid(np.maximum(way * force, 0), way * np.clip(w, *ends)))
-            if done > 0:
-                shares.append(lost / done)
+                force, sign = self.force[samples] - self.floor, 1.0 if loading else -1.0
+                common = np.clip(w, *ends)
+                lost += float(np.trapezoid(force, common))
+                supplied += float(np.trapezoid(np.maximum(sign * force, 0), sign * common))
+            if supplied > 0:
+                shares.append(lost / supplied)
         share = float(np.mean(shares)) if shares else -inf
         return max(share, 0.0) if share >= -WON else None
 
 
 def slopes(parts: Sequence[Part], degree: int, record: Record) -> Term:
-    """Coefficient of a degree, mean of loading and unloading; every branch has its own offsets."""
+    """Coefficient of x^degree, mean of loading and unloading; every branch has its own offsets."""
     groups = by_way(parts, degree)
     if not groups:
         most = max((part.deflection.size for part in parts), default=0)
@@ -308,16 +318,17 @@ def by_way(parts: Sequence[Part], degree: int) -> dict[bool, list[Term]]:
 
 
 def scatter(parts: Sequence[Part]) -> float:
-    """Least 1 - r^2 of force over deflection of the branches: difference between both regressions.
+    """Least 1 - r^2 of force over deflection of the branches.
 
-    Noise of the deflection alone lowers the slope by this share [derived].
+    It is the relative difference between both regressions: noise of the deflection alone lowers the
+    slope by this share [derived].
     """
-    found = [
+    shares = [
         1 - float(np.corrcoef(part.deflection, part.force)[0, 1]) ** 2
         for part in parts
         if part.deflection.size >= FEWEST and np.ptp(part.force) > 0
     ]
-    return min(found, default=0.0)
+    return min(shares, default=0.0)
 
 
 @np.errstate(over="ignore", invalid="ignore")  # an overflow is rejected as an unusual range
@@ -353,32 +364,33 @@ def _channels(record: Record) -> tuple[Array, Array]:
     return w, force
 
 
-def _turned(w: Array, force: Array) -> tuple[Array, Array, float, bool]:
+def _oriented(w: Array, force: Array) -> tuple[Array, Array, float, bool]:
     """Deflection and force increasing with bending, the force at rest; whether bent both ways.
 
-    It is at rest at the start, whatever the offsets, except for a single pass towards zero force
-    (unloading). Bent both ways it is at rest where both channels are zero at once, else at the
-    start.
+    With any offsets the specimen is at rest at the start, except in a single pass towards zero
+    force (unloading). If bent both ways it is at rest where both channels are zero at once, else at
+    the start.
     """
 
-    def inside(values: Array, one: float) -> bool:
-        room = min(np.max(values) - one, one - np.min(values))
-        return bool(room > BACK * np.ptp(values))
+    def inside(values: Array, value: float) -> bool:
+        distance = min(np.max(values) - value, value - np.min(values))
+        return bool(distance > BACK * np.ptp(values))
 
     first, last = float(force[0]), float(force[np.argmax(np.abs(force - force[0]))])
-    at_zero = float(np.interp(0.0, *(one[np.argsort(w)] for one in (w, force))))
-    between = inside(w, 0.0) and abs(at_zero) <= BENT * np.ptp(force)
-    both = inside(force, 0.0) and (inside(force, first) or between)
+    order = np.argsort(w)
+    at_zero = float(np.interp(0.0, w[order], force[order]))
+    common_zero = inside(w, 0.0) and abs(at_zero) <= BENT * np.ptp(force)
+    bent_both_ways = inside(force, 0.0) and (inside(force, first) or common_zero)
     single = len(branches(w, BACK * float(np.ptp(w)))) == 1
-    eased = single and not both and abs(last) < abs(first)
-    if bool(w[0] - np.min(w) > np.max(w) - w[0]) != eased:
+    unloading = single and not bent_both_ways and abs(last) < abs(first)
+    if bool(w[0] - np.min(w) > np.max(w) - w[0]) != unloading:
         w, force, first = -w, -force, -first
-    rest = float(np.percentile(force, 1))
-    if both:
-        rest = 0.0 if between else first
-    elif eased and rest > BEGUN * np.max(force):
-        rest = 0.0  # never unloaded
-    return w, force, rest, both
+    force_at_rest = float(np.percentile(force, 1))
+    if bent_both_ways:
+        force_at_rest = 0.0 if common_zero else first
+    elif unloading and force_at_rest > BEGUN * np.max(force):
+        force_at_rest = 0.0  # never unloaded
+    return w, force, force_at_rest, bent_both_ways
 
 
 def straight(loop: Loop, zeros: Sequence[float], low: float, high: float) -> Straight:
@@ -392,25 +404,26 @@ def straight(loop: Loop, zeros: Sequence[float], low: float, high: float) -> Str
         slope, curve = slopes(parts, 1, loop.record), slopes(parts, 2, loop.record)
         if straights and slope.value <= 0:
             break
-        new = loop.zeros(parts)
+        new_zeros = loop.zeros(parts)
         length = ends[1] - ends[0]
         bent = 2 * length * curve.value / slope.value
         half = quantile(curve.freedom) * float(np.sqrt(curve.variance))
         beyond = max(abs(bent) - abs(2 * length * half / slope.value), 0.0)
-        moved = float(np.median([a - b for a, b in zip(zeros, new, strict=True) if isfinite(b)]))
-        whole = (ends[0] + moved, ends[1] + moved)
-        one = Straight(parts, whole, bent, beyond, (first, last) != CUTS[0])
+        pairs = zip(zeros, new_zeros, strict=True)
+        shift = float(np.median([old - new for old, new in pairs if isfinite(new)]))
+        from_zero = (ends[0] + shift, ends[1] + shift)
+        candidate = Straight(parts, from_zero, bent, beyond, (first, last) != CUTS[0])
         if abs(bent) <= BENT or beyond == 0:
-            return one
-        straights.append(one)
+            return candidate
+        straights.append(candidate)
     return straights[0]
 
 
 SHARE = 0.999
-"""Share of the velocity's power that counts as motion (a choice: the rest then has 3 % of the
-velocity)."""
+"""Share of the velocity's power that counts as motion (a choice: 3 % of the velocity is then left
+out)."""
 ABOVE = 4.0
-"""Multiple of its noise at which the velocity's spectrum shows motion (a choice: white noise
+"""Multiple of the noise above which the velocity's spectrum shows motion (a choice: white noise
 reaches it in one of 55 lines of a single periodogram, hardly ever in the mean of many)."""
 
 
@@ -419,8 +432,8 @@ class Spectrum(NamedTuple):
 
     Parameters
     ----------
-    motion : 99.9 % of the velocity's power lies below
-    floor : above the motion, the position's spectrum is noise from here on; 0 if it never is
+    motion : frequency below which 99.9 % of the velocity's power lies
+    floor : frequency beyond the motion where the position becomes noise; 0 if it does not
     kept : share of the velocity's power that passes the filter
     """
 
@@ -449,22 +462,18 @@ class Spectrum(NamedTuple):
 def spectrum(record: Record, motion: ConditionedRecord) -> Spectrum:
     """Frequencies at which motion ends and noise begins, by Welch's method on the longest section.
 
-    Uses the velocity's spectrum less that of white noise of the position, (2 sin(pi f dt)/dt)^2
-    times a level from the upper half of the band.
+    Motion is the velocity's spectrum less that of white noise of the position: (2 sin(pi f
+    dt)/dt)^2 times a level from the upper half of the band.
 
     Parameters
     ----------
-    record : raw
-    motion : conditioned
-
-    Returns
-    -------
-    the frequencies
+    record : raw record
+    motion : conditioned record
     """
     from scipy.signal import welch  # slow import, rarely used
 
     step, noise = motion.sample_time, motion.quality["x"].noise
-    piece = max(motion.pieces, key=lambda one: one.time.size)
+    piece = max(motion.pieces, key=lambda section: section.time.size)
     known = np.isfinite(record["x"])
     raw = np.interp(piece.time, record.time[known], record["x"][known])
     spike = np.abs(raw - piece["x"]) > 6 * noise
@@ -492,8 +501,9 @@ def spectrum(record: Record, motion: ConditionedRecord) -> Spectrum:
 def _moves(frequency: Array, power: Array, slope: Array, loud: Array, variance: float) -> Array:
     """Frequencies at which the excess over white noise is motion.
 
-    A sensor step q causes lines at v/q with up to q^2/(2 pi^2) of the position's power, less than
-    their variance q^2/12. Beyond the motion's own peak a line must exceed that to count.
+    A sensor step q causes lines at v/q with a power of the position up to q^2/(2 pi^2), less than
+    the variance q^2/12 of the steps. Beyond the peak of the motion a line counts if it exceeds that
+    variance.
     """
     place = np.where(loud, power / np.where(slope > 0, slope, 1.0), 0.0)
     peak = int(np.argmax(place))

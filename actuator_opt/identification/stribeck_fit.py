@@ -1,4 +1,4 @@
-"""The Stribeck curve of measured points: global search, least squares, bounds, verdicts."""
+"""The Stribeck curve of measured points: global search, least squares, bounds, caveats."""
 
 from __future__ import annotations
 
@@ -11,31 +11,30 @@ from ..base import fitting as least_squares
 from ..base.fitting import Parameter, known
 from ..base.numeric import STEP, Array
 from ..models import friction
-from .doubtful import PARTED, hidden, misled, opened, spread, unequal, ways, widened
+from .doubtful import INSEPARABLE, hidden, misled, spread, unbounded, unequal, ways, widened
 from .points import FrictionPoint
 
 STATIC_MOST = 3.0
-"""Largest F_S relative to the largest friction measured (a choice: a higher one is a guess)."""
+"""Largest F_S over the largest friction measured (a choice: a higher F_S is a guess)."""
 SPEEDS, EXPONENTS = (2e-4, 5e-2), (0.5, 2.5)
-"""Search ranges of the Stribeck speed [m/s] and of its exponent (choices: a decade and more about
+"""Search ranges of the Stribeck speed [m/s] and of its exponent (choices: a decade either side of
 the few mm/s of seals; half a unit beyond the 1 and 2 of the usual laws)."""
 EXPONENT = 2.0
 """Exponent if the points cannot determine it ([MECE5005], [Huang2017] Table 2)."""
 SHARED = 0.85
-"""Least scatter of a sweep's points about the curve, relative to their errors: the filter
-correlates neighbours, so they look smoother than they are (a choice, from records of known
-friction)."""
+"""Least scatter of a sweep's points about the curve over their errors (a choice, from records of
+known friction): the filter correlates neighbouring points, so they look too smooth."""
 OTHER = 0.5
-"""Other exponent that bounds allow for if it is fixed: 0.5 to 1 by Bo and Pavelescu, 1 by Tustin, 2
-by others [ArmstrongHelouvry1994]."""
+"""Second exponent that bounds allow for if the exponent is fixed: 0.5 to 1 by Bo and Pavelescu, 1
+by Tustin, 2 by others [ArmstrongHelouvry1994]."""
 DIFFERENT = 0.05
 """Relative difference above which speeds count as different (a choice: more than
 `points.STEADY`)."""
 MODEL = 1e-3
-"""Error of a point relative to the largest friction, beside its scatter (a choice: no curve is
+"""Error of a point over the largest friction, in addition to its scatter (a choice: no curve fits
 better)."""
 _LEVELS = (("coulomb", "viscous"), ("static", "stribeck_speed"), ("exponent",))
-"""Parameters fitted, one group after the other."""
+"""Fitted parameters, in groups that are added in turn."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,14 +43,15 @@ class StribeckFit:
 
     Parameters
     ----------
-    parameters : fitted ones, by name of `SYMBOLS`
-    held : fixed ones: exponent 2, no Stribeck part, no offset
-    covariance : of the parameters in their order
+    parameters : fitted parameters by name
+    held : fixed parameters: exponent 2, no Stribeck part, no offset
+    covariance : of the fitted parameters in their order
+    quantile : Student's t of the bounds
     reference_pressure : p_0 [Pa]
     residuals : measured less fitted [N], by point
     errors : standard error of each point as weighted [N]
-    doubts : why some parameter was not fitted, or is unknown
-    doubted : whether the friction itself is doubtful, because areas or sensors are wrong
+    doubts : why a parameter was not fitted, or is unknown
+    doubted : whether the friction itself is doubtful, because areas or sensors seem wrong
     """
 
     parameters: Mapping[str, Parameter]
@@ -67,7 +67,10 @@ class StribeckFit:
     @property
     def values(self) -> dict[str, float]:
         """All parameters, fitted or fixed."""
-        return {**self.held, **{name: one.value for name, one in self.parameters.items()}}
+        return {
+            **self.held,
+            **{name: parameter.value for name, parameter in self.parameters.items()},
+        }
 
     @property
     def scatter(self) -> float:
@@ -120,15 +123,15 @@ def curve(
 def fit_stribeck(points: Sequence[FrictionPoint], area: float) -> StribeckFit | str:
     """The Stribeck curve through points of steady sliding, or the reason for none.
 
-    Fitted are F_C and sigma_2; F_S and v_s with five speeds or more if they improve the fit
-    (corrected Akaike information), and with seven speeds the exponent too: fitted only where it
-    improves the fit it would be biased, and F_S with it; an offset if the rod runs both ways; a
-    pressure effect if pressure varies by a fifth.
+    F_C and sigma_2 are always fitted. F_S and v_s are fitted with five speeds or more if they
+    improve the fit (corrected Akaike information), then with seven speeds the exponent too: an
+    exponent fitted only if it improves the fit would be biased, and F_S with it. An offset is
+    fitted if the rod moves both ways, a pressure effect if the pressure varies by a fifth.
 
     Parameters
     ----------
-    points : steady
-    area : of the piston [m^2]
+    points : points of steady sliding
+    area : piston area of the cap end [m^2]
 
     Returns
     -------
@@ -138,17 +141,17 @@ def fit_stribeck(points: Sequence[FrictionPoint], area: float) -> StribeckFit | 
     if len(speeds) < 2:
         at = f"one speed, {1e3 * speeds[0]:.3g} mm/s" if speeds else "no steady sliding"
         return f"{at}: a Stribeck curve needs plateaus or sweeps of 2 speeds, 5 for F_S and v_s"
-    beside = _beside(points, area)
+    further = _further(points, area)
     doubts: list[str] = []
     fits = []
     for depth, least in ((1, 2), (2, 5), (3, 7)):
-        names = [name for level in _LEVELS[:depth] for name in level] + beside
+        names = [name for level in _LEVELS[:depth] for name in level] + further
         if len(speeds) < least or len(points) <= len(names) + 1:
             break
         fits.append(_fit(points, tuple(names), EXPONENT))
     if not fits:
         return (
-            f"{len(points)} points for {2 + len(beside)} parameters: give more plateaus or sweeps "
+            f"{len(points)} points for {2 + len(further)} parameters: give more plateaus or sweeps "
             "at other speeds"
         )
     best = min(fits, key=_information)
@@ -156,7 +159,7 @@ def fit_stribeck(points: Sequence[FrictionPoint], area: float) -> StribeckFit | 
         best = fits[-1]
         exponent = best.parameters.get("exponent")
         if exponent is None or not exponent.identifiable:
-            best = _unsure(best, points)
+            best = _allowing_exponents(best, points)
     if len(fits) < 2:
         doubts.append(f"{len(speeds)} speeds cannot show F_S and v_s; five or more can")
     elif "static" not in best.parameters:
@@ -166,66 +169,66 @@ def fit_stribeck(points: Sequence[FrictionPoint], area: float) -> StribeckFit | 
             f"the exponent is fixed at {EXPONENT:g}, bounds allow for {OTHER:g}: seven speeds "
             "would determine it"
         )
-    slowest, *_, fastest = sorted(points, key=lambda one: one.speed)
+    slowest, *_, fastest = sorted(points, key=lambda point: point.speed)
     falls = abs(fastest.friction) < abs(slowest.friction)
-    why = hidden(best.parameters, fastest.speed, falls)
-    if why is not None:
-        doubts.append(why)
-        best = replace(best, parameters=opened(best.parameters, PARTED))
-    return _doubted(replace(best, doubts=tuple(doubts)), points, area)
+    reason = hidden(best.parameters, fastest.speed, falls)
+    if reason is not None:
+        doubts.append(reason)
+        best = replace(best, parameters=unbounded(best.parameters, INSEPARABLE))
+    return _with_doubts(replace(best, doubts=tuple(doubts)), points, area)
 
 
-def _doubted(fit: StribeckFit, points: Sequence[FrictionPoint], area: float) -> StribeckFit:
+def _with_doubts(fit: StribeckFit, points: Sequence[FrictionPoint], area: float) -> StribeckFit:
     """The fit with doubts about the friction itself: areas, sensors, other influences."""
-    even = unequal(points, area)
+    error = unequal(points, area)
     plunger = all(point.pressure_2 == 0 for point in points)
-    wrong = [] if even is None or not even.sure else [even.says(area, plunger)]
+    faults = [] if error is None or not error.sure else [error.says(area, plunger)]
     measured = np.array([point.friction for point in points])
-    impossible = list(misled(fit.parameters, measured, fit.residuals, fit.errors))
-    parameters = opened(fit.parameters, fit.parameters if impossible else ())
-    doubts = (*fit.doubts, *wrong, *impossible, *ways(parameters, even))
-    doubted = bool(wrong or impossible)
+    contradictions = list(misled(fit.parameters, measured, fit.residuals, fit.errors))
+    parameters = unbounded(fit.parameters, fit.parameters if contradictions else ())
+    doubts = (*fit.doubts, *faults, *contradictions, *ways(parameters, error))
+    doubted = bool(faults or contradictions)
     return replace(fit, parameters=parameters, doubts=doubts, doubted=doubted)
 
 
-def _unsure(fit: StribeckFit, points: Sequence[FrictionPoint]) -> StribeckFit:
+def _allowing_exponents(fit: StribeckFit, points: Sequence[FrictionPoint]) -> StribeckFit:
     """The fit with bounds that allow for another exponent than the fixed one."""
     names = tuple(name for name in fit.parameters if name != "exponent")
-    more = held_error(fit.parameters, _fit(points, names, OTHER).values)
-    return replace(fit, parameters=widened(fit.parameters, more, fit.quantile))
+    errors = held_error(fit.parameters, _fit(points, names, OTHER).values)
+    return replace(fit, parameters=widened(fit.parameters, errors, fit.quantile))
 
 
 def held_error(parameters: Mapping[str, Parameter], other: Mapping[str, float]) -> dict[str, float]:
-    """Standard error due to a fixed exponent: uniform between two fits, d/sqrt 3."""
+    """Standard errors due to a fixed exponent: d/sqrt 3 for a difference d between two fits."""
     return {
-        name: abs(other[name] - one.value) / float(np.sqrt(3))
-        for name, one in parameters.items()
+        name: abs(other[name] - parameter.value) / float(np.sqrt(3))
+        for name, parameter in parameters.items()
         if name != "exponent"
     }
 
 
 def different(speeds: Sequence[float]) -> list[float]:
     """Speeds that differ by more than `DIFFERENT`."""
-    found: list[float] = []
+    distinct: list[float] = []
     for speed in sorted(speeds):
-        if not found or speed > found[-1] * (1 + DIFFERENT):
-            found.append(speed)
-    return found
+        if not distinct or speed > distinct[-1] * (1 + DIFFERENT):
+            distinct.append(speed)
+    return distinct
 
 
-def _beside(points: Sequence[FrictionPoint], area: float) -> list[str]:
+def _further(points: Sequence[FrictionPoint], area: float) -> list[str]:
     """Offset and pressure effect, if the points can show them."""
     ways = {point.velocity > 0 for point in points}
-    found = ["offset"] if len(ways) == 2 else []
+    names = ["offset"] if len(ways) == 2 else []
     for way in ways:
         pressures = [point.pressure for point in points if (point.velocity > 0) == way]
         if len(points) > 4 and spread(points, pressures, area) > 1:
-            return [*found, "pressure_slope"]
-    return found
+            return [*names, "pressure_slope"]
+    return names
 
 
 class Steady:
-    """Points as arrays, with weights 1/error; their curve is the mean over each point's spread."""
+    """Points as arrays, with weights 1/error; the curve is averaged over each point's spread."""
 
     def __init__(self, points: Sequence[FrictionPoint], error: Array | None = None) -> None:
         self.velocity = np.array([point.velocity for point in points])
@@ -239,9 +242,9 @@ class Steady:
         self.change = pressure - self.reference
 
     def predict(self, values: Mapping[str, Array]) -> Array:
-        """Friction of the points: the mean at v - s and v + s has the spread's mean square."""
-        both = (self.velocity - self.spread, self.velocity + self.spread)
-        return sum(curve(one, self.change, **values) for one in both) / 2
+        """Friction of the points: mean at v - s and v + s, whose variance is that of the spread."""
+        velocities = (self.velocity - self.spread, self.velocity + self.spread)
+        return sum(curve(velocity, self.change, **values) for velocity in velocities) / 2
 
     def residual(self, values: Mapping[str, Array]) -> Array:
         """Fitted less measured, over the error."""
@@ -249,8 +252,8 @@ class Steady:
 
     def slopes(self, values: Mapping[str, float], names: Sequence[str]) -> Array:
         """Derivatives of the friction by parameters (points, parameters)."""
-        both = (self.velocity - self.spread, self.velocity + self.spread)
-        return sum(_slopes(one, self.change, values, names) for one in both) / 2
+        velocities = (self.velocity - self.spread, self.velocity + self.spread)
+        return sum(_slopes(velocity, self.change, values, names) for velocity in velocities) / 2
 
 
 def _held(names: Sequence[str], coulomb: float, exponent: float) -> dict[str, float]:
@@ -268,10 +271,10 @@ def _fit(points: Sequence[FrictionPoint], names: tuple[str, ...], exponent: floa
     scale = _scales(data)
 
     def values(x: Array) -> dict[str, float]:
-        found = dict(zip(names, x * [scale[name] for name in names], strict=True))
+        parameters = dict(zip(names, x * [scale[name] for name in names], strict=True))
         if "static" in names:  # searched as the excess over F_C, which keeps F_S >= F_C
-            found["static"] = found["coulomb"] + found["static"]
-        return _held(names, found["coulomb"], exponent) | found
+            parameters["static"] = parameters["coulomb"] + parameters["static"]
+        return _held(names, parameters["coulomb"], exponent) | parameters
 
     def residuals(x: Array) -> Array:
         return data.residual(values(x))
@@ -285,25 +288,26 @@ def _fit(points: Sequence[FrictionPoint], names: tuple[str, ...], exponent: floa
 
     low, high = (np.array(side) for side in _limits(names, scale))
     x0 = np.array([start[name] / scale[name] for name in names])
-    found = least_squares.solve(
+    minimum = least_squares.solve(
         residuals, x0, (low, high), slopes=slopes, sizes="jac", room=1e-9, most=400
     )
-    best = values(found.x)
-    own = {name: best[name] for name in names}
-    jacobian = data.slopes(best, names)
-    sizes = np.array([max(abs(own[name]), 1e-3 * scale[name]) for name in names])
-    rest = data.residual(best)
-    chance = float(np.sqrt(np.sum(rest**2) / max(rest.size - len(own), 1)))
+    best = values(minimum.x)
+    optimum = {name: best[name] for name in names}
+    jacobian = data.slopes(best, names) / data.error[:, None]
+    sizes = np.array([max(abs(optimum[name]), 1e-3 * scale[name]) for name in names])
+    residual = data.residual(best)
+    factor = 1.0
     if any(point.kind == "sweep" for point in points):
-        rest = rest * max(SHARED / max(chance, 1e-9), 1.0)
-    told = known(own, jacobian / data.error[:, None], rest, sizes)
+        scatter = float(np.sqrt(np.sum(residual**2) / max(residual.size - len(names), 1)))
+        factor = max(SHARED / max(scatter, 1e-9), 1.0)
+    fitted = known(optimum, jacobian, residual * factor, sizes)
     return StribeckFit(
-        told.parameters,
+        fitted.parameters,
         _held(names, best["coulomb"], exponent),
-        told.covariance,
-        told.quantile,
+        fitted.covariance,
+        fitted.quantile,
         data.reference,
-        -data.residual(best) * data.error,
+        -residual * data.error,
         data.error,
         (),
     )
@@ -352,17 +356,20 @@ def _search(data: Steady, names: Sequence[str], held: float) -> dict[str, float]
     from scipy.optimize import lsq_linear  # slow import, rarely used
 
     for stribeck_speed, exponent in grid:
-        own = dict(columns)
+        columns_with_rise = dict(columns)
         if "static" in names:
-            own["static"] = way * np.exp(-((speed / stribeck_speed) ** exponent))
-        matrix = np.stack(list(own.values()), axis=1) / data.error[:, None]
+            columns_with_rise["static"] = way * np.exp(-((speed / stribeck_speed) ** exponent))
+        matrix = np.stack(list(columns_with_rise.values()), axis=1) / data.error[:, None]
         target = data.friction / data.error
         amplitudes, *_ = np.linalg.lstsq(matrix, target, rcond=None)
-        at = dict(zip(own, amplitudes, strict=True))
+        at = dict(zip(columns_with_rise, amplitudes, strict=True))
         if any(at.get(name, 1.0) < 0 for name in ("coulomb", "viscous", "static")):
-            low = [0.0 if name in ("coulomb", "viscous", "static") else -np.inf for name in own]
+            low = [
+                0.0 if name in ("coulomb", "viscous", "static") else -np.inf
+                for name in columns_with_rise
+            ]
             amplitudes = lsq_linear(matrix, target, (low, np.inf), method="bvls").x
-            at = dict(zip(own, amplitudes, strict=True))
+            at = dict(zip(columns_with_rise, amplitudes, strict=True))
         cost = float(np.sum((matrix @ amplitudes - target) ** 2))
         if cost < least:
             best, least = at | {"stribeck_speed": stribeck_speed, "exponent": exponent}, cost

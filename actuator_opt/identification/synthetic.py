@@ -1,4 +1,4 @@
-"""Synthetic test records of known friction, to plan a test or to check a method."""
+"""Synthetic test records of known friction, for planning a test or checking a method."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Truth:
     bristle_stiffness: float
     bristle_damping: float
     pressure_slope: float = 0.0
-    """dF_C/dp of the higher chamber pressure, F_S in proportion [N/Pa]."""
+    """dF_C/dp for the higher chamber pressure; F_S changes in proportion [N/Pa]."""
     reference_pressure: float = 0.0
 
 
@@ -35,13 +35,13 @@ class Sensors:
 
     Parameters
     ----------
-    pressure_range : of the pressure sensors [Pa]
-    pressure_noise : standard deviation over that range
+    pressure_range : range of the pressure sensors [Pa]
+    pressure_noise : standard deviation of the pressures over that range
     position_step : resolution of the position sensor [m]
-    force_noise : of the force sensor [N]
+    force_noise : standard deviation of the force [N]
     pressure_lag : time lag of the pressures [s]
-    spikes : share of samples that are spikes, in every channel
-    pressure_offset : of p1 [Pa]
+    spikes : share of spikes among the samples, in every channel
+    pressure_offset : zero error of p1 [Pa]
     """
 
     pressure_range: float = 25e6
@@ -55,7 +55,7 @@ class Sensors:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PrescribedMotion:
-    """A prescribed motion: time, position, velocity, acceleration (samples), SI."""
+    """Prescribed motion of the rod, SI; arrays (samples)."""
 
     time: Array
     position: Array
@@ -92,8 +92,8 @@ def plateaus(
     parts = [np.zeros(round(rest / step))]
     rise = (1 - np.cos(np.pi * np.arange(round(ramp / step)) * step / ramp)) / 2
     for speed in speeds:
-        held = np.ones(round(min(max(travel / speed - ramp, ramp), longest) / step))
-        stroke = speed * np.concatenate([rise, held, rise[::-1]])
+        constant = np.ones(round(min(max(travel / speed - ramp, ramp), longest) / step))
+        stroke = speed * np.concatenate([rise, constant, rise[::-1]])
         parts += [stroke, np.zeros(round(rest / step)), -stroke, np.zeros(round(rest / step))]
     return course(np.concatenate(parts), begin=begin, step=step)
 
@@ -101,8 +101,8 @@ def plateaus(
 def course(velocity: Array, *, begin: float, step: float) -> PrescribedMotion:
     """The motion of a velocity from an initial position, SI."""
     time = step * np.arange(velocity.size)
-    gone = np.concatenate([[0.0], np.cumsum((velocity[1:] + velocity[:-1]) / 2) * step])
-    return PrescribedMotion(time, begin + gone, velocity, np.gradient(velocity, step))
+    distance = np.concatenate([[0.0], np.cumsum((velocity[1:] + velocity[:-1]) / 2) * step])
+    return PrescribedMotion(time, begin + distance, velocity, np.gradient(velocity, step))
 
 
 def friction_along(truth: Truth, course: PrescribedMotion, pressure: Array) -> Array:
@@ -118,29 +118,29 @@ def friction_along(truth: Truth, course: PrescribedMotion, pressure: Array) -> A
     )
     level = level * (1 + truth.pressure_slope * change / truth.coulomb)
     step = float(course.time[1] - course.time[0])
-    found = np.zeros(course.time.size)
+    forces = np.zeros(course.time.size)
     deflection = 0.0
-    for k, (speed, here) in enumerate(zip(between.tolist(), level.tolist(), strict=True)):
-        now = lugre.lugre_step(
+    for k, (speed, level_here) in enumerate(zip(between.tolist(), level.tolist(), strict=True)):
+        step_result = lugre.lugre_step(
             deflection=deflection,
             speed=speed,
             time_step=step,
-            level=here,
+            level=level_here,
             bristle_stiffness=truth.bristle_stiffness,
             bristle_damping=truth.bristle_damping,
             viscous=truth.viscous,
         )
-        deflection, found[k + 1] = now.deflection, now.force
-    return found
+        deflection, forces[k + 1] = step_result.deflection, step_result.force
+    return forces
 
 
 def pressures(
     bench: Bench, course: PrescribedMotion, force: Array, *, back_pressure: float, mass: float
 ) -> tuple[Array, Array]:
-    """Chamber pressures that drive a mass against a force [Pa], the lower one at `back_pressure`.
+    """Chamber pressures that drive a mass against a force [Pa]; the lower is `back_pressure`.
 
-    The higher pressure and the resulting bore growth are solved together. A plunger is pushed by p1
-    alone; the load returns it.
+    The higher pressure and the resulting growth of the bore are solved together. Only p1 pushes a
+    plunger; the load returns it.
     """
     needed = force + mass * course.acceleration
     if bench.plunger:
@@ -150,9 +150,9 @@ def pressures(
         area_1, area_2 = bench.areas(highest)
         push = (needed + back_pressure * area_2) / area_1
         pull = (back_pressure * area_1 - needed) / area_2
-        out = push >= back_pressure
-        first = np.where(out, push, back_pressure)
-        second = np.where(out, back_pressure, pull)
+        extending = push >= back_pressure
+        first = np.where(extending, push, back_pressure)
+        second = np.where(extending, back_pressure, pull)
         highest = np.maximum(first, second)
     return first, second
 
@@ -179,13 +179,13 @@ def record(
     load : on the rod, against extension [N]
     mass : inside the force sensor [kg]
     back_pressure : of the chamber that is not driven [Pa]
-    sensors : None for perfect ones
+    sensors : errors of the sensors; None for perfect sensors
     rng : of the noise
     name : of the record
 
     Returns
     -------
-    the record, with channels p1, p2, x, F_L; of a plunger without p2
+    the record, with channels p1, p2, x, F_L; without p2 for a plunger
     """
     load = np.broadcast_to(load, course.time.shape).astype(float)
     p1, p2 = pressures(bench, course, friction_force + load, back_pressure=back_pressure, mass=mass)
@@ -201,23 +201,23 @@ def _sensed(
     channels: Mapping[str, Array], time: Array, sensors: Sensors, rng: np.random.Generator
 ) -> dict[str, Array]:
     """Channels with lag, offset, noise, steps and spikes."""
-    found = dict(channels)
+    readings = dict(channels)
     scatter = {
         "p1": sensors.pressure_noise * sensors.pressure_range,
         "p2": sensors.pressure_noise * sensors.pressure_range,
         "F_L": sensors.force_noise,
     }
     for name in ("p1", "p2"):
-        if name in found:
-            found[name] = np.interp(time - sensors.pressure_lag, time, found[name])
-    found["p1"] = found["p1"] + sensors.pressure_offset
+        if name in readings:
+            readings[name] = np.interp(time - sensors.pressure_lag, time, readings[name])
+    readings["p1"] = readings["p1"] + sensors.pressure_offset
     for name, sigma in scatter.items():
-        if name in found:
-            found[name] = found[name] + sigma * rng.standard_normal(time.size)
+        if name in readings:
+            readings[name] = readings[name] + sigma * rng.standard_normal(time.size)
     if sensors.position_step:
-        found["x"] = sensors.position_step * np.round(found["x"] / sensors.position_step)
-    for name, values in found.items():
-        hit = rng.random(time.size) < sensors.spikes
+        readings["x"] = sensors.position_step * np.round(readings["x"] / sensors.position_step)
+    for name, values in readings.items():
+        spike = rng.random(time.size) < sensors.spikes
         height = max(float(np.ptp(values)), 1e-6)
-        found[name] = np.where(hit, values + height * rng.uniform(-1, 1, time.size), values)
-    return found
+        readings[name] = np.where(spike, values + height * rng.uniform(-1, 1, time.size), values)
+    return readings

@@ -9,10 +9,10 @@ from . import overlap
 from .joint import (
     End,
     EndDimensions,
+    FactorBasis,
     Fatigue,
     Joint,
     JointField,
-    Judged,
     Loaded,
     MaterialProperties,
     Strength,
@@ -36,8 +36,8 @@ def _overlap(loaded: Loaded) -> Overlap | str:
     if end.material is None:
         return "a bond needs an adhesive: add retention.material"
     modulus = materials.get(end.cap, "youngs_modulus")
-    glue = (materials.get(end.material, key) for key in ("bond_strength", "shear_modulus"))
-    if any(value is None for value in (modulus, *glue)):
+    adhesive = (materials.get(end.material, key) for key in ("bond_strength", "shear_modulus"))
+    if any(value is None for value in (modulus, *adhesive)):
         return "adhesive or caps lack bond strength or a modulus"
     return Overlap(
         adhesive=end.material,
@@ -103,7 +103,7 @@ JOINT = Joint(
     own=lambda loaded: {},
     envelope=_envelope,
     metrics={},
-    judged=(Judged("the elastic peak shear", "a bond"), Judged("mean bond shear")),
+    judged=(FactorBasis("the elastic peak shear", "a bond"), FactorBasis("mean bond shear")),
     models={
         ("retention_factor", "bond at the skirt's edge"): "lap_joint.bond_edge_shear",
         ("retention_factor", "bond at the barrel's edge"): "lap_joint.bond_edge_shear",

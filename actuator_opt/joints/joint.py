@@ -97,7 +97,7 @@ class JointField(NamedTuple):
     help: str = ""
 
 
-class Judged(NamedTuple):
+class FactorBasis(NamedTuple):
     """Basis of a safety factor: the `measure`, and the parts that it applies `of`."""
 
     measure: str
@@ -108,7 +108,7 @@ class Usual(NamedTuple):
     """A ratio with a usual range in sensible designs; `path` is the value to check."""
 
     path: str
-    what: str
+    meaning: str
     least: float
     most: float
     source: str
@@ -139,7 +139,7 @@ class End:
     barrel_length: Array
     plate: Array
     """Thickness of the end plate."""
-    known: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
+    cache: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
     """Intermediate results of a joint that it uses again, by its own key."""
 
 
@@ -316,7 +316,7 @@ class Joint:
     """Upper bound of `Strength.working` from `burst` if the former is not convex; None: unused."""
     metrics: Mapping[str, str]
     """Its own metrics, with the reason why other joints lack them; all joints give the factors."""
-    judged: tuple[Judged, Judged]
+    judged: tuple[FactorBasis, FactorBasis]
     """Basis of the working and the burst factor."""
     models: Mapping[tuple[str, str], str]
     """Main model of a metric at a place, such as `rod.section_area`."""
@@ -345,8 +345,8 @@ def check(joints: Iterable[Joint]) -> None:
     """
     seen: dict[object, str] = {}
     for joint in joints:
-        own = [field.key for field in joint.fields if field.quantity]
-        for claim in (*own, *joint.metrics, *joint.models):
+        keys = [field.key for field in joint.fields if field.quantity]
+        for claim in (*keys, *joint.metrics, *joint.models):
             if claim in seen:
                 raise ValueError(f"joint {joint.name}: {claim} already belongs to {seen[claim]}")
             seen[claim] = joint.name
@@ -357,9 +357,9 @@ def chosen(stated: StatedValues, path: str) -> bool:
     return stated.has("choices", path)
 
 
-def judged_later(stated: StatedValues, moved: Iterable[str]) -> bool:
+def judged_later(stated: StatedValues, varied: Iterable[str]) -> bool:
     """Whether choices vary these sizes (PATHs) in every combination, as the search keeps limits."""
-    paths = tuple(moved)
+    paths = tuple(varied)
     free = any(stated.has("variables", path) for path in paths)
     return free and any(chosen(stated, path) for path in (*paths, "retention.type"))
 

@@ -90,10 +90,10 @@ class Overlap:
         return partial(self.thermal_factor, materials)
 
 
-def mismatch(materials: MaterialProperties, metal: str, along: Array) -> Array:
+def mismatch(materials: MaterialProperties, metal: str, tube: Array) -> Array:
     """Axial expansion of the metal minus that of the tube; None if unknown."""
-    own = materials.get(metal, "thermal_expansion")
-    return None if own is None or along is None else own - along
+    metal_expansion = materials.get(metal, "thermal_expansion")
+    return None if metal_expansion is None or tube is None else metal_expansion - tube
 
 
 def fit(end: End, radius: Array) -> EndDimensions:

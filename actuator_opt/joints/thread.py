@@ -27,10 +27,10 @@ from .joint import (
     ROUNDING,
     End,
     EndDimensions,
+    FactorBasis,
     Fatigue,
     Joint,
     JointField,
-    Judged,
     KnownMaterials,
     Loaded,
     MaterialProperties,
@@ -87,14 +87,14 @@ def _stated(view: StatedValues) -> _Stated | None:
     """Sizes of the joint; None if a size is missing or faulty."""
     count = len(view.items("barrel", "layup"))
     layers = [view.number("barrel", "layup", index, "thickness") for index in range(count)]
-    known = [layer for layer in layers if layer is not None]
+    thicknesses = [layer for layer in layers if layer is not None]
     bore, pitch = view.number("cylinder", "bore"), view.number("retention", "thread", "pitch")
     wall = view.number("retention", "wall")
-    if bore is None or pitch is None or wall is None or not known or len(known) < count:
+    if bore is None or pitch is None or wall is None or not thicknesses or len(thicknesses) < count:
         return None
-    outside = bore + 2 * sum(known)
+    outside = bore + 2 * sum(thicknesses)
     stated = view.number("retention", "thread", "diameter")
-    return _Stated(outside, known[-1], outside if stated is None else stated, pitch, wall)
+    return _Stated(outside, thicknesses[-1], outside if stated is None else stated, pitch, wall)
 
 
 def _faults(view: StatedValues) -> Iterator[Fault]:
@@ -114,7 +114,9 @@ def _faults(view: StatedValues) -> Iterator[Fault]:
         pitch=sizes.pitch,
         crest_diameter=min(sizes.diameter, sizes.outside),
     )
-    if overlap < thread.LEAST_OVERLAP * (1 - ROUNDING) and not judged_later(view, _moved(view)):
+    if overlap < thread.LEAST_OVERLAP * (1 - ROUNDING) and not judged_later(
+        view, _size_paths(view)
+    ):
         text = _text(sizes.outside)
         yield Fault(
             ("retention", "thread", "diameter"),
@@ -124,46 +126,48 @@ def _faults(view: StatedValues) -> Iterator[Fault]:
         )
 
 
-def _material_faults(view: StatedValues, known: KnownMaterials) -> Iterator[Fault]:
+def _material_faults(view: StatedValues, materials: KnownMaterials) -> Iterator[Fault]:
     """Both threads are cut into a metal with known strengths, and leave enough metal."""
     sizes, layer = _stated(view), _layer(view)
     caps = "caps" if view.has("caps") else "piston"  # the default material of the caps
-    if _metal(view, known, (*layer, "material")) and sizes is not None:
-        yield from _under(view, sizes)
-    if _metal(view, known, (caps, "material")) and sizes is not None:
-        yield from _over(view, sizes)
-    yield from _into(
+    if _metal(view, materials, (*layer, "material")) and sizes is not None:
+        yield from _layer_faults(view, sizes)
+    if _metal(view, materials, (caps, "material")) and sizes is not None:
+        yield from _skirt_wall_faults(view, sizes)
+    yield from _cut_faults(
         view,
-        known,
+        materials,
         (*layer, "material"),
         "the outermost layer of the barrel, which is",
         f"barrel.layup[{layer[-1]}]",
     )
-    yield from _into(view, known, (caps, "material"), "the caps' skirts, which are", caps)
+    yield from _cut_faults(view, materials, (caps, "material"), "the caps' skirts, which are", caps)
 
 
-def _metal(view: StatedValues, known: KnownMaterials, loc: tuple[str | int, ...]) -> bool:
+def _metal(view: StatedValues, materials: KnownMaterials, loc: tuple[str | int, ...]) -> bool:
     name = view.text(*loc)
-    return name is not None and known.kind(name) == "metal"
+    return name is not None and materials.kind(name) == "metal"
 
 
-def _into(
-    view: StatedValues, known: KnownMaterials, loc: tuple[str | int, ...], part: str, path: str
+def _cut_faults(
+    view: StatedValues, materials: KnownMaterials, loc: tuple[str | int, ...], part: str, path: str
 ) -> Iterator[Fault]:
     """A thread in a material that is no metal or has no strengths; `path` is that of the part."""
     name = view.text(*loc)
-    kind = None if name is None else known.kind(name)
+    kind = None if name is None else materials.kind(name)
     if name is None or kind is None:
         return
     if kind != "metal":
-        what = "of plies, with fibres that the thread cuts" if kind == "ply" else f"of a {kind}"
+        description = (
+            "of plies, with fibres that the thread cuts" if kind == "ply" else f"of a {kind}"
+        )
         yield Fault(
             loc,
-            f"{name}: retention.type thread cuts into {part} {what}; a thread needs metal",
+            f"{name}: retention.type thread cuts into {part} {description}; a thread needs metal",
             f"make {path} of metal, {OTHERWISE}",
         )
         return
-    properties = set(known.properties(name))
+    properties = set(materials.properties(name))
     missing = [key for key in NEEDED if properties and key not in properties]
     if missing:
         yield Fault(
@@ -173,24 +177,24 @@ def _into(
         )
 
 
-def _under(view: StatedValues, sizes: _Stated) -> Iterator[Fault]:
+def _layer_faults(view: StatedValues, sizes: _Stated) -> Iterator[Fault]:
     """Too little metal under the thread, in its layer."""
     root = thread.root_diameter(diameter=min(sizes.diameter, sizes.outside), pitch=sizes.pitch)
-    left = sizes.layer - (sizes.outside - root) / 2
+    remaining = sizes.layer - (sizes.outside - root) / 2
     layer = _layer(view)
-    if left < LEAST_METAL * (1 - ROUNDING) and not judged_later(view, _moved(view)):
+    if remaining < LEAST_METAL * (1 - ROUNDING) and not judged_later(view, _size_paths(view)):
         name = view.text(*layer, "material")
-        rest = _text(left) if left > 0 else "nothing"
+        rest = _text(remaining) if remaining > 0 else "nothing"
+        least = sizes.layer + LEAST_METAL - remaining
         yield Fault(
             (*layer, "thickness"),
             f"{_text(sizes.layer)} of {name}: the thread leaves {rest} of it, "
             f"but {_text(LEAST_METAL)} is needed",
-            f"write a thickness of at least {_text(sizes.layer + LEAST_METAL - left)}, a finer "
-            f"pitch, {OTHERWISE}",
+            f"write a thickness of at least {_text(least)}, a finer pitch, {OTHERWISE}",
         )
 
 
-def _over(view: StatedValues, sizes: _Stated) -> Iterator[Fault]:
+def _skirt_wall_faults(view: StatedValues, sizes: _Stated) -> Iterator[Fault]:
     """Too little metal around the thread of the skirts."""
     if sizes.wall < LEAST_METAL * (1 - ROUNDING) and not judged_later(view, ["retention.wall"]):
         yield Fault(
@@ -200,7 +204,7 @@ def _over(view: StatedValues, sizes: _Stated) -> Iterator[Fault]:
         )
 
 
-def _moved(view: StatedValues) -> Iterator[str]:
+def _size_paths(view: StatedValues) -> Iterator[str]:
     """PATHs of the sizes that determine the wall under the thread and its crests."""
     outermost = _layer(view)[-1]
     yield "retention.thread.pitch"
@@ -273,9 +277,9 @@ class EndThread:
 
 def derive(end: End) -> EndThread:
     """The thread of an end, derived once."""
-    if "thread" not in end.known:
-        end.known["thread"] = _derived(end)
-    end_thread: EndThread = end.known["thread"]
+    if "thread" not in end.cache:
+        end.cache["thread"] = _derived(end)
+    end_thread: EndThread = end.cache["thread"]
     return end_thread
 
 
@@ -314,68 +318,74 @@ def _strengths(materials: MaterialProperties, name: str) -> tuple[Array, Array]:
     )
 
 
-def _judged(loaded: Loaded) -> EndThread | str:
+def _assessed(loaded: Loaded) -> EndThread | str:
     """The thread of an end, or why it has no factor; assessed once."""
-    known = loaded.end.known
-    if "judged" not in known:
-        known["judged"] = _verdict(loaded)
-    found: EndThread | str = known["judged"]
-    return found
+    cache = loaded.end.cache
+    if "assessed" not in cache:
+        cache["assessed"] = _assessment(loaded)
+    assessed: EndThread | str = cache["assessed"]
+    return assessed
 
 
-def _verdict(loaded: Loaded) -> EndThread | str:
-    cut, materials = derive(loaded.end), loaded.materials
-    for name in (cut.male, cut.female):
+def _assessment(loaded: Loaded) -> EndThread | str:
+    end_thread, materials = derive(loaded.end), loaded.materials
+    for name in (end_thread.male, end_thread.female):
         if materials.kind(name) != "metal":
             return f"{name} is not a metal: a thread needs metal"
         if any(strength is None for strength in _strengths(materials, name)):
             return f"{name} has no yield or ultimate strength"
-    return cut
+    return end_thread
 
 
 def _strength(loaded: Loaded) -> Strength | str:
-    cut, materials, force = _judged(loaded), loaded.materials, loaded.force
-    if isinstance(cut, str):
-        return cut
-    return Strength(_working(materials, cut, force), _burst(materials, cut, force), NOT_BONDED)
+    end_thread, materials, force = _assessed(loaded), loaded.materials, loaded.force
+    if isinstance(end_thread, str):
+        return end_thread
+    return Strength(
+        _working(materials, end_thread, force), _burst(materials, end_thread, force), NOT_BONDED
+    )
 
 
 def _yields(loaded: Loaded) -> dict[str, Array]:
-    cut = _judged(loaded)
-    if isinstance(cut, str):
+    end_thread = _assessed(loaded)
+    if isinstance(end_thread, str):
         return overlap.yields(loaded)
-    strength = loaded.materials.allowable(cut.female, "yield_strength")
-    return {"skirt under the thread": strength * cut.skirt_section / loaded.force}
+    strength = loaded.materials.allowable(end_thread.female, "yield_strength")
+    return {"skirt under the thread": strength * end_thread.skirt_section / loaded.force}
 
 
-def _own(loaded: Loaded) -> dict[str, Array]:
+def _lands(loaded: Loaded) -> dict[str, Array]:
     """Metal left under either root, and flank overlap: limits that every search keeps."""
-    cut = derive(loaded.end)
-    walls = (cut.root_diameter / 2 - cut.layer_radius, cut.skirt_wall)
-    return dict(zip(LANDS, walls, strict=True)) | {CREST: cut.overlap}
+    end_thread = derive(loaded.end)
+    walls = (end_thread.root_diameter / 2 - end_thread.layer_radius, end_thread.skirt_wall)
+    return dict(zip(LANDS, walls, strict=True)) | {CREST: end_thread.overlap}
 
 
-def _working(materials: MaterialProperties, cut: EndThread, force: Array) -> dict[str, Array]:
+def _working(
+    materials: MaterialProperties, end_thread: EndThread, force: Array
+) -> dict[str, Array]:
     """Elastic limit over stress: shear of both threads, and flank pressure."""
-    male, female = (_strengths(materials, name)[0] for name in (cut.male, cut.female))
+    male, female = (_strengths(materials, name)[0] for name in (end_thread.male, end_thread.female))
     return {
-        "barrel thread": male / sqrt(3) * cut.male_area / force,
-        "skirt thread": female / sqrt(3) * cut.female_area / force,
-        "thread flanks": minimum(male, female) * cut.flank_area / force,
+        "barrel thread": male / sqrt(3) * end_thread.male_area / force,
+        "skirt thread": female / sqrt(3) * end_thread.female_area / force,
+        "thread flanks": minimum(male, female) * end_thread.flank_area / force,
     }
 
 
-def _burst(materials: MaterialProperties, cut: EndThread, force: Array) -> dict[str, Array]:
+def _burst(materials: MaterialProperties, end_thread: EndThread, force: Array) -> dict[str, Array]:
     """Ultimate strength over force: both threads, and the skirt, which they tear and spread."""
-    male, female = (_strengths(materials, name)[1] for name in (cut.male, cut.female))
-    ratio = female * cut.female_area / (male * cut.male_area)
+    male, female = (_strengths(materials, name)[1] for name in (end_thread.male, end_thread.female))
+    ratio = female * end_thread.female_area / (male * end_thread.male_area)
     of_male, of_female = thread.stripping_reductions(strength_ratio=ratio)
-    spread = thread.spread_stress(force=force, thickness=cut.skirt_wall, engagement=cut.engagement)
+    spread = thread.spread_stress(
+        force=force, thickness=end_thread.skirt_wall, engagement=end_thread.engagement
+    )
     return {
-        "barrel thread": of_male * male / sqrt(3) * cut.male_area / force,
-        "skirt thread": of_female * female / sqrt(3) * cut.female_area / force,
-        "skirt under the thread": female * cut.skirt_section / force,
-        "skirt spread by the thread": _strengths(materials, cut.female)[0] / spread,
+        "barrel thread": of_male * male / sqrt(3) * end_thread.male_area / force,
+        "skirt thread": of_female * female / sqrt(3) * end_thread.female_area / force,
+        "skirt under the thread": female * end_thread.skirt_section / force,
+        "skirt spread by the thread": _strengths(materials, end_thread.female)[0] / spread,
     }
 
 
@@ -389,47 +399,47 @@ def _wall(loaded: Loaded) -> WallPressures:
     p_s: the turns carry no hoop stress and transmit it as p_s d/d_3 (balance of forces; the skirt
     is assumed without axial force, which would lower p_s).
     """
-    cut, materials = _judged(loaded), loaded.materials
-    if isinstance(cut, str):
+    end_thread, materials = _assessed(loaded), loaded.materials
+    if isinstance(end_thread, str):
         return WallPressures()
     yields, bursts = {}, {}
-    size = {"inner_radius": cut.layer_radius, "outer_radius": cut.root_diameter / 2}
-    inside = cut.bore_radius / cut.layer_radius
-    strength, ultimate = _strengths(materials, cut.male)
-    skirt_strength, skirt_ultimate = _strengths(materials, cut.female)
+    size = {"inner_radius": end_thread.layer_radius, "outer_radius": end_thread.root_diameter / 2}
+    inside = end_thread.bore_radius / end_thread.layer_radius
+    strength, ultimate = _strengths(materials, end_thread.male)
+    skirt_strength, skirt_ultimate = _strengths(materials, end_thread.female)
     support = (
         barrel.burst_pressure_thick(
-            inner_radius=cut.diameter / 2,
-            outer_radius=cut.diameter / 2 + cut.skirt_wall,
+            inner_radius=end_thread.diameter / 2,
+            outer_radius=end_thread.diameter / 2 + end_thread.skirt_wall,
             yield_strength=skirt_strength,
             ultimate_strength=skirt_ultimate,
             axial_force_ratio=0.0,
         )
-        * cut.diameter
-        / cut.root_diameter
+        * end_thread.diameter
+        / end_thread.root_diameter
     )
     for path, axial in loaded.paths.items():
         hoop, radial, along = barrel.bore_stresses(pressure=inside, axial_force=axial, **size)
         stress = (hoop, radial, along, 0.0 * hoop)
         place = f"barrel under the thread, {path}"
         yields[place] = 1 / yield_utilisation(stress=stress, yield_strength=strength)
-        ratio = axial / (inside * pi * cut.layer_radius * cut.layer_radius)
-        alone = barrel.burst_pressure_thick(
+        ratio = axial / (inside * pi * end_thread.layer_radius * end_thread.layer_radius)
+        layer_burst = barrel.burst_pressure_thick(
             **size, yield_strength=strength, ultimate_strength=ultimate, axial_force_ratio=ratio
         )
-        bursts[place] = (alone + support) / inside
+        bursts[place] = (layer_burst + support) / inside
     return WallPressures(yields, bursts)
 
 
 def _fatigue(loaded: Loaded) -> Fatigue:
     """Axial stress at either root under pulsating force; the notch raises only the range."""
-    cut = _judged(loaded)
-    if isinstance(cut, str):
+    end_thread = _assessed(loaded)
+    if isinstance(end_thread, str):
         return Fatigue()
     pulsed = []
     for place, name, section in (
-        ("barrel thread root", cut.male, cut.barrel_section),
-        ("skirt thread root", cut.female, cut.skirt_section),
+        ("barrel thread root", end_thread.male, end_thread.barrel_section),
+        ("skirt thread root", end_thread.female, end_thread.skirt_section),
     ):
         stress = loaded.force / section
         hard = real(loaded.materials.get(name, "ultimate_strength", default=0.0)) >= HARD
@@ -439,9 +449,9 @@ def _fatigue(loaded: Loaded) -> Fatigue:
 
 def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
     """A thread that leaves too little metal: a search may start there, but cannot end there."""
-    own = _own(loaded)
+    lands = _lands(loaded)
     for name in LANDS:
-        least = float(np.min(np.real(own[name])))
+        least = float(np.min(np.real(lands[name])))
         if least < LEAST_METAL * (1 - ROUNDING):
             label = quantities[name]
             yield (
@@ -483,14 +493,14 @@ JOINT = Joint(
     yields=_yields,
     wall=_wall,
     fatigue=_fatigue,
-    own=_own,
+    own=_lands,
     envelope=None,
     metrics={
         LANDS[0]: _ABSENT,
         LANDS[1]: _ABSENT,
         CREST: _ABSENT,
     },
-    judged=(Judged("on yield", "threads"), Judged("rupture", "threads and skirt")),
+    judged=(FactorBasis("on yield", "threads"), FactorBasis("rupture", "threads and skirt")),
     models={
         ("retention_factor", "barrel thread"): "thread.male_strip_area",
         ("retention_factor", "skirt thread"): "thread.female_strip_area",

@@ -17,10 +17,10 @@ from .joint import (
     End,
     EndDimensions,
     EndSpan,
+    FactorBasis,
     Fatigue,
     Joint,
     JointField,
-    Judged,
     Life,
     Loaded,
     MaterialProperties,
@@ -122,9 +122,8 @@ def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tu
         force = float(np.max(np.real(_clamp(loaded).preload)))
         yield (
             "joint_factor",
-            f"no tie-rod preload stated: assumed {force / 1e3:.1f} kN, which keeps the "
-            "joint closed "
-            "at proof pressure",
+            f"no tie-rod preload stated: assumed {force / 1e3:.1f} kN, which keeps the joint "
+            "closed at proof pressure",
         )
 
 
@@ -142,7 +141,7 @@ JOINT = Joint(
         JointField("count"),
         JointField(
             "thread",
-            "missing: required by tie_rods",
+            "missing: required by tie rods",
             'add a block "thread:" with diameter, pitch',
         ),
         JointField("thread.diameter", "missing: required by tie rods", 'add e.g. "diameter: 6 mm"'),
@@ -166,7 +165,7 @@ JOINT = Joint(
     own=_own,
     envelope=None,
     metrics={"joint_factor": "no tie rods"},
-    judged=(Judged("on yield", "tie rods"), Judged("rupture", "tie rods")),
+    judged=(FactorBasis("on yield", "tie rods"), FactorBasis("rupture", "tie rods")),
     models={
         ("retention_factor", "tie rods"): "retention.tie_rod_stress",
     },

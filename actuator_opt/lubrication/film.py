@@ -142,21 +142,21 @@ def _bed(contact: Contact, pressure: float, film: float, ratio: Array) -> Bed:
 
 def outputs(flow: ReynoldsProblem, bed: Bed, state: FilmState) -> tuple[Array, Array, Array, Array]:
     """Viscous drag and contact load [N/m], flow [m^2/s] and mean film [m] of a state."""
-    sliding, pushing = 1.0, 1.0
+    couette_factor, poiseuille_factor = 1.0, 1.0
     if flow.rod_share is not None:
         ratio = state.film / flow.roughness_ratio
-        turned = shear_stress_correction(film_ratio=ratio, rod_share=flow.rod_share)
-        sliding = shear_stress_factor(film_ratio=ratio) - turned
-        pushing = pressure_stress_factor(film_ratio=ratio)
+        correction = shear_stress_correction(film_ratio=ratio, rod_share=flow.rod_share)
+        couette_factor = shear_stress_factor(film_ratio=ratio) - correction
+        poiseuille_factor = pressure_stress_factor(film_ratio=ratio)
     film = flow.film_scale * state.film
     absolute = flow.cavitation_pressure + flow.pressure_scale * state.pressure
     viscosity = flow.lubricant.dynamic_viscosity * flow.lubricant.viscosity_ratio(absolute)
-    dragged = viscosity * flow.speed / film * sliding * (1 - state.cavitation)
-    pushed = pushing * film / 2 * _slope(absolute) / flow.width
+    couette_stress = viscosity * flow.speed / film * couette_factor * (1 - state.cavitation)
+    poiseuille_stress = poiseuille_factor * film / 2 * _slope(absolute) / flow.width
     share = weights(flow.nodes)
     load = flow.width * flow.pressure_scale * (share @ contact_pressure(bed, state.film))
-    passing = flow.flow_scale * np.mean(flux(flow, state.pressure, state.cavitation, state.film))
-    return flow.width * (share @ (dragged + pushed)), load, passing, share @ film
+    net_flow = flow.flow_scale * np.mean(flux(flow, state.pressure, state.cavitation, state.film))
+    return flow.width * (share @ (couette_stress + poiseuille_stress)), load, net_flow, share @ film
 
 
 def _slope(values: Vector) -> Vector:
@@ -172,8 +172,8 @@ def _at_rest(contact: Contact, bed: Bed) -> FilmState:
     straight = np.linspace(bed.sealed, bed.outer, nodes)
     pressure = np.minimum(straight, np.maximum(0.9 * bed.static_pressure, 0.0))
     pressure[[0, -1]] = bed.sealed, bed.outer
-    left = np.maximum(bed.static_pressure - pressure, LEAST_CONTACT * bed.stiffness)
-    ratio = film_ratio_under_contact(contact_pressure=left, stiffness=bed.stiffness)
+    remaining = np.maximum(bed.static_pressure - pressure, LEAST_CONTACT * bed.stiffness)
+    ratio = film_ratio_under_contact(contact_pressure=remaining, stiffness=bed.stiffness)
     film = np.maximum(ratio, 0.3)
     return FilmState(pressure, _starved(np.zeros(nodes), contact), film, 0.0)
 
@@ -227,11 +227,11 @@ def solve_film(contact: Contact, start: Film | None = None) -> Film:
     -------
     film; with `converged` False and a reason if no equilibrium exists or was reached
     """
-    wrong = fault(contact)
-    if wrong:
-        nothing = np.full(np.shape(contact.static_pressure), np.nan)
+    reason = fault(contact)
+    if reason:
+        unsolved = np.full(np.shape(contact.static_pressure), np.nan)
         return _film(
-            contact, NewtonResult(FilmState(nothing, nothing, nothing, np.nan), wrong, 0, 1, 1)
+            contact, NewtonResult(FilmState(unsolved, unsolved, unsolved, np.nan), reason, 0, 1, 1)
         )
     nodes = len(contact.static_pressure)
     if start is not None and start.converged and len(start.state.film) == nodes:
@@ -245,7 +245,7 @@ def _film(contact: Contact, outcome: NewtonResult) -> Film:
     values: tuple[Array, ...] = (np.nan, np.nan, np.nan, np.nan)
     if not outcome.reason:
         values = outputs(*scaled(contact), outcome.state)
-    drag, load, passing, mean = (float(value) for value in values)
+    drag, load, net_flow, mean = (float(value) for value in values)
     return Film(
         contact=contact,
         converged=not outcome.reason,
@@ -253,7 +253,7 @@ def _film(contact: Contact, outcome: NewtonResult) -> Film:
         state=outcome.state,
         viscous_drag=drag,
         contact_load=load,
-        flow=passing,
+        flow=net_flow,
         mean_film=mean,
         load_residual=float(outcome.load_residual),
         mass_residual=float(outcome.mass_residual),
@@ -296,7 +296,7 @@ def sensitivities(film: Film, stepped: Sequence[Contact]) -> Vector:
 
 def _imaginary(newton_residual: NewtonResidual) -> NewtonResidual:
     """Derivatives of residuals along a step."""
-    flow, complementarity, bent = (
+    flow, complementarity, film = (
         np.imag(part) / STEP
         for part in (newton_residual.flow, newton_residual.complementarity, newton_residual.film)
     )
@@ -305,7 +305,7 @@ def _imaginary(newton_residual: NewtonResidual) -> NewtonResidual:
         float(np.imag(newton_residual.ends[1])) / STEP,
     )
     return NewtonResidual(
-        flow, complementarity, bent, float(np.imag(newton_residual.load)) / STEP, ends
+        flow, complementarity, film, float(np.imag(newton_residual.load)) / STEP, ends
     )
 
 

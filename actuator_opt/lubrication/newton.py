@@ -123,14 +123,14 @@ def residual(flow: ReynoldsProblem, bed: Bed, state: FilmState) -> NewtonResidua
     """Residuals of a state, real or under a complex step."""
     pressure, theta = state.pressure, state.cavitation
     excess = pressure + contact_pressure(bed, state.film) - bed.static_pressure
-    bent = bed.compliance * (kernel(flow.nodes) @ excess)
+    deflection = bed.compliance * (kernel(flow.nodes) @ excess)
     inner = pressure[1:-1] + theta[1:-1]
     root = np.sqrt(pressure[1:-1] ** 2 + theta[1:-1] ** 2)
     load = state.shift if bed.held else weights(flow.nodes) @ excess
     return NewtonResidual(
         flow=np.diff(flux(flow, pressure, theta, state.film)),
         complementarity=inner - root,
-        film=state.film - bed.rest_film - state.shift - bent,
+        film=state.film - bed.rest_film - state.shift - deflection,
         load=load,
         ends=(pressure[0] - bed.sealed, pressure[-1] - bed.outer),
     )
@@ -267,9 +267,9 @@ def _measures(
     flow: ReynoldsProblem, bed: Bed, state: FilmState, newton_residual: NewtonResidual
 ) -> tuple[float, float, float]:
     """Relative flux spread, load residual, and the largest of the other scaled residuals."""
-    passing = flux(flow, state.pressure, state.cavitation, state.film)
-    carried = abs(flow.drive) * np.min(flow.gap(state.film)[1])
-    spread = np.ptp(passing) / (abs(np.mean(passing)) + carried + 1e-300)
+    fluxes = flux(flow, state.pressure, state.cavitation, state.film)
+    drag_flow = abs(flow.drive) * np.min(flow.gap(state.film)[1])
+    spread = np.ptp(fluxes) / (abs(np.mean(fluxes)) + drag_flow + 1e-300)
     load = abs(newton_residual.load) / max(weights(flow.nodes) @ bed.static_pressure, 1e-12)
     film = np.max(np.abs(newton_residual.film)) / np.max(state.film)
     ends = max(abs(newton_residual.ends[0]), abs(newton_residual.ends[1]))
@@ -285,18 +285,18 @@ def newton(flow: ReynoldsProblem, bed: Bed, state: FilmState) -> NewtonResult:
 def _newton(flow: ReynoldsProblem, bed: Bed, state: FilmState) -> NewtonResult:
     spread = load = np.inf
     for iteration in range(MOST_ITERATIONS + 1):
-        found = residual(flow, bed, state)
-        spread, load, rest = _measures(flow, bed, state, found)
-        if spread < TOLERANCE and load < TOLERANCE and rest < TOLERANCE:
+        current = residual(flow, bed, state)
+        spread, load, largest = _measures(flow, bed, state, current)
+        if spread < TOLERANCE and load < TOLERANCE and largest < TOLERANCE:
             return NewtonResult(state, "", iteration, spread, load)
-        if not np.isfinite(spread + load + rest):
+        if not np.isfinite(spread + load + largest):
             return NewtonResult(
                 state, "the film left the range of its laws", iteration, spread, load
             )
         if iteration == MOST_ITERATIONS:
             break
         try:
-            (change,) = LinearSystem(flow, bed, state).solve([found])
+            (change,) = LinearSystem(flow, bed, state).solve([current])
         except np.linalg.LinAlgError:
             return NewtonResult(state, "the linearised film is singular", iteration, spread, load)
         part = _allowed(state, change)
@@ -323,17 +323,17 @@ def follow(
     first, last : values, such as speeds
     """
     outcome = solve(first, state)
-    taken, reached, growth = outcome.iterations, first, _GROWTH
-    while not outcome.reason and reached != last:
-        factor = growth if last > reached else 1 / growth
-        step = last if abs(math.log(last / reached)) <= math.log(growth) else reached * factor
+    iterations, value, growth = outcome.iterations, first, _GROWTH
+    while not outcome.reason and value != last:
+        factor = growth if last > value else 1 / growth
+        step = last if abs(math.log(last / value)) <= math.log(growth) else value * factor
         trial = solve(step, outcome.state)
-        taken += trial.iterations
+        iterations += trial.iterations
         if not trial.reason:
-            outcome, reached, growth = trial, step, min(growth**1.5, _GROWTH)
+            outcome, value, growth = trial, step, min(growth**1.5, _GROWTH)
             continue
         growth = growth**0.5
         if growth < _LEAST_GROWTH:
-            reason = f"{trial.reason}; continuation failed at {reached:.2e}"
-            return replace(trial, reason=reason, iterations=taken)
-    return replace(outcome, iterations=taken)
+            reason = f"{trial.reason}; continuation failed at {value:.2e}"
+            return replace(trial, reason=reason, iterations=iterations)
+    return replace(outcome, iterations=iterations)

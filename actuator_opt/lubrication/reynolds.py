@@ -9,9 +9,8 @@ cavitated fraction: the rest of a ruptured film moves with the rod, so mass is c
 the film ruptures and where it forms again. Everything is scaled: pressure by `pressure_scale` above
 the cavitation pressure, film by `film_scale`, length by the width.
 
-Inputs of a lubricated contact: oil, two rough surfaces, an elastic seal, operating conditions.
-
-Every number is a Python float or, inside `sensitivities`, has a complex step.
+The inputs of a lubricated contact are oil, two rough surfaces, an elastic seal and operating
+conditions. Every number is a Python float or, inside `sensitivities`, has a complex step.
 """
 
 from __future__ import annotations
@@ -299,12 +298,12 @@ def faces(flow: ReynoldsProblem, pressure: Vector, cavitation: Vector, film: Vec
         )
 
     over_pressure = slopes(opening * fluidity_slope, density_slope * carried)
-    none, lost = np.zeros(flow.nodes - 1), -flow.drive / 2 * both
+    zero, loss = np.zeros(flow.nodes - 1), -flow.drive / 2 * both
     return FaceFlux(
         flux=value,
         pressure=(over_pressure[0] + mean, over_pressure[1] - mean),
         film=slopes(opening_slope * fluidity, density * carried_slope),
-        cavitation=(lost, none) if forward else (none, lost),
+        cavitation=(loss, zero) if forward else (zero, loss),
     )
 
 

@@ -107,13 +107,10 @@ def solve_gap(gap: Gap, nodes: int = 0) -> SmoothFilm:
         gap = replace(gap, profile=np.interp(new, old, gap.profile))
     reason = fault(gap)
     if reason:
-        nothing = np.full(len(gap.profile), np.nan)
-        lost = NewtonResult(FilmState(nothing, nothing, nothing, np.nan), reason, 0, 1.0, 1.0)
-        return _found(gap, 1.0, 1.0, lost)
-    if gap.line_load is None:
-        film = float(np.mean(gap.profile))
-        return _held(gap, film)
-    return _loaded(gap)
+        unsolved = np.full(len(gap.profile), np.nan)
+        failure = NewtonResult(FilmState(unsolved, unsolved, unsolved, np.nan), reason, 0, 1.0, 1.0)
+        return _smooth_film(gap, 1.0, 1.0, failure)
+    return _fixed_gap(gap) if gap.line_load is None else _loaded_gap(gap)
 
 
 def _scales(gap: Gap) -> float:
@@ -159,15 +156,15 @@ def _scaled(gap: Gap, film: float, pressure: float) -> tuple[ReynoldsProblem, Be
     return flow, bed
 
 
-def _held(gap: Gap, film: float) -> SmoothFilm:
-    pressure = _scales(gap)
+def _fixed_gap(gap: Gap) -> SmoothFilm:
+    film, pressure = float(np.mean(gap.profile)), _scales(gap)
     flow, bed = _scaled(gap, film, pressure)
     ends = np.linspace(bed.sealed, bed.outer, flow.nodes)
     start = FilmState(ends, np.zeros(flow.nodes), gap.profile / film, 0.0)
-    return _found(gap, film, pressure, newton(flow, bed, start))
+    return _smooth_film(gap, film, pressure, newton(flow, bed, start))
 
 
-def _loaded(gap: Gap) -> SmoothFilm:
+def _loaded_gap(gap: Gap) -> SmoothFilm:
     """Initial state from dry contact with its inlet film; else from a thick film.
 
     At the inlet a pressure gradient w leaves a film of h* = sqrt(8 eta U/(9 w)).
@@ -176,7 +173,7 @@ def _loaded(gap: Gap) -> SmoothFilm:
     rise = 4 * (gap.line_load or 0.0) / gap.width**2
     viscosity = gap.lubricant.dynamic_viscosity
     film = math.sqrt(8 * viscosity * abs(gap.speed) / (9 * rise))
-    speed, taken = abs(gap.speed), 0
+    speed, iterations = abs(gap.speed), 0
 
     def at(value: float, state: FilmState) -> NewtonResult:
         return newton(
@@ -186,13 +183,13 @@ def _loaded(gap: Gap) -> SmoothFilm:
     for faster in _FASTER:
         start = _dry(gap, *_scaled(gap, film, pressure), math.sqrt(faster))
         outcome = follow(at, start, faster * speed, speed)
-        taken += outcome.iterations
+        iterations += outcome.iterations
         if not outcome.reason:
             break
     reason = (
         outcome.reason and f"{outcome.reason}; a film of about {film:.1e} m may need more nodes"
     )
-    return _found(gap, film, pressure, replace(outcome, reason=reason, iterations=taken))
+    return _smooth_film(gap, film, pressure, replace(outcome, reason=reason, iterations=iterations))
 
 
 def _dry(gap: Gap, flow: ReynoldsProblem, bed: Bed, least: float) -> FilmState:
@@ -212,9 +209,7 @@ def _dry(gap: Gap, flow: ReynoldsProblem, bed: Bed, least: float) -> FilmState:
     return FilmState(pressure, np.zeros(flow.nodes), bent + shift, shift)
 
 
-def _found(
-    gap: Gap, film: float, pressure: float, outcome: NewtonResult, taken: int = 0
-) -> SmoothFilm:
+def _smooth_film(gap: Gap, film: float, pressure: float, outcome: NewtonResult) -> SmoothFilm:
     state = outcome.state
     drag = load = passing = np.nan
     absolute = gap.cavitation_pressure + pressure * state.pressure
@@ -234,5 +229,5 @@ def _found(
         flow=float(passing),
         load_residual=float(outcome.load_residual),
         mass_residual=float(outcome.mass_residual),
-        iterations=outcome.iterations + taken,
+        iterations=outcome.iterations,
     )

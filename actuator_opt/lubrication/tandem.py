@@ -145,44 +145,44 @@ def solve_tandem(
 
 
 def _search(row: _Row, guess: float, low: float, high: float) -> Tandem:
-    tried: list[tuple[float, float]] = []
+    trials: list[tuple[float, float]] = []
     bottom, top, pressure = low, high, guess
     while True:
         first, second = row.solve(pressure)
         if not (first.converged and second.converged):
             side, film = ("outer", second) if first.converged else ("inner", first)
-            return _lost(f"{side} seal at {pressure:.4g} Pa between them: {film.reason}")
+            return _failure(f"{side} seal at {pressure:.4g} Pa between them: {film.reason}")
         surplus = first.flow - second.flow
         carried = abs(row.speed) / 2 * min(first.mean_film, second.mean_film)
-        off = abs(surplus) / max(abs(first.flow), abs(second.flow), carried)
-        tried.append((pressure, surplus))
-        if off <= MATCH:
-            return _matched(first, second, pressure, off)
+        mismatch = abs(surplus) / max(abs(first.flow), abs(second.flow), carried)
+        trials.append((pressure, surplus))
+        if mismatch <= MATCH:
+            return _solution(first, second, pressure, mismatch)
         if pressure == low and surplus < 0:
             return _starved(row, first, second, pressure)
         if pressure == high and surplus > 0:
-            return _lost(_NO_LIMIT.format(pressure))
-        if len(tried) >= _MOST_TRIALS:
-            return _lost(f"flows differ by {off:.1e} of the larger after many iterations")
+            return _failure(_NO_LIMIT.format(pressure))
+        if len(trials) >= _MOST_TRIALS:
+            return _failure(f"flows differ by {mismatch:.1e} of the larger after many iterations")
         bottom, top = (pressure, top) if surplus > 0 else (bottom, pressure)
-        pressure = _next(tried, bottom, top)
+        pressure = _next(trials, bottom, top)
 
 
-def _next(tried: list[tuple[float, float]], bottom: float, top: float) -> float:
+def _next(trials: list[tuple[float, float]], bottom: float, top: float) -> float:
     """The next pressure: a secant through the last two trials, or the middle of the bracket.
 
     If all trials lie on one side, the end of the bracket is tried early; every fifth step halves
     the bracket.
     """
     middle = (bottom + top) / 2
-    if len(tried) < 2:
+    if len(trials) < 2:
         return middle
-    (before, surplus_before), (last, surplus) = tried[-2:]
+    (before, surplus_before), (last, surplus) = trials[-2:]
     end = top if surplus > 0 else bottom
-    unseen = end not in {pressure for pressure, _ in tried}
-    if unseen and len(tried) >= 4:
+    unseen = end not in {pressure for pressure, _ in trials}
+    if unseen and len(trials) >= 4:
         return end
-    if surplus == surplus_before or len(tried) % 5 == 0:
+    if surplus == surplus_before or len(trials) % 5 == 0:
         return middle
     secant = last - surplus * (last - before) / (surplus - surplus_before)
     if bottom < secant < top:
@@ -199,35 +199,35 @@ def _starved(row: _Row, first: Film, second: Film, pressure: float) -> Tandem:
     outward = row.speed > 0
     given, drawn = (first, second) if outward else (second, first)
     if given.flow * row.speed <= 0:
-        return _lost(_NO_SUPPLY.format(pressure))
+        return _failure(_NO_SUPPLY.format(pressure))
     sign = 1.0 if outward else -1.0
     bottom, top = (0.0, sign * (drawn.flow - given.flow)), (1.0, -sign * given.flow)
-    off, side, cavitation, kept = 1.0, 0, _EMPTY, row.films
+    mismatch, side, cavitation, top_films = 1.0, 0, _EMPTY, row.films
     for _ in range(_MOST_TRIALS):
         first, second = row.solve(pressure, cavitation)
         if not (first.converged and second.converged):
             reason = first.reason or second.reason
-            return _lost(f"space between the seals {cavitation:.3f} empty: {reason}")
+            return _failure(f"space between the seals {cavitation:.3f} empty: {reason}")
         given, drawn = (first, second) if outward else (second, first)
         excess = sign * (drawn.flow - given.flow)
-        off = abs(excess / given.flow)
-        if off <= 10 * MATCH:
-            return _matched(first, second, pressure, off, cavitation)
+        mismatch = abs(excess / given.flow)
+        if mismatch <= 10 * MATCH:
+            return _solution(first, second, pressure, mismatch, cavitation)
         if excess > 0:
-            row.films = kept if side else row.films
+            row.films = top_films if side else row.films
             top = (top[0], top[1] / 2) if side > 0 else top
             bottom, side = (cavitation, excess), 1
         else:
-            kept = row.films
+            top_films = row.films
             bottom = (bottom[0], bottom[1] / 2) if side < 0 else bottom
             top, side = (cavitation, excess), -1
         if top[0] - bottom[0] < 1e-8:
             break
         cavitation = bottom[0] - bottom[1] * (top[0] - bottom[0]) / (top[1] - bottom[1])
-    return _lost(_JUMP.format(cavitation, off))
+    return _failure(_JUMP.format(cavitation, mismatch))
 
 
-def _matched(
+def _solution(
     first: Film, second: Film, pressure: float, residual: float, cavitation: float = 0.0
 ) -> Tandem:
     return Tandem(
@@ -241,7 +241,7 @@ def _matched(
     )
 
 
-def _lost(reason: str) -> Tandem:
+def _failure(reason: str) -> Tandem:
     return Tandem(
         converged=False,
         reason=reason,

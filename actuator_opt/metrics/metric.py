@@ -131,17 +131,17 @@ def table(rows: Iterable[MetricRow]) -> Mapping[str, MetricRow]:
     ------
     ValueError : duplicate name of a metric or number of a check
     """
-    found: dict[str, MetricRow] = {}
+    by_name: dict[str, MetricRow] = {}
     numbers: dict[str, str] = {}
     for row in rows:
-        if row.name in found:
+        if row.name in by_name:
             raise ValueError(f"metric {row.name}: duplicate name")
         if row.check is not None:
             other = numbers.setdefault(row.check.number, row.name)
             if other != row.name:
                 raise ValueError(f"check {row.check.number}: used by {other} and {row.name}")
-        found[row.name] = row
-    return MappingProxyType(found)
+        by_name[row.name] = row
+    return MappingProxyType(by_name)
 
 
 def fed_by(feed: Feed, rows: Mapping[str, MetricRow]) -> Iterator[str]:

@@ -1,11 +1,12 @@
 """Pure models: SI in, SI out, arrays broadcast; formula, range and source in every docstring.
 
 A number outside a model's domain gives NaN, and the other elements of an array keep their values.
-So does geometry that cannot be: a negative length, area or volume, an outer radius not above the
-inner one, a rod not inside its bore (`actuator_opt.base.geometry`). A search without a solution, a
-word that is no choice, and lists of unequal lengths raise ValueError where the docstring says so.
+Impossible geometry gives NaN too: a negative length, area or volume, an outer radius not above the
+inner one, a rod not inside its bore (`actuator_opt.base.geometry`). A search without a solution, an
+unknown choice, and lists of unequal lengths raise ValueError where the docstring says so.
 
-Every module is open to scripts: all arguments by name, and `help` has formula, range and source.
+Scripts may call every module: arguments are passed by name, and `help` shows formula, range and
+source.
 
 >>> from actuator_opt.models import rod
 >>> print(f"{rod.thread_stress_area(diameter=10e-3, pitch=1.5e-3) * 1e6:.2f} mm2")

@@ -24,7 +24,7 @@ def gas_volume_at(
 
     Parameters
     ----------
-    pressure : oil, gauge [Pa]; at or below the precharge the gas fills the shell
+    pressure : oil pressure, gauge [Pa]; at or below the precharge the gas fills the shell
     precharge_pressure : p0, gauge [Pa], at the temperature of use
     gas_volume : V0, at the precharge pressure [m^3]
     polytropic_index : n [-]: 1.0 slow (isothermal), 1.4 fast (adiabatic nitrogen)
@@ -117,10 +117,11 @@ def usable_volume(
     filling_index: Array = 1.0,
     atmospheric_pressure: Array = ATMOSPHERIC_PRESSURE,
 ) -> Array:
-    """Oil an accumulator gives from a high to a low pressure.
+    """Oil volume that an accumulator delivers between a high and a low pressure.
 
-    Filled to V at the high pressure (`filling_index`), the gas expands with n down to the low
-    pressure, or to the shell: min(V ((p_high + p_a)/(p_low + p_a))^(1/n), V0) - V.
+    The gas is filled to V at the high pressure (`filling_index`). It then expands with n down to
+    the low pressure, or until it fills the shell:
+    min(V ((p_high + p_a)/(p_low + p_a))^(1/n), V0) - V.
 
     Parameters
     ----------

@@ -1,22 +1,25 @@
 """Autofrettage of a metal-lined tube: one overpressure, then elastic unloading.
 
-The liner a..b is isotropic, elastic and perfectly plastic (Tresca, hoop less radial stress, no
-axial plastic strain); the wrap stays elastic. Everywhere in the liner sigma_z = E e_z +
-nu (sigma_r + sigma_t) with e_z = eps_z - alpha dT, so equilibrium alone gives its axial force, and
-the elastic change of volume gives, plastic or not,
+The liner between the radii a and b is isotropic, elastic and perfectly plastic. It yields by Tresca
+where the hoop less the radial stress is Y, without axial plastic strain; the wrap stays elastic.
+Everywhere in the liner sigma_z = E e_z + nu (sigma_r + sigma_t) with e_z = eps_z - alpha dT, so
+equilibrium alone gives its axial force. The volume changes only elastically, so that in the elastic
+and in the plastic zone
 
     eps_t = (1 - nu^2) Y x b^2/(E r^2) + (1 + nu)(1 - 2 nu) sigma_r/E - nu e_z + alpha dT.
 
-x measures the yielding: (c/b)^2 with the plastic zone out to c; below (a/b)^2 all is elastic, above
-1 all is plastic. The liner holds back p - q of the pressure p, q that on the wrap:
+x is the extent of yielding: (c/b)^2 where the plastic zone ends at the radius c. Below (a/b)^2 the
+whole liner is elastic, above 1 it is all plastic. q is the pressure on the wrap; the liner bears
+the remaining p - q:
 
-    elastic Y x (b^2/a^2 - 1)/2,    partly Y [ln(c/a) + (1 - x)/2],    through Y ln(b/a),
+    elastic Y x (b^2/a^2 - 1)/2,    partly Y [ln(c/a) + (1 - x)/2],    through Y ln(b/a).
 
-and the wrap, which is linear, answers q = kappa Y x - mu p - tau. Together they leave one equation
-for x, in y = ln x: y - m (e^y - 1) + s = 0, m = 1 - 2 kappa < 1, s = 2 (1 + mu)(p_full - p)/Y. Its
-left side rises and bends one way, so Newton's steps from a start that is exact at the double root
-(m = 1, s = 0: collapse of a bare liner) settle in a few; a complex one at the end makes every
-derivative exact. Unloading is elastic: what stays is the state at p less the elastic state at p.
+The wrap is linear: q = kappa Y x - mu p - tau. Both leave one equation for x, with y = ln x:
+y - m (e^y - 1) + s = 0, m = 1 - 2 kappa < 1, s = 2 (1 + mu)(p_full - p)/Y. Its left side rises and
+its curvature has one sign. Newton's method therefore converges in a few steps from a start that is
+exact at the double root (m = 1, s = 0: collapse of a bare liner); a complex step at the end makes
+every derivative exact. Unloading is elastic: the residual state is the state at p less the elastic
+state at p.
 """
 
 from __future__ import annotations
@@ -45,27 +48,29 @@ from .strength_modes import Stress
 from .tube_elements import LayeredTube
 
 _STEPS = 6
-"""Newton steps that settle the plastic zone to rounding: b/a to 20, any wrap."""
+"""Newton steps that find the plastic zone to rounding, for b/a up to 20 and any wrap."""
 
 
 @dataclass(frozen=True, slots=True)
 class Autofrettage:
-    """What an overpressure leaves in a lined tube; add it to the elastic state of any later load.
+    """Residual state of a lined tube after an overpressure; add it to the state of a later load.
 
     Parameters
     ----------
-    yield_pressure : at which the liner's bore yields first [Pa]
-    full_pressure : at which the liner has yielded through; collapse of a liner without wrap [Pa]
-    plastic_radius : c, outer radius of the yielded zone; the bore's where nothing yields [m]
+    yield_pressure : pressure at which the liner's bore yields first [Pa]
+    full_pressure : pressure at which the whole liner has yielded; a liner without wrap collapses
+        [Pa]
+    plastic_radius : c, outer radius of the yielded zone; the bore radius where nothing yields [m]
     interface_pressure : residual pressure between liner and wrap [Pa]
-    axial_strain : residual [-]
+    axial_strain : residual strain of the tube [-]
     bore_displacement : permanent radial growth of the bore [m]
-    stresses : residual sigma_1, sigma_2, sigma_3, tau_12, each (2 faces, layers, ...) as
-        `ply_stresses_at_faces`; the liner's 1, 2, 3 are z, t, r [Pa]
+    stresses : residual sigma_1, sigma_2, sigma_3, tau_12, each (2 faces, layers, ...) as from
+        `layered_tube.ply_stresses_at_faces`; the liner's 1, 2, 3 are z, t, r [Pa]
     reverse_yield : Tresca stress over yield at the unloaded bore, thermal stress included [-]
-    elastic_limit : pressure at which the liner yields next, loads in the same proportion [Pa]
-    axial_margin : distance of sigma_z from leaving sigma_r..sigma_t in the yielded zone, over
-        yield [-]
+    elastic_limit : pressure at which the liner yields next, with all loads in the same proportion
+        [Pa]
+    axial_margin : distance of sigma_z to the nearer end of the range sigma_r to sigma_t in the
+        yielded zone, over the yield strength [-]
     """
 
     yield_pressure: Array
@@ -92,9 +97,10 @@ class _Liner(NamedTuple):
 
 
 class _Contact(NamedTuple):
-    """Linear answer of liner and wrap to x, p and dT.
+    """Linear response of liner and wrap to x, p and dT.
 
-    q = kappa Y x - mu p - tau; eps_z = strain (q, p, dT); `pull` of the wrap per q, over 2 pi.
+    q = kappa Y x - mu p - tau; eps_z = strain (q, p, dT); `pull` is the axial force of the wrap per
+    q, over 2 pi.
     """
 
     kappa: Array
@@ -105,7 +111,7 @@ class _Contact(NamedTuple):
 
 
 def _liner(layer: TubeLayer, inner_radius: Array, change: Array, force: Array) -> _Liner:
-    """The liner's numbers; it must be isotropic."""
+    """Constants of the liner, which must be isotropic."""
     c11, c12, c13, c22, c23, c33, _ = layer.stiffness
     for one, other in ((c22, c11), (c33, c11), (c13, c12), (c23, c12)):
         if np.any(np.asarray(real(absolute(one - other)) > 1e-6 * real(c11))):
@@ -179,7 +185,7 @@ class _Yielding(NamedTuple):
 def _yielding(
     xp: Any, liner: _Liner, contact: _Contact, yield_strength: Array, pressure: Array
 ) -> _Yielding:
-    """How far the liner yields: x from p, in its three ranges."""
+    """Extent x of the yielding from p, in its three ranges."""
     kappa, square = contact.kappa, liner.outer / liner.inner
     half = xp.log(square) / 2
     start, through = (1 - 1 / square) / 2 + kappa / square, half + kappa
@@ -213,21 +219,22 @@ def autofrettage(
 ) -> Autofrettage:
     """Residual state of a lined tube after one overpressure, and its new elastic limit.
 
-    sigma_r = -p + Y ln(r/a) in the yielded zone a..c, sigma_t = sigma_r + Y; p(c) = q +
-    Y [ln(c/a) + (1 - c^2/b^2)/2], q from the wrap; see the module.
+    sigma_r = -p + Y ln(r/a) in the yielded zone a..c, sigma_t = sigma_r + Y;
+    p(c) = q + Y [ln(c/a) + (1 - c^2/b^2)/2], q from the wrap; the head of the module derives it.
 
     Parameters
     ----------
-    layers : from the bore outwards, the liner first; it may stand alone
+    layers : from the bore outwards, the liner first; it may be the only layer
     yield_strength : Y, of the liner [Pa]
     inner_radius : a, bore radius [m]
     pressure : overpressure [Pa]
-    axial_force_per_pressure : N/p during it [m^2]; 0 is open, pi a^2 closed
-    temperature_change : of the wall during it, from the stress-free state [K]
+    axial_force_per_pressure : N/p during the overpressure [m^2]; 0 for open ends, pi a^2 for closed
+        ends
+    temperature_change : of the wall during the overpressure, from the stress-free state [K]
 
     Returns
     -------
-    pressures [Pa] and what stays; NaN where a liner without wrap collapses
+    pressures [Pa] and residual state; NaN where a liner without wrap collapses
 
     Raises
     ------
@@ -238,9 +245,9 @@ def autofrettage(
     -----
     Valid: axial_margin >= 0, reverse_yield <= 1; elastic wrap; no hardening, far from ends.
 
-    Tresca yields up to 15 % earlier than von Mises; Y 2/sqrt(3) stands for von Mises where sigma_z
-    is midway between the others. Thermal stress moves the yield and counts in `reverse_yield`; the
-    other residual fields are what the overpressure adds.
+    Tresca yields up to 15 % earlier than von Mises; pass Y 2/sqrt(3) to follow von Mises where
+    sigma_z is midway between the other two. Thermal stress shifts the yield pressure and counts in
+    `reverse_yield`; the other residual fields contain only what the overpressure adds.
 
     References
     ----------
@@ -290,14 +297,14 @@ def autofrettage(
 
 
 def _share(value: Array) -> Array:
-    """Hoop less radial stress over yield: 1 at most; NaN stays."""
+    """Hoop less radial stress over yield, at most 1; NaN stays NaN."""
     return minimum(1 + 0 * value, value)
 
 
 def _own_stresses(
     xp: Any, liner: _Liner, strain: Array, difference: tuple[Array, Array], press: Array
 ) -> Stress:
-    """Residual stresses z, t, r of the liner at both faces, from hoop less radial."""
+    """Residual stresses z, t, r of the liner at both faces, from its hoop less radial stress."""
     radial = (0 * difference[0], -press)
     hoop = (difference[0], difference[1] - press)
     pulled = liner.modulus * strain
@@ -309,7 +316,7 @@ def _own_stresses(
 def _all_stresses(
     xp: Any, own: Stress, wrap: LayeredTube | None, press: Array, pull: Array
 ) -> Stress:
-    """The liner's stresses, and those of the wrap under what the liner leaves on it."""
+    """Stresses of the liner, and of the wrap under the residual pressure and pull of the liner."""
     one, two, three, slip = (value[:, None, ...] for value in own)
     if wrap is None:
         return one, two, three, slip
@@ -331,7 +338,7 @@ def _loaded(
 
 
 def _margin(ratio: Array, loaded: tuple[Array, Array], bore: Array, way: Array) -> Array:
-    """Distance of sigma_z from the nearer of the others, at both ends of the yielded zone."""
+    """Distance of sigma_z to the nearer of sigma_r and sigma_t at both ends of the yielding."""
     radial, stretch = loaded
     margins = []
     for inward in (radial, radial + way):
@@ -343,7 +350,7 @@ def _margin(ratio: Array, loaded: tuple[Array, Array], bore: Array, way: Array) 
 def _reverse(
     liner: _Liner, contact: _Contact, found: _Yielding, yield_strength: Array, bore: Array
 ) -> Array:
-    """Tresca stress over yield at the bore once the pressure is gone."""
+    """Tresca stress over yield at the bore after unloading."""
     by_press, _, by_heat = contact.strain
     around = bore - found.spent * liner.outer / liner.inner
     press = contact.kappa * yield_strength * (found.spread - found.spent) - contact.tau

@@ -1,7 +1,7 @@
 """Isotropic barrel: bore growth, wall stress, burst, chamber compliance.
 
-Lamé's thick cylinder under internal gauge pressure with any axial force; the published growth under
-`*_as_published`. The axial load path and the growth beside a pressure step live in `barrel_ends`.
+The models are Lamé's thick cylinder under internal gauge pressure with any axial force, and the
+growth as published. The axial load path and the growth beside a pressure step are in `barrel_ends`.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def bore_growth(
     """Radial growth of the bore of a thick cylinder.
 
     u = (r_i/E) [p (lambda + nu) - nu N/(pi (r_o^2 - r_i^2))], lambda = (k^2 + 1)/(k^2 - 1),
-    k = r_o/r_i. N = 0 is an open cylinder, N = p pi r_i^2 a closed one.
+    k = r_o/r_i. N = 0 is an open cylinder, N = p pi r_i^2 a closed cylinder.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def bore_growth_as_published(
 ) -> Array:
     """Radial growth of the bore as the source prints it: with the outer radius, open ends.
 
-    u = (r_o p/E) (lambda + nu): r_o/r_i times too large; theory needs the inner radius.
+    u = (r_o p/E) (lambda + nu). This is r_o/r_i times too large, as theory needs the inner radius.
 
     Parameters
     ----------
@@ -188,7 +188,7 @@ def burst_pressure_thick(
     """Burst pressure of a ductile metal tube.
 
     p = c sigma_y ln(k) (2 - sigma_y/sigma_u), c = 1/sqrt(1 - n/2 + n^2/4), n = N/(p pi r_i^2):
-    c = 2/sqrt(3) for a closed cylinder (Faupel), 1 for an open one.
+    c = 2/sqrt(3) for a closed cylinder (Faupel), 1 for an open cylinder.
 
     Parameters
     ----------
@@ -229,7 +229,7 @@ def burst_pressure_thick(
 def chamber_compliance(*, inner_radius: Array, growth_per_pressure: Array, length: Array) -> Array:
     """Volume a chamber's wall gives per pressure.
 
-    dV/dp = 2 pi r_i L (u/p): over the full bore perimeter in both chambers.
+    dV/dp = 2 pi r_i L (u/p), taken over the full bore perimeter in both chambers.
 
     Parameters
     ----------

@@ -203,9 +203,10 @@ def tie_rod_forces(
 
     Parameters
     ----------
-    axial_force : N, force that tears the ends apart [N]
+    axial_force : N, force that pulls the ends apart [N]
     preload : F_0, total tie-rod tension without pressure [N]
-    barrel_stiffness, tie_rod_stiffness : axial stiffness of the barrel, of all rods [N/m]
+    barrel_stiffness, tie_rod_stiffness : axial stiffness of the barrel, and of all rods together
+        [N/m]
     free_shortening : delta_p, free axial shortening of the barrel by pressure [m]
 
     Returns

@@ -20,7 +20,7 @@ def bending_modulus(
     shear_compliance: Array = 0.0,
     local_compliance: Array = 0.0,
 ) -> Array:
-    """Modulus from a bending test, shear and local dents taken off the deflection.
+    """Modulus from a bending test, with shear and local dents subtracted from the deflection.
 
     E = L^3/(48 I)/(1/k0 - L/(4 S) - C), 1/S = `shear_compliance`. A stepped specimen takes the
     second moment of `equivalent_second_moment`.
@@ -29,9 +29,9 @@ def bending_modulus(
     ----------
     slope : k0, force over deflection of the middle [N/m]
     span : L between the supports [m]
-    second_moment : I of the section, or equivalent [m^4]
-    shear_compliance : 1/(kappa G A) [1/N]; of a stepped specimen the mean along the span
-    local_compliance : C, deflection per force at load and supports, measured or by
+    second_moment : I of the section, or the equivalent value [m^4]
+    shear_compliance : 1/(kappa G A) [1/N]; for a stepped specimen its mean along the span
+    local_compliance : C, deflection per force at load and supports, measured or from
         `indentation_compliance` [m/N]
 
     Returns
@@ -105,7 +105,7 @@ def bending_slope(
 def equivalent_second_moment(
     *, second_moments: Sequence[Array], steps: Sequence[Array], span: Array
 ) -> Array:
-    """Second moment of the even specimen that bends as much as a stepped, symmetric one.
+    """Second moment of the uniform specimen that bends as much as a stepped, symmetric specimen.
 
     1/I = sum (z_j^3 - z_(j-1)^3)/I_j over the steps from support to middle, z = 2 x/L.
 
@@ -169,7 +169,8 @@ def indentation_compliance(
     -----
     Valid: an estimate: solid elastic bodies, R1/R2 from 1/4 to 4 within 3 %.
 
-    A thin tube also flattens under the rollers, by far more: measure it on a short span.
+    A thin tube also flattens under the rollers, which adds far more deflection: measure it on a
+    short span.
 
     References
     ----------

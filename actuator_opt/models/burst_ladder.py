@@ -1,12 +1,13 @@
 """Burst by ply discount, for one design or many at once, with any wall mechanics.
 
-The load grows from zero. The most stressed mode (maximum stress) fails first: a matrix or shear
-failure softens every ply of that material and |angle|, a fibre failure ends the ladder; burst is
-the largest load on it. An isotropic liner yields (von Mises) and then keeps the stress it has
-reached while the rest of the load goes to the fibres: yielding is no failure. All designs of an
-array climb the same fixed number of steps under masks, and a complex step follows each design's
-own branch. Stresses follow from the load by the wall's mechanics: the thin laminate is here, the
-exact tube in `tube_burst`.
+The load grows from zero. The mode with the largest utilisation by maximum stress fails first. A
+matrix or shear failure softens every ply of that material and |angle|; a fibre failure ends the
+ladder. Burst is the largest load of the ladder. An isotropic liner yields by von Mises and then
+keeps its stress at yield, while the fibres take the further load: yielding is no failure.
+
+All designs of an array climb the same fixed number of steps under masks, and a complex step follows
+the branch of its design. `Mechanics` gives the stresses under a load: this module has the thin
+laminate, `tube_burst` the exact tube.
 """
 
 from __future__ import annotations
@@ -47,12 +48,12 @@ class WallLayer:
     Parameters
     ----------
     youngs_modulus_1, youngs_modulus_2, poissons_ratio_12, shear_modulus_12 : elastic constants
-        [Pa], [-]; of an isotropic layer E, E, nu, G
+        [Pa], [-]; E, E, nu, G for an isotropic layer
     thickness : thickness of the layer, of the whole pair [m]
     angle : winding angle from the tube axis [rad]
     strength : ply strengths of a composite; None for a metal
     yield_strength : yield strength of a metal [Pa]; None for a composite
-    material : identity of the material: plies of one material and one |angle| soften together
+    material : identity of the material: plies with the same material and |angle| soften together
     expansion_1, expansion_2 : thermal expansions along and across the fibre [1/K]
     youngs_modulus_3, poissons_ratio_13, poissons_ratio_23 : radial constants [Pa], [-]; None takes
         E2, nu12 and 0.4 for a ply, E and nu for a metal
@@ -94,8 +95,9 @@ class BurstLadder:
     liner_yield_pressure : first yield of a metal layer in the intact wall; infinite without one
     record : per step the code of its mode (a row of `intact`), its load, whether the design climbed
     order : index from the bore of each internal layer, metals first
-    intact : 1/p of every mode in the intact wall: rows of modes, faces, layers, then metals' yield
-    faces : stations in each layer
+    intact : 1/p of every mode in the intact wall: rows of modes, faces and layers, then the yield
+        of metals
+    faces : number of stations through each layer
     """
 
     first_ply_pressure: Array
@@ -114,7 +116,7 @@ class BurstLadder:
         return plies + [(self.order[i % metals], "yield") for i in range(metals * self.faces)]
 
     def steps(self, index: tuple[int, ...] = ()) -> tuple[LadderStep, ...]:
-        """List the ladder of one design of the arrays; of a single design without an index."""
+        """List the ladder of the design at an index of the arrays; no index for a single design."""
         named = self.modes()
         ladder = []
         for code, pressure, counted in self.record:
@@ -126,15 +128,15 @@ class BurstLadder:
 
 
 class Mechanics(Protocol):
-    """How a wall answers a unit pressure, with some layers softened; layers with metals first."""
+    """Stress response of a wall to unit pressure with some layers softened; metals come first."""
 
     @property
     def faces(self) -> int:
-        """Stations in each layer."""
+        """Number of stations through each layer."""
 
     @property
     def metals(self) -> int:
-        """How many layers are metals."""
+        """Number of metal layers."""
 
     @property
     def order(self) -> tuple[int, ...]:
@@ -142,17 +144,17 @@ class Mechanics(Protocol):
 
     @property
     def stressed(self) -> bool:
-        """Whether the wall holds stresses before any load (cooling from the cure)."""
+        """Whether the wall is stressed before any load, as by cooling from the cure."""
 
     def answer(self, soft: Array | None, held: Any) -> tuple[Array, Array | None]:
-        """Stresses 1, 2, 12, 3 at every face and layer: per pressure, and of frozen metal."""
+        """Stresses 1, 2, 12, 3 at every face and layer: per pressure, and from yielded metals."""
 
     def frozen(self, held: Any, yielded: Array, stress: Array) -> Any:
-        """What the yielded metals hold from now on; `stress` is theirs, (4, faces, metals, ...)."""
+        """Frozen state of the yielded metals; `stress` is their stress, (4, faces, metals, ...)."""
 
 
 def batch_zero(values: Sequence[Array]) -> Array:
-    """A zero that carries the joint shape and type of the arrays among the values."""
+    """A zero with the joint shape and type of the arrays among the values."""
     total: Array = 0.0
     for value in values:
         if not isinstance(value, (float, int, complex)):
@@ -196,7 +198,7 @@ def stacked_rows(xp: Any, columns: Sequence[Sequence[Array]], dims: int) -> Arra
 
 
 def _above(value: Array) -> Array:
-    """`value`, not below a small positive number: a strength already used up."""
+    """`value`, at least a small positive number: the strength may be used up already."""
     return where(real(value) > _FLOOR, value, 0 * value + _FLOOR)
 
 
@@ -218,7 +220,7 @@ def _utilisations(
 ) -> Array:
     """1/p of every mode: rows of modes, faces, layers, then the metals' yield.
 
-    `free`: no metal holds a stress before its own yield.
+    `free`: the metals have no stress without pressure.
     """
     modes = xp.concat([rate[:3, ...], -rate[:3, ...]]) * inverse[:6, ...]
     if base is not None:
@@ -243,7 +245,7 @@ def _critical(xp: Any, values: Array, rows: Array, shape: Array) -> tuple[Array,
 
 
 def _softening(xp: Any, hit: Array, faces: int, count: int, metals: int) -> Array:
-    """Which layer loses stiffness at this step: by matrix or shear failure, or by yield."""
+    """Mask of the layer that softens at this step, by matrix or shear failure or by yield."""
     plies = _YIELD * faces * count
     modes = xp.reshape(hit[:plies, ...], (_YIELD, faces, count, *hit.shape[1:]))
     modes = xp.any(modes, axis=1)
@@ -255,7 +257,7 @@ def _softening(xp: Any, hit: Array, faces: int, count: int, metals: int) -> Arra
 
 
 def _together(xp: Any, walls: Sequence[WallLayer], dims: int) -> Array:
-    """Which layers soften with which, (layers, layers, ...)."""
+    """Mask of the layers that soften together, (layers, layers, ...)."""
     count, ones = len(walls), (1,) * dims
     same = [
         [i == j or (a.material == b.material and bool(a.strength) and bool(b.strength))
@@ -270,11 +272,12 @@ def _together(xp: Any, walls: Sequence[WallLayer], dims: int) -> Array:
 
 @geometry
 def climb(xp: Any, mechanics: Mechanics, layers: Sequence[WallLayer], shape: Array) -> BurstLadder:
-    """The ladder of a wall; `shape` is a zero of the designs' joint shape and type.
+    """The ladder of a wall; `shape` is a zero with the joint shape and type of the designs.
 
     References
     ----------
-    [derived] ply discount: the weakest mode fails, its layers lose it, until no more is carried
+    [derived] ply discount: the weakest mode fails and its layers lose it, until the wall carries no
+    more load
     """
     walls = [layers[i] for i in mechanics.order]
     count, metals, faces = len(walls), mechanics.metals, mechanics.faces
@@ -357,7 +360,7 @@ def _table(xp: Any, angle: Array, thickness: Array, moduli: tuple[Array, ...]) -
 
 @dataclass(frozen=True, slots=True)
 class _Membrane:
-    """Thin wall: one face a layer; what yielded metals hold is their axial and hoop line force."""
+    """Thin wall with one face per layer; a yielded metal keeps its axial and hoop line force."""
 
     intact: Array
     softened: Array
@@ -379,7 +382,7 @@ class _Membrane:
         return xp.concat([plane, 0 * plane[:1, ...]])[:, None, ...]
 
     def answer(self, soft: Array | None, held: Any) -> tuple[Array, Array | None]:
-        """Stresses per pressure, and those that the held line forces leave."""
+        """Stresses per pressure, and those from the line forces of yielded metals."""
         xp = namespace(self.intact)
         table = self.intact if soft is None else where(soft, self.softened, self.intact)
         rate = self._stress(xp, table, self.axial_line, self.hoop_line)
@@ -405,19 +408,20 @@ def burst_by_ply_discount(
 ) -> BurstLadder:
     """First ply failure and burst of a thin laminated wall.
 
-    Line forces N_t = p R, N_z = N/(2 pi R); critical mode by maximum stress; matrix or shear
-    failure multiplies E2, G12, nu12 of all plies of that material and |angle| by `residual` and
-    removes their matrix limits; burst is the largest load recorded until a fibre mode governs.
-    A metal layer that yields keeps `liner_share` of its stress at yield, and `residual` of its
-    stiffness for what follows.
+    The line forces are N_t = p R and N_z = N/(2 pi R); the critical mode follows from maximum
+    stress. A matrix or shear failure multiplies E2, G12, nu12 of all plies of that material and
+    |angle| by `residual` and removes their matrix limits. Burst is the largest load recorded until
+    a fibre mode governs. A metal layer that yields keeps `liner_share` of its stress at yield, and
+    afterwards `residual` of its stiffness.
 
     Parameters
     ----------
     layers : the wall from the bore outwards
     radius : R, mid-radius of the wall [m] (a choice)
-    axial_force_per_pressure : N/p [m^2]; 0 is open, pi R^2 closed
-    residual : stiffness left in a failed ply [-]
-    liner_share : stress a yielded metal keeps [-]: 1 perfectly plastic, 0 as if it were gone
+    axial_force_per_pressure : N/p [m^2]; 0 for open ends, pi R^2 for closed ends
+    residual : share of the stiffness that a failed ply keeps [-]
+    liner_share : share of its stress that a yielded metal keeps [-]: 1 if perfectly plastic, 0 if
+        it carries nothing
 
     Returns
     -------
@@ -427,9 +431,9 @@ def burst_by_ply_discount(
     -----
     Valid: thin walls with fibres.
 
-    A wall of metals only returns its yield (use `barrel.burst_pressure_thick`). The frozen liner
-    stress is in equilibrium, is nowhere above
-    yield and makes all pressures continuous where yield and ply failure coincide.
+    For a wall of metals only, the burst pressure is that of yield; use
+    `barrel.burst_pressure_thick` instead. The frozen stress of the liner is in equilibrium and
+    nowhere above yield. It makes all pressures continuous where yield and ply failure coincide.
 
     References
     ----------

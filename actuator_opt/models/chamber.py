@@ -1,9 +1,9 @@
 """Mass balance of a chamber: oil with entrained air over pressure; cavitation.
 
-The state is the reference volume, the volume the content takes at zero gauge pressure; it grows
-by the net inflow times `density_ratio` at the pressure the flow comes from. Pressures are gauge.
-The air stays undissolved and of constant mass. A chamber with air cannot pass -p_a; in oil without
-air a cavity opens below atmospheric pressure and closes above.
+The state is the reference volume: the volume that the content would have at zero gauge pressure. It
+grows by the net inflow times the `density_ratio` at the pressure upstream of the flow. Pressures
+are gauge. The air stays undissolved and keeps its mass. With air the pressure of a chamber cannot
+fall to -p_a. In oil without air a cavity opens below atmospheric pressure and closes above it.
 """
 
 from __future__ import annotations
@@ -71,9 +71,9 @@ def mixture_bulk_modulus(
 ) -> Array:
     """Tangent bulk modulus that keeps the mass, K_eff = (f + alpha r)/(f/K_p + alpha r/(n P)).
 
-    P = p + p_a, K_p = K + m p, f and r as in `density_ratio`. It is
-    `fluid.effective_bulk_modulus` with the air over the oil volume at the pressure itself,
-    alpha/f, and without that formula's floor: it tends to n P as P falls to zero.
+    P = p + p_a, K_p = K + m p, f and r as in `density_ratio`. The result is that of
+    `fluid.effective_bulk_modulus` with alpha/f, the air over the oil volume at the pressure itself.
+    Unlike that formula it has no floor: it tends to n P as P falls to zero.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ def _shares(
 ) -> tuple[Array, Array, Array]:
     """Change of the oil volume f - 1, gas volume alpha r, and -d(f + alpha r)/dp.
 
-    `total` is absolute; the gauge pressure beside it keeps the digits that the other one loses.
+    `total` is the absolute pressure; the gauge `pressure` keeps the digits that `total` loses.
     """
     modulus, slope, air, index, atmosphere = law
     strain = (total - atmosphere if pressure is None else pressure) / modulus
@@ -170,15 +170,15 @@ def cavity(
 ) -> tuple[Array, Array, Array]:
     """Volume of a cavity over the oil's at zero gauge pressure, -dG/dp, and the work to open it.
 
-    G = c (r - 1)^2 with r = (p_a/(p_a + p))^(1/n) below zero gauge pressure, none above: the volume
-    and its slope are continuous, and no pressure reaches a vacuum. Its work is
-    -int p dG = c p_a ((r - 1)^2 - 2 ((r^(2-n) - 1)/(2 - n) - (r^(1-n) - 1)/(1 - n))).
+    G = c (r - 1)^2 with r = (p_a/(p_a + p))^(1/n) below zero gauge pressure, and 0 above. Volume
+    and slope are continuous, and the pressure never falls to a vacuum. The work to open the cavity
+    is -int p dG = c p_a ((r - 1)^2 - 2 ((r^(2-n) - 1)/(2 - n) - (r^(1-n) - 1)/(1 - n))).
 
     Parameters
     ----------
     pressure : gauge pressure p [Pa], above -p_a
-    content : c, what bounds the vacuum [-] (a choice)
-    polytropic_index : n of what fills the cavity [-]
+    content : c, scale of the cavity's volume, which limits the tension [-] (a choice)
+    polytropic_index : n of the gas in the cavity [-]
     atmospheric_pressure : p_a [Pa]
 
     Returns
@@ -189,7 +189,7 @@ def cavity(
     -----
     Valid: any pressure above vacuum.
 
-    No law of cavitation, but a bound on the tension of oil.
+    This is no law of cavitation: it limits the tension in the oil.
 
     References
     ----------

@@ -1,9 +1,9 @@
 """Buckling of uniform columns (Euler, shear, local shell), and cylinder and rod as a bent beam.
 
-The stepped column lives in `stepped`; forces and moments of a laminated wall in `shell_buckling`.
-The beam carries its own weight, a side load and an off-centre push. The push amplifies the moment
-by a factor that is exact only for a load with the shape of the buckling mode. A side force at the
-rod's eye, carried by the guides, is the moment F times overhang at the head.
+The stepped column is in `stepped`; local buckling forces and moments are in `shell_buckling`. The
+beam carries its own weight, a side load and an off-centre push. The push amplifies the moment by a
+factor that is exact only for a load with the shape of the buckling mode. A side force F at the
+rod's eye, which the guides carry, gives the moment F times overhang at the head.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ def cowper_tube(*, poissons_ratio: Array, radius_ratio: Array) -> Array:
 
 
 def engesser_load(*, critical_load: Array, shear_stiffness: Array) -> Array:
-    """Critical load of a column that also gives in shear.
+    """Critical load of a column that also deforms in shear.
 
     P = P_E/(1 + P_E/(kappa G A)).
 
@@ -96,7 +96,7 @@ def engesser_load(*, critical_load: Array, shear_stiffness: Array) -> Array:
     -----
     Valid: exact for a uniform pinned column, on the safe side for others.
 
-    A column of two segments takes `stepped.mode_shear_stiffness`.
+    For a column of two segments pass `stepped.mode_shear_stiffness`.
 
     References
     ----------
@@ -236,11 +236,11 @@ def self_weight_moments(
 def amplified_moment(
     *, bending_moment: Array, axial_force: Array, critical_load: Array, shape: Array = 0.0
 ) -> Array:
-    """Bending moment of a column that already bends without its push.
+    """Bending moment of a column that bends already without its axial push.
 
-    M (1 + psi P/P_cr)/(1 - P/P_cr): exact for the moment of a uniform column that looks like its
-    buckling mode. Uniform and pinned, at mid-span: psi = 0.03 for an even load, -0.18 for a load
-    in the middle, 4/pi - 1 (safe) for a push off-centre at both ends.
+    M (1 + psi P/P_cr)/(1 - P/P_cr). This is exact for a uniform column whose moment has the shape
+    of its buckling mode. For a uniform pinned column at mid-span psi = 0.03 for a uniform load,
+    -0.18 for a load in the middle, 4/pi - 1 (safe) for a push off-centre at both ends.
 
     Parameters
     ----------
@@ -257,8 +257,9 @@ def amplified_moment(
     -----
     Valid: P < P_cr; elastic.
 
-    Largest moment in the rod of a stepped cylinder, psi = 0, P/P_cr to 1/3.5: under its weight
-    from 4 % low to 14 % high, under a push off-centre at both ends 4 to 8 % low.
+    For the largest moment in the rod of a stepped cylinder, with psi = 0 and P/P_cr up to 1/3.5,
+    the result is from 4 % low to 14 % high under the weight, and 4 to 8 % low under a push
+    off-centre at both ends.
 
     References
     ----------
@@ -278,10 +279,10 @@ def amplified_moment(
 def bending_axial_force(
     *, bending_moment: Array, radius: Array, axial_stiffness: Array, bending_stiffness: Array
 ) -> Array:
-    """Axial force that strains the whole section as bending strains its fibre at a radius.
+    """Axial force whose strain equals the bending strain of the fibre at a radius.
 
     N = M r EA/EI. Added to the axial force of a layered tube it gives the plies' stresses on the
-    side bent most; of one material, M A r/I.
+    most strained side; for a single material it is M A r/I.
 
     Parameters
     ----------

@@ -1,9 +1,9 @@
 """Compact double-acting seals (DAS type): an elastomer block between guide parts, face outwards.
 
-The block of free radial height h and face width w is squeezed by C between groove floor and
-sliding surface, in plane strain along the circumference. Either side's pressure energises it: one
-face, either direction. Per length of circumference; pressure is the difference, >= 0. Without
-squeeze (C <= 0) there is no contact. The peak pressure is that of the face's profile,
+The block of free radial height h and face width w is squeezed by C between groove floor and sliding
+surface, in plane strain along the circumference. Pressure from either side energises it, so that
+one face seals in both directions. Loads are per length of circumference; the pressure is the
+difference across the seal, >= 0. Without squeeze (C <= 0) there is no contact. The peak pressure is
 `contact_profile.land_peak`.
 """
 
@@ -43,7 +43,7 @@ def energised_share(*, poissons_ratio: Array) -> Array:
 
 @geometry
 def contact_width(*, squeeze: Array, face_width: Array, groove_width: Array) -> Array:
-    """Width of the squeezed face, b = w/(1 - C), at most the groove.
+    """Width of the squeezed face, b = w/(1 - C), at most the groove's width.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def line_load(
 ) -> Array:
     """Line load of a squeezed block, f = (E w/3)[(1 - C)^-3 - (1 - C)] + k p w/(1 - C).
 
-    k = nu/(1 - nu). Small squeeze: f = (4/3) E C w.
+    k = nu/(1 - nu). At small squeeze f = (4/3) E C w.
 
     Parameters
     ----------

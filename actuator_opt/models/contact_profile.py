@@ -1,16 +1,17 @@
 """Static contact pressure over a seal's contact: closed forms over t = x/b, and their loads.
 
-t = 0 is the sealed side, t = 1 the outer one; every profile (of types with an oil side) meets the
-sealed pressure at t = 0 and the outer one at t = 1. All pressures on one scale (gauge or
-absolute). Each shape has one free pressure, its excess; `*_mean` is the integral over t, and
-`*_excess` the excess with which the contact of width b carries a line load over the outer
-pressure, f = b (mean - p_a). A negative excess says that the load is too small for this width:
-the sealed pressure would open the contact, and the profile must not be used; without width it is
-NaN.
+There are profiles of O-rings (`o_ring_*`), lips (`lip_*`) and worn-in lands (`land_*`), and tables
+(`table_*`). t = 0 is the sealed side, t = 1 the outer side; at both ends the closed forms equal the
+pressure of that side. All pressures are on one scale, gauge or absolute.
 
-`land_*` is the worn-in face of a step ring or a compact seal. PTFE and elastomer faces wear and
-creep until their pressure is even, so the land carries the falling oil pressure plus a flat excess;
-new sharp edges carry more for their first metres.
+Each closed form has one free pressure, its excess. `*_mean` is the integral over t. `*_excess` is
+the excess with which a contact of width b carries a line load over the outer pressure,
+f = b (mean - p_a). A negative excess shows that the load is too small for this width: the sealed
+pressure would open the contact, and the profile must not be used. Without width the excess is NaN.
+
+A land is the worn-in face of a step ring or a compact seal. PTFE and elastomer faces wear and creep
+until their pressure is even, so the land carries the falling oil pressure plus a flat excess. New
+sharp edges carry more during the first metres of sliding.
 """
 
 from __future__ import annotations
@@ -24,8 +25,9 @@ from ..base.numeric import Array, clip, geometry, maximum, positive, real, sqrt,
 LIP_PLACES, LIP_SHARE = (0.0, 0.2, 0.6, 1.0), 0.42
 """Knots of the lip profile, and its third pressure over its second (*choice*, surrogate)."""
 O_RING_POWER = 10
-"""Power of the energised part, 1 - t^10: within 0.18 p of the profiles of own finite elements at a
-squeeze of 0.10 to 0.20 and p up to E (worst near the outer edge), whose mean is 0.89 to 0.94 p."""
+"""Power of the energised part, 1 - t^10. It is within 0.18 p of the finite-element profiles of this
+project at a squeeze of 0.10 to 0.20 and p up to E, and worst near the outer edge. Their mean is
+0.89 to 0.94 p."""
 
 
 def o_ring_profile(
@@ -49,7 +51,7 @@ def o_ring_profile(
     -----
     Valid: 0 <= t <= 1, squeeze 0.10 to 0.20, p_s - p_a up to 2 E.
 
-    The rubber passes the pressure on like a liquid; only near the outer edge does it fall.
+    The rubber passes the pressure on like a liquid; the pressure falls only near the outer edge.
 
     References
     ----------
@@ -144,7 +146,7 @@ def _inner_slope(before: Array, after: Array, left: float, right: float) -> Arra
 
 
 def _end_slope(near: Array, far: Array, length: float, following: float) -> Array:
-    """Slope at an end: parabola through three points, kept from overshooting."""
+    """Slope at an end: that of a parabola through three points, limited against overshoot."""
     slope = ((2 * length + following) * near - length * far) / (length + following)
     steep = real(slope) * real(near) > 3 * real(near) * real(near)
     bounded = where((real(near) * real(far) <= 0) & steep, 3 * near, slope)
@@ -256,8 +258,8 @@ def lip_excess(
 ) -> Array:
     """Excess p_k with which the lip profile carries a line load.
 
-    With y = p_a + f/b the greater of [y - 0.57933 p_s - 0.61667 p_a]/0.52933 and
-    [y - 0.58094 p_s - 0.61389 p_a]/0.50317: the two forms of the slope at the sealed end.
+    With y = p_a + f/b it is the greater of [y - 0.57933 p_s - 0.61667 p_a]/0.52933 and
+    [y - 0.58094 p_s - 0.61389 p_a]/0.50317, from the two forms of the slope at the sealed end.
 
     Parameters
     ----------
@@ -284,7 +286,7 @@ def lip_excess(
     1.5000 MPa
     """
     mean = outer_pressure + line_load / positive(width)
-    top = 0.468 + 0.85 / 75  # of p_s + p_k in the mean, without the slope at the sealed end
+    top = 0.468 + 0.85 / 75  # factor of p_s + p_k in the mean, but for the sealed end's slope
     outer = 0.6 + 1.25 / 75
     rest = mean - (0.1 + top) * sealed_pressure - outer * outer_pressure
     bounded = rest / (top + 1 / 20)
@@ -295,7 +297,7 @@ def lip_excess(
 def table_profile(
     *, position: Array, positions: Sequence[Array], pressures: Sequence[Array]
 ) -> Array:
-    """Contact pressure of a table, straight lines between its points, held outside them.
+    """Contact pressure of a table, linear between its points and constant outside them.
 
     Parameters
     ----------
@@ -442,7 +444,8 @@ def land_peak(
 ) -> Array:
     """Highest pressure of the land profile that carries a line load.
 
-    At u = -min[((p_s - p_a)/(16 p_e))^(1/7), 1]; without excess the sealed pressure.
+    The peak is at u = -min[((p_s - p_a)/(16 p_e))^(1/7), 1]; without excess it is the sealed
+    pressure.
 
     Parameters
     ----------
@@ -452,7 +455,8 @@ def land_peak(
 
     Returns
     -------
-    peak pressure, on the scale of the two [Pa]; the outer pressure without width (no contact)
+    peak pressure, on the scale of both pressures [Pa]; the outer pressure without width (no
+    contact)
 
     Notes
     -----

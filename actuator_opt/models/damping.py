@@ -1,7 +1,8 @@
 """Viscous damping coefficients (VDC) of oil and gaps, gap conductance, and the seals' secant VDC.
 
-The oil's pipe-flow VDC and the seals' secant VDC differ by 1e5 and more: two quantities, never
-merged. Incremental damping (dF/dv) is `friction.stribeck_slope`.
+The pipe-flow VDC of the oil and the secant VDC of the seals differ by a factor of 1e5 and more.
+They are two quantities and must not be merged. Incremental damping (dF/dv) is
+`friction.stribeck_slope`.
 """
 
 from __future__ import annotations
@@ -181,7 +182,7 @@ def secant(*, friction: Array, speed: Array) -> Array:
 
 
 def power_law(*, speed: Array, coefficient: Array, exponent: Array) -> Array:
-    """Power-law fit of the secant VDC, B = a v^b; b < 0 for a falling B.
+    """Power-law fit of the secant VDC, B = a v^b; b < 0 where B falls.
 
     The source prints b > 0, which contradicts its own falling curves.
 

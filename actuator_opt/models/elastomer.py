@@ -1,7 +1,7 @@
 """Elastomers: modulus from hardness (`MODULUS_LAWS`), its bounds, its change with temperature.
 
 Hardness is a poor measure of the modulus: the two laws differ by 1.8 at 70 Shore A, and a batch
-scatters by 5 Shore A. Both belong in every uncertainty.
+scatters by 5 Shore A. An uncertainty study should include both.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def modulus_gent(*, hardness: Array) -> Array:
     -----
     Valid: 20 to 90 Shore A.
 
-    Ruess gives 1.8 times as much at 70: carry the difference as uncertainty.
+    Ruess gives 1.8 times as much at 70 Shore A: treat the difference as an uncertainty.
 
     References
     ----------
@@ -93,7 +93,7 @@ class ModulusFunction(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class ModulusLaw:
-    """A hardness-to-modulus law: what its name means, the hardness it covers (Shore A), source."""
+    """A hardness-to-modulus law with help text, range of hardness (Shore A) and source."""
 
     name: str
     help: str
@@ -152,7 +152,7 @@ def modulus_bounds(*, hardness: Array, hardness_scatter: Array) -> tuple[Array, 
 
 
 def _stiffening(temperature: Array, stiffening_temperature: Array) -> Array:
-    """Modulus over its rubbery plateau, 10 at the stiffening temperature, -> 1 far above it."""
+    """Modulus over its rubbery plateau: 10 at the stiffening temperature, near 1 far above it."""
     glass = stiffening_temperature - GLASS_OFFSET
     above = maximum(temperature - glass, 0.0)
     decades = WLF_SLOPE * (GLASS_OFFSET / (WLF_SPAN + GLASS_OFFSET) - above / (WLF_SPAN + above))
@@ -169,9 +169,9 @@ def temperature_factor(
 ) -> Array:
     """Modulus over its value at the reference temperature, E(T)/E(T_ref).
 
-    e^(-b (T - T_ref)) s(T)/s(T_ref): the measured fall with heat, and the climb to the glass,
-    s = 1 + 9 (a_T/a_T10)^(1/2), log10 a_T = -17.44 (T - T_g)/(51.6 + T - T_g), T_g = T_10 - 5 K;
-    below T_g the shift is that at T_g (the glass is frozen).
+    e^(-b (T - T_ref)) s(T)/s(T_ref): the measured fall with heat, and the rise towards the glass
+    transition, s = 1 + 9 (a_T/a_T10)^(1/2), log10 a_T = -17.44 (T - T_g)/(51.6 + T - T_g),
+    T_g = T_10 - 5 K; below T_g the shift stays that at T_g, as the glass is frozen.
 
     Parameters
     ----------
@@ -189,10 +189,10 @@ def temperature_factor(
     -----
     Valid: from T_10 to the compound's upper limit, without ageing or swelling.
 
-    The climb of a polyurethane from 70 to -30 degC is met within 20 % [Texin250].
+    The rise of a polyurethane's modulus from 70 to -30 degC is met within 20 % [Texin250].
 
     Filled PTFE: b = 0.0106 1/K from 20 to 100 degC [FilledPTFE], and a stiffening temperature far
-    below the range, which leaves e^(-b (T - T_ref)).
+    below the range, so that only e^(-b (T - T_ref)) remains.
 
     References
     ----------

@@ -1,6 +1,6 @@
 """Lumped hydraulic elements of a line: resistance, inertance, capacitance and resonances.
 
-Lines as functions of frequency live in `transmission_line`, side branches in `transmission_line`.
+Lines and plugged side branches as functions of frequency are in `transmission_line`.
 """
 
 from __future__ import annotations
@@ -130,8 +130,8 @@ def sound_speed(*, bulk_modulus: Array, density: Array) -> Array:
 def quarter_wave_frequency(*, length: Array, sound_speed: Array) -> Array:
     """First quarter-wave frequency of a plugged branch, f = a/(4 l).
 
-    At odd multiples the plugged end swings and the mouth takes flow without pressure; at even
-    ones the branch takes no flow.
+    At odd multiples the plugged end oscillates and the mouth takes flow without pressure; at even
+    multiples the branch takes no flow.
 
     Parameters
     ----------

@@ -69,7 +69,7 @@ def hung_plate_stress(
     ----------
     pressure : gauge pressure on the loaded circle [Pa]
     loaded_radius : c, radius of the bore [m]
-    support_radius : a, radius the plate hangs at, >= c [m]
+    support_radius : a, radius at which the plate hangs, >= c [m]
     thickness : t [m]
     poissons_ratio : Poisson's ratio [-]
 

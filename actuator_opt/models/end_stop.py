@@ -26,7 +26,7 @@ def stop_stiffness(*, area: Array, pressure: Array, travel: Array = STOP_TRAVEL)
     ----------
     area : piston area A_A [m^2]
     pressure : supply pressure p_P, gauge [Pa]
-    travel : over which the stop takes A_A p_P [m]
+    travel : travel over which the stop takes A_A p_P [m]
 
     Returns
     -------
@@ -126,8 +126,8 @@ def cushion_flow_area(
     ----------
     remaining : y, travel left to the stop [m]
     length : L, of the cushion [m]
-    open_area : as the spear enters, and before [m^2]
-    end_area : at the stop [m^2], > 0 for the mass to reach it
+    open_area : flow area as the spear enters, and before [m^2]
+    end_area : flow area at the stop [m^2], > 0 for the mass to reach it
     exponent : k [-], > 0
 
     Returns
@@ -171,7 +171,8 @@ def cushion_pressure(
 
     Parameters
     ----------
-    speed : into the cushion [m/s]; away from it a check valve fills it without pressure drop
+    speed : into the cushion [m/s]; in the other direction a check valve fills the chamber without
+        pressure drop
     area : A, of the cushion chamber [m^2]
     flow_area : past the spear, `cushion_flow_area` [m^2], > 0
     density : [kg/m^3]
@@ -255,13 +256,13 @@ def cushion_open_area(
 ) -> Array:
     """Flow area of an evenly braking spear as it enters, A v/(C sqrt(2 p/rho)).
 
-    Closing as (y/L)^(1/2) it keeps the pressure, as v^2 then falls with y.
+    If the area closes as (y/L)^(1/2), the pressure stays constant, as v^2 then falls with y.
 
     Parameters
     ----------
     velocity : as the spear enters [m/s]
     area : A, of the cushion chamber [m^2]
-    pressure : wanted, above that of the port [Pa], > 0: `cushion_mean_pressure`
+    pressure : required pressure above that of the port [Pa], > 0: `cushion_mean_pressure`
     density : [kg/m^3]
     turbulent_coefficient : C [-]
 

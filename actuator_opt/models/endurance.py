@@ -25,7 +25,7 @@ def cycles_to_failure(
     ----------
     peak_stress : largest stress of the cycle, notch included [Pa]
     ultimate_strength : R_m [Pa]
-    fatigue_limit : amplitude stood for `limit_cycles`, fully reversed, with all reductions [Pa]
+    fatigue_limit : fully reversed amplitude endured for `limit_cycles`, with all reductions [Pa]
     limit_cycles : cycles of that limit [-]
     stress_ratio : R, smallest over largest stress [-]; 0 for a pressure that falls to zero
 
@@ -70,7 +70,8 @@ def fatigue_factor(
 ) -> Array:
     """Factor by which a pulsating stress may grow before its required life is lost.
 
-    1/(s_a/S_f + s_m/R_m), S_f the reversed amplitude stood for the required cycles.
+    1/(s_a/S_f + s_m/R_m), where S_f is the fully reversed amplitude endured for the required
+    cycles.
 
     Parameters
     ----------
@@ -105,10 +106,10 @@ def fatigue_factor(
 
 @geometry
 def bolt_endurance_amplitude(*, diameter: Array) -> Array:
-    """Stress amplitude that a bolt's thread stands for two million cycles and more.
+    """Stress amplitude that a bolt's thread endures for two million cycles and more.
 
-    sigma_A = 0.85 (150 mm/d + 45) MPa on the stress area, rolled before heat treatment, whatever
-    the mean stress.
+    sigma_A = 0.85 (150 mm/d + 45) MPa on the stress area, for threads rolled before heat treatment,
+    at any mean stress.
 
     Parameters
     ----------
@@ -136,7 +137,7 @@ def bolt_endurance_amplitude(*, diameter: Array) -> Array:
 
 @geometry
 def bolt_cycles(*, amplitude: Array, diameter: Array) -> Array:
-    """Cycles of a stress amplitude that a bolt's thread stands.
+    """Cycles of a stress amplitude that a bolt's thread endures.
 
     N = 2e6 (sigma_A/sigma_a)^3, sigma_A of `bolt_endurance_amplitude`.
 

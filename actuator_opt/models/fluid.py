@@ -1,8 +1,8 @@
-"""Hydraulic fluid: viscosity, bulk modulus, entrained and trapped air, vapour pressure.
+"""Hydraulic fluid: viscosity, vapour pressure, bulk modulus, and the effect of entrained air.
 
-Density lives in `oil_laws`, the Tait equation in `oil_laws`. Pressures are gauge unless a name says
-``absolute``; temperatures are in kelvin. A bulk modulus without a qualifier is the isothermal
-*tangent* value K = -V dp/dV; secant values say so.
+Density and the Tait equation are in `oil_laws`. Pressures are gauge unless a name says
+``absolute``; temperatures are in kelvin. A bulk modulus is the isothermal *tangent* value K = -V
+dp/dV, unless it is called a secant value.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def viscosity_astm_d341(
     """Kinematic viscosity at a temperature, from two or more known points.
 
     ln ln(nu + 0.7) = a - b ln T between neighbouring points (nu in mm^2/s); the end segments
-    continue outside. Exact at every given point.
+    continue outside. The result is exact at every given point.
 
     Parameters
     ----------
@@ -47,7 +47,8 @@ def viscosity_astm_d341(
     -----
     Valid: 2 mm^2/s and above, near the given points.
 
-    Two points cannot carry a fluid with viscosity improver to the cold: give three or more.
+    For a fluid with viscosity improver two points do not reach to low temperatures: give three or
+    more.
 
     References
     ----------

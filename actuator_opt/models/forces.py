@@ -50,7 +50,7 @@ def annulus_area(*, bore: Array, rod_diameter: Array) -> Array:
 
     Returns
     -------
-    area [m^2]; negative where the rod is thicker than the bore (a geometry fault, checked as such)
+    area [m^2]; negative where the rod is thicker than the bore (the checks of a design report it)
 
     Notes
     -----

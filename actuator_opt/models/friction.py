@@ -1,7 +1,7 @@
 """Seal friction: dry, Stribeck curve, and published parameters.
 
-Friction has the sign of the speed; the magnitudes here are positive. The dynamic form, LuGre, lives
-in `lugre`.
+Friction has the sign of the speed; the magnitudes here are positive. The dynamic form, LuGre, is in
+`lugre`.
 """
 
 from __future__ import annotations
@@ -220,9 +220,9 @@ def stribeck_slope(
 ) -> Array:
     """Incremental damping of the Stribeck curve, dF/dv; negative where it falls (stick-slip).
 
-    dF/dv = sigma2 - (F_S - F_C) (delta/v_s) y^(delta - 1) e^(-y^delta), y = |v|/v_s; the same
-    for both signs of the speed. At rest: the limit v -> 0+ of the sliding branch, taken at
-    y = 1e-9 (delta < 1 has none).
+    dF/dv = sigma2 - (F_S - F_C) (delta/v_s) y^(delta - 1) e^(-y^delta), y = |v|/v_s; the same for
+    both signs of the speed. At rest it is the limit v -> 0+ of the sliding branch, taken at
+    y = 1e-9; for delta < 1 no limit exists.
 
     Parameters
     ----------

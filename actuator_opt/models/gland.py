@@ -1,8 +1,8 @@
 """Gland of an O-ring: squeeze, stretch, fill, their range in use, and the extrusion gap.
 
-C is the squeeze over the free section W. The range covers hot and cold, and the tolerances of ring
-and groove. Largest extrusion gaps over pressure and hardness come from a table, passed as an
-argument: rows of a hardness with points of pressure and gap, from the maker of the seal.
+C is the squeeze as a share of the free section W. The range covers temperature and the tolerances
+of ring and groove. The largest extrusion gap follows from a table of the seal's maker, passed as an
+argument: a row per hardness, with points of pressure and gap.
 """
 
 from __future__ import annotations
@@ -282,7 +282,7 @@ def volume_ratio(
     -----
     Valid: a_V constant over dT; groove and counterface of one linear expansion.
 
-    What the rubber swells or shrinks in the fluid is left out.
+    Swelling and shrinkage of the rubber in the fluid are left out.
 
     References
     ----------
@@ -387,11 +387,11 @@ Table: TypeAlias = Sequence[tuple[Array, Points]]
 
 
 ROUNDING = 1e-9
-"""Relative excess of a pressure that is no excess."""
+"""Relative excess over a table's last pressure that counts as rounding."""
 
 
 def gap_limit(*, pressure: Array, points: Points) -> Array:
-    """Largest gap at a pressure, ln g linear in p between the points, held beyond them.
+    """Largest gap at a pressure, ln g linear in p between the points, constant beyond them.
 
     Parameters
     ----------
@@ -406,7 +406,7 @@ def gap_limit(*, pressure: Array, points: Points) -> Array:
     -----
     Valid: up to the last point; below the first the held value is on the safe side.
 
-    What counts of a seal and its back-up ring says `backed_gap_limit`.
+    `backed_gap_limit` chooses between the limits of a seal and of its back-up ring.
 
     References
     ----------
@@ -458,7 +458,8 @@ def extrusion_gap_limit(*, hardness: Array, pressure: Array, table: Table) -> Ar
 def extrusion_pressure_end(*, hardness: Array, table: Table) -> Array:
     """Highest pressure that a table of extrusion limits covers at a hardness.
 
-    The lower end of the two rows beside the hardness; that of the last row for a harder seal.
+    It is the lower end of the two rows beside the hardness, and the end of the last row for a
+    harder seal.
 
     Parameters
     ----------
@@ -499,16 +500,16 @@ def backed_gap_limit(
 ) -> Array:
     """Largest gap with a back-up ring: the larger limit of those that cover the pressure.
 
-    A back-up ring bridges the gap for the seal, so that the seal's own limit is no bound while the
-    ring bears more, nor the ring's while the seal needs none. Beyond the pressure to which a limit
-    was stated it is held, not known, and tells nothing of a gap that may be larger: the other one
-    counts alone, and beyond both the one stated to the higher pressure.
+    A back-up ring bridges the gap for the seal. The seal's limit therefore does not bind while the
+    ring bears a larger gap, nor the ring's limit while the seal needs no ring. Beyond its last
+    stated pressure a limit is only held constant, so the other limit counts alone. Beyond both
+    pressures the limit stated to the higher pressure counts.
 
     Parameters
     ----------
     pressure : difference across the seal [Pa]
     seal_limit, ring_limit : radial gaps that the seal alone and the back-up ring bear [m]
-    seal_end, ring_end : pressures up to which they are stated [Pa]
+    seal_end, ring_end : pressures up to which these limits are stated [Pa]
 
     Returns
     -------
@@ -546,7 +547,7 @@ def _exp(value: Array) -> Array:
 
 
 def _held(x: Array, points: Sequence[tuple[Array, Array]]) -> Array:
-    """Piecewise linear interpolation, held at both ends."""
+    """Piecewise linear interpolation, constant beyond both ends."""
     result = points[0][1] + 0 * x
     for (x0, y0), (x1, y1) in pairwise(points):
         result = where(real(x) > real(x0), y0 + (y1 - y0) / (x1 - x0) * (x - x0), result)

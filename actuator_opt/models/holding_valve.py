@@ -1,4 +1,4 @@
-"""Valve holding a load at rest: its edges supply the leakage; linearised there."""
+"""Valve that holds a load at rest: edges that supply the leakage, and small-signal flows there."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from ..base.numeric import Array, maximum, minimum, real, where
 from .valve import edge_conductance, edge_flow
 
 LEAST = 1e-12
-"""Flow over coefficient of an edge that feeds [sqrt(Pa)]: of a tenth of a nanopascal."""
+"""Least flow over coefficient of an edge that can supply oil [sqrt(Pa)]: that at a drop of 1e-10
+Pa."""
 
 
 class FeedingEdges(NamedTuple):
@@ -40,14 +41,14 @@ def feeding_edges(
 
     Returns
     -------
-    K of both edges [m^3/s/sqrt(Pa)]; K10 where an edge has no pressure drop to feed with
+    K of both edges [m^3/s/sqrt(Pa)]; K10 for an edge without pressure drop
 
     Notes
     -----
     Valid: a load held still by the valve.
 
-    One signal balances both chambers of matched edges at p_A + p_B = p_S + p_T, whatever leaks
-    past the piston: the pressures of `stiffness.holding_pressures` stay exact.
+    With matched edges one signal balances both chambers at p_A + p_B = p_S + p_T, whatever flow
+    leaks past the piston, so the pressures of `stiffness.holding_pressures` stay exact.
 
     References
     ----------
@@ -73,14 +74,14 @@ def feeding_edges(
 
 
 class ValveSlopes(NamedTuple):
-    """About a held load, in one direction: into A dq_A = G_A du - C_A dp_A, out of B G_B du."""
+    """Flow slopes about a held load, one direction: dq_A = G_A du - C_A dp_A, out of B G_B du."""
 
     gain_a: Array
     """Flow into chamber A per signal [m^3/s/V]."""
     gain_b: Array
     """Flow out of chamber B per signal [m^3/s/V]."""
     conductance_a: Array
-    """Flow out of chamber A through both its edges per its pressure [m^3/s/Pa]."""
+    """Flow out of chamber A through both of its edges, per pressure in A [m^3/s/Pa]."""
     conductance_b: Array
 
 
@@ -99,11 +100,11 @@ def valve_slopes(
 ) -> ValveSlopes:
     """Small-signal model of a valve that holds a load, in the direction in which its spool opens.
 
-    K(U) = K0 + (K10 - K0)|U|/U_max on opening edges, so G = ((K10 - K0)/U_max) sqrt(dp) of the
-    edge that opens: P-A and B-T extending, A-T and P-B retracting. Each chamber's conductance is
-    that of both its edges: where this direction feeds what leaks, of the spool that rests there
-    (`feeding_edges`); else of the centre, where the load only drifts. Held, a chamber has the
-    larger one of both directions.
+    K(U) = K0 + (K10 - K0)|U|/U_max on opening edges, so G = ((K10 - K0)/U_max) sqrt(dp) of the edge
+    that opens: P-A and B-T extending, A-T and P-B retracting. The conductance of a chamber is that
+    of both its edges. If this direction supplies the leakage, it is taken with the spool at rest
+    there (`feeding_edges`); otherwise with the spool at the centre, where the load only drifts. A
+    held chamber has the larger conductance of both directions.
 
     Parameters
     ----------
@@ -111,7 +112,7 @@ def valve_slopes(
     signal : U_max [V]
     supply_pressure, return_pressure, pressure_a, pressure_b : gauge [Pa]
     extending : True for U > 0 (P to A, B to T) [-]
-    leakage_tank : K0 of A-T and B-T where it is another [m^3/s/sqrt(Pa)]
+    leakage_tank : K0 of A-T and B-T, if different [m^3/s/sqrt(Pa)]
     piston_leakage : conductance from A to B [m^3/s/Pa]
 
     Returns
@@ -148,7 +149,7 @@ def valve_slopes(
     past = piston_leakage * (pressure_a - pressure_b)
 
     def conductances(into: Array, out: Array, lost: Array) -> tuple[Array, Array]:
-        """Of a chamber whose supply edge may open, and of one whose tank edge may."""
+        """Conductance of a chamber whose supply edge may open; the same for the tank edge."""
         edges = feeding_edges(
             rated_coefficient=rated_coefficient,
             leakage_supply=leakage_coefficient,

@@ -1,9 +1,9 @@
 """Thin laminated wall: membrane stiffness, strains, growth, effective moduli.
 
-Classical lamination theory of an axisymmetric tube without twist: every entry is an isotropic
-layer or a balanced +-angle pair. It is the fast stand-in for the exact layered tube; its error
-grows with t/r_i (warn above `THIN_WALL_LIMIT`), on the unsafe side at the bore.
-Plies live in `ply`, the burst in `burst_ladder`.
+Classical lamination theory of an axisymmetric tube without twist: every entry is an isotropic layer
+or a balanced +-angle pair. The theory is the fast substitute for the exact layered tube. Its error
+is on the unsafe side at the bore and grows with t/r_i; above `THIN_WALL_LIMIT` the evaluation
+warns. Plies are in `ply`, the burst is in `burst_ladder`.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def membrane(*, plies: Sequence[Sequence[Any]], thicknesses: Sequence[Array]) ->
 
     Parameters
     ----------
-    plies : stiffness of each layer in tube axes, Qzz, Qzt, Qtt first, as from `rotated` [Pa]
+    plies : stiffness of each layer in tube axes, Qzz, Qzt, Qtt first, as from `ply.rotated` [Pa]
     thicknesses : thickness of each layer, of the whole pair [m]
 
     Returns
@@ -108,11 +108,11 @@ def thermal_line_forces(
 ) -> tuple[Array, Array]:
     """Line forces that a temperature change adds to the mechanical ones in `strains`.
 
-    N_T = dT sum K_k t_k. The plies then feel the strain less their own alpha dT.
+    N_T = dT sum K_k t_k. The stress of a ply then follows from the strain less its alpha dT.
 
     Parameters
     ----------
-    loads : K_z, K_t of each layer, from `thermal_ply_load` [Pa/K]
+    loads : K_z, K_t of each layer, from `ply.thermal_ply_load` [Pa/K]
     thicknesses : thickness of each layer [m]
     temperature_change : dT from the stress-free state [K]
 
@@ -149,7 +149,7 @@ def bore_growth_thin(
 ) -> Array:
     """Radial growth of the bore of a thin laminated tube.
 
-    u = r_i e_t under N_t = p r_i, N_z = N/(2 pi r_i): the bore radius throughout (a choice).
+    u = r_i e_t under N_t = p r_i, N_z = N/(2 pi r_i), with the bore radius throughout (a choice).
 
     Parameters
     ----------
@@ -189,7 +189,7 @@ def bore_growth_thin(
 
 @geometry
 def effective_moduli(*, membrane: Membrane, thickness: Array) -> tuple[Array, Array, Array]:
-    """Axial and hoop modulus of a wall, each at zero force the other way, and nu_zt nu_tz.
+    """Axial and hoop modulus of a wall, each without force in the other direction, and nu_zt nu_tz.
 
     E_z = (Azz - Azt^2/Att)/t, E_t = (Att - Azt^2/Azz)/t, nu_zt nu_tz = Azt^2/(Azz Att).
 

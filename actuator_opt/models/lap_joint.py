@@ -8,7 +8,7 @@ from ..base.numeric import Array, geometry, namespace, positive, sqrt
 
 
 def _edge_ratio(*, loaded: Array, free: Array, reach: Array) -> Array:
-    """Edge over mean shear; reach = G L^2/t_a, K of the loaded and of the ending wall."""
+    """Edge over mean shear; reach = G L^2/t_a, stiffness K of the loaded and of the free wall."""
     half = sqrt(positive(reach * (1 / loaded + 1 / free))) / 2
     wave = namespace(half).tanh(half)
     return half * ((1 / wave - wave) + 2 * free / (free + loaded) * wave)  # no term below zero
@@ -22,10 +22,10 @@ def least_bond_peak_ratio(
     length: Array,
     membrane_stiffness: Array,
 ) -> Array:
-    """Peak over mean shear of a bonded overlap from below, from one of its two walls alone.
+    """Lower bound on the peak over mean shear of a bonded overlap, from one of its walls alone.
 
-    (w/2) coth(w/2), w^2 = 2 G L^2/(t_a K): the peak of two walls as the softer one; a
-    stiffer second wall only raises the peak.
+    (w/2) coth(w/2), w^2 = 2 G L^2/(t_a K). This is the ratio of two walls that are both as stiff as
+    the softer wall; a stiffer second wall only raises the peak.
 
     Parameters
     ----------
@@ -36,15 +36,15 @@ def least_bond_peak_ratio(
 
     Returns
     -------
-    ratio that is no more than the peak over the mean [-]
+    lower bound on the peak over the mean [-]
 
     Notes
     -----
     Valid: as `bond_edge_shear`; exact of equal walls.
 
-    At the edge that the softer wall ends at, tau ~ (coth(w)/K_1 + csch(w)/K_2)/w with
-    w^2 = (G L^2/t_a)(1/K_1 + 1/K_2), which falls as 1/K_2 rises: 2 sinh w <= w + sinh w cosh w
-    and sinh w <= w cosh w.
+    At the edge where the softer wall ends, tau ~ (coth(w)/K_1 + csch(w)/K_2)/w with
+    w^2 = (G L^2/t_a)(1/K_1 + 1/K_2), which falls as 1/K_2 rises: 2 sinh w <= w + sinh w cosh w and
+    sinh w <= w cosh w.
 
     References
     ----------
@@ -75,8 +75,8 @@ def bond_edge_shear(
     """Shear stress at one edge of a bonded cap; smooth, unlike the larger of both edges.
 
     tau = F/(pi D L) (w/2) [coth(w/2) + ((K_f - K_l)/(K_f + K_l)) tanh(w/2)],
-    w^2 = (G L^2/t_a)(1/K_l + 1/K_f); K_l belongs to the wall that carries the whole force at
-    this edge, K_f to the one that ends here.
+    w^2 = (G L^2/t_a)(1/K_l + 1/K_f); K_l belongs to the wall that carries the whole force at this
+    edge, K_f to the wall that ends here.
 
     Parameters
     ----------
@@ -94,8 +94,8 @@ def bond_edge_shear(
     -----
     Valid: linear adhesive, thin walls against the radius, no peel.
 
-    A ductile adhesive levels the peak: conservative. Length beyond w of about 5 brings nothing.
-    A plug or a thick sleeve counts with E A/(pi D), D of the bond.
+    A ductile adhesive levels the peak, so the result is conservative. Length beyond w of about 5
+    does not lower the peak. For a plug or a thick sleeve take K = E A/(pi D), with D of the bond.
 
     References
     ----------
@@ -131,8 +131,8 @@ def bond_thermal_shear(
     """Shear stress at an edge of a bonded overlap whose walls change length unequally.
 
     tau = (G L/t_a) (e_l - e_f) tanh(w/2)/w, w as in `bond_edge_shear`; opposite at the other edge.
-    It adds to the shear of a tensile force from `bond_edge_shear`; l is the wall that carries
-    that force at this edge, f the one that ends here.
+    It adds to the shear of a tensile force from `bond_edge_shear`; l is the wall that carries that
+    force at this edge, f the wall that ends here.
 
     Parameters
     ----------
@@ -149,7 +149,7 @@ def bond_thermal_shear(
     -----
     Valid: as `bond_edge_shear`; stress-free at the reference temperature (cure).
 
-    The radial stress of unequal hoop expansion is that of the layered tube.
+    `layered_tube` gives the radial stress from unequal hoop expansion.
 
     References
     ----------

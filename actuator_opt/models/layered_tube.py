@@ -3,7 +3,7 @@
 Hoop strain and radial stress are carried through the layers of `tube_elements` once for each
 unknown (bore strain, axial strain, twist) and once for the loads; the outer face, the axial force
 and the torque then close a 2 x 2 or 3 x 3 system. Stresses are given at both faces of each layer;
-a point inside a layer is the face of a sublayer (identical sublayers are one layer).
+for a point inside a layer, split the layer there: identical sublayers act as one layer.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class TubeState:
     radius : of both faces of each layer, (2, layers, ...) [m]
     hoop_strain, radial_strain, shear_strain : at those faces [-]
     radial_stress : at those faces [Pa]
-    held : stresses z, t, r, s that the layers hold back at zero strain, or None [Pa]
+    held : stresses z, t, r, s (thermal, frozen) subtracted from those of the strains, or None [Pa]
     temperature_change : from the stress-free state [K]
     """
 
@@ -59,7 +59,7 @@ class TubeState:
 class Faces:
     """Hoop strain and radial stress at both faces of every layer, (2, layers, ...); the unknowns.
 
-    What `closed` returns: `axial_strain` and `twist` belong to the whole tube.
+    The result of `closed`; `axial_strain` and `twist` belong to the whole tube.
     """
 
     hoop_strain: Array
@@ -80,9 +80,9 @@ def closed(
 ) -> Faces:
     """Carry unit unknowns and the loads through all layers, and close the system.
 
-    Columns of one march: bore hoop strain 1, axial strain 1, (twist 1,) and the loads. `transfer`
-    is a `LayeredTube`'s, `driven` (outputs, layers, ...) from `forcing`, or None; all of one number
-    of batch axes.
+    One march carries these columns: unit bore hoop strain, unit axial strain, (unit twist,) and the
+    loads. `transfer` is that of a `LayeredTube`; `driven`, (outputs, layers, ...), is from
+    `forcing`, or None. All arrays have the same number of batch axes.
 
     References
     ----------
@@ -90,7 +90,7 @@ def closed(
     """
     outputs, count, dims = transfer.shape[1], transfer.shape[2], transfer.ndim - 3
     ones = (1,) * dims
-    columns = outputs  # as many unknowns as closing equations, less the outer face's two, and loads
+    columns = outputs  # one per unknown (outputs less the outer hoop strain), and the loads
     unit = [
         xp.reshape(xp.asarray([float(i == k) for i in range(columns)]), (columns, *ones))
         for k in range(columns)
@@ -121,7 +121,7 @@ def closed(
 def _unknowns(
     face: Array, total: Array, outer_pressure: Array, force: Array, torque: Array
 ) -> tuple[Array, ...]:
-    """Bore hoop strain, axial strain (and twist) that meet outer face and axial force (torque)."""
+    """Bore hoop strain, axial strain (and twist) from outer pressure, axial force (and torque)."""
     s_e, s_z, n_e, n_z = face[0, ...], face[1, ...], total[0, 0, ...], total[0, 1, ...]
     press, pull = -outer_pressure - face[-1, ...], force / (2 * pi) - total[0, -1, ...]
     if total.shape[0] == 1:
@@ -142,7 +142,7 @@ def _unknowns(
 
 
 def forcing(xp: Any, transfer: Array, inner: Array, outer: Array, held: tuple[Array, ...]) -> Array:
-    """What held stresses z, t, r (and s) add to the outputs of every layer.
+    """Part of the held stresses z, t, r (and s) in the outputs of every layer.
 
     References
     ----------
@@ -182,7 +182,8 @@ def tube_state(
 
     Returns
     -------
-    the state (see `TubeState` for units, [m], [Pa], [-]); loads may carry axes before the batch
+    the state (see `TubeState` for units, [m], [Pa], [-]); loads may have axes before those of the
+    batch
 
     Notes
     -----
@@ -229,7 +230,7 @@ def _polar(xp: Any, tube: LayeredTube) -> Array:
 def _held(
     tube: LayeredTube, change: Array, frozen: tuple[Array, Array, Array] | None
 ) -> tuple[Array, ...] | None:
-    """Stresses z, t, r, s that the layers hold back at zero strain; None where there are none."""
+    """Stresses z, t, r, s subtracted from those of the strains; None without any."""
     still = tube.hold is None or (isinstance(change, (float, int)) and change == 0.0)
     if still and frozen is None:
         return None
@@ -246,7 +247,7 @@ def _held(
 def _state(
     xp: Any, tube: LayeredTube, held: tuple[Array, ...] | None, faces: Faces, change: Array
 ) -> TubeState:
-    """The radial strain at the faces, and what else follows from the unknowns."""
+    """The state from the unknowns, with the radial strain at the faces."""
     radius = together([tube.inner, tube.outer])
     shear = radius * faces.twist
     _, _, zr, _, tr, rr, _, _, rs, _ = tube.wall
@@ -272,7 +273,7 @@ def _state(
 def tube_stresses(*, tube: LayeredTube, state: TubeState) -> tuple[Array, Array, Array, Array]:
     """Stresses of every layer in tube axes, at both its faces.
 
-    sigma_i = C_ij eps_j - K_i dT, of a balanced pair its mean.
+    sigma_i = C_ij eps_j - K_i dT; for a balanced pair the mean of both plies.
 
     Parameters
     ----------
@@ -320,14 +321,14 @@ def ply_stresses_at_faces(
 ) -> tuple[Array, Array, Array, Array]:
     """Stresses of every ply in its own axes, at both faces of its layer.
 
-    The strains of the wall less the ply's free strains, times its stiffness. In a pair without
-    torque both plies differ only in the sign of the shear.
+    The stress is the ply's stiffness times the strains of the wall less the free strains of the
+    ply. In a pair without torque both plies differ only in the sign of the shear.
 
     Parameters
     ----------
     tube : from `layered_tube`
     state : from `tube_state`
-    opposite : the -angle ply of each pair (the same ply of a single layer)
+    opposite : True for the -angle ply of each pair (no change for a single ply)
 
     Returns
     -------

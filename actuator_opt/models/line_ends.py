@@ -15,7 +15,7 @@ from ..base.polynomial import Polynomial, add, at_frequency, multiply, scale
 
 @dataclass(frozen=True, slots=True)
 class LineEnd:
-    """What ends a line: an admittance Y(s) = numerator/denominator (flow out per pressure)."""
+    """End of a line: an admittance Y(s) = numerator/denominator (flow out per pressure)."""
 
     numerator: Polynomial = ()
     denominator: Polynomial = (1.0,)
@@ -24,19 +24,19 @@ class LineEnd:
 CLOSED = LineEnd()
 """Nothing flows out of the line."""
 CONSTANT_PRESSURE = LineEnd((1.0,), ())
-"""The pressure is held whatever flows."""
+"""The pressure stays constant at any flow."""
 
 
 def parallel_ends(*ends: LineEnd) -> LineEnd:
-    """Line end of several on one node: their admittances add.
+    """Combined line end of several on one node: their admittances add.
 
     Parameters
     ----------
-    ends : as of `accumulator_end`, `reducing_valve_end` or a valve's conductance
+    ends : line ends of `accumulator_end`, `reducing_valve_end` or a valve's conductance
 
     Returns
     -------
-    the line end of all together, Y in [m^3/s/Pa]
+    the combined line end, Y in [m^3/s/Pa]
 
     Notes
     -----
@@ -96,12 +96,12 @@ def reducing_valve_end(
 ) -> LineEnd:
     """Pressure reducing valve, Y = g + G omega^2/(s^2 + 2 zeta omega s + omega^2).
 
-    Slowly it holds its pressure with G + g; it lags at every frequency, like an inertance, and well
-    above its own only g, the conductance of its opening, is left.
+    At low frequency the valve holds its pressure with G + g. It lags at every frequency, like an
+    inertance. Well above its natural frequency only g remains, the conductance of its opening.
 
     Parameters
     ----------
-    conductance : G, flow per pressure the spool regulates with [m^3/s/Pa]
+    conductance : G, flow per pressure by which the spool regulates [m^3/s/Pa]
     natural_frequency : [Hz]
     damping_ratio : [-]
     passive_conductance : g [m^3/s/Pa]
@@ -170,10 +170,11 @@ def antiresonance_frequency(
 ) -> Array:
     """Frequency where chamber and valve together take no reactive flow: C + Im(Y)/w = 0.
 
-    The valve lags: below this frequency it is an inertance that outweighs the compliance, here
-    only Re(Y) is left, and the actuator's stiffness A^2 w/|Re(Y)| peaks where that is small. The
-    line is stable only if Re(Y) > 0 here, so the passive share must outweigh the valve's. With
-    k = G/(C w0): w^2 = w0^2 [1 - 2 zeta^2 + sqrt(4 zeta^4 - 4 zeta^2 + 2 zeta k)], the upper root.
+    The valve lags: below this frequency it acts as an inertance that outweighs the compliance. At
+    this frequency only Re(Y) remains, and the actuator's stiffness A^2 w/|Re(Y)| peaks if Re(Y) is
+    small. The line is stable only if Re(Y) > 0 here, so the passive conductance must outweigh the
+    share of the valve. With k = G/(C w0),
+    w^2 = w0^2 [1 - 2 zeta^2 + sqrt(4 zeta^4 - 4 zeta^2 + 2 zeta k)], the upper root.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Linear model of the held actuator: load, piston, coupled chambers, lines and their ends.
 
-Everything is a ratio of polynomials in s whose coefficients carry the derivatives; modes,
-margins and bandwidth are their roots (`loop`).
+Every response is a ratio of polynomials in s whose coefficients carry the derivatives; `loop` finds
+modes, margins and bandwidth from their roots.
 """
 
 from __future__ import annotations
@@ -20,17 +20,17 @@ class Side:
     """One chamber with its line: oil and walls at the piston, R and L of the line, its far end."""
 
     area: Array
-    """[m^2]"""
+    """Piston area [m^2]."""
     compliance: Array
-    """Of chamber and near half of the line [m^3/Pa]."""
+    """Compliance of the chamber and the near half of the line [m^3/Pa]."""
     throttle: Array | None = None
     """Conductance of a throttle in the line, 0 when closed [m^3/s/Pa]; None: no throttle."""
     resistance: Array = 0.0
-    """Of the line [Pa s/m^3]."""
+    """Resistance of the line [Pa s/m^3]."""
     inertance: Array = 0.0
-    """[kg/m^4]"""
+    """Inertance of the line [kg/m^4]."""
     far_compliance: Array = 0.0
-    """Of the line's far half [m^3/Pa]."""
+    """Compliance of the line's far half [m^3/Pa]."""
     end: LineEnd = CLOSED
     flow_gain: Array = 0.0
     """Flow of the valve into the line's far end per spool signal [m^3/s/V]; A +, B -."""
@@ -50,7 +50,7 @@ class LinearActuator:
 
 
 class _Eliminated(NamedTuple):
-    """A chamber after its far node is gone: e (q_v + A v) and m p = d G o."""
+    """A chamber after its far node is eliminated: e (q_v + A v) and m p = d G o."""
 
     e: Polynomial
     m: Polynomial
@@ -61,7 +61,8 @@ def _eliminated(side: Side, leakage: Array) -> _Eliminated:
     """Far node (C s + Y) p_f = G o - q and line (R + 1/g + L s) q = p_f - p eliminated.
 
     Everything is multiplied by the line end's denominator and by the throttle's conductance, so
-    that a closed throttle (g = 0) divides nothing. Behind a closed end without oil nothing flows.
+    that a closed throttle (g = 0) causes no division by zero. With a closed end and no oil at the
+    far node, nothing flows.
     """
     far = add(multiply((0.0, side.far_compliance), side.end.denominator), side.end.numerator)
     if not far:
@@ -89,9 +90,9 @@ def linear_actuator(
     """Polynomials of the held actuator, load at the rod's end behind rod and mount.
 
     Chambers: e_i (C_i s + g) p_i + m_i p_i + e_i (c s - g) p_j = d_i G_i o - e_i a_i s x_p with
-    a = (A_A, -A_B); piston: F = a^T p - (B s + k_s) x_p; load: m s^2 x = F + F_L and
-    x_p = x + f F. Eliminating p by Cramer's rule leaves N x = M F_L + T o with
-    N = m s^2 M + P, M = det + f P, P = (B s + k_s) det + s a^T adj(.) e a.
+    a = (A_A, -A_B); piston: F = a^T p - (B s + k_s) x_p; load: m s^2 x = F + F_L and x_p = x + f F.
+    Elimination of p by Cramer's rule gives N x = M F_L + T o with N = m s^2 M + P, M = det + f P,
+    P = (B s + k_s) det + s a^T adj(.) e a.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Liner duty between rest and pressure, and the thickness that holds a tube's bore strain."""
+"""Stress cycle of a liner, and the layer thickness that limits a tube's bore strain."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .strength import mises_product
 from .strength_modes import Stress
 
 _STEPS = 60
-"""Most steps of the search: halving alone would then reach 1e-18 of the largest thickness."""
+"""Largest number of search steps: halving alone then reaches 1e-18 of the largest thickness."""
 
 _SETTLED = 1e-9
 """Relative step that ends the search: the Newton step after it doubles the digits."""
@@ -22,12 +22,13 @@ _SETTLED = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class LinerCycle:
-    """A liner between rest and pressure.
+    """Stress cycle of a liner between rest and pressure.
 
     Parameters
     ----------
-    strain_range : equivalent elastic strain between both [-]
-    shakedown : that range over twice the yield strain [-]; above 1 every cycle yields both ways
+    strain_range : equivalent elastic strain from rest to pressure [-]
+    shakedown : strain range over twice the yield strain [-]; above 1 every cycle yields in both
+        directions
     at_rest, at_pressure : equivalent stress over yield [-]; above 1 the next cycle yields
     """
 
@@ -54,7 +55,7 @@ def liner_cycle(
     stress : elastic stresses 1, 2, 3 and 12 from rest to pressure [Pa]
     yield_strength : Y [Pa]
     youngs_modulus : E [Pa]
-    residual : stresses at rest, of cooling and autofrettage [Pa]
+    residual : stresses at rest, from cooling and autofrettage [Pa]
 
     Returns
     -------
@@ -102,29 +103,30 @@ def layer_thickness_for_strain(
     axial_force_per_pressure: Array,
     largest_thickness: Array,
 ) -> Array:
-    """Thickness of one layer that holds the bore's hoop strain to a value.
+    """Thickness of a layer that limits the bore's hoop strain to a value.
 
-    u(t)/r_i = strain: Newton on 1/strain, nearly a straight line of t, halving where it would
-    leave the bracket; a complex step at the end makes every derivative exact.
+    Solves u(t)/r_i = strain by Newton's method on 1/strain, which is nearly linear in t, and by
+    halving the bracket where a step would leave it. A complex step at the end makes every
+    derivative exact.
 
     Parameters
     ----------
-    layers : from the bore outwards; the thickness of the one sought is not read
-    index : of that layer, 0 is the innermost [-]
+    layers : from the bore outwards; the thickness of layer `index` is not read
+    index : index of the layer whose thickness is sought, 0 is the innermost [-]
     inner_radius : bore radius [m]
     strain : allowed hoop strain of the bore, u/r_i [-]
     pressure : internal gauge pressure [Pa]
-    axial_force_per_pressure : N/p in the wall [m^2]; 0 is open, pi r_i^2 closed
-    largest_thickness : beyond which no thickness is sought [m]
+    axial_force_per_pressure : N/p in the wall [m^2]; 0 for open ends, pi r_i^2 for closed ends
+    largest_thickness : largest thickness tried [m]
 
     Returns
     -------
-    thickness [m]; 0 where the other layers hold the strain alone
+    thickness [m]; 0 where the other layers alone keep the strain below the limit
 
     Raises
     ------
     ValueError
-        Where no thickness up to the largest holds the strain.
+        Where no thickness up to the largest reaches the strain.
 
     Notes
     -----
@@ -180,7 +182,7 @@ def _plain(layer: TubeLayer) -> TubeLayer:
 
 
 def _with(layers: Sequence[TubeLayer], index: int, thickness: Array) -> list[TubeLayer]:
-    """The layers with another thickness of one."""
+    """The layers with another thickness of the layer `index`."""
     changed = list(layers)
     changed[index] = replace(changed[index], thickness=thickness)
     return changed
@@ -202,7 +204,7 @@ def _search(
     start: tuple[Array, Array, Array],
     spare: Array,
 ) -> tuple[Array, Array]:
-    """Thickness near the answer, and the slope of the bore strain there."""
+    """Thickness near the solution, and the slope of the bore strain there."""
     thickness, value, slope = start
     low, high = 0 * thickness, thickness
     for _ in range(_STEPS):

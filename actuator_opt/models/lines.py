@@ -1,7 +1,7 @@
 """Pipes, hoses and ports: compliance, volume, flow, pressure drop, friction of oscillating flow.
 
-Lines are round and full; a positive flow gives a positive pressure drop. Their lumped elements
-live in `elements`. Series impedance by name of the friction:
+Lines are round and full; a positive flow gives a positive pressure drop. Their lumped elements are
+in `elements`. The series impedance depends on the name of the friction:
 
 `lossless`     none
 `steady`       the laminar resistance of steady flow, at every frequency
@@ -16,9 +16,9 @@ from typing import Any
 from ..base.numeric import Array, absolute, clip, geometry, maximum, namespace, real, where
 
 LAMINAR_REYNOLDS = 2300.0
-"""Below: pure Hagen-Poiseuille."""
+"""Largest Reynolds number of pure Hagen-Poiseuille flow."""
 TURBULENT_REYNOLDS = 4000.0
-"""Above: pure Blasius."""
+"""Least Reynolds number of pure Blasius friction."""
 
 
 @geometry

@@ -135,8 +135,8 @@ def joint_torque(*, force: Array, lever_arm: Array) -> Array:
 def actuator_force(*, torque: Array, lever_arm: Array) -> Array:
     """Push of the actuator that gives a joint torque, also at a dead point.
 
-    `forces.joint_force` with its limit: infinite with the sign of the torque where the lever arm
-    is zero, and 0 without torque.
+    This is `forces.joint_force` with its limit where the lever arm is zero: infinite with the sign
+    of the torque, and 0 without torque.
 
     Parameters
     ----------
@@ -166,7 +166,7 @@ def actuator_force(*, torque: Array, lever_arm: Array) -> Array:
 
 
 class ReflectedInertia(NamedTuple):
-    """F = mass dv/dt + velocity_factor v^2 of a joint's inertia at the actuator."""
+    """A joint's inertia at the actuator, F = mass dv/dt + velocity_factor v^2."""
 
     mass: Array
     velocity_factor: Array

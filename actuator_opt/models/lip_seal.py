@@ -1,12 +1,13 @@
 """Lip seals (U-cup of piston or rod, wiper at zero pressure): line load, width, peak pressure.
 
 The sliding lip is a short tube of mean radius r, thickness t and length l, clamped where it leaves
-the body, bent by the interference delta of its rim with the surface. Piston and rod differ only in
-the radius. Per length of circumference; pressure is the one-sided difference, >= 0. Without
-interference (delta <= 0) there is no contact: zero load, width and peak.
+the body. The interference delta of its rim with the surface bends it. Seals of piston and rod
+differ only in the radius. Loads are per length of circumference; the pressure is the one-sided
+difference, >= 0. Without interference (delta <= 0) there is no contact: load, width and peak are
+zero.
 
-Under pressure the lip lies down from the rim towards the body: the part next to the root, of
-length s, still bridges the root clearance g, the rest rests on the surface.
+Under pressure the lip lies down on the surface, from the rim towards the body. The part next to the
+root, of length s, still bridges the root clearance g.
 """
 
 from __future__ import annotations
@@ -66,8 +67,8 @@ def lip_stiffness(
     """Rim load over rim deflection of a lip: a clamped short tube under a radial edge load.
 
     k = 2 D beta^3 (cosh^2 u + cos^2 u)/(sinh u cosh u - sin u cos u), u = beta l,
-    D = E t^3/[12 (1 - nu^2)], beta^4 = E t/(4 D r^2). Large radius: the cantilever 3 D/l^3; long
-    lip: 2 D beta^3.
+    D = E t^3/[12 (1 - nu^2)], beta^4 = E t/(4 D r^2). A large radius gives the cantilever 3 D/l^3,
+    a long lip 2 D beta^3.
 
     Parameters
     ----------
@@ -183,9 +184,9 @@ def line_load(
 ) -> Array:
     """Line load of a lip: preload of the tube plus the share of the pressure the surface carries.
 
-    Rim alone: f = k delta + 3 p l/8 (propped cantilever). Lying down, span s:
-    f = (k - 3 D/l^3) delta + p s/3 + 2 D theta/s^2 + p (l - s); continuous. A span shorter than
-    the lip is thick is no beam: its bending stays at s = t.
+    While only the rim touches, f = k delta + 3 p l/8 (propped cantilever). Lying down with a free
+    span s, f = (k - 3 D/l^3) delta + p s/3 + 2 D theta/s^2 + p (l - s); the change is continuous. A
+    span shorter than the lip's thickness is no beam: its bending stays that at s = t.
 
     Parameters
     ----------
@@ -203,7 +204,7 @@ def line_load(
     -----
     Valid: as `lip_stiffness`; hoop relief of the pressure is neglected (over-states).
 
-    Oil pressure inside the contact is not taken off: a film carries its part of this load.
+    Oil pressure inside the contact is not subtracted: a film carries its part of this load.
 
     References
     ----------
@@ -306,8 +307,8 @@ def contact_width(
     """Contact width of a lip from its load and peak, b = f/m, at most l.
 
     m is the mean of `contact_profile.lip_profile` between the sealed pressure and zero with the
-    peak p_max: load, peak, width and profile agree. The lip lies down from the rim towards its
-    root as the pressure grows.
+    peak p_max, so that load, peak, width and profile agree. The lip lies down from the rim towards
+    its root as the pressure grows.
 
     Parameters
     ----------

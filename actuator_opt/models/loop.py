@@ -1,9 +1,9 @@
 """Modes of the held actuator, its position loop, and controller tuning.
 
 Roots are found on real parts; the imaginary step of the coefficients is carried to each result by
-the implicit-function theorem, so every figure here has its exact derivative. Tuning rules start
-from the ultimate point, where the loop is at its limit of stability; the controller is
-u = K (e + (1/T_i) integral of e + T_d de/dt).
+the implicit-function theorem, so every result has its exact derivative. Tuning rules start from the
+ultimate point, where the loop is at its limit of stability; the controller is u = K (e + (1/T_i)
+integral of e + T_d de/dt).
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def _without_integrators(polynomial: Polynomial) -> Polynomial:
 
 
 def poles(*, model: LinearActuator) -> np.ndarray:
-    """Every pole of the held actuator but those at zero, (..., n) complex [rad/s].
+    """Every pole of the held actuator except those at zero, (..., n) complex [rad/s].
 
     Parameters
     ----------
@@ -82,19 +82,19 @@ def poles(*, model: LinearActuator) -> np.ndarray:
 def load_mode(*, model: LinearActuator, near: Array) -> Mode:
     """Mode of the load on the oil: the pair of poles next to an expected frequency.
 
-    omega^2 = lambda_1 lambda_2, zeta = -(lambda_1 + lambda_2)/(2 omega); above one the mode does
-    not swing. Of two real poles of unlike sign the growing one counts, zeta = -lambda/omega with
+    omega^2 = lambda_1 lambda_2, zeta = -(lambda_1 + lambda_2)/(2 omega); above 1 the mode does not
+    oscillate. Of two real poles of unlike sign the growing pole counts: zeta = -lambda/omega with
     omega^2 = -lambda_1 lambda_2.
 
     Parameters
     ----------
     model : from `linear.linear_actuator`
-    near : expected frequency, as sqrt(k/m)/(2 pi) of the closed cylinder [Hz]
+    near : expected frequency, for instance sqrt(k/m)/(2 pi) of the closed cylinder [Hz]
 
     Returns
     -------
-    natural frequency [Hz] and damping ratio, negative where it grows (stick-slip); 0 Hz and
-    infinite where no oil holds the load
+    natural frequency [Hz] and damping ratio, negative where the motion grows (stick-slip); 0 Hz and
+    an infinite ratio where no oil holds the load
 
     Notes
     -----
@@ -126,7 +126,7 @@ def load_mode(*, model: LinearActuator, near: Array) -> Mode:
         motion = root_motion(polynomial, one), root_motion(polynomial, two)
         product = (one * two).real + 1j * (one * motion[1] + two * motion[0]).real
         total = (one + two).real + 1j * (motion[0] + motion[1]).real
-        apart = product.real < 0  # one real pole grows, the other fades: the growing one counts
+        apart = product.real < 0  # one real pole grows, the other fades: the growing pole counts
         grows = where(one.real > 0, one.real + 1j * motion[0].real, two.real + 1j * motion[1].real)
         omega = where(np.isnan(near), math.nan, sqrt(where(apart, -product, product)))
         frequency, ratio = omega / (2 * pi), -where(apart, grows, 0.5 * total) / omega
@@ -217,7 +217,7 @@ def _lifted(polynomial: Polynomial) -> Polynomial:
 
 
 def _chosen(crossings: np.ndarray, score: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The crossing of least score, 1 in its place where there is none, and whether there is."""
+    """The crossing of least score, or 1 without a crossing, and whether a crossing exists."""
     if not score.shape[-1]:
         return np.ones(score.shape[:-1]), np.zeros(score.shape[:-1], dtype=bool)
     best = np.argmin(score, axis=-1)[..., None]
@@ -227,19 +227,19 @@ def _chosen(crossings: np.ndarray, score: np.ndarray) -> tuple[np.ndarray, np.nd
 
 
 class UltimateGain(NamedTuple):
-    """Where the loop begins to swing by itself."""
+    """Gain and frequency at which the loop begins to oscillate by itself."""
 
     gain: Array
-    """[V/m]; infinite where no gain does, 0 where every gain or the actuator itself does"""
+    """[V/m]; infinite if no gain makes the loop oscillate, 0 if every gain or the actuator does."""
     frequency: Array
-    """[Hz]; NaN where there is none"""
+    """[Hz]; NaN without oscillation."""
 
 
 def ultimate_gain(*, loop: PositionOpenLoop) -> UltimateGain:
     """Smallest gain with a closed-loop pole on the imaginary axis.
 
     Im[N(i omega) conj D(i omega)] = 0 gives every crossing in w = omega^2; there
-    K = -|D|^2/Re(N conj D), and the smallest positive one is the limit.
+    K = -|D|^2/Re(N conj D), and the smallest positive value is the limit.
 
     Parameters
     ----------
@@ -293,9 +293,9 @@ def _unknown(loop: PositionOpenLoop) -> Array:
 
 
 def _holds(loop: PositionOpenLoop) -> Array:
-    """Whether a small gain holds: no pole of the actuator grows, and position follows the signal.
+    """Whether the loop is stable at a small gain: no pole grows, and position follows the signal.
 
-    Pressure that nothing lets out leaves a pole at zero, which does no harm.
+    A pressure that cannot leak away leaves a pole at zero, which does no harm.
     """
     low = _without_integrators(loop.denominator)
     poles_open = roots(low)
@@ -313,14 +313,14 @@ def _holds(loop: PositionOpenLoop) -> Array:
 
 
 class PositionLoopMargins(NamedTuple):
-    """How far a closed loop is from swinging, and how fast it follows."""
+    """Phase margin, crossover and bandwidth of a closed position loop."""
 
     phase_margin: Array
     """[rad]"""
     crossover: Array
-    """Where the open loop's magnitude is one [Hz]"""
+    """Frequency at which the open loop has magnitude 1 [Hz]."""
     bandwidth: Array
-    """Where the closed loop falls to -3 dB [Hz]"""
+    """Frequency at which the closed loop falls to -3 dB [Hz]."""
 
 
 def margins(*, loop: PositionOpenLoop, gain: Array) -> PositionLoopMargins:
@@ -336,12 +336,12 @@ def margins(*, loop: PositionOpenLoop, gain: Array) -> PositionLoopMargins:
 
     Returns
     -------
-    phase margin [rad], infinite without a crossover; crossover [Hz], NaN without; bandwidth [Hz],
-    0 where nothing follows
+    phase margin [rad], infinite without a crossover; crossover [Hz], NaN without any; bandwidth
+    [Hz], 0 where the position does not follow
 
     Notes
     -----
-    Valid: below the ultimate gain; the angle does not tell on which side -1 is passed.
+    Valid: below the ultimate gain; the angle does not show on which side -1 is passed.
 
     References
     ----------
@@ -384,7 +384,7 @@ def _phase(upper: Polynomial, lower: Polynomial, omega: Array) -> Array:
 
 
 GAIN_MARGIN = 3.0
-"""Ultimate gain over gain (a choice: room for the friction, oil and strokes that the linear loop
+"""Ultimate gain over gain (a choice: reserve for the friction, oil and strokes that the linear loop
 leaves out)."""
 
 
@@ -406,14 +406,14 @@ class ControllerGains(NamedTuple):
 def ziegler_nichols(*, law: str, ultimate_gain: Array, ultimate_period: Array) -> ControllerGains:
     """Ziegler-Nichols rule from the ultimate point: quick, for a plant that is well damped.
 
-    P 0.5 K_u; PI 0.45 K_u, T_u/1.2; PID 0.6 K_u, T_u/2, T_u/8. A lightly damped oil spring leaves
-    its PID hardly any gain margin, and its PI swings: `margin_rules` is calmer there.
+    P 0.5 K_u; PI 0.45 K_u, T_u/1.2; PID 0.6 K_u, T_u/2, T_u/8. With a lightly damped oil spring the
+    PID has hardly any gain margin and the PI oscillates; `margin_rules` gives a calmer loop there.
 
     Parameters
     ----------
     law : "p", "pi" or "pid" [-]
-    ultimate_gain : K_u, the gain at which the loop swings for ever [V/m or another]
-    ultimate_period : T_u of that swing [s]
+    ultimate_gain : K_u, the gain at which the loop keeps oscillating [V/m or another unit]
+    ultimate_period : T_u, period of that oscillation [s]
 
     Returns
     -------

@@ -1,6 +1,6 @@
 """LuGre bristle friction: exact step, steady state, passivity and rules of thumb.
 
-The level g(v) is `friction.stribeck_level`.
+The friction level g(v) is `friction.stribeck_level`.
 """
 
 from __future__ import annotations

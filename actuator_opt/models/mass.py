@@ -45,7 +45,7 @@ def tube_mass(
 
 @geometry
 def layer_area(*, inner_radius: Array, thickness: Array) -> Array:
-    """Section of a layer around a tube, pi t (2 r + t): no difference of like numbers.
+    """Section of a layer around a tube, pi t (2 r + t), without a difference of near numbers.
 
     Parameters
     ----------
@@ -195,8 +195,8 @@ def pitch_diameter(*, diameter: Array, pitch: Array) -> Array:
 def stud_mass(*, density: Array, diameter: Array, pitch: Array, length: Array) -> Array:
     """Mass of a threaded stud, the cylinder of its pitch diameter.
 
-    Ridges above and roots below the pitch line have equal section, so the pitch cylinder holds
-    the thread's volume but for its curvature and rounding (choice).
+    Ridges above and roots below the pitch line have equal section, so the pitch cylinder has the
+    thread's volume, apart from its curvature and rounding (choice).
 
     Parameters
     ----------

@@ -21,10 +21,10 @@ def oil_energy_density(
     """Elastic energy of oil and air over their volume, e = (u_oil + alpha u_air)/(f + alpha r).
 
     u = -integral of p dw from 0 to p, over the volume of the oil at zero gauge pressure:
-    u_oil = K (f^(1-m) - 1)/(m - 1) - p f, f = (1 + m p/K)^(-1/m), or
-    K (1 - f) - p f with f = e^(-p/K) at m = 0; u_air = (P r - p_a)/(n - 1) - p_a (1 - r), or
-    p_a ln(P/p_a) - p_a (1 - r) at n = 1, with P = p + p_a and r = (p_a/P)^(1/n). Written with
-    expm1 and log1p over their arguments, so that m = 0, m = 1 and n = 1 are no cases.
+    u_oil = K (f^(1-m) - 1)/(m - 1) - p f, f = (1 + m p/K)^(-1/m), or K (1 - f) - p f with
+    f = e^(-p/K) at m = 0; u_air = (P r - p_a)/(n - 1) - p_a (1 - r), or p_a ln(P/p_a) - p_a (1 - r)
+    at n = 1, with P = p + p_a and r = (p_a/P)^(1/n). The code uses expm1 and log1p over their
+    arguments, so that m = 0, m = 1 and n = 1 need no branch.
 
     Parameters
     ----------

@@ -1,8 +1,9 @@
-"""Oil over pressure and temperature: laws of bulk modulus, viscosity and density by name.
+"""Oil over pressure and temperature: density, Tait equation, trapped oil, and laws by name.
 
-A design may name a law. A new law is an entry here: its name, the properties it needs, its formula,
-its range. Pressures are gauge, temperatures in kelvin. In the Tait equation K0 = zero_modulus
-exp(-c T) is the isothermal modulus at zero pressure, and B = 1 + K0'.
+A design may name a law of bulk modulus or viscosity. A new law is an entry in `BULK_MODULUS_LAWS`
+or `VISCOSITY_LAWS` with its name, the properties it needs, its formula and its range. Pressures are
+gauge, temperatures in kelvin. In the Tait equation K0 = zero_modulus exp(-c T) is the isothermal
+modulus at zero pressure, and B = 1 + K0'.
 """
 
 from __future__ import annotations
@@ -138,7 +139,7 @@ def thermal_pressure_slope(
 
 
 TAIT_PRESSURE, TAIT_TEMPERATURES = 350e5, (273.15, 423.15)
-"""Gauge pressure (Pa) and temperatures (K) for which the constants of the generic oil stand."""
+"""Largest gauge pressure (Pa) and temperature range (K) of the generic oil's constants."""
 
 
 def _zero_pressure_modulus(zero_modulus: Array, coefficient: Array, temperature: Array) -> Array:
@@ -237,21 +238,21 @@ def bulk_modulus_tait(
 
 
 Properties = Callable[[str], Any]
-"""A property of the oil by its name in the library [SI]; None where it states none."""
+"""A property of the oil by its name in the library [SI]; None if it is not stated."""
 
 
 @dataclass(frozen=True, slots=True)
 class BulkModulusLaw:
-    """Tangent bulk modulus of a liquid without air, and its density, over pressure.
+    """Law of the tangent bulk modulus and density of a liquid without air over pressure.
 
     Attributes
     ----------
-    name, help : its word in a design, and what it means
+    name, help : its word in a design, and the meaning of that word
     needs : properties of the oil beyond bulk modulus and density
     modulus : tangent bulk modulus [Pa] by (properties, temperature [K], gauge pressure [Pa])
-    density : density [kg/m^3] by (properties, that at zero pressure, temperature, pressure)
-    largest_pressure : gauge pressure up to which it is known [Pa]
-    model : the model function behind it; None where it has no formula of its own
+    density : density [kg/m^3] by (properties, density at zero pressure, temperature, pressure)
+    largest_pressure : gauge pressure up to which the law is known [Pa]
+    model : its model function; None for a law without a formula
     """
 
     name: str
@@ -265,15 +266,15 @@ class BulkModulusLaw:
 
 @dataclass(frozen=True, slots=True)
 class ViscosityLaw:
-    """Viscosity over pressure.
+    """Law of the viscosity over pressure.
 
     Attributes
     ----------
-    name, help : its word in a design, and what it means
-    needs : properties of the oil, the first of them its coefficient [1/Pa]
+    name, help : its word in a design, and the meaning of that word
+    needs : properties of the oil; the first is the coefficient of the law [1/Pa]
     model : dynamic viscosity by (viscosity, pressure, coefficient); None: independent of pressure
-    largest_pressure : gauge pressure up to which it holds [Pa]
-    words : for a report
+    largest_pressure : gauge pressure up to which the law holds [Pa]
+    words : name of the law in a report
     """
 
     name: str
@@ -284,14 +285,14 @@ class ViscosityLaw:
     words: str
 
     def viscosity(self, *, viscosity: Array, pressure: Array, coefficient: Array) -> Array:
-        """Dynamic viscosity at a gauge pressure [Pa s], from that at zero gauge pressure."""
+        """Dynamic viscosity at a gauge pressure [Pa s], from its value at zero gauge pressure."""
         if self.model is None:
             return viscosity + 0 * pressure
         return self.model(viscosity=viscosity, pressure=pressure, coefficient=coefficient)
 
 
 def _warm(oil: Properties, temperature: Array, pressure: Array) -> Array:
-    """Bulk modulus at its own pressure and a temperature."""
+    """Bulk modulus at its stated pressure, corrected to a temperature."""
     modulus, decay = oil("bulk_modulus"), oil("bulk_modulus_decay")
     if decay is None:
         return modulus
@@ -327,7 +328,7 @@ def _tait(oil: Properties, temperature: Array, pressure: Array) -> Array:
 def _compressed(
     modulus: Callable[[Properties, Array, Array], Array], *, sloped: bool
 ) -> Callable[[Properties, Array, Array, Array], Array]:
-    """Density of a law whose bulk modulus rises by a slope, or not at all."""
+    """Density of a law whose bulk modulus has a constant slope, or none."""
 
     def density_at(oil: Properties, rho: Array, temperature: Array, pressure: Array) -> Array:
         return density_compressed(
@@ -380,7 +381,7 @@ BULK_MODULUS_LAWS = kinds(
         model=bulk_modulus_tait,
     ),
 )
-"""Laws of the bulk modulus by their word."""
+"""Laws of the bulk modulus by name."""
 
 VISCOSITY_LAWS = kinds(
     "law of the viscosity",
@@ -409,4 +410,4 @@ VISCOSITY_LAWS = kinds(
         words="under pressure by Roelands",
     ),
 )
-"""Laws of the viscosity by their word."""
+"""Laws of the viscosity by name."""

@@ -1,7 +1,8 @@
 """One-way flow-control valve: a needle that throttles, with a check valve beside it.
 
-The pressure difference is chamber less line. Positive: out of the chamber, through the needle
-only. Negative: into the chamber, through the needle and, above the cracking pressure, the check.
+The pressure difference is that of the chamber less that of the line. If it is positive, oil flows
+out of the chamber through the needle only. If it is negative, oil flows into the chamber through
+the needle and, above the cracking pressure, through the check valve too.
 """
 
 from __future__ import annotations
@@ -14,11 +15,12 @@ from .orifice import orifice_conductance, orifice_flow, orifice_pressure_drop
 NEEDLE_AREA = 0.22e-4
 """Effective area of the fully open needle, m^2 [AaltoThesis] section 3.1."""
 CHECK_AREA = 0.64e-4
-"""Effective area of free flow, m^2 [AaltoThesis] section 3.1; read as the poppet alone (choice)."""
+"""Effective area of free flow, m^2 [AaltoThesis] section 3.1; taken as the poppet's alone
+(choice)."""
 CRACKING_PRESSURE = 0.4e5
 """Pressure difference that opens the check valve, Pa [AaltoThesis] section 3.3.5."""
 OPENING_SPAN = 0.1e5
-"""From cracking to fully open, Pa (choice: w^2 (3 - 2 w) of the area in between)."""
+"""Pressure from cracking to fully open, Pa (choice: between them w^2 (3 - 2 w) of the area)."""
 _STEPS = 80
 _TOLERANCE = 1e-12
 

@@ -1,9 +1,10 @@
 """Orifices from creeping to turbulent flow: flow, pressure drop and their slopes.
 
-One law throughout: the laminar and the turbulent pressure drop stand in series,
-dp = rho q |q|/(2 C^2 A^2) + eta q/(2 delta^2 d A). It is odd and once differentiable at zero,
-explicit both ways, and its coefficient C_q tends to delta sqrt(Re) and to C [Merritt1967]. The
-other common form cuts one law off where the other begins, Re = (C/delta)^2; it has a kink there.
+All functions use one law, the laminar and the turbulent pressure drop in series:
+dp = rho q |q|/(2 C^2 A^2) + eta q/(2 delta^2 d A). It is odd, once differentiable at zero, and
+explicit in flow and in pressure drop. Its coefficient C_q tends to delta sqrt(Re) and to C
+[Merritt1967]. The other common form changes from one law to the other at Re = (C/delta)^2, where it
+has a kink.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """One ply in its wall: reduced stiffness, rotation from the tube axis, stresses, thermal terms.
 
-Plane stress. Directions: 1 fibre, 2 across; z tube axis, t hoop, s in-plane shear (engineering).
-The winding angle is measured from the tube axis; an entry stands for a balanced +-angle pair, so
-the laminate has no shear coupling, while the stresses given are those of the +angle ply.
+The ply is in plane stress. Directions: 1 fibre, 2 across it; z tube axis, t hoop, s in-plane shear
+(engineering). The winding angle is measured from the tube axis; an entry is a balanced +-angle
+pair, so the laminate has no shear coupling. The stresses are those of the +angle ply.
 """
 
 from __future__ import annotations

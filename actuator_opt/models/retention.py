@@ -1,6 +1,6 @@
 """Retention of the ends by tie rods or pins, and guidance of the rod.
 
-Bonds live in `lap_joint`, the rod's thread in `rod`, that of the caps in `thread`, plates in
+Bonds are in `lap_joint`, the rod's thread in `rod`, the thread of the caps in `thread`, plates in
 `end_plate`, fatigue and the end of the stroke in `endurance`.
 """
 
@@ -49,7 +49,7 @@ def tie_rod_stress(*, force: Array, count: Array, diameter: Array, pitch: Array)
 def pin_shear_stress(*, force: Array, diameter: Array) -> Array:
     """Mean shear stress of a clevis pin in double shear.
 
-    tau = 2 F/(pi d^2); the largest in a solid round pin is 4/3 of it.
+    tau = 2 F/(pi d^2); the largest shear stress in a solid round pin is 4/3 of this mean.
 
     Parameters
     ----------
@@ -144,11 +144,11 @@ def bearing_pressure(*, force: Array, diameter: Array, length: Array) -> Array:
 def guide_friction(*, force: Array, friction_coefficient: Array) -> Array:
     """Friction of a guide ring or plain bearing under a radial force, F = (4/pi) mu |N|.
 
-    Its pressure p_0 cos(theta) over the loaded half adds up to 4/pi of the force it carries.
+    The pressure p_0 cos(theta) over the loaded half adds up to 4/pi times the radial force.
 
     Parameters
     ----------
-    force : radial force N on it [N]
+    force : radial force N on the ring [N]
     friction_coefficient : mu of ring on surface [-]
 
     Returns
@@ -159,7 +159,7 @@ def guide_friction(*, force: Array, friction_coefficient: Array) -> Array:
     -----
     Valid: ring fits its surface (clearance small against its compression); no oil film.
 
-    A loose ring touches along a line: mu |N|.
+    A loose ring touches along a line, and its friction is mu |N|.
 
     References
     ----------

@@ -1,4 +1,4 @@
-"""Piston rod: axial stiffness, section, stresses, threads."""
+"""Piston rod: section, stiffness, stresses and threads; also layered rods."""
 
 from __future__ import annotations
 
@@ -248,10 +248,10 @@ def free_modulus(*, wall: Sequence[Array]) -> Array:
 def layered_section(
     *, walls: Sequence[Sequence[Any]], thicknesses: Sequence[Array], inner_diameter: Array
 ) -> tuple[Array, Array]:
-    """Bending stiffness and shear stiffness, without its coefficient, of a layered tube.
+    """Bending stiffness EI of a layered tube, and its shear stiffness GA without shear coefficient.
 
     EI = sum E_z I, GA = sum Css A; E_z = Czz - (Czt^2 Crr - 2 Czt Czr Ctr + Czr^2 Ctt)/
-    (Ctt Crr - Ctr^2), each layer free to contract. Times `column.cowper_tube`, GA is kappa G A.
+    (Ctt Crr - Ctr^2), with each layer free to contract. GA times `column.cowper_tube` is kappa G A.
 
     Parameters
     ----------

@@ -4,8 +4,8 @@ The film ratio is H = h/sigma: the distance of the mean planes over the composit
 Gaussian surface. Flow and shear factors are those of isotropic surfaces (Patir and Cheng);
 `rod_share` is V = (sigma_rod/sigma)^2, the part of the composite roughness on the moving rod: 0 for
 a smooth rod under a rough seal, 1 for a rough rod under a smooth seal. It sets the sign of the two
-factors of relative motion: with a smooth rod the flow is less than that of a smooth gap and the
-shear of the rod more.
+factors of relative motion: with a smooth rod the flow is less, and the shear on the rod more, than
+in a smooth gap.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _STEP = 0.15
 _HEIGHTS = tuple((_STEP * i) ** 2 for i in range(29))
 """Squares of the nodes of a trapezium sum: exact to 1e-11 for film ratios of -6 to 20."""
 _ORDERS = {"-1/2": 0, "1/2": 2, "3/2": 4, "5/2": 6}
-"""Order n of an asperity integral as the even power 2n + 1 under its sum."""
+"""Even power 2n + 1 under the sum of an asperity integral, by its order n."""
 _WEIGHTS = {
     order: tuple(
         2 * _STEP / math.sqrt(2 * math.pi) * (0.5 if s == 0 else 1) * s ** (power / 2)
@@ -45,7 +45,7 @@ def _bells(value: Array) -> Array:
 
 
 def _summed(bells: Array, order: str) -> Array:
-    """The asperity integral of an order from the bells at its film ratio."""
+    """Asperity integral of an order, from the values of `_bells` at its film ratio."""
     xp = namespace(bells)
     return xp.sum(xp.asarray(_WEIGHTS[order]) * bells, axis=-1)
 
@@ -242,7 +242,7 @@ def film_ratio_under_contact(*, contact_pressure: Array, stiffness: Array) -> Ar
     light = real(target) < -0.844  # F_3/2(0) = 0.43
     thin = xp.sqrt(0.835 - 2 * (where(light, target, -0.844) + 0.844)) - 0.914
     film = where(light, thin, -(ratio ** (2 / 3)))
-    for _ in range(6):  # five reach rounding from -6 to 20, one more a complex step
+    for _ in range(6):  # five steps reach rounding for H -6 to 20; one more for a complex step
         bells = _bells(film)
         value, slope = _summed(bells, "3/2"), _summed(bells, "1/2")
         film = film + (xp.log(value) - target) * value / (1.5 * slope)
@@ -356,8 +356,8 @@ def shear_flow_factor(*, film_ratio: Array, rod_share: Array) -> Array:
 def shear_stress_factor(*, film_ratio: Array) -> Array:
     """Mean of h over the local gap, phi_f: sliding shear over that of a smooth gap.
 
-    The polynomial density of heights of Patir and Cheng, z = H/3, with the gap cut off at
-    1/300 of its range.
+    The heights have the polynomial density of Patir and Cheng, z = H/3; the gap is cut off at 1/300
+    of its range.
 
     Parameters
     ----------
@@ -400,7 +400,7 @@ def shear_stress_factor(*, film_ratio: Array) -> Array:
 
 
 def shear_stress_correction(*, film_ratio: Array, rod_share: Array) -> Array:
-    """Shear by the flow of the roughness, phi_fs = (2 V - 1) Phi_fs, taken from phi_f.
+    """Shear by the flow of the roughness, phi_fs = (2 V - 1) Phi_fs, subtracted from phi_f.
 
     Phi_fs = 11.1 H^2.31 e^(-2.38 H + 0.11 H^2) to H = 7, 0 beyond. The sliding shear of the rod
     is (eta U/h)(phi_f - phi_fs): a smooth rod has phi_f + Phi_fs.

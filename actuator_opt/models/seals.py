@@ -1,20 +1,22 @@
 """O-ring seals: contact laws (registry `LAWS`); the modulus comes from `elastomer`.
 
-C is the squeeze over the free section W. A squeeze C <= 0 (the barrel's growth ate it) has lost
-contact: zero width, zero line load, zero peak pressure in every law. All loads are per length of
-circumference; pressure is the one-sided difference across the ring, >= 0. The laws differ by a
-third at zero pressure and by two thirds near p = E: every result must name its law.
+C is the squeeze as a share of the free section W. At C <= 0, when the growth of the barrel has used
+up the squeeze, there is no contact: every law gives zero width, line load and peak pressure. Loads
+are per length of circumference; the pressure is the one-sided difference across the ring, >= 0. The
+laws differ by a third at zero pressure and by two thirds near p = E, so every result must name its
+law.
 
 The default, `energised`, is a formula fitted to the finite elements of `finite_elements.o_ring`
 (`benchmarks/o_ring_law.py` computes the grid and fits): plane strain, incompressible neo-Hookean
-rubber, no friction, rigid walls, a groove 1.4 W wide with closed corners, squeeze 0.08 to 0.25,
-p/E 0 to 1.5, 192 elements around the section (256 change force and width by up to 1.3 %). The
-groove's width does not matter while the ring does not fill it. The hoop of a small ring does: on a
-rod of radius 3 W the dry force is 16 % greater, in a bore of radius 7 W it is 9 % less; from p = E
-on both are within 4 %. At p = 3 E force and width of the law are still within 5 % and 8 %.
+rubber, no friction, rigid walls, a groove 1.4 W wide with closed corners, squeeze 0.08 to 0.25, p/E
+0 to 1.5, 192 elements around the section (256 change force and width by up to 1.3 %). The width of
+the groove does not matter as long as the ring does not fill it. The curvature of a small ring does
+matter: on a rod of radius 3 W the dry force is 16 % greater, in a bore of radius 7 W it is 9 %
+less; from p = E on both differences are within 4 %. At p = 3 E force and width of the law are still
+within 5 % and 8 %.
 
-A new law is three functions of (squeeze, section, youngs_modulus, pressure) and one entry in
-`LAWS`; a design's words, help and schema read it, and the registry-wide tests run on it.
+A new law needs three functions of (squeeze, section, youngs_modulus, pressure) and an entry in
+`LAWS`. The design format, help and schema read that entry, and the tests of all laws include it.
 """
 
 from __future__ import annotations
@@ -62,7 +64,7 @@ def width_as_published(*, section: Array, gland_height: Array) -> Array:
 
 
 class ContactFunction(Protocol):
-    """One quantity of one law; the arguments every law takes, used or not."""
+    """Function of one quantity of a law; every law takes all arguments, used or not."""
 
     def __call__(
         self, *, squeeze: Array, section: Array, youngs_modulus: Array, pressure: Array
@@ -72,19 +74,19 @@ class ContactFunction(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class SealLaw:
-    """An O-ring contact law: three functions, where they hold, where they come from.
+    """An O-ring contact law: three functions, their ranges and their source.
 
     Parameters
     ----------
     name : registry key, named in every result
-    help : what the name means in a design file
+    help : meaning of the name in a design file
     line_load : normal force per length of circumference, N/m
     contact_width : m (limit it by `gland.limited_width`)
     peak_pressure : highest contact pressure, Pa gauge
-    squeeze_limits : squeezes a design may have with it: outside, its width leaves the free section
-        or its load means nothing (compared with finite elements at 0.08 to 0.30), -
-    squeeze_range : squeezes the law is compared with data on, -
-    pressure_range : pressures over Young's modulus likewise, -
+    squeeze_limits : squeezes a design may have with this law, -; outside, its width exceeds the
+        free section or its load is meaningless (compared with finite elements at 0.08 to 0.30)
+    squeeze_range : squeezes at which the law was compared with data, -
+    pressure_range : pressures over Young's modulus at which it was compared with data, -
     reference : source
     """
 
@@ -99,7 +101,7 @@ class SealLaw:
     reference: str
 
     def in_range(self, *, squeeze: Array, youngs_modulus: Array, pressure: Array) -> Array:
-        """Whether squeeze and pressure lie where the law was compared with data (booleans)."""
+        """Whether squeeze and pressure are in the range compared with data (booleans)."""
         c, p = real(squeeze), real(pressure) / real(youngs_modulus)
         low, high = self.squeeze_range
         return (
@@ -121,17 +123,16 @@ def _lindley(c: Array) -> Array:
 class EnergisedRing:
     """Hertz contact of a mounted ring that the oil widens and loads, with fitted coefficients.
 
-    Mounted: f_0 = E W (a C + b C^2), b_0 = W sqrt(6 f_0/(pi E W)) (1 - c C^2) and
-    p_0 = 4 f_0/(pi b_0). Under pressure: b^2 = b_0^2 + W^2 (d + e C) p/(p + h E),
-    f = b [(10/11) p + pi p_0/4], the mean of `contact_profile.o_ring_profile`, and
-    p_max = p_0 + p.
+    Without pressure: f_0 = E W (a C + b C^2), b_0 = W sqrt(6 f_0/(pi E W)) (1 - c C^2)
+    and p_0 = 4 f_0/(pi b_0). Under pressure: b^2 = b_0^2 + W^2 (d + e C) p/(p + h E),
+    f = b [(10/11) p + pi p_0/4], the mean of `contact_profile.o_ring_profile`, and p_max = p_0 + p.
 
     Parameters
     ----------
     dry_force : a, b [-]
-    narrowing : c, of Hertz's width where the squeeze is not small [-]
-    growth : d, e: square of the width over W that endless pressure adds [-]
-    half_pressure : h, pressure over E that adds half of it [-]
+    narrowing : c, reduction of Hertz's width where the squeeze is not small [-]
+    growth : d, e: increase of (b/W)^2 at infinite pressure, d + e C [-]
+    half_pressure : h, pressure over E at half of that increase [-]
     """
 
     dry_force: tuple[float, float]
@@ -140,7 +141,7 @@ class EnergisedRing:
     half_pressure: float
 
     def _mounted(self, squeeze: Array) -> tuple[Array, Array]:
-        """Width over W and peak pressure over E without oil, for a positive squeeze."""
+        """Width over W and peak pressure over E without oil pressure, for a positive squeeze."""
         force = squeeze * (self.dry_force[0] + self.dry_force[1] * squeeze)
         narrow = 1 - self.narrowing * squeeze * squeeze
         return sqrt((6 / math.pi) * force) * narrow, 4 * sqrt(force / (6 * math.pi)) / narrow
@@ -180,8 +181,8 @@ class EnergisedRing:
 
 
 ENERGISED_RING = EnergisedRing((0.307, 2.294), 0.652, (0.307, 0.549), 0.618)
-"""Coefficients fitted to own finite elements: on their grid force and width are within 2.1 %, the
-peak pressure within 6 % (a test compares them with the stored grid)."""
+"""Coefficients fitted to the finite elements of this project. On their grid force and width are
+within 2.1 %, the peak pressure within 6 % (a test compares them with the stored grid)."""
 
 
 @geometry

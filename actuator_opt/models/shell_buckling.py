@@ -1,6 +1,6 @@
 """Local buckling of the wall of a compressed or bent tube, isotropic or laminated.
 
-Forces and moments of the whole tube; the stress and its knock-down in compression live in
+Forces and moments are those of the whole tube; the stress and its knock-down in compression are in
 `column`.
 """
 
@@ -21,8 +21,8 @@ def shell_modulus(
 ) -> Array:
     """Modulus with which an orthotropic wall buckles like an isotropic one.
 
-    E = sqrt(E_z E_theta) min(1, sqrt(2 G (1 + nu)/sqrt(E_z E_theta))): rings first, or
-    diamonds where the wall is soft in shear. Isotropic: E.
+    E = sqrt(E_z E_theta) min(1, sqrt(2 G (1 + nu)/sqrt(E_z E_theta))): the wall buckles in rings,
+    or in diamonds where it is soft in shear. For an isotropic wall the result is E.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ def shell_modulus(
 
     Returns
     -------
-    modulus for `local_shell_stress`, `local_shell_force`, `local_shell_moment` [Pa]
+    modulus for `column.local_shell_stress`, `local_shell_force`, `local_shell_moment` [Pa]
 
     Notes
     -----
@@ -74,7 +74,7 @@ def local_shell_force(
     thickness : wall thickness [m]
     radius : mid-radius [m]
     poissons_ratio : Poisson's ratio; sqrt(nu_ztheta nu_thetaz) of a laminate [-]
-    knockdown : gamma [-]; None takes `local_shell_knockdown`, 1 the classical force
+    knockdown : gamma [-]; None takes `column.local_shell_knockdown`, 1 the classical force
 
     Returns
     -------

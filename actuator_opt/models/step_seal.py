@@ -1,11 +1,11 @@
 """Step seals: a sliding ring of filled PTFE pressed on rod or bore by an O-ring behind it.
 
-The ring balances radially. Behind it: the line load of the energiser (a law of `seals.LAWS`) and
-the pressure on the back beside the energiser's foot, on the pressure side. In front: the pressure
-on the relief of the running face, on the pressure side of the land. What is left rests on the
-land. Per length of circumference; pressure is the one-sided difference, >= 0. An energiser
-without squeeze has lost contact: zero load and width. The peak pressure is that of the worn-in
-land, `contact_profile.land_peak`.
+The ring is in radial balance. On its back act the line load of the energiser (a law of
+`seals.LAWS`) and, beside the energiser's foot on the pressure side, the pressure. On its front the
+pressure acts on the relief of the running face, on the pressure side of the land. The land carries
+the difference. Loads are per length of circumference; the pressure is the one-sided
+difference, >= 0. Without squeeze of the energiser there is no contact: load and width are zero. The
+peak pressure is that of the worn-in land, `contact_profile.land_peak`.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ def wetted_back(*, ring_width: Array, foot_width: Array, section: Array, squeeze
     """Length of the ring's back that the pressure wets, a_b = w - b - W (1 - C)/2, at least 0.
 
     The pressure has pushed the O-ring to the outer side; between its foot b and the groove's outer
-    wall lies the quarter round of the squeezed section, dry. Later widening of the foot under
-    pressure goes into that dry corner and leaves a_b as it is.
+    wall lies the dry quarter round of the squeezed section. Under pressure the foot widens into
+    that dry corner, so a_b does not change.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def line_load(
     -----
     Valid: ring not tilted; oil pressure inside the land is not taken off.
 
-    The ring's own hoop tightness is neglected: creep takes it.
+    The hoop tension of the ring is neglected, because creep relaxes it.
 
     References
     ----------
@@ -120,7 +120,8 @@ def contact_width(
     -----
     Valid: alpha < 0.2, b < 2 ring thicknesses (half-space), elastic.
 
-    Unlike flanks: the harmonic mean of the angles is near; steep flanks leave b = a.
+    For flanks of unequal angles their harmonic mean is a close approximation; steep flanks give
+    b = a.
 
     References
     ----------

@@ -6,10 +6,11 @@ buckling loads are the zeros of (all derived from w = free + M_0 (1 - phi)/P + Q
     pinned-pinned  psi            fixed-free    phi           pinned-guided  psi'
     fixed-pinned   psi - L phi    fixed-guided  phi'          fixed-fixed    2 - phi - psi' + L phi'
 
-In x = sqrt(P) each is a sum of two sine or cosine waves of x, plus x times two more. As functions
-of P they are entire, of order 1/2, with real positive zeros only; for those Ostrowski's
-square-root iteration from below rises monotonically and cubically to the first zero: no bracket,
-no scan, no branch. One complex Newton step at the end makes every derivative exact.
+In x = sqrt(P) each expression is a sum of two sine or cosine waves of x, plus x times two more
+waves. As functions of P they are entire, of order 1/2, with real positive zeros only. For such
+functions Ostrowski's square-root iteration from below converges monotonically and cubically to the
+first zero, without bracket, scan or branch. A complex Newton step at the end makes every derivative
+exact.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ _UNIFORM = {
     ("fixed", "pinned"): (2.045748, 5),
     ("fixed", "fixed"): (4.0, 5),
 }
-"""P L^2/(pi^2 EI) of the uniform column, and the steps that a stiffness ratio of 1000 needs."""
+"""P L^2/(pi^2 EI) of the uniform column, and the steps needed at a stiffness ratio of 1000."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +123,7 @@ class _Waves:
         return cls(form, outer, inner)
 
     def at(self, xp: Any, x: Array, *, curved: bool) -> tuple[Array, ...]:
-        """Evaluate f and f', and f'' where asked."""
+        """Evaluate f and f', and f'' if `curved`."""
         s, d = self.form.frequencies
         u, v = s * x, d * x
         wave, other = (xp.sin(u), xp.sin(v)), (xp.cos(u), xp.cos(v))
@@ -140,7 +141,7 @@ class _Waves:
 
 
 def _ordered(ends: Ends, *pairs: Pair) -> tuple[tuple[str, str], list[Pair]]:
-    """Fixity as `_UNIFORM` names it, and properties of both segments turned round with it."""
+    """Fixity in the order of `_UNIFORM`, and properties of both segments in the same order."""
     key = (str(ends[0]), str(ends[1]))
     if key in _MIRRORED:
         return key[::-1], [(second, first) for first, second in pairs]
@@ -151,10 +152,11 @@ def _ordered(ends: Ends, *pairs: Pair) -> tuple[tuple[str, str], list[Pair]]:
 
 
 def _lower_bound(ends: tuple[str, str], stiffness: Pair, length: Pair) -> Array:
-    """Load no column of these segments buckles below.
+    """Lower bound on the critical load of a column of these segments.
 
-    The larger of the uniform column of the weaker segment and Dunkerley's sum of the loads of the
-    columns with one flexible segment each, those bounded by Wirtinger's inequality.
+    It is the larger of two loads: that of the uniform column of the weaker segment, and Dunkerley's
+    sum of the loads of the columns with one flexible segment each, which Wirtinger's inequality
+    bounds.
     """
     total = length[0] + length[1]
     weaker = minimum(*stiffness)
@@ -248,8 +250,8 @@ Wave: TypeAlias = tuple[Array, Array, Array]
 def _start(key: tuple[str, str], total: Array, near: Wave, far: Wave) -> Pair:
     """Moment and its slope at the first end of the buckled column, to any scale.
 
-    A pin or a free end has M = 0; a fixed or guided end has w' = 0, so M' = Q: (M_L - M_0)/L where
-    both ends are held sideways, 0 where one sways.
+    A pin or a free end has M = 0; a fixed or guided end has w' = 0, so M' = Q: (M_L - M_0)/L if
+    both ends are held sideways, 0 if an end can sway.
     """
     if key[0] == "pinned":
         return 0.0, 1.0
@@ -276,9 +278,9 @@ def mode_shear_stiffness(
 ) -> Array:
     """Shear stiffness of a stepped column in its buckling mode, for `column.engesser_load`.
 
-    1/S = (a_1/S_1 + a_2/S_2)/e: a_i = int (M'/P)^2 over segment i, e = int w'^2 over both, of the
-    mode in bending; M'' = -k_i^2 M, so the a_i are in closed form. S_1 = S_2 of a statically
-    determinate column gives S = S_1.
+    1/S = (a_1/S_1 + a_2/S_2)/e: a_i = int (M'/P)^2 over segment i, e = int w'^2 over both, for the
+    buckling mode in bending. M'' = -k_i^2 M, so the a_i have closed forms. For a statically
+    determinate column S_1 = S_2 gives S = S_1.
 
     Parameters
     ----------
@@ -301,8 +303,9 @@ def mode_shear_stiffness(
     -----
     Valid: EI ratio to 100; load within 0.5 % to P/S_i = 0.1, 4 % to 0.3.
 
-    Fixed-pinned within 2 % and 11 %, fixed-fixed 2 % and 16 %. Of the other columns the load is
-    from above, and Engesser's with the smaller S_i from below.
+    For fixed-pinned columns these errors are 2 % and 11 %, for fixed-fixed columns 2 % and 16 %.
+    For other ends the load is an upper bound, and Engesser's load with the smaller S_i a lower
+    bound.
 
     References
     ----------

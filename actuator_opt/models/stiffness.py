@@ -1,9 +1,9 @@
-"""Axial stiffness of the closed cylinder: per chamber and along the stroke.
+"""Axial stiffness of the closed cylinder, its pressures at rest, and a load step with trapped air.
 
-Each chamber has one compliance C = V/K + dV/dp of barrel, pipes and hoses; the two chambers act
-in parallel on the piston, in series with rod and mounting. Chamber A is at the cap end, its
-length is the piston position x; chamber B is at the rod end, its length is stroke - x. The sources'
-own forms live in `stiffness_published`.
+Each chamber has one compliance C = V/K + dV/dp of barrel, pipes and hoses; the two chambers act in
+parallel on the piston, in series with rod and mounting. Chamber A is at the cap end, and its length
+is the piston position x; chamber B is at the rod end, and its length is stroke - x. The forms that
+the sources print are in `stiffness_published`.
 """
 
 from __future__ import annotations
@@ -264,7 +264,7 @@ def holding_pressures(
 
 
 class LoadStep(NamedTuple):
-    """Answer of a closed cylinder to a load step."""
+    """Response of a closed cylinder to a load step."""
 
     displacement: Array
     pressure_a: Array
@@ -288,13 +288,12 @@ def trapped_air_load_step(
     polytropic_index: Array = 1.4,
     atmospheric_pressure: Array = ATMOSPHERIC_PRESSURE,
 ) -> LoadStep:
-    """Secant answer of a closed cylinder with a constant mass of air in each chamber.
+    """Secant response of a closed cylinder with a constant mass of air in each chamber.
 
-    Solves dV_A(p_A) = A_A dx, dV_B(p_B) = -A_B dx and
-    (p_A - p_A0) A_A - (p_B - p_B0) A_B = F, dV of
-    liquid at constant K beside a polytropic gas of constant mass.
-    Substituting leaves one decreasing convex equation in p_A; Newton from its left end (either
-    chamber at -0.9 p_a) climbs to the root without overshoot, in a fixed 40 steps.
+    Solves dV_A(p_A) = A_A dx, dV_B(p_B) = -A_B dx and (p_A - p_A0) A_A - (p_B - p_B0) A_B = F,
+    where dV is that of liquid at constant K beside a polytropic gas of constant mass. Substitution
+    leaves one decreasing convex equation in p_A. Newton's method from its left end (either chamber
+    at -0.9 p_a) rises to the root without overshoot, in a fixed 40 steps.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Stiffness formulas exactly as the sources print them, to reproduce and compare.
 
-They put the *totals* of oil, barrel and hoses in series, which is off by up to 13 % with hoses;
-`stiffness` holds the correct forms.
+They put the *totals* of oil, barrel and hoses in series, which is wrong by up to 13 % with hoses;
+`stiffness` has the correct forms.
 """
 
 from __future__ import annotations
@@ -235,9 +235,10 @@ def equivalent_stiffness_as_published(
 ) -> tuple[Array, Array]:
     """Equivalent stiffness and radial expansion along a record of pressure, as in figure 10.
 
-    k = dp A/L_p with A of the bore grown by eq. 12, in series with oil and rod. Zero where the
-    pressure is: `cylinder_expansion_as_published` is no stiffness. Per chamber and independent of
-    pressure: `stiffness.hydraulic_stiffness` with the compliance of `barrel.chamber_compliance`.
+    k = dp A/L_p with A of the bore grown by eq. 12, in series with oil and rod. The result is zero
+    at zero pressure, since `cylinder_expansion_as_published` is no stiffness.
+    `stiffness.hydraulic_stiffness` with the compliance of `barrel.chamber_compliance` is per
+    chamber and independent of pressure.
 
     Parameters
     ----------

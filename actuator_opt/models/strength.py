@@ -1,16 +1,16 @@
 """Failure criteria by name with a common interface; Tsai-Wu in 3-D; yield of pre-stressed metal.
 
 A criterion takes the stress of the load in material axes, and the residual stress that does not
-grow with the load (cure, cool-down, frozen by yielding). It gives the utilisation 1/SR of every
-mode by name. The strength ratio SR is the factor of the load at which residual + SR stress first
-meets the surface of that mode: exact, in closed form. A utilisation is
+grow with the load (from cure, cool-down or yielding). It gives the utilisation 1/SR of every mode
+by name. The strength ratio SR is the factor of the load at which residual + SR stress first meets
+the surface of that mode: exact, in closed form. A utilisation is
 
 - never negative, at most 1 where the ply carries the present load, 0 where the mode never fails it;
 - proportional to the load without residual stress, and finite at zero stress;
 - infinite (SR = 0) where the residual stress alone fails the ply.
 
-The largest utilisation of the modes is the ply's; `load_multiplier` gives SR. Branches go by real
-parts, so a complex step follows the branch of its point.
+The largest utilisation of the modes is that of the ply; `strength_modes.load_multiplier` gives SR.
+Branches are chosen by real parts, so a complex step follows the branch of its point.
 
 The criteria use the same few strengths and differ by 20-25 % on one tube: a first-ply pressure
 means little without the name of its criterion. F_12* = F_12/sqrt(F_11 F_22) of Tsai-Wu comes from
@@ -138,7 +138,7 @@ def tsai_wu_modes(
 
 
 _LEAST = 1e-9
-"""Share of the strength that is always left: a metal that residual stress alone makes yield."""
+"""Least share of the strength that is left, for a metal that yields by residual stress alone."""
 
 
 def mises_product(*, first: Stress, second: Stress) -> Array:
@@ -218,7 +218,7 @@ def yield_utilisation(
 
 
 class Modes(Protocol):
-    """What every failure criterion is: a function from stresses to utilisations by mode."""
+    """A failure criterion as a function from stresses to utilisations by mode."""
 
     def __call__(
         self,
@@ -228,7 +228,7 @@ class Modes(Protocol):
         residual: Stress | None = None,
         elastic: PlyRatios | None = None,
     ) -> dict[str, Array]:
-        """Utilisation 1/SR of every mode; `elastic` where `Criterion.by_strain`."""
+        """Utilisation 1/SR of every mode; `elastic` is required if `Criterion.by_strain`."""
         ...
 
 
@@ -238,7 +238,7 @@ class Criterion:
 
     Attributes
     ----------
-    name, help : its word in a design, and what it means
+    name, help : its word in a design, and the meaning of that word
     words : its name in a report
     modes : utilisation of every mode [-]
     by_strain : whether it needs the ratios of the ply's elastic constants
@@ -289,4 +289,4 @@ CRITERIA = kinds(
         by_strain=False,
     ),
 )
-"""The criteria a design may name."""
+"""The criteria that a design may name."""

@@ -1,15 +1,15 @@
 """Ply strengths, strength ratios, and criteria by mode: max stress, max strain, Hashin, Puck.
 
-Stresses are in material axes (1 fibre, 2 transverse in the wall, 3 radial), tension positive.
-A criterion gives the utilisation 1/SR of each of its modes; `strength` states what all share.
+Stresses are in material axes (1 fibre, 2 transverse in the wall, 3 radial), tension positive. A
+criterion gives the utilisation 1/SR of each of its modes; `strength` states the common rules.
 
 Hashin and Puck separate fibre failure from inter-fibre failure, in plane stress. The sign of
 sigma_2 at failure decides which surface applies. Without residual stress that is the sign of the
-load's sigma_2. With it, the load leads from the residual stress across sigma_2 = 0 at some shear:
-below S the ply survives there and fails on the far side, else it has failed before. Both criteria
-meet |tau| = S at sigma_2 = 0 from either side, so the utilisation of the ply is continuous there.
-Of the modes between the fibres only the mode that fails is loaded, the others are 0. Every surface
-is a conic in (sigma_2, tau), so along the load a quadratic in SR.
+load's sigma_2. With residual stress, the load may lead across sigma_2 = 0 at some shear. If that
+shear is below S, the ply survives there and fails on the far side; otherwise it has failed before.
+Both criteria give |tau| = S at sigma_2 = 0 from either side, so the utilisation of the ply is
+continuous there. Of the inter-fibre modes only the mode that fails has a utilisation, the others
+are 0. Every surface is a conic in (sigma_2, tau), and so a quadratic in SR along the load.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class PlyStrength:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlyRatios:
-    """Ratios of a ply's elastic constants [-]: all that maximum strain needs of them.
+    """Ratios of a ply's elastic constants [-], as maximum strain needs them.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ def _plane_modes(
     strength: PlyStrength,
     residual: tuple[Array | None, Array | None, Array | None],
 ) -> dict[str, Array]:
-    """Modes of sigma_1, sigma_2 and tau_12, or of what stands for them, each on its own."""
+    """Modes of sigma_1, sigma_2 and tau_12, or of equivalent stresses, each component alone."""
     s = strength
     limits = (s.tension_1, s.compression_1), (s.tension_2, s.compression_2), (s.shear_12,) * 2
     along, across, slip = (
@@ -330,8 +330,8 @@ def _fibre_tension_with_shear(
 ) -> Array:
     """Utilisation by (sigma_1/X_t)^2 + share (tau/S)^2 = 1 where sigma_1 >= 0, all scaled.
 
-    A load that pulls a fibre out of residual compression under more shear than that fails it as
-    sigma_1 changes sign.
+    A load may pull a fibre out of residual compression under more shear than this surface allows;
+    the fibre then fails where sigma_1 changes sign.
     """
     shared = share * held_slip
     left = 1 - held * held - shared * held_slip
@@ -472,14 +472,14 @@ def puck_modes(
 
     Returns
     -------
-    utilisation of each mode [-], 0 where another inter-fibre mode is the one that fails; infinite
-    where the residual stress alone fails the ply
+    utilisation of each mode [-], 0 where another inter-fibre mode fails; infinite where the
+    residual stress alone fails the ply
 
     Notes
     -----
     Valid: unidirectional plies in plane stress, p Y_t < S, Y_c > S/2.
 
-    The parabola of mode B touches the ellipse of mode C at their corner and holds it, so the
+    The parabola of mode B touches the ellipse of mode C at their corner and encloses it, so the
     crossing of B decides between them.
 
     References

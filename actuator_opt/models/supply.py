@@ -2,8 +2,8 @@
 
 Pressures are gauge, or relative to the tank. A supply line of volume V_S and bulk modulus K closes
 the loop: (V_S/K) dp_S/dt = delivery - relief flow - demand. Accumulators are in `accumulator`. The
-reducing valve relieves when its line exceeds the set pressure; its small signals are those of
-`line_ends.reducing_valve_end`.
+reducing valve relieves when its line exceeds the set pressure; `line_ends.reducing_valve_end` is
+its small-signal form.
 """
 
 from __future__ import annotations
@@ -65,8 +65,8 @@ def controlled_pump_rate(
 ) -> Array:
     """Rate of the flow of a pressure-controlled pump, dq/dt = (K_p (p_set - p_S) - q)/tau.
 
-    At rest it delivers q at the pressure p_set - q/K_p. The flow here has no limits: it may run
-    past what `controlled_pump_delivery` lets through and takes some tau to come back.
+    At rest it delivers q at the pressure p_set - q/K_p. This state has no limits: it may exceed the
+    flow that `controlled_pump_delivery` passes, and then takes a few tau to return.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def controlled_pump_rate(
 
     Notes
     -----
-    Valid: one lag stands for controller and swash plate; constant shaft speed.
+    Valid: one lag for controller and swash plate; constant shaft speed.
 
     References
     ----------
@@ -143,8 +143,8 @@ def reducing_valve_acceleration(
 ) -> Array:
     """Second-order spool of the valve, q'' = w^2 (G (p_set - p) - q) - 2 zeta w q'.
 
-    The state has no limits: it may run past what `reducing_valve_flow` lets through and takes part
-    of a period to come back.
+    This state has no limits: it may exceed the flow that `reducing_valve_flow` passes, and then
+    takes part of a period to return.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def reducing_valve_acceleration(
     rate : q' [m^3/s^2]
     pressure : p of the line it holds [Pa]
     set_pressure : p_set [Pa]
-    conductance : G, flow per pressure the spool regulates with [m^3/s/Pa]
+    conductance : G, flow per pressure by which the spool regulates [m^3/s/Pa]
     natural_frequency : w/(2 pi) [Hz]
     damping_ratio : zeta [-]
 

@@ -1,7 +1,7 @@
 """Two engaged ISO 60 degree threads: shear areas, flank pressure, and radial spreading.
 
-Each thread is judged by its own metal. The wall under a thread is a tube (`rod.section_area`,
-`barrel.bore_stresses`) between its other face and the thread's root.
+Each thread is checked against the strength of its own metal. The wall under a thread is a tube
+(`rod.section_area`, `barrel.bore_stresses`) between its other face and the thread's root.
 """
 
 from __future__ import annotations
@@ -15,19 +15,19 @@ HEIGHT = sqrt(3) / 2
 """Height H of the sharp triangle of an ISO thread over its pitch [ISO68-1]."""
 
 RUN_OUT = 0.8
-"""Pitches of the length that carry nothing: chamfer and run-out [VDI2230]."""
+"""Pitches of the length that carry no load: chamfer and run-out [VDI2230]."""
 
 FLANK = pi / 6
 """Half of the angle of the thread [rad]."""
 
 LEAST_OVERLAP = 0.8
-"""Least overlap of the flanks over that of full crests (a choice: what the tolerance 6g leaves of a
-pitch of 1 mm)."""
+"""Least overlap of the flanks over that of full crests (a choice: the overlap that the tolerance 6g
+leaves at a pitch of 1 mm)."""
 
 MALE = (5.594, -13.682, 14.107, -6.057, 0.9353)
 FEMALE = (0.728, 1.769, -2.896, 1.296)
 LEAST = 0.897
-"""Alexander's reductions: polynomials in the strength ratio, and what they start from at 1."""
+"""Alexander's reductions: polynomials in the strength ratio, and their value at ratio 1."""
 
 
 @geometry
@@ -257,7 +257,7 @@ def flank_area(*, diameter: Array, pitch: Array, engagement: Array, crest_diamet
 
 
 def stripping_reductions(*, strength_ratio: Array) -> tuple[Array, Array]:
-    """What the bending of the turns leaves of the strip strength at rupture, male and female.
+    """Reductions of the strip strength by bending of the turns at rupture, male and female.
 
     C_2 = 5.594 - 13.682 R + 14.107 R^2 - 6.057 R^3 + 0.9353 R^4 for 1 < R < 2.2, 0.897 below;
     C_3 = 0.728 + 1.769 R - 2.896 R^2 + 1.296 R^3 for 0.4 < R < 1, 0.897 above.

@@ -3,10 +3,11 @@
 The distributed model gives the impedance at one end. Results are complex; arguments are real and
 the convention is e^(+i omega t), so that a result at -f is the conjugate of that at f. Pressure and
 flow at the near end follow from those at the far end by a matrix, p1 = A p2 + B q2,
-q1 = C p2 + D q2, flow positive from near to far [Merritt1967]. Friction by name as in `lines`.
+q1 = C p2 + D q2, flow positive from near to far [Merritt1967]. The names of the friction are
+those of `lines`.
 
 A plugged side branch (T-pipe) takes flow without pressure at odd quarter waves: the junction stays
-at rest and only the plugged end swings. At even ones it takes no flow.
+at rest and only the plugged end oscillates. At even quarter waves it takes no flow.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from .lines import series_impedance
 
 
 class LineMatrix(NamedTuple):
-    """Near-end pressure and flow of a line from those at its far end."""
+    """Coefficients of near-end pressure and flow of a line from those at its far end."""
 
     A: Array
     B: Array
@@ -158,7 +159,7 @@ def _shunt_admittance(
 
 
 def _finite(value: Array) -> tuple[Array, Array]:
-    """Where a value is finite, and the value with zero elsewhere."""
+    """Mask of the finite values, and the values with zero elsewhere."""
     xp = namespace(value)
     finite = xp.isfinite(value)
     return finite, where(finite, value, 0.0)

@@ -1,8 +1,9 @@
 """Bounds from trial shapes: stiffness of two chambers in one wall, critical load of a column.
 
-Stiffness: the piston moves by 1; the wall of one chamber grows by the volume by which the other
-shrinks; the end loaded by a chamber's pressure moves along. Energy is that of oil and wall
-[Gurtin1972]. Critical load: any trial shape of a stepped column gives an upper bound.
+Stiffness: in the trial motion the piston moves by 1, the wall of one chamber grows by the volume by
+which the other shrinks, and the end loaded by a chamber's pressure moves too. The energy of oil and
+wall in this motion bounds the stiffness from above [Gurtin1972]. Critical load: any trial shape of
+a stepped column gives an upper bound.
 """
 
 from __future__ import annotations
@@ -17,10 +18,10 @@ Chamber: TypeAlias = Literal["a", "b"]
 
 @dataclass(frozen=True, slots=True)
 class TrialMotion:
-    """Motion over that of the piston; oil is compressed by what is left.
+    """Trial motion over that of the piston; the remaining motion compresses the oil.
 
-    `exchange` of volume between the walls of both chambers, over area B; `pull` of the end that
-    the pressure of one chamber pulls at.
+    `exchange` is the volume that passes between the walls of both chambers, over area B; `pull` is
+    the motion of the end that the pressure of a chamber pulls.
     """
 
     exchange: Array
@@ -49,7 +50,7 @@ def least_energy_motion(
     oil_a, oil_b : compliance of the oil and the lines of either chamber [m^3/Pa]
     wall_a, wall_b : growth of either chamber's volume per pressure [m^3/Pa]
     stretch : volume that the pulling chamber gains per pressure as it pulls the end away [m^3/Pa]
-    pulling : chamber whose pressure pulls at an end
+    pulling : chamber whose pressure pulls an end
 
     Returns
     -------
@@ -109,14 +110,14 @@ def trial_motion_stiffness(
 
     Returns
     -------
-    stiffness that is no less than the true one [N/m]
+    upper bound on the stiffness [N/m]
 
     Notes
     -----
     Valid: one wall over both chambers.
 
-    What one part of it grows by the other shrinks by, so that growth and axial strain of the wall
-    add no energy together.
+    One part of the wall grows by the volume by which the other shrinks, so that growth and axial
+    strain of the wall have no joint energy.
 
     References
     ----------
@@ -143,10 +144,10 @@ def trial_motion_stiffness(
 
 @dataclass(frozen=True, slots=True)
 class TrialMode:
-    """A bent shape between two pins, 1 where the segments meet, each over its own length.
+    """A bent shape between two pins: 1 where the segments meet, each segment scaled to length 1.
 
-    Integrals over 0 to 1 of the square of the deflection of both segments, and of the square of
-    its derivative.
+    The values are integrals from 0 to 1 over each segment: of the squared deflection, and of its
+    squared derivative.
     """
 
     square_1: Array
@@ -164,7 +165,7 @@ def buckled_mode(
     bending_stiffness_2: Array,
     length_2: Array,
 ) -> TrialMode:
-    """The shape in which a stepped column between two pins buckles: sines that meet.
+    """Buckling shape of a stepped column between two pins: a sine in each segment.
 
     w = sin(k s)/sin(k L) over each segment, k = sqrt(P/EI).
 
@@ -227,7 +228,7 @@ def trial_mode_load(
 
     Returns
     -------
-    load that is no less than the critical one [N]
+    upper bound on the critical load [N]
 
     Notes
     -----

@@ -1,8 +1,8 @@
 """Bounds for all layered tubes of given layers: bore growth, axial stiffness, pressure.
 
-Energy bounds: any compatible displacement stores at least the energy of the true one, any
-equilibrium stress at least the complementary energy [Gurtin1972]. They are sums over the layers, so
-they hold for every thickness and radius at once.
+Energy bounds: any compatible displacement stores at least the energy of the true displacement, any
+equilibrium stress at least the true complementary energy [Gurtin1972]. The bounds are sums over the
+layers, so they hold for every thickness and radius.
 """
 
 from __future__ import annotations
@@ -27,8 +27,9 @@ def least_growth(
     """Bore growth per pressure of a layered tube that is held axially, from below.
 
     u >= p r_i/sum K_k a_k (1 - x_k^(-2 b_k))/(2 b_k), K_k = C_tt - 2 b_k C_tr + b_k^2 C_rr,
-    x_k = r_k/r_(k-1), a_k = prod x_j^(-2 b_j) over all inside: the energy of the trial
-    displacement that falls as r^(-b_k), with no axial strain. Each layer is cut into equal parts.
+    x_k = r_k/r_(k-1), a_k = prod x_j^(-2 b_j) over all layers inside k. This is the energy of the
+    trial displacement that falls as r^(-b_k), with no axial strain. Each layer is cut into equal
+    parts.
 
     Parameters
     ----------
@@ -39,7 +40,7 @@ def least_growth(
 
     Returns
     -------
-    radial growth of the bore per pressure that is no more than the true one, held or free [m/Pa]
+    lower bound on the bore's radial growth per pressure, for a tube axially held or free [m/Pa]
 
     Notes
     -----
@@ -80,8 +81,9 @@ def axial_stiffness(
 ) -> Array:
     """Axial stiffness of layers side by side, sum q_k A_k.
 
-    Of a bonded tube from below with the moduli of layers free to contract, from above with those
-    of layers that all contract alike; with C_zz, from above of a tube that cannot move radially.
+    For a bonded tube the sum is a lower bound with the moduli of layers that are free to contract,
+    and an upper bound with those of layers that all contract alike. With C_zz it is an upper bound
+    for a tube that cannot move radially.
 
     Parameters
     ----------
@@ -118,7 +120,7 @@ def axial_stiffness(
 def ply_hoop_strength(
     *, tension_1: Array, tension_2: Array, shear_12: Array, angle: Array
 ) -> Array:
-    """Largest hoop stress of a ply that keeps the maximum-stress criterion.
+    """Largest hoop stress of a ply that meets the maximum-stress criterion.
 
     S = (X_t + Y_t)/2 - (X_t - Y_t)/2 cos 2a + S_12 sin 2a.
 
@@ -159,15 +161,15 @@ def greatest_pressure(
     thicknesses: Sequence[Array],
     inner_radius: Array,
 ) -> Array:
-    """Pressure that no layered tube bears before its first damage, from above.
+    """Upper bound on the pressure that a layered tube bears before its first damage.
 
     From the outer face inwards: a ply adds S_k t_k/r_(k-1) to p_k r_k/r_(k-1), a metal layer
     (2/sqrt(3)) sigma_y ln(r_k/r_(k-1)) to p_k; p_n = 0.
 
     Parameters
     ----------
-    yields : sigma_y of each metal layer from the bore outwards, None of a ply [Pa]
-    hoops : S_k of each ply, None of a metal layer [Pa]
+    yields : sigma_y of each metal layer from the bore outwards, None for a ply [Pa]
+    hoops : S_k of each ply, None for a metal layer [Pa]
     thicknesses : of each layer [m]
     inner_radius : r_i [m]
 
@@ -179,8 +181,8 @@ def greatest_pressure(
     -----
     Valid: C_tt >= C_rr; axial strain and warmth alone stress no ply beyond S_k around the hoop.
 
-    Balance of each layer: d(r sigma_r)/dr = sigma_t in a ply, whose mean is no more than at its
-    faces; d sigma_r/dr = (sigma_t - sigma_r)/r in a metal, by von Mises.
+    Each layer is in balance: d(r sigma_r)/dr = sigma_t in a ply, whose mean is no more than at its
+    faces, and d sigma_r/dr = (sigma_t - sigma_r)/r in a metal, limited by von Mises.
 
     References
     ----------

@@ -20,11 +20,11 @@ from .tube_elements import LayeredTube, TubeLayer, layered_tube
 __all__ = ["PlyStrength", "WallLayer", "burst_of_tube"]
 
 TRANSVERSE_RATIO = 0.4
-"""nu23 of a ply where none is stated: usual for carbon epoxy, as in the library's own default."""
+"""nu23 of a ply if it is not stated: usual for carbon epoxy, and the default of the library."""
 
 
 def _constants(layer: WallLayer, residual: float) -> dict[str, Array]:
-    """Constants with `residual` of E2, G12, nu12, nu23 left; of a metal, of its shear modulus."""
+    """Constants with `residual` of E2, G12, nu12, nu23 left, or of the shear modulus of a metal."""
     e1, ratio = layer.youngs_modulus_1, layer.poissons_ratio_12
     if layer.strength is None:
         if residual == 1.0:
@@ -77,7 +77,7 @@ def _recovery(xp: Any, tube: LayeredTube) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class _Tube:
-    """The exact wall: two faces a layer; yielded metals hold the deviator of their mean stress.
+    """The exact wall with two faces per layer; yielded metals keep their mean stress deviator.
 
     `transfer`, `recovery` and `hold` (thermal stresses held back, in tube axes z, t, r and in ply
     axes 1, 2, 3) have intact and failed layers on an axis before the batch's, (.., layers, 2, ...).
@@ -102,18 +102,18 @@ class _Tube:
 
     @property
     def sorted(self) -> bool:
-        """Whether the ladder's order is the wall's."""
+        """Whether the order of the ladder is that of the wall."""
         return self.order == tuple(range(len(self.order)))
 
     def _chosen(self, table: Array, mask: Array | None) -> Array:
-        """The table with its soft layers; `mask` is in the wall's order."""
+        """The table with the softened layers of `mask`, which is in the wall's order."""
         intact = table[:, :, :, 0, ...]
         return intact if mask is None else where(mask, table[:, :, :, 1, ...], intact)
 
     def answer(self, soft: Array | None, held: Any) -> tuple[Array, Array | None]:
-        """Stresses per pressure, and those that the metals' held stresses leave.
+        """Stresses per pressure, and those from the frozen stresses of metals.
 
-        Both in one march: the loads stand on an axis before the batch's.
+        One march gives both: the loads are on an axis before those of the batch.
         """
         xp = namespace(self.axial)
         mask = soft
@@ -141,9 +141,9 @@ class _Tube:
         return both[:, :, :, 0, ...], both[:, :, :, 1, ...]
 
     def _held_back(self, mask: Array | None, frozen: Any) -> tuple[Array, Array] | None:
-        """Stresses held back at zero strain, in tube and in ply axes; None where there are none.
+        """Stresses held back at zero strain, in tube and in ply axes; None without any.
 
-        Thermal ones, less what yielded metals have frozen (their axes are the tube's).
+        These are the thermal stresses, less the frozen stresses of yielded metals (in tube axes).
         """
         if self.hold is None:
             return None if frozen is None else (-frozen, -frozen)
@@ -201,7 +201,7 @@ def _both_states(
     """The tube with intact and failed layers on a batch axis before the designs'."""
 
     def spread(value: Array) -> Array:
-        """A number of the batch on the designs' axes, the states' axis before it."""
+        """A value of the batch on the axes of the designs, after the axis of the states."""
         value = xp.asarray(value)
         return xp.reshape(value, (1,) * (dims + 1 - value.ndim) + value.shape)
 
@@ -226,12 +226,12 @@ def _both_states(
 
 
 def _spread_or_zero(spread: Callable[[Array], Array], value: Array) -> Array:
-    """An expansion on the batch's axes; a plain zero stays one: no thermal part is built."""
+    """An expansion on the axes of the batch; a plain zero stays zero: no thermal part is built."""
     return 0.0 if isinstance(value, (float, int)) and value == 0.0 else spread(value)
 
 
 def _thermal(xp: Any, tube: LayeredTube, change: Array) -> Array | None:
-    """Stresses held back by cooling, z, t, r of the tube and 1, 2, 3 of the ply; None without."""
+    """Stresses held back by cooling, in tube axes z, t, r and ply axes 1, 2, 3, or None."""
     if tube.hold is None or (isinstance(change, (float, int)) and change == 0.0):
         return None
     c11, c12, c13, c22, c23, c33, _ = tube.ply
@@ -257,20 +257,22 @@ def burst_of_tube(
 ) -> BurstLadder:
     """First ply failure, liner yield and burst of the exact layered tube.
 
-    Maximum stress at both faces of each layer; a matrix or shear failure leaves `residual` of E2,
-    G12, nu12 and nu23 in all plies of that material and |angle| and removes their matrix limits; a
-    yielding metal keeps the deviator of its stress and its bulk modulus; burst is the largest load
-    recorded until a fibre mode governs.
+    Maximum stress applies at both faces of each layer. A matrix or shear failure leaves `residual`
+    of E2, G12, nu12 and nu23 of all plies of that material and |angle| and removes their matrix
+    limits. A yielding metal keeps the deviator of its stress and its bulk modulus. Burst is the
+    largest load recorded until a fibre mode governs.
 
     Parameters
     ----------
     layers : the wall from the bore outwards
     inner_radius : bore radius [m]
-    axial_force_per_pressure : N/p [m^2]; 0 is open, pi r_i^2 closed
+    axial_force_per_pressure : N/p [m^2]; 0 for open ends, pi r_i^2 for closed ends
     temperature_change : from the stress-free state; needs the layers' expansions [K]
     held_force : axial force without pressure, the clamp of tie rods being negative [N]
-    residual : stiffness left in a failed ply, shear stiffness left in a flowing metal [-]
-    liner_share : stress a yielded metal keeps [-]: 1 perfectly plastic, 0 as if it were gone
+    residual : share of stiffness left in a failed ply, and of shear stiffness in a yielded metal
+        [-]
+    liner_share : share of its stress that a yielded metal keeps [-]: 1 if perfectly plastic, 0 if
+        it carries nothing
 
     Returns
     -------
@@ -280,9 +282,10 @@ def burst_of_tube(
     -----
     Valid: walls with fibres; the first fibre to fail, at the most stressed face, is burst.
 
-    A wall of metals only returns its yield (use `barrel.burst_pressure_thick`). The flowing
-    metal's held stress is its mean over the layer. Cure stresses are in the intact wall and leave
-    with what fails: a cracked matrix no longer pulls, a flowing liner no longer holds back.
+    For a wall of metals only, the burst pressure is that of yield; use
+    `barrel.burst_pressure_thick` instead. The frozen stress of a yielded metal is its mean over the
+    layer. Cure stresses act in the intact wall and vanish where it fails: a cracked matrix no
+    longer pulls, a yielded liner no longer holds back.
 
     References
     ----------

@@ -3,15 +3,14 @@
 Generalised plane strain: eps_z is constant, eps_t = u/r, eps_r = u', gamma_zt = gamma_0 r. In a
 layer, with x = r/a, tau = ln x, l^2 = C_tt/C_rr, radial equilibrium has the solution
 
-    u/a = e_a cosh(l tau) + q_a sinh(l tau)/l + G phi_1 + H phi_2,
+    u/a = e_a cosh(l tau) + q_a sinh(l tau)/l + G phi_1 + H phi_2.
 
-started from the hoop strain e_a and the radial strain q_a at the layer's inner face; G drives with
-the axial strain and with frozen or thermal stresses, H with the twist:
-phi_1 = [cosh + sinh/l - x]/(l^2 - 1), phi_2 = [cosh + 2 sinh/l - x^2]/(l^2 - 4). Both are
-written with (e^y - 1)/y, so that l = 1 (isotropic and axial layers) and l = 2 need no branch. All
-integrals are in closed form. `layered_tube` loads the tube. Rounding
-grows as exp(2 l tau): 1e-15 in a barrel's wall, 1e-7 in a single layer of outer over inner radius 3
-with E_t/E_r = 100.
+The solution starts from the hoop strain e_a and the radial strain q_a at the layer's inner face. G
+is linear in the axial strain and in frozen or thermal stresses, H in the twist;
+phi_1 = [cosh + sinh/l - x]/(l^2 - 1), phi_2 = [cosh + 2 sinh/l - x^2]/(l^2 - 4). Both are written
+with (e^y - 1)/y, so that l = 1 (isotropic and axial layers) and l = 2 need no branch. All integrals
+have closed forms. `layered_tube` applies the loads. Rounding errors grow as exp(2 l tau): 1e-15 in
+a barrel's wall, 1e-7 in a single layer with a radius ratio of 3 and E_t/E_r = 100.
 """
 
 from __future__ import annotations
@@ -30,10 +29,11 @@ class TubeLayer:
 
     Parameters
     ----------
-    stiffness : C11, C12, C13, C22, C23, C33, C66 of the ply [Pa], from `solid_stiffness`
+    stiffness : C11, C12, C13, C22, C23, C33, C66 of the ply [Pa], from `solid_ply.solid_stiffness`
     thickness : of the layer, of the whole pair [m]
     angle : winding angle from the tube axis [rad]
-    balanced : a +-angle pair, smeared: no shear coupling; False: one ply, the wall may twist
+    balanced : True for a smeared +-angle pair without shear coupling; False for a single ply, which
+        may twist the wall
     expansion_1, expansion_2, expansion_3 : thermal expansions of the ply [1/K]
     """
 
@@ -62,7 +62,8 @@ class LayeredTube:
     transfer : (inputs, outputs, layers, ...): outer hoop strain, outer radial stress, integral of
         sigma_z r (and of tau_zt r^2) per inner hoop strain, inner radial stress, axial strain,
         stress held back (radial less hoop) (and twist)
-    twisting : whether any layer couples shear with pull: the tables then have the parts in brackets
+    twisting : whether any layer couples shear with tension; the tables then have the parts in
+        brackets
     """
 
     ply: Solid
@@ -77,7 +78,7 @@ class LayeredTube:
     twisting: bool
 
     def lifted(self, dims: int) -> LayeredTube:
-        """The tube with its batch on the last of `dims` batch axes, to meet loads of more axes."""
+        """The tube with its batch on the last of `dims` axes, to match loads with more axes."""
         missing, shape = dims - self.inner.ndim + 1, self.transfer.shape
         if missing <= 0:
             return self
@@ -165,7 +166,7 @@ def _transfer(k: _Basis, wall: TubeStiffness, inner: Array, outer: Array) -> lis
 def _twist(
     k: _Basis, t: list[list[Array]], wall: TubeStiffness, inner: Array, outer: Array
 ) -> list[list[Array]]:
-    """The larger table of a layer under twist: it shears the layer and drives it through phi_2."""
+    """Larger table of a layer under twist, which shears the layer and loads it through phi_2."""
     _, zt, zr, _, tr, rr, zs, ts, rs, ss = wall
     way = namespace(inner).log(k.ratio)
     near = way * expm1_quotient((k.order - 2) * way)
@@ -210,10 +211,10 @@ def _expands(layer: TubeLayer) -> bool:
 
 @geometry
 def layered_tube(*, layers: Sequence[TubeLayer], inner_radius: Array) -> LayeredTube:
-    """Prepare a tube of bonded layers for `tube_state`.
+    """Prepare a tube of bonded layers for `layered_tube.tube_state`.
 
-    Rotates every stiffness into tube axes (pairs lose their shear coupling) and builds the
-    transfer of each layer from its inner to its outer face; see the module.
+    Rotates every stiffness into tube axes (pairs lose their shear coupling) and builds the transfer
+    of each layer from its inner to its outer face, as the head of the module describes.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Proportional valve of four edges: flow of an edge and of the valve, motion of its spool.
+"""Proportional valve with four edges: flows, effect of viscosity, motion and geometry of the spool.
 
 A signal U > 0 opens P to A and B to T, U < 0 opens A to T and P to B.
 """
@@ -76,7 +76,7 @@ def edge_flow(*, coefficient: Array, pressure_drop: Array) -> Array:
 def edge_conductance(*, coefficient: Array, pressure_drop: Array) -> Array:
     """Slope of an edge's flow, dq/d(dp) = K (dp^2/2 + delta^2)/(dp^2 + delta^2)^(5/4).
 
-    Tends to K/(2 sqrt(|dp|)).
+    The slope tends to K/(2 sqrt(|dp|)) far from zero.
 
     Parameters
     ----------
@@ -147,22 +147,22 @@ class ValveFlows(NamedTuple):
 
     @property
     def into_a(self) -> Array:
-        """Into chamber A."""
+        """Flow into chamber A [m^3/s]."""
         return self.supply_a - self.a_tank
 
     @property
     def into_b(self) -> Array:
-        """Into chamber B."""
+        """Flow into chamber B [m^3/s]."""
         return self.supply_b - self.b_tank
 
     @property
     def supply(self) -> Array:
-        """Out of the supply line."""
+        """Flow out of the supply line [m^3/s]."""
         return self.supply_a + self.supply_b
 
     @property
     def tank(self) -> Array:
-        """Into the return line."""
+        """Flow into the return line [m^3/s]."""
         return self.a_tank + self.b_tank
 
 
@@ -226,7 +226,7 @@ def valve_flows(
 def viscosity_corrected(*, coefficient: Array, rated_viscosity: Array, viscosity: Array) -> Array:
     """Coefficient of an edge at another viscosity, K2 = K1 (nu1/nu2)^(1/8).
 
-    The pressure drop at one flow grows with nu^(1/4): 1.189 times at twice the viscosity.
+    The pressure drop at a given flow grows with nu^(1/4): 1.189 times at twice the viscosity.
 
     Parameters
     ----------

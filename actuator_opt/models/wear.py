@@ -9,14 +9,14 @@ from ..base.numeric import Array, geometry, real, where
 def sliding_severity(*, line_load: Array, contact_width: Array, distance: Array) -> Array:
     """Mean contact pressure times sliding distance, (f/b) L: proportional to the depth worn.
 
-    Depth worn is k (f/b) L with the wear rate k of the pair, which only a test tells; the severity
-    compares designs of one pair.
+    The worn depth is k (f/b) L with the wear rate k of the material pair. Only a test gives k, so
+    the severity compares designs of the same pair.
 
     Parameters
     ----------
     line_load : normal force per length of circumference f [N/m]
     contact_width : b [m]
-    distance : slid L [m]
+    distance : sliding distance L [m]
 
     Returns
     -------

@@ -1,10 +1,11 @@
 """Wilson's model of a hydraulic motor or pump: flow and shaft torque.
 
-One machine, two directions of counting. A motor counts flow and pressure difference from inlet to
-outlet and gives torque; a pump counts pressure difference from outlet to inlet and takes torque:
-its flow and torque are those of the motor at -dp, the torque reversed. The friction works against
-the speed in every quadrant, so neither gives more power than it takes. Losses do not shrink with
-the setting. The slides write mu as nu rho (`fluid.dynamic_viscosity`).
+Motor and pump are one machine with two sign conventions. A motor counts flow and pressure
+difference from inlet to outlet and delivers torque. A pump counts the pressure difference from
+outlet to inlet and takes torque; its flow and torque are those of the motor at -dp, with the torque
+reversed. Friction acts against the speed in every quadrant, so neither delivers more power than it
+takes. Losses do not shrink with the setting. The source writes mu as nu rho
+(`fluid.dynamic_viscosity`).
 """
 
 from __future__ import annotations

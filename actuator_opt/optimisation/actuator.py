@@ -1,25 +1,28 @@
-"""The actuator as an optimisation problem: variables by PATH, one margin per limit, case, place.
+"""The actuator as an optimisation problem, and the derivatives of its results by parameters.
 
-Response of an evaluated point to parameters, exact where the model allows, always checked.
-
-Derivatives of values use the complex step in the parameter; derivatives of gradients use central
-differences of complex-step gradients. A parameter whose complex step disagrees with a finite
-difference (a look-up table, say) falls back to differences. Bounds of variables count as
-parameters.
+The variables are numbers of the design by PATH. Each limit gives one margin per load case and
+place. Derivatives of values by a parameter use the complex step; derivatives of gradients use
+central differences of complex-step gradients. A parameter whose complex step disagrees with a
+finite difference, as in a look-up table, uses differences. Bounds of variables count as parameters.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
+from typing import Any
 
 import numpy as np
 
 from ..base.errors import Diagnostic, InputError
 from ..base.numeric import STEP, Array, real, where
 from ..base.quantities import Sense
-from ..evaluation import PreparedDesign, compute
+from ..design import with_values
+from ..design.material import Material
+from ..design.materials import Library
+from ..evaluation import PreparedDesign, compute, prepare
+from ..evaluation.build import names_of_materials
 from ..evaluation.kernel import extreme, worst_of
 from ..evaluation.limits import UNLIMITED, LimitRow, MetricArrays, all_limits, margin, rows_of
 from ..evaluation.values import Values as Numbers
@@ -28,7 +31,25 @@ from .kkt import KktResidual
 from .problem import BoxProblem, ParametricProblem, PointValues, Vector
 
 Fault = Callable[[str, str, str], Diagnostic]
-"""Builds the Diagnostic of a variable at its place in the file, from path, message and remedy."""
+"""Builds the Diagnostic of a variable with its place in the file: path, message, remedy."""
+
+
+def variant(subject: PreparedDesign, values: Mapping[str, Any], library: Library) -> PreparedDesign:
+    """The prepared design with other values by PATH, with new materials from the library.
+
+    Raises
+    ------
+    InputError
+        the values contradict the design or each other
+    """
+    design = with_values(
+        subject.design, dict(values), materials=library, metrics=subject.quantities
+    )
+    names = names_of_materials(design)
+    materials: dict[str, Material] = {
+        name: subject.materials.get(name) or library.get(name) for name in names
+    }
+    return prepare(design, materials, subject.plugins)
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,15 +67,15 @@ class Goal:
 
     @property
     def single(self) -> str | None:
-        """The metric of an objective with only one, else None."""
+        """The metric of an objective with a single metric, else None."""
         return next(iter(self.weights)) if len(self.weights) == 1 else None
 
     def value(self, computed: MetricArrays, cases: tuple[str, ...]) -> Array:
         """The objective of every design, to be minimised."""
         total: Array = 0.0
         for metric, weight in self.weights.items():
-            worst = worst_value(computed, metric, cases, self.aim)
-            total = total + weight / self.scales[metric] * worst
+            value = worst_value(computed, metric, cases, self.aim)
+            total = total + weight / self.scales[metric] * value
         return self.sign * total
 
     def shown(self, objective: float) -> float:
@@ -70,8 +91,8 @@ def worst_value(computed: MetricArrays, metric: str, cases: tuple[str, ...], aim
     InputError
         the metric is not computed
     """
-    worst = extreme(computed, metric, cases, worst_of(aim))
-    if worst is None:
+    value = extreme(computed, metric, cases, worst_of(aim))
+    if value is None:
         reason = computed.why.get(metric, "it does not apply to this design")
         raise InputError(
             Diagnostic(
@@ -80,28 +101,28 @@ def worst_value(computed: MetricArrays, metric: str, cases: tuple[str, ...], aim
                 path="objective",
             )
         )
-    return worst
+    return value
 
 
 def goal_of(subject: PreparedDesign) -> Goal:
-    """The objective of a design; weighted metrics are divided by their present value."""
+    """The objective of a design; each weighted metric is divided by its present value."""
     objective = subject.design.objective
     sign = 1.0 if objective.aim == "min" else -1.0
-    stated = objective.minimise if objective.minimise is not None else objective.maximise
-    assert stated is not None
-    if isinstance(stated, str):
-        return Goal({stated: 1.0}, {stated: 1.0}, sign)
-    done = compute(subject, subject.values())
+    weights = objective.minimise if objective.minimise is not None else objective.maximise
+    assert weights is not None
+    if isinstance(weights, str):
+        return Goal({weights: 1.0}, {weights: 1.0}, sign)
+    run = compute(subject, subject.values())
     scales = {}
-    for metric in stated:
-        present = worst_value(done.computed, metric, subject.cases, objective.aim)
+    for metric in weights:
+        present = worst_value(run.computed, metric, subject.cases, objective.aim)
         scales[metric] = abs(float(np.squeeze(present))) or 1.0
-    return Goal(dict(stated), scales, sign)
+    return Goal(dict(weights), scales, sign)
 
 
 @dataclass
 class Refusals:
-    """Counts points where the user's own metrics gave no value although the mass models did."""
+    """Counts points where metrics of the user have no value although the mass has one."""
 
     names: frozenset[str] = frozenset()
     points: int = 0
@@ -109,7 +130,7 @@ class Refusals:
     raised: dict[str, str] = field(default_factory=dict)
 
     def add(self, computed: MetricArrays, count: int) -> None:
-        """Count one evaluation."""
+        """Count the points of one evaluation."""
         self.points += count
         sound = np.isfinite(np.broadcast_to(computed.metrics["mass"][""], (count,)))
         for name in self.names:
@@ -120,7 +141,7 @@ class Refusals:
                 self.raised.setdefault(name, computed.why[name])
 
     def warnings(self) -> tuple[str, ...]:
-        """The warnings, one line for each metric that was missing somewhere."""
+        """One warning for each metric without a value at some point."""
         return tuple(
             f"{name} gave no value at {100 * lost / self.points:.3g} % of the points tried, "
             "which count as infeasible" + (f": {self.raised[name]}" if name in self.raised else "")
@@ -131,22 +152,22 @@ class Refusals:
 
 @dataclass(frozen=True)
 class ActuatorProblem:
-    """A design with variables as a problem of the generic solver, and the way back."""
+    """A design with variables as a problem of the generic solver."""
 
     subject: PreparedDesign
     goal: Goal
     paths: tuple[str, ...]
     rows: tuple[LimitRow, ...]
     fixed: tuple[LimitRow, ...]
-    """Rows that no variable changes: always met, or always missed."""
+    """Rows that no variable affects: always met, or always missed."""
     problem: BoxProblem
-    wanted: frozenset[str] | None
-    """Metrics of objective and rows; None where a custom metric may read any of them."""
+    metrics: frozenset[str] | None
+    """Metrics of objective and rows; None if a custom metric may read any metric."""
     refusals: Refusals = field(default_factory=Refusals)
-    """Points where custom metrics had no value."""
+    """Count of points without a value of a custom metric."""
 
     def parametric(self, parameters: tuple[str, ...]) -> ParametricProblem:
-        """The same problem, with the numbers at `parameters` to be priced."""
+        """The problem with the numbers at the PATHs `parameters` as parameters."""
 
         def evaluate(points: Array, values: Array) -> PointValues:
             varied = dict(zip(parameters, values, strict=True))
@@ -155,67 +176,85 @@ class ActuatorProblem:
         present = np.array([self.subject.numbers[path] for path in parameters])
         return ParametricProblem(self.problem, parameters, present, evaluate)
 
+    def fixed_numbers(self, x: Vector) -> list[str]:
+        """PATHs of the positive numbers, other than variables, that the models read at x (n,)."""
+        values = self.subject.values(dict(zip(self.paths, x[:, None], strict=True)))
+        self.subject.touch(values)
+        return [
+            path
+            for path in sorted(values.read)
+            if path not in self.paths and self.subject.numbers.get(path, 0.0) > 0
+        ]
+
+    def number_steps(self, x: Vector, paths: Sequence[str]) -> PointValues:
+        """Values at x (n,) with a relative complex step in each of the numbers at `paths`."""
+        present = np.array([self.subject.numbers[path] for path in paths])
+        varied = np.repeat(present[:, None].astype(complex), len(paths), axis=1)
+        varied += np.diag(1j * STEP * present)
+        points = np.repeat(x[:, None], len(paths), axis=1)
+        return self.evaluate(points, dict(zip(paths, varied, strict=True)))
+
     def evaluate(
         self,
         points: Array,
         parameters: Mapping[str, Array] | None = None,
-        seen: list[MetricArrays] | None = None,
+        outputs: list[MetricArrays] | None = None,
     ) -> PointValues:
         """Objective and constraint margins of points (variables, designs).
 
-        Adds the computed metrics to `seen`.
+        Adds the computed metrics to `outputs`.
         """
         varied = dict(parameters or {}) | dict(zip(self.paths, points, strict=True))
         numbers = self.subject.values(varied)
         count = points.shape[1]
-        done = compute(self.subject, numbers, self.wanted)
-        if seen is not None:
-            seen.append(done.computed)
+        run = compute(self.subject, numbers, self.metrics)
+        if outputs is not None:
+            outputs.append(run.computed)
         if self.refusals.names and not any(np.iscomplexobj(v) for v in varied.values()):
-            self.refusals.add(done.computed, count)
+            self.refusals.add(run.computed, count)
         return PointValues(
-            self.goal.value(done.computed, self.subject.cases),
-            _margins(self.rows, done.computed, numbers, count, self.subject.reserves),
+            self.goal.value(run.computed, self.subject.cases),
+            _margins(self.rows, run.computed, numbers, count, self.subject.reserves),
         )
 
 
 def _bounded(margin: Array) -> Array:
-    """A margin scaled for the solver: m below 0, m/(1 + m) above, so that infinity is 1.
+    """A margin scaled for the solver: m below 0, m/(1 + m) above, 1 for infinity.
 
-    Keeps the sign, and both value and slope where the limit is just met.
+    The scaling changes neither the sign nor, at a margin of 0, value and slope.
     """
     large = real(margin) > 1e9
-    held = where(large, 0.0, margin)
-    inside = where(real(held) > 0, held / (1 + where(real(held) > 0, held, 0.0)), held)
-    return where(large, 1.0, inside)
+    finite = where(large, 0.0, margin)
+    bounded = where(real(finite) > 0, finite / (1 + where(real(finite) > 0, finite, 0.0)), finite)
+    return where(large, 1.0, bounded)
 
 
 def _margins(
-    wanted: tuple[LimitRow, ...],
+    rows: tuple[LimitRow, ...],
     computed: MetricArrays,
     numbers: Numbers,
     count: int,
     reserves: Mapping[str, float],
 ) -> Array:
-    """Margins of the wanted rows less their reserves (rows, designs), all in one pass."""
-    if not wanted:
+    """Margins (rows, designs) of the rows less their reserves, in one vectorised operation."""
+    if not rows:
         return np.empty((0, count))
     complex_ = any(np.iscomplexobj(value) for value in numbers.varied.values())
-    value = np.empty((len(wanted), count), dtype=complex if complex_ else float)
-    bounds = [row.limit_of.value(numbers) for row in wanted]
+    value = np.empty((len(rows), count), dtype=complex if complex_ else float)
+    bounds = [row.limit_of.value(numbers) for row in rows]
     width = max(getattr(bound, "size", 1) for bound in bounds)
-    bound = np.empty((len(wanted), width), dtype=value.dtype)
-    for i, row in enumerate(wanted):
+    bound = np.empty((len(rows), width), dtype=value.dtype)
+    for i, row in enumerate(rows):
         array = computed.metrics[row.limit_of.metric][row.place]
         if row.case_index is not None:
             array = array[row.case_index]
         value[i], bound[i] = array, bounds[i]
     value = where(real(value) == np.inf, UNLIMITED, value)
-    sign = np.array([[1.0 if row.limit_of.sense == "min" else -1.0] for row in wanted])
-    beyond = sign * margin(value, bound, "min")
+    sign = np.array([[1.0 if row.limit_of.sense == "min" else -1.0] for row in rows])
+    margins = sign * margin(value, bound, "min")
     if reserves:
-        beyond = beyond - np.array([[reserves.get(row.limit_of.name, 0.0)] for row in wanted])
-    return _bounded(beyond)
+        margins = margins - np.array([[reserves.get(row.limit_of.name, 0.0)] for row in rows])
+    return _bounded(margins)
 
 
 @np.errstate(all="ignore")  # the solver handles values that are not finite
@@ -256,13 +295,14 @@ def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProble
         limit for limit in all_limits(subject.design, subject.plugins) if limit.origin != "advice"
     )
     numbers = subject.values({path: np.array([v, v]) for path, v in zip(paths, start, strict=True)})
-    done = compute(subject, numbers)
-    goal.value(done.computed, subject.cases)
-    everything = [row for limit in limits for row in rows_of(limit, done.computed, numbers)]
+    run = compute(subject, numbers)
+    goal.value(run.computed, subject.cases)
+    all_rows = [row for limit in limits for row in rows_of(limit, run.computed, numbers)]
     _check_read(numbers, paths, fault)
-    rows = tuple(row for row in everything if np.size(row.margin) > 1)
-    fixed = tuple(row for row in everything if np.size(row.margin) == 1)
-    missed = [  # a check that no variable can fix is reported, but does not constrain the search
+    rows = tuple(row for row in all_rows if np.size(row.margin) > 1)
+    fixed = tuple(row for row in all_rows if np.size(row.margin) == 1)
+    # a missed check that no variable affects is reported, but does not constrain the search
+    missed = [
         row
         for row in fixed
         if row.limit_of.origin != "check"
@@ -280,21 +320,21 @@ def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProble
         relaxable=tuple(row.limit_of.origin != "geometry" for row in rows),
         groups=tuple(limits.index(row.limit_of) for row in rows),
     )
-    wanted = frozenset({row.limit_of.metric for row in rows} | set(goal.weights))
-    own = {plugin.name for plugin in subject.plugins}
-    refusals, lenient = Refusals(wanted & own), replace(subject, lenient=True)
-    asked = None if own else wanted
-    holder.append(ActuatorProblem(lenient, goal, paths, rows, fixed, problem, asked, refusals))
+    metrics = frozenset({row.limit_of.metric for row in rows} | set(goal.weights))
+    plugin_names = {plugin.name for plugin in subject.plugins}
+    refusals, lenient = Refusals(metrics & plugin_names), replace(subject, lenient=True)
+    required = None if plugin_names else metrics
+    holder.append(ActuatorProblem(lenient, goal, paths, rows, fixed, problem, required, refusals))
     return holder[0]
 
 
 def idle_metrics(actuator: ActuatorProblem) -> tuple[str, ...]:
-    """Metrics of the objective that no variable affects at all."""
+    """Metrics of the objective that no variable affects."""
     start = actuator.problem.start
     assert start is not None
-    moved = {path: np.array([x, x]) for path, x in zip(actuator.paths, start, strict=True)}
+    points = {path: np.array([x, x]) for path, x in zip(actuator.paths, start, strict=True)}
     subject, goal = actuator.subject, actuator.goal
-    computed = compute(subject, subject.values(moved)).computed
+    computed = compute(subject, subject.values(points)).computed
     values = {name: worst_value(computed, name, subject.cases, goal.aim) for name in goal.weights}
     return tuple(
         name for name, value in values.items() if np.size(value) == 1 and np.isfinite(value).all()
@@ -339,7 +379,7 @@ RELATIVE_STEP = 1e-5
 
 @dataclass(frozen=True)
 class Responses:
-    """Derivatives by each parameter (q of them, bounds included) at one point.
+    """Derivatives by each of q parameters, bounds included, at one point.
 
     Parameters
     ----------
@@ -347,7 +387,7 @@ class Responses:
     rows : (rows, q), derivative of objective, constraints and equalities
     mixed : (nf, q), derivative of the gradient of the Lagrangian
     bounds : (2 nf, q), derivative of the distance to lower, then upper bounds
-    differences : labels of parameters that fell back to finite differences
+    differences : labels of parameters with finite differences
     """
 
     names: tuple[str, ...]
@@ -365,7 +405,7 @@ class Responses:
 def responses(
     parametric: ParametricProblem, evaluator: Evaluator, point: Point, weights: Vector
 ) -> Responses:
-    """Return derivatives by the parameters; `weights` (rows,) make the Lagrangian of the rows."""
+    """Derivatives by the parameters; `weights` (rows,) form the Lagrangian from the rows."""
     count, nf = len(parametric.parameters), evaluator.space.size
     steps = RELATIVE_STEP * np.where(parametric.parameters == 0, 1.0, parametric.parameters)
     rows, fallen = _row_slopes(parametric, point, steps)
@@ -380,37 +420,37 @@ def responses(
     )
 
 
-def with_bounds(found: Responses, evaluator: Evaluator, multipliers: Vector) -> Responses:
-    """Return the same with a parameter "NAME lower" or "NAME upper" for each bound that costs.
+def with_bounds(derivatives: Responses, evaluator: Evaluator, multipliers: Vector) -> Responses:
+    """Add a parameter "NAME lower" or "NAME upper" for each bound with a positive multiplier.
 
-    `multipliers` (2 nf,) are those of the lower, then the upper bounds.
+    `multipliers` (2 nf,) are those of the lower, then of the upper bounds.
     """
     space, problem = evaluator.space, evaluator.problem
     nf = space.size
     priced = np.flatnonzero(multipliers > 0)
     names, values, shifts = [], [], np.zeros((2 * nf, len(priced)))
     for k, i in enumerate(priced):
-        j, upper = int(i) % nf, bool(i >= nf)
-        limit = (problem.upper if upper else problem.lower)[space.free[j]]
+        j, is_upper = int(i) % nf, bool(i >= nf)
+        limit = (problem.upper if is_upper else problem.lower)[space.free[j]]
         slope = limit if space.logarithmic[j] else space.scale[j]
-        names.append(f"{problem.names[space.free[j]]} {'upper' if upper else 'lower'}")
+        names.append(f"{problem.names[space.free[j]]} {'upper' if is_upper else 'lower'}")
         values.append(limit)
-        shifts[i, k] = (1.0 if upper else -1.0) / slope
-    extra = len(priced)
+        shifts[i, k] = (1.0 if is_upper else -1.0) / slope
+    count = len(priced)
     return replace(
-        found,
-        names=(*found.names, *names),
-        values=np.concatenate([found.values, np.array(values, dtype=float)]),
-        rows=np.concatenate([found.rows, np.zeros((len(found.rows), extra))], axis=1),
-        mixed=np.concatenate([found.mixed, np.zeros((nf, extra))], axis=1),
-        bounds=np.concatenate([found.bounds, shifts], axis=1),
+        derivatives,
+        names=(*derivatives.names, *names),
+        values=np.concatenate([derivatives.values, np.array(values, dtype=float)]),
+        rows=np.concatenate([derivatives.rows, np.zeros((len(derivatives.rows), count))], axis=1),
+        mixed=np.concatenate([derivatives.mixed, np.zeros((nf, count))], axis=1),
+        bounds=np.concatenate([derivatives.bounds, shifts], axis=1),
     )
 
 
 def perturbed(parametric: ParametricProblem, name: str, k: int, value: float) -> BoxProblem | None:
-    """Return the problem with parameter k (a bound beyond the parameters) at `value`.
+    """The problem with parameter k at `value`; None if the bounds would cross.
 
-    None where the bounds would cross.
+    Beyond the parameters, k is a bound with the label `name`.
     """
     if k < len(parametric.parameters):
         parameters = parametric.parameters.copy()
@@ -419,9 +459,9 @@ def perturbed(parametric: ParametricProblem, name: str, k: int, value: float) ->
     problem = parametric.problem
     variable, side = name.rsplit(" ", 1)
     j = list(problem.names).index(variable)
-    bound = (problem.upper if side == "upper" else problem.lower).copy()
-    bound[j] = value
-    lower, upper = (bound, problem.upper) if side == "lower" else (problem.lower, bound)
+    bounds = (problem.upper if side == "upper" else problem.lower).copy()
+    bounds[j] = value
+    lower, upper = (bounds, problem.upper) if side == "lower" else (problem.lower, bounds)
     if lower[j] > upper[j]:
         return None
     return replace(problem, lower=lower, upper=upper, start=None)
@@ -437,25 +477,25 @@ def _rows(parametric: ParametricProblem, points: Vector, parameters: Vector) -> 
 def _row_slopes(
     parametric: ParametricProblem, point: Point, steps: Vector
 ) -> tuple[Vector, tuple[str, ...]]:
-    """Return derivative of the rows (rows, q), and the parameters that fell back to differences."""
+    """Derivative of the rows (rows, q), and the labels of parameters with finite differences."""
     count = len(steps)
     if count == 0:
         return np.zeros((len(point.rows), 0)), ()
-    at = np.repeat(parametric.parameters[:, None], count, axis=1)
+    parameters = np.repeat(parametric.parameters[:, None], count, axis=1)
     x = np.repeat(point.x[:, None], count, axis=1)
-    moves = np.diag(steps)
-    both = _rows(
+    shifts = np.diag(steps)
+    rows = _rows(
         parametric,
         np.concatenate([x, x], axis=1),
-        np.concatenate([at + moves, at - moves], axis=1),
+        np.concatenate([parameters + shifts, parameters - shifts], axis=1),
     ).real
-    above, below = both[:, :count], both[:, count:]
+    above, below = rows[:, :count], rows[:, count:]
     middle = point.rows[:, None]
     above = np.where(np.isfinite(above), above, 2 * middle - below)
     below = np.where(np.isfinite(below), below, 2 * middle - above)
     crude = np.nan_to_num((above - below) / (2 * steps))
     try:
-        fine = _rows(parametric, x, at + 1j * STEP * moves).imag / STEP / steps
+        fine = _rows(parametric, x, parameters + 1j * STEP * shifts).imag / STEP / steps
     except (TypeError, ValueError, np.exceptions.ComplexWarning):
         return crude, tuple(parametric.parameter_names)
     room = 1e-4 * np.abs(crude).max(axis=0) + 1e-6 * (1 + np.abs(point.rows).max()) / np.abs(steps)
@@ -472,18 +512,16 @@ def _mixed(
     weights: Vector,
     steps: Vector,
 ) -> Vector:
-    """Return the derivative of the Lagrangian's gradient (nf, q), in one call where exact."""
+    """Derivative of the Lagrangian's gradient (nf, q); one model call per side where exact."""
     count, nf = len(steps), evaluator.space.size
     if count == 0 or nf == 0:
         return np.zeros((nf, count))
     slopes = []
     if evaluator.complex_works and not evaluator.difference_rows.any():
-        x = np.repeat(point.x[:, None].astype(complex), nf, axis=1)
-        seeds = evaluator.space.slope(point.x[:, None])[:, 0]
-        x[evaluator.space.free, np.arange(nf)] += 1j * STEP * seeds
+        x = evaluator.space.complex_steps(point.x[:, None])
         for sign in (1.0, -1.0):
-            at = parametric.parameters[:, None] + sign * np.diag(steps)
-            rows = _rows(parametric, np.tile(x, count), np.repeat(at, nf, axis=1))
+            columns = parametric.parameters[:, None] + sign * np.diag(steps)
+            rows = _rows(parametric, np.tile(x, count), np.repeat(columns, nf, axis=1))
             part = (rows.imag / STEP).reshape(len(rows), count, nf)
             slopes.append(np.tensordot(weights, part, axes=1))
     else:
@@ -492,17 +530,16 @@ def _mixed(
             for k in range(count):
                 parameters = parametric.parameters.copy()
                 parameters[k] += sign * 100 * steps[k]
-                near = Evaluator(parametric.at(parameters))
-                near.complex_works = evaluator.complex_works
-                near.difference_rows = evaluator.difference_rows
-                side.append(weights @ near.jacobians(point.z[:, None])[:, 0])
+                changed = Evaluator(parametric.at(parameters))
+                changed.adopt_check(evaluator)
+                side.append(weights @ changed.jacobians(point.z[:, None])[:, 0])
             slopes.append(np.array(side))
         steps = 100 * steps
     return np.asarray(np.nan_to_num((slopes[0] - slopes[1]) / (2 * steps[:, None])).T)
 
 
 MET = 1e-6
-"""Worst violation that counts as met (contract)."""
+"""Largest violation that counts as met (contract)."""
 
 
 class Outcome(Enum):
@@ -582,7 +619,7 @@ class Outcome(Enum):
 
     @property
     def feasible(self) -> bool:
-        """Whether the point meets every constraint (if the outcome determines that)."""
+        """Whether the outcome implies that the point meets every constraint."""
         return self in (
             Outcome.OPTIMUM,
             Outcome.NOT_STATIONARY,
@@ -595,7 +632,7 @@ class Outcome(Enum):
 
 @dataclass(frozen=True, slots=True)
 class LocalOptimum:
-    """A distinct end point of local runs, and the number of starts that reached it."""
+    """An end point of local runs, and the number of starts that reached it."""
 
     x: Vector
     objective: float
@@ -606,7 +643,7 @@ class LocalOptimum:
 
 @dataclass(frozen=True, slots=True)
 class StartRecord:
-    """One start and its result: the last algorithm and the final values."""
+    """One start and its result."""
 
     x: Vector
     objective: float
@@ -616,7 +653,7 @@ class StartRecord:
 
     @property
     def feasible(self) -> bool:
-        """Whether it reached a point that meets every limit."""
+        """Whether the start led to a point that meets every limit."""
         return self.violation <= MET
 
 
@@ -630,8 +667,8 @@ class Solution:
     outcome : how the run ended
     x : variables (n,)
     objective, constraints, equalities : values at x
-    violation : worst missed margin, 0 if all are met
-    kkt : optimality conditions at x; None if the model is undefined there
+    violation : largest missed margin, 0 if all are met
+    kkt : optimality conditions at x; None if the model is undefined at x
     evaluations, gradients : points evaluated and gradients computed in the local phase
     samples, feasible_samples : points of the global sweep, and how many were feasible
     undefined : share of the sweep where the model has no finite values
@@ -639,7 +676,7 @@ class Solution:
     optima : distinct local optima, the best first
     trace : (evaluation, objective, violation) of each improvement
     algorithm : the algorithm that reached x
-    without_effect : labels of variables that changed no value at any point tried
+    without_effect : labels of variables that affected no value at any point
     warnings : messages for the user
     seed, seconds : of the run
     """

@@ -1,10 +1,10 @@
-"""The best point of a problem with variables that only take listed values, singly or in groups.
+"""Branch and bound for variables that only take listed values, singly or in groups.
 
-Branch and bound from the continuous optimum. The most promising box comes first; among nearly equal
-boxes the newest, which is the deepest. The bound of a box is its continuous optimum, re-optimised
-from that of the enclosing box. As this optimum is local, the result is the best point reached,
-without proof. All roundings up and down are tried first, together. A small box with no other free
-variables is evaluated whole, in one model call.
+The search first tries all roundings of the continuous optimum, together. Then the most promising
+box comes first; among nearly equal boxes the newest, which is the deepest. The bound of a box is
+its continuous optimum, re-optimised from that of the enclosing box. This optimum is local, so the
+result is the best point reached, without proof. A small box without other free variables is
+evaluated completely, in one model call.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ from typing import TypeAlias
 import numpy as np
 
 from ..base.numeric import Array
+from .actuator import MET
 from .evaluator import Evaluator, Point
 from .problem import BoxProblem, ParametricProblem, PointValues, Vector
 from .resolve.boxes import EXACT, ROUGH, BoxTask, Criteria, Nearest, resolve_boxes
 from .resolve.changed import ChangedProblems, applicable
-from .resolve.parallel_descents import FEASIBLE
 from .resolve.steps import ScaledHessian, hessian_at, valley_at
 
 ON = 1e-7
-"""Distance from a listed value, relative to the spacing, that counts as none."""
+"""Distance from a listed value, relative to the spacing, that counts as zero."""
 
 
 SAME = 1e-9
-"""Relative difference of objectives that counts as none."""
+"""Relative difference of objectives that counts as zero."""
 
 
 Rows: TypeAlias = tuple[int, ...]
@@ -65,7 +65,7 @@ class Listed:
         return np.unique(self.rows[list(rows), column])
 
     def parts(self, rows: Rows, row: int) -> list[Rows]:
-        """The other rows, split into parts that a bound of one variable separates from this row."""
+        """The other rows, split by bounds of single variables that exclude this row."""
         parts: list[Rows] = []
         for column, value in enumerate(self.rows[row]):
             of = self.rows[:, column]
@@ -77,28 +77,28 @@ class Listed:
         return [part for part in parts if part]
 
     def at(self, x: Vector, rows: Rows) -> int | None:
-        """The row at a point (k,), or None."""
+        """The row among `rows` at a point (k,), or None."""
         span = np.ptp(self.rows, axis=0)
-        near = np.abs(self.rows[list(rows)] - x) <= ON * span + SAME * np.abs(x)
-        found = np.flatnonzero(near.all(axis=1))
-        return rows[int(found[0])] if len(found) else None
+        matches = np.abs(self.rows[list(rows)] - x) <= ON * span + SAME * np.abs(x)
+        positions = np.flatnonzero(matches.all(axis=1))
+        return rows[int(positions[0])] if len(positions) else None
 
     def around(self, x: Vector) -> list[int]:
-        """The nearest rows of a point (k,), for all roundings; only itself if it is a row."""
-        every = tuple(range(len(self.rows)))
-        here = self.at(x, every)
-        if here is not None:
-            return [here]
+        """The nearest row to a point (k,) for each rounding; only its own row if it is listed."""
+        all_rows = tuple(range(len(self.rows)))
+        own_row = self.at(x, all_rows)
+        if own_row is not None:
+            return [own_row]
         span = np.ptp(self.rows, axis=0)
         off = (self.rows - x) / np.where(span > 0, span, 1.0)
         distance = np.abs(off).sum(axis=1)
-        found = []
+        rows = []
         for sides in itertools.product((1, -1), repeat=len(x)):
-            there = np.flatnonzero((off * sides >= -ON).all(axis=1))
-            if len(there):
-                found.append(int(there[distance[there].argmin()]))
-        found = found or [int(distance.argmin())]
-        return sorted(dict.fromkeys(found), key=lambda row: float(distance[row]))
+            sector = np.flatnonzero((off * sides >= -ON).all(axis=1))
+            if len(sector):
+                rows.append(int(sector[distance[sector].argmin()]))
+        rows = rows or [int(distance.argmin())]
+        return sorted(dict.fromkeys(rows), key=lambda row: float(distance[row]))
 
 
 def with_rows(box: Box, k: int, rows: Rows) -> Box:
@@ -107,7 +107,7 @@ def with_rows(box: Box, k: int, rows: Rows) -> Box:
 
 
 def between(values: Vector, value: float) -> tuple[float, float, float]:
-    """The neighbouring values and the relative distance to the nearest (0 to 0.5)."""
+    """The neighbouring values, and the relative distance to the nearest (0 to 0.5)."""
     if len(values) == 1:
         return float(values[0]), float(values[0]), 0.0
     k = int(np.clip(np.searchsorted(values, value), 1, len(values) - 1))
@@ -120,36 +120,35 @@ MOST_SOLVES = 400
 """Maximum re-optimisations of one search."""
 
 MOST_NEIGHBOURS = 256
-"""Maximum roundings up and down tried at once: all of them up to eight listed variables."""
+"""Maximum number of roundings tried at once: all roundings of eight listed variables."""
 
 MOST_MISSED = 4
-"""Maximum assignments examined to explain what the nearest one misses."""
+"""Maximum assignments examined for the least infeasible assignment."""
 
 MOST_LISTED = 1024
-"""Maximum assignments of a box that are evaluated together, if no other variable is free."""
+"""Maximum assignments of a box for a joint evaluation, if no other variable is free."""
 
 TIE = 0.01
-"""Bounds this close count as equally promising. The difference is relative to the distance from the
-least bound to the best design, so it suits any scale of the objective. A choice."""
+"""Difference of equally promising bounds, relative to the distance from the lowest bound to the
+best design. A choice."""
 
 CLOSE = 1e-7
-"""Relative difference between bounds that counts as none: the accuracy of the bounds."""
+"""Relative difference of bounds that counts as zero: the accuracy of the bounds."""
 
 
 @dataclass
 class SizeSearch:
-    """The best point, every assignment tried with its objective, and the extent of the search.
+    """Result of a search: the best point, and the objective of every assignment tried.
 
     Parameters
     ----------
-    x, objective, assignment : of the best; None without a feasible one
+    x, objective, assignment : of the best point; None without a feasible point
     tried : objective of each assignment, infinite if infeasible
-    solves : re-optimisations, of boxes and of assignments
+    solves : number of re-optimisations, of boxes and of assignments
     complete : whether the search finished before reaching a limit
-    nearest, missed : without a feasible one, the least infeasible of the assignments examined, and
-        its point
-    ends : result of every box, its optimum or least infeasible point, with its evaluator; empty
-        where a box has neither
+    nearest, missed : the least infeasible assignment and its point, if no point is feasible
+    ends : evaluator and optimum, or least infeasible point, of every box; empty if a box has
+        neither
     """
 
     x: Vector | None
@@ -169,8 +168,8 @@ def search(
     x: Vector,
     *,
     most: int = MOST_SOLVES,
-    until: float | None = None,
-    below: float = np.inf,
+    deadline: float | None = None,
+    cutoff: float = np.inf,
     memory: Memory | None = None,
 ) -> SizeSearch:
     """The best point with every listed variable at one of its values.
@@ -180,34 +179,34 @@ def search(
     problem : the continuous problem
     listed : the groups of its listed variables
     x : the continuous optimum (n,)
-    most : limit of re-optimisations
-    until : time of `time.perf_counter` to stop at
-    below : ignore objectives that are not better than this
+    most : maximum number of re-optimisations
+    deadline : time of `time.perf_counter` at which the search stops
+    cutoff : objectives that are not better than this are ignored
     memory : results of searches of similar problems with the same rows; extended by this search
     """
     remembered = memory is not None and memory.hessian is not None
-    run = _Run(problem, listed, x, most, until, below, memory or Memory())
+    run = _Run(problem, listed, x, most, deadline, cutoff, memory or Memory())
     if remembered:
-        run.look_ahead()
+        run.precompute()
     else:
-        run.neighbours()
-    whole = tuple(tuple(range(len(one.rows))) for one in listed)
+        run.try_neighbours()
+    root = tuple(tuple(range(len(group.rows))) for group in listed)
     boxes = _Boxes()
-    if run.evaluates(whole):
-        run.evaluate(whole)
+    if run.can_evaluate(root):
+        run.evaluate(root)
     elif remembered:
-        boxes.add(run.start.objective, whole, run.x)
+        boxes.add(run.start.objective, root, run.x)
     else:
-        run.relax([whole], run.x, boxes)
+        run.relax([root], run.x, boxes)
     while boxes and not run.exhausted:
-        bound, box, x = boxes.take(run.best)
+        bound, box, x = boxes.pop(run.best)
         if not run.beaten(bound):
             run.relax(run.parts(box, x, bound), x, boxes)
-    return run.found(complete=all(run.beaten(bound) for bound in boxes.bounds()))
+    return run.result(complete=all(run.beaten(bound) for bound in boxes.bounds()))
 
 
 class _Boxes:
-    """Boxes left to search, by bound and by age."""
+    """Boxes that wait for the search, by bound and by age."""
 
     def __init__(self) -> None:
         self._entries: dict[int, tuple[float, Box, Vector]] = {}
@@ -218,46 +217,48 @@ class _Boxes:
         return bool(self._entries)
 
     def bounds(self) -> list[float]:
-        """The bound of every box left."""
+        """The bound of every waiting box."""
         return [bound for bound, *_ in self._entries.values()]
 
     def add(self, bound: float, box: Box, x: Vector) -> None:
-        """Keep a box with its bound and its continuous optimum."""
+        """Add a box with its bound and its continuous optimum."""
         number = next(self._count)
         self._entries[number] = bound, box, x
         heapq.heappush(self._lowest, (bound, number))
 
-    def take(self, best: float) -> tuple[float, Box, Vector]:
-        """The newest of the most promising boxes."""
+    def pop(self, best: float) -> tuple[float, Box, Vector]:
+        """Remove and return the newest of the most promising boxes."""
         while self._lowest[0][1] not in self._entries:
             heapq.heappop(self._lowest)
-        least, number = self._lowest[0]
+        lowest_bound, number = self._lowest[0]
         newest = next(reversed(self._entries))
-        room = TIE * (best - least) if best < np.inf else np.inf
-        return self._entries.pop(newest if self._entries[newest][0] <= least + room else number)
+        tolerance = TIE * (best - lowest_bound) if best < np.inf else np.inf
+        return self._entries.pop(
+            newest if self._entries[newest][0] <= lowest_bound + tolerance else number
+        )
 
 
 def at(
     problem: BoxProblem, listed: Sequence[Listed], assignment: Assignment, x: Vector, memory: Memory
 ) -> float | None:
-    """The objective of one assignment, re-optimised; None where it is infeasible."""
-    objective = _Run(problem, listed, x, 1, None, np.inf, memory).assigned(assignment, x)
+    """The re-optimised objective of one assignment; None if it is infeasible."""
+    objective = _Run(problem, listed, x, 1, None, np.inf, memory).reoptimised(assignment, x)
     return objective if objective < np.inf else None
 
 
 @dataclass
 class Memory:
-    """Results of the boxes of a search, as starting points for similar problems."""
+    """Results of the boxes of a search: starts for similar problems."""
 
     hessian: ScaledHessian | None = None
     ends: dict[Box, tuple[Evaluator, Point]] = field(default_factory=dict)
     hessians: dict[Box, ScaledHessian | None] = field(default_factory=dict)
     missed: dict[Box, Vector] = field(default_factory=dict)
-    """The least infeasible points of boxes without a feasible one."""
+    """The least infeasible points of boxes without a feasible point."""
     visited: tuple[Box, ...] = ()
-    """Boxes whose continuous optimum the last search needed."""
+    """Boxes that the last search re-optimised."""
 
-    def near(self, box: Box) -> tuple[Vector, ScaledHessian | None] | None:
+    def warm_start(self, box: Box) -> tuple[Vector, ScaledHessian | None] | None:
         """The optimum in the same box of another problem, and its Hessian."""
         end = self.ends.get(box)
         if end is None:
@@ -266,13 +267,13 @@ class Memory:
             self.hessians[box] = hessian_at(*end)
         return end[1].x, self.hessians[box]
 
-    def note(self, box: Box, evaluator: Evaluator, nearest: Nearest) -> None:
-        """Store the result of a box, unless steps from known results reach it easily."""
-        if nearest.optimum is not None and not (nearest.followed and box in self.ends):
-            self.ends[box] = evaluator, nearest.optimum
+    def note(self, box: Box, evaluator: Evaluator, end: Nearest) -> None:
+        """Store the result of a box, unless steps from a stored result reach it easily."""
+        if end.optimum is not None and not (end.followed and box in self.ends):
+            self.ends[box] = evaluator, end.optimum
             self.hessians.pop(box, None)
-        elif nearest.optimum is None and nearest.missed is not None:
-            self.missed.setdefault(box, nearest.missed.x)
+        elif end.optimum is None and end.missed is not None:
+            self.missed.setdefault(box, end.missed.x)
 
 
 @dataclass
@@ -282,26 +283,26 @@ class _Run:
     problem: BoxProblem
     listed: Sequence[Listed]
     x: Vector
-    most: int
-    until: float | None
-    below: float
+    max_solves: int
+    deadline: float | None
+    cutoff: float
     memory: Memory
     solves: int = 0
     tried: dict[Assignment, float] = field(default_factory=dict)
     points: dict[Assignment, Vector] = field(default_factory=dict)
-    near: dict[Assignment, Vector] = field(default_factory=dict)
+    starts: dict[Assignment, Vector] = field(default_factory=dict)
     ends: list[tuple[Evaluator, Point | None]] = field(default_factory=list)
     visited: list[Box] = field(default_factory=list)
-    ahead: dict[Box, tuple[BoxTask, Nearest]] = field(default_factory=dict)
+    precomputed: dict[Box, tuple[BoxTask, Nearest]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.index = np.concatenate([one.index for one in self.listed]).astype(np.intp)
+        self.index = np.concatenate([group.index for group in self.listed]).astype(np.intp)
         self.reference = Evaluator(self.problem)
         self.start = start = self.reference.point(self.reference.space.to_z(self.x))
         self.x = start.x
-        others = np.setdiff1d(np.arange(len(self.x)), self.index)
-        self.only_listed = bool((self.problem.lower == self.problem.upper)[others].all())
-        self.least = np.inf
+        unlisted = np.setdiff1d(np.arange(len(self.x)), self.index)
+        self.only_listed = bool((self.problem.lower == self.problem.upper)[unlisted].all())
+        self.lowest = np.inf
         if self.memory.hessian is None and start.valid and self.reference.space.size:
             self.reference.check_gradients(start)
             self.memory.hessian = hessian_at(self.reference, start)
@@ -309,182 +310,189 @@ class _Run:
     @property
     def exhausted(self) -> bool:
         """Whether a limit is reached."""
-        late = self.until is not None and time.perf_counter() > self.until
-        return late or self.solves >= self.most
+        late = self.deadline is not None and time.perf_counter() > self.deadline
+        return late or self.solves >= self.max_solves
 
     @property
     def best(self) -> float:
         """The objective to beat."""
-        return min(self.below, self.least)
+        return min(self.cutoff, self.lowest)
 
     def note(self, assignment: Assignment, objective: float) -> None:
-        """Store the value of an assignment, or a more exact one."""
-        worse = self.tried.get(assignment, np.inf) <= self.least < objective
+        """Store the objective of an assignment, or replace it by a more exact value."""
+        worse = self.tried.get(assignment, np.inf) <= self.lowest < objective
         self.tried[assignment] = objective
-        self.least = min(self.tried.values()) if worse else min(self.least, objective)
+        self.lowest = min(self.tried.values()) if worse else min(self.lowest, objective)
 
     def beaten(self, bound: float) -> bool:
-        """Whether no design above a bound can improve on the best one."""
+        """Whether no design above a bound can improve on the best design."""
         best = self.best
         return best < np.inf and bound >= best - CLOSE * abs(best)
 
     def values(self, assignment: Assignment) -> Vector:
-        """Values of the listed variables (d,)."""
+        """Values of the listed variables (d,) in an assignment."""
         pairs = zip(self.listed, assignment, strict=True)
-        return np.concatenate([one.rows[row] for one, row in pairs])
+        return np.concatenate([group.rows[row] for group, row in pairs])
 
-    def neighbours(self) -> None:
+    def try_neighbours(self) -> None:
         """Try every rounding up and down, all at once if the problem allows."""
-        sides = [one.around(self.x[list(one.index)]) for one in self.listed]
-        chosen = list(itertools.islice(itertools.product(*sides), MOST_NEIGHBOURS))
-        for assignment, near in self.together(chosen):
-            if near is None:
+        sides = [group.around(self.x[list(group.index)]) for group in self.listed]
+        assignments = list(itertools.islice(itertools.product(*sides), MOST_NEIGHBOURS))
+        for assignment, start in self.reoptimised_together(assignments):
+            if start is None:
                 self.note(assignment, np.inf)
             elif not self.exhausted:
-                self.assigned(assignment, near)
-        self.confirmed()
+                self.reoptimised(assignment, start)
+        self.confirmed_best()
 
-    def together(self, chosen: list[Assignment]) -> list[tuple[Assignment, Vector | None]]:
-        """Re-optimise assignments at once; return the rest, each with a start or None."""
-        here = self.x[self.index]
-        point, evaluator = self._near(here, here, self.x)
+    def reoptimised_together(
+        self, assignments: list[Assignment]
+    ) -> list[tuple[Assignment, Vector | None]]:
+        """Re-optimise assignments at once; returns those not solved, with a start or None."""
+        present = self.x[self.index]
+        point, evaluator = self._nearest_point(present, present, self.x)
         names = [self.problem.names[i] for i in self.index]
 
         def evaluate(points: Array, values: Array) -> PointValues:
-            full = np.array(points)
-            full[self.index] = values
-            return self.problem.evaluate(full)
+            x = np.array(points)
+            x[self.index] = values
+            return self.problem.evaluate(x)
 
-        parametric = ParametricProblem(evaluator.problem, names, here, evaluate)
+        parametric = ParametricProblem(evaluator.problem, names, present, evaluate)
         suits = point.valid and evaluator.space.size and applicable(parametric, evaluator)
-        if not suits or not chosen:
-            return [(assignment, self.x) for assignment in chosen]
-        values = np.stack([self.values(assignment) for assignment in chosen], axis=1)
-        starts = np.repeat(point.z[:, None], len(chosen), axis=1)
+        if not suits or not assignments:
+            return [(assignment, self.x) for assignment in assignments]
+        values = np.stack([self.values(assignment) for assignment in assignments], axis=1)
+        starts = np.repeat(point.z[:, None], len(assignments), axis=1)
         changed = ChangedProblems(parametric, evaluator, values)
-        known = changed.near_optimum(valley_at(evaluator, point), starts)
-        left = [k for k, optimum in enumerate(known) if optimum is None]
-        near = changed.chosen(left).restore(point.z)
-        for assignment, optimum in zip(chosen, known, strict=True):
+        optima = changed.near_optimum(valley_at(evaluator, point), starts)
+        unsolved = [k for k, optimum in enumerate(optima) if optimum is None]
+        restored = changed.subset(unsolved).restore(point.z)
+        for assignment, optimum in zip(assignments, optima, strict=True):
             self.solves += 1
             if optimum is not None:
                 self.note(assignment, optimum.objective)
-                self.near[assignment] = optimum.x
+                self.starts[assignment] = optimum.x
         return [
-            (chosen[k], None if z is None else evaluator.space.to_x(z[:, None])[:, 0])
-            for k, z in zip(left, near, strict=True)
+            (assignments[k], None if z is None else evaluator.space.to_x(z[:, None])[:, 0])
+            for k, z in zip(unsolved, restored, strict=True)
         ]
 
-    def assigned(self, assignment: Assignment, near: Vector) -> float:
-        """Re-optimise the other variables of an assignment; infinite where that is infeasible."""
+    def reoptimised(self, assignment: Assignment, start: Vector) -> float:
+        """Re-optimised objective of an assignment; infinite if it is infeasible."""
         if assignment not in self.points:
             values = self.values(assignment)
             box = tuple((row,) for row in assignment)
-            (found,) = self._descended([(box, values, values)], near, EXACT)
-            self.note(assignment, np.inf if found is None else found.objective)
-            if found is not None:
-                self.points[assignment] = found.x
+            (optimum,) = self._optima([(box, values, values)], start, EXACT)
+            self.note(assignment, np.inf if optimum is None else optimum.objective)
+            if optimum is not None:
+                self.points[assignment] = optimum.x
         return self.tried[assignment]
 
-    def confirmed(self) -> Assignment | None:
+    def confirmed_best(self) -> Assignment | None:
         """The best assignment, with its point verified; None without a feasible one."""
         while True:
-            best = min(self.tried, key=lambda one: self.tried[one], default=None)
-            if best is None or not self.tried[best] < self.below:
+            best = min(self.tried, key=lambda assignment: self.tried[assignment], default=None)
+            if best is None or not self.tried[best] < self.cutoff:
                 return None
             if best in self.points:
                 return best
-            self.assigned(best, self.near.get(best, self.x))
+            self.reoptimised(best, self.starts.get(best, self.x))
 
-    def look_ahead(self) -> None:
-        """Re-optimise the boxes of the last search at once, as most of them are needed again."""
+    def precompute(self) -> None:
+        """Re-optimise the boxes of the last search at once, as most are needed again."""
         tasks = [self._task(box, *self._bounds(box), self.x, ROUGH) for box in self.memory.visited]
         ends = resolve_boxes(tasks)
-        self.ahead = dict(zip(self.memory.visited, zip(tasks, ends, strict=True), strict=True))
+        self.precomputed = dict(
+            zip(self.memory.visited, zip(tasks, ends, strict=True), strict=True)
+        )
 
-    def evaluates(self, box: Box) -> bool:
+    def can_evaluate(self, box: Box) -> bool:
         """Whether every assignment of a box can be evaluated at once."""
         return self.only_listed and math.prod(map(len, box)) <= MOST_LISTED
 
     def evaluate(self, box: Box) -> None:
         """Evaluate every assignment of a box without other free variables."""
-        chosen = list(itertools.product(*box))
-        points = np.repeat(self.x[:, None], len(chosen), axis=1)
-        for one, rows in zip(self.listed, np.array(chosen).T, strict=True):
-            points[list(one.index)] = one.rows[rows].T
+        assignments = list(itertools.product(*box))
+        points = np.repeat(self.x[:, None], len(assignments), axis=1)
+        for group, rows in zip(self.listed, np.array(assignments).T, strict=True):
+            points[list(group.index)] = group.rows[rows].T
         values = Evaluator.screen(self.problem.rows(points))
-        met = self.reference.violations(values, "worst") <= FEASIBLE
-        objectives = np.where(met, values[0], np.inf).tolist()
-        for assignment, objective in zip(chosen, objectives, strict=True):
+        feasible = self.reference.violations(values, "worst") <= MET
+        objectives = np.where(feasible, values[0], np.inf).tolist()
+        for assignment, objective in zip(assignments, objectives, strict=True):
             self.tried.setdefault(assignment, objective)
-        self.least = min(self.least, *objectives)
+        self.lowest = min(self.lowest, *objectives)
         self.solves += 1
         self.ends.append((self.reference, None))  # the box has no optimum to compare with
 
-    def relax(self, parts: Sequence[Box], near: Vector, boxes: _Boxes) -> None:
+    def relax(self, parts: Sequence[Box], x: Vector, boxes: _Boxes) -> None:
         """Add the boxes whose continuous optimum may improve on the best design."""
         large = []
         for box in parts:
-            if self.evaluates(box):
+            if self.can_evaluate(box):
                 self.evaluate(box)
             else:
                 large.append(box)
         self.visited += large
         bounds = [(box, *self._bounds(box)) for box in large]
-        for box, point in zip(large, self._descended(bounds, near, ROUGH), strict=True):
+        for box, point in zip(large, self._optima(bounds, x, ROUGH), strict=True):
             if point is not None and not self.beaten(point.objective):
                 boxes.add(point.objective, box, point.x)
 
     def _bounds(self, box: Box) -> tuple[Vector, Vector]:
         """Bounds of the listed variables in a box."""
-        left = [one.rows[list(rows)] for one, rows in zip(self.listed, box, strict=True)]
-        lower = np.concatenate([rows.min(axis=0) for rows in left])
-        return lower, np.concatenate([rows.max(axis=0) for rows in left])
+        values = [group.rows[list(rows)] for group, rows in zip(self.listed, box, strict=True)]
+        lower = np.concatenate([rows.min(axis=0) for rows in values])
+        return lower, np.concatenate([rows.max(axis=0) for rows in values])
 
     def parts(self, box: Box, x: Vector, objective: float) -> list[Box]:
-        """The parts of a box left to search, given its continuous optimum."""
+        """The parts of a box that may contain a better point, given its continuous optimum."""
         widest: float = ON
         halves: tuple[int, list[list[int]]] | None = None
-        for k, (one, rows) in enumerate(zip(self.listed, box, strict=True)):
-            for column, index in enumerate(one.index):
-                values = one.values(column, rows)
+        for k, (group, rows) in enumerate(zip(self.listed, box, strict=True)):
+            for column, index in enumerate(group.index):
+                values = group.values(column, rows)
                 below, above, share = between(values, float(x[index]))
                 if share > widest:
-                    of = one.rows[:, column]
+                    column_values = group.rows[:, column]
                     widest = share
                     parts = [
-                        [r for r in rows if of[r] <= below],
-                        [r for r in rows if of[r] >= above],
+                        [r for r in rows if column_values[r] <= below],
+                        [r for r in rows if column_values[r] >= above],
                     ]
                     halves = k, parts if x[index] - below > above - x[index] else parts[::-1]
         if halves is not None:  # the nearer part last
             return [with_rows(box, halves[0], tuple(half)) for half in halves[1]]
-        found = [
-            one.at(x[list(one.index)], rows) for one, rows in zip(self.listed, box, strict=True)
+        rows_at = [
+            group.at(x[list(group.index)], rows)
+            for group, rows in zip(self.listed, box, strict=True)
         ]
-        if None in found:  # each value is listed, but not this combination
-            k = found.index(None)
-            one, rows = self.listed[k], box[k]
-            nearest = min(rows, key=lambda r: float(np.abs(one.rows[r] - x[list(one.index)]).sum()))
-            return [with_rows(box, k, part) for part in [*one.parts(rows, nearest), (nearest,)]]
-        assignment = tuple(row for row in found if row is not None)
+        if None in rows_at:  # each value is listed, but their combination is not
+            k = rows_at.index(None)
+            group, rows = self.listed[k], box[k]
+            nearest = min(
+                rows, key=lambda r: float(np.abs(group.rows[r] - x[list(group.index)]).sum())
+            )
+            return [with_rows(box, k, part) for part in [*group.parts(rows, nearest), (nearest,)]]
+        assignment = tuple(row for row in rows_at if row is not None)
         room = CLOSE * abs(objective)
-        if self.assigned(assignment, x) <= objective + room:
+        if self.reoptimised(assignment, x) <= objective + room:
             return []  # nothing else in the box can be better
-        left = []
+        rest = []
         for k, row in enumerate(assignment):
-            left += [with_rows(box, k, part) for part in self.listed[k].parts(box[k], row)]
+            rest += [with_rows(box, k, part) for part in self.listed[k].parts(box[k], row)]
             box = with_rows(box, k, (row,))
-        return left
+        return rest
 
-    def found(self, *, complete: bool) -> SizeSearch:
+    def result(self, *, complete: bool) -> SizeSearch:
         """The result of the search."""
         self.memory.visited = tuple(self.visited)
-        best = self.confirmed()
+        best = self.confirmed_best()
         x, objective, nearest, missed = None, None, None, None
         if best is not None:
             x, objective = self.points[best], self.tried[best]
-        elif not self.below < np.inf:
+        elif not self.cutoff < np.inf:
             nearest, missed = self.nearest()
         ends = tuple((evaluator, end) for evaluator, end in self.ends if end is not None)
         ends = ends if len(ends) == len(self.ends) else ()
@@ -493,66 +501,69 @@ class _Run:
 
     def nearest(self) -> tuple[Assignment, Point] | tuple[None, None]:
         """The least infeasible of the first assignments, and its point."""
-        found = []
+        candidates = []
         for assignment in list(self.tried)[:MOST_MISSED]:
             box = tuple((row,) for row in assignment)
             values = self.values(assignment)
-            point, _ = self._near(values, values, self.memory.missed.get(box, self.x))
+            point, _ = self._nearest_point(values, values, self.memory.missed.get(box, self.x))
             if box not in self.memory.missed and point.valid and not self.exhausted:
-                self.assigned(assignment, self.x)
-                near = self.memory.missed.get(box, self.x)
-                point, _ = self._near(values, values, near)
+                self.reoptimised(assignment, self.x)
+                start = self.memory.missed.get(box, self.x)
+                point, _ = self._nearest_point(values, values, start)
             if point.valid:
-                found.append((point.violation, assignment, point))
-        if not found:
+                candidates.append((point.violation, assignment, point))
+        if not candidates:
             return None, None
-        _, assignment, point = min(found, key=lambda one: one[0])
+        _, assignment, point = min(candidates, key=lambda candidate: candidate[0])
         return assignment, point
 
-    def _within(self, lower: Vector, upper: Vector) -> Evaluator:
+    def _restricted(self, lower: Vector, upper: Vector) -> Evaluator:
         """The problem with bounds on its listed variables."""
-        least, most = self.problem.lower.copy(), self.problem.upper.copy()
-        least[self.index], most[self.index] = lower, upper
-        evaluator = Evaluator(replace(self.problem, lower=least, upper=most, start=None))
-        evaluator.complex_works = self.reference.complex_works
-        evaluator.difference_rows = self.reference.difference_rows
+        lowest, highest = self.problem.lower.copy(), self.problem.upper.copy()
+        lowest[self.index], highest[self.index] = lower, upper
+        evaluator = Evaluator(replace(self.problem, lower=lowest, upper=highest, start=None))
+        evaluator.adopt_check(self.reference)
         evaluator.eager = True
         return evaluator
 
-    def _near(self, lower: Vector, upper: Vector, near: Vector) -> tuple[Point, Evaluator]:
+    def _nearest_point(
+        self, lower: Vector, upper: Vector, start: Vector
+    ) -> tuple[Point, Evaluator]:
         """The point nearest to another, within bounds of the listed variables."""
-        evaluator = self._within(lower, upper)
-        return evaluator.point(evaluator.space.to_z(evaluator.problem.inside(near))), evaluator
+        evaluator = self._restricted(lower, upper)
+        return evaluator.point(evaluator.space.to_z(evaluator.problem.inside(start))), evaluator
 
     def _task(
-        self, box: Box, lower: Vector, upper: Vector, near: Vector, criteria: Criteria
+        self, box: Box, lower: Vector, upper: Vector, start: Vector, criteria: Criteria
     ) -> BoxTask:
         """A box to re-optimise, from a nearby point or the result of a similar problem."""
-        known = self.memory.near(box)
-        hopeless = known is None and box in self.memory.missed
-        x, hessian = known or (self.memory.missed.get(box, near), self.memory.hessian)
-        evaluator = self._within(lower, upper)
-        above = self.best if criteria is ROUGH else np.inf
+        warm_start = self.memory.warm_start(box)
+        hopeless = warm_start is None and box in self.memory.missed
+        x, hessian = warm_start or (self.memory.missed.get(box, start), self.memory.hessian)
+        evaluator = self._restricted(lower, upper)
+        cutoff = self.best if criteria is ROUGH else np.inf
         x = evaluator.problem.inside(x)
-        return BoxTask(evaluator, x, hessian, criteria, hopeless, above)
+        return BoxTask(evaluator, x, hessian, criteria, hopeless, cutoff)
 
-    def _descended(
-        self, bounds: Sequence[tuple[Box, Vector, Vector]], near: Vector, criteria: Criteria
+    def _optima(
+        self, bounds: Sequence[tuple[Box, Vector, Vector]], start: Vector, criteria: Criteria
     ) -> list[Point | None]:
-        """The optimum in each box, from a nearby point or a similar problem; None without one."""
-        known = self.ahead if criteria is ROUGH else {}
+        """The optimum of each box, from a nearby point or a similar problem, or None."""
+        precomputed = self.precomputed if criteria is ROUGH else {}
         tasks = {
-            box: self._task(box, lower, upper, near, criteria)
+            box: self._task(box, lower, upper, start, criteria)
             for box, lower, upper in bounds
-            if box not in known
+            if box not in precomputed
         }
         ends = resolve_boxes(list(tasks.values()))
-        done = known | dict(zip(tasks, zip(tasks.values(), ends, strict=True), strict=True))
+        resolved = precomputed | dict(
+            zip(tasks, zip(tasks.values(), ends, strict=True), strict=True)
+        )
         self.solves += len(bounds)
-        found = []
+        optima = []
         for box, _, _ in bounds:
-            task, end = done[box]
+            task, end = resolved[box]
             self.memory.note(box, task.evaluator, end)
             self.ends.append((task.evaluator, end.optimum or end.missed))
-            found.append(end.optimum)
-        return found
+            optima.append(end.optimum)
+        return optima

@@ -1,12 +1,13 @@
 """The best combination of the design's choices: quick look at each, full solution of the best.
 
 A quick look descends from the nearest known design. It usually finds the optimum of a combination
-but proves nothing. Combinations close to the best are then solved from many starts, the winner
-always. The record of each combination shows how it was searched.
+but proves nothing. The best combination, and combinations close to it, are then solved from many
+starts. The record of each combination states how it was searched.
 
-When variables take listed sizes, combinations are searched best first, each from its continuous
-optimum, which bounds its result with sizes. Those whose bound does not beat the best sized design
-are skipped. The bounds are local optima, mostly of a quick look, so nothing is proved.
+If variables take listed sizes, the sizes of each combination are searched, best combination first.
+The continuous optimum bounds the result with sizes. Combinations whose bound does not beat the best
+sized design are skipped. The bounds are local optima, mostly of a quick look, so they prove
+nothing.
 """
 
 from __future__ import annotations
@@ -19,27 +20,24 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..base.errors import Diagnostic, InputError
-from ..design import Design, with_values
+from ..design import Design
 from ..design.choice_list import combinations, left_out
-from ..design.material import Material
 from ..design.materials import load_library
-from ..evaluation import PreparedDesign, compute, prepare
-from ..evaluation.build import names_of_materials
+from ..evaluation import PreparedDesign, compute
 from ..evaluation.limits import LimitRow, all_limits, rows_of
-from .actuator import ActuatorProblem, Goal, build, goal_of
+from .actuator import MET, ActuatorProblem, Goal, build, goal_of, variant
 from .branch_and_bound import Memory, SizeSearch, at, search
 from .identical_problems import Evidence
 from .quick_look import DOUBTFUL, Look, LookStart, hessian_of, look_quickly
-from .resolve.parallel_descents import FEASIBLE
 from .result import Choices, Combination, How
 from .rounding import RUNNERS_UP, ListedSizes, Wanted, sizes_of
 from .solver import solve
 
 NEAR = 0.05
-"""Relative distance from the best within which a combination is solved from many starts."""
+"""Relative loss to the best up to which a combination is solved from many starts."""
 
 MOST_DOUBTFUL = 2
-"""Maximum combinations solved from many starts without success, as such searches take long."""
+"""Maximum combinations solved from many starts without success; these searches take long."""
 
 MOST_SOLVED = 6
 """Maximum combinations solved from many starts."""
@@ -51,12 +49,12 @@ LEAST_SECONDS = 0.1
 """Least time for the first look and the winner, whatever the limit."""
 
 EQUAL = 1e-6
-"""Relative difference of objectives that counts as none: the first in the file wins."""
+"""Relative difference of equal objectives, of which the first in the file wins."""
 
 
 @dataclass(frozen=True, slots=True)
 class ChoiceSettings:
-    """Settings for solving the best combinations; `until` is a time of `time.perf_counter`."""
+    """Settings of the full search; `until` is a time of `time.perf_counter`."""
 
     algorithm: str
     starts: int
@@ -65,7 +63,7 @@ class ChoiceSettings:
     until: float | None
 
     def left(self, share: float = 1.0, began: float = 0.0) -> float | None:
-        """Seconds left of a share of the time since `began`."""
+        """Seconds that remain of a share of the time since `began`; None without a limit."""
         if self.until is None:
             return None
         return began + share * (self.until - began) - time.perf_counter()
@@ -79,14 +77,14 @@ class ChoiceSearch:
     looks: list[Look] = field(default_factory=list)
 
     def mendable(self) -> frozenset[str]:
-        """Missed checks that some combination meets, so that a choice can fix them."""
+        """Missed checks that another combination meets."""
         lists = [
             look.checks for look in self.looks if look.how not in ("not tried", "not possible")
         ]
         return frozenset().union(*lists) - frozenset.intersection(*lists) if lists else frozenset()
 
     def ranked(self) -> list[Look]:
-        """Best first: requirements, then checks, then the objective; ties in file order."""
+        """The looks by requirements, then checks, then objective; ties in file order."""
         mendable = self.mendable()
 
         def rank(look: Look) -> tuple[bool, float, int, float, int]:
@@ -126,14 +124,7 @@ def possible(subject: PreparedDesign) -> list[Look]:
     for order, values in enumerate(combinations(subject.design)):
         look = Look(order, values)
         try:
-            design = with_values(
-                subject.design, values, materials=library, metrics=subject.quantities
-            )
-            names = names_of_materials(design)
-            known: dict[str, Material] = {
-                name: subject.materials.get(name) or library.get(name) for name in names
-            }
-            look.subject = prepare(design, known, subject.plugins)
+            look.subject = variant(subject, values, library)
         except InputError as error:
             _give_up(look, error)
         looks.append(look)
@@ -142,33 +133,35 @@ def possible(subject: PreparedDesign) -> list[Look]:
 
 
 def _give_up(look: Look, error: InputError) -> None:
-    first = error.diagnostics[0]
-    look.fault = f"{first.path}: {first.message}" if first.path else first.message
+    diagnostic = error.diagnostics[0]
+    look.fault = (
+        f"{diagnostic.path}: {diagnostic.message}" if diagnostic.path else diagnostic.message
+    )
     look.how = "not possible"
 
 
 def _require_one(looks: Sequence[Look]) -> None:
     if all(look.fault for look in looks):
         faults = dict.fromkeys(look.fault for look in looks)
-        some = "; ".join(list(faults)[:3])
+        texts = "; ".join(list(faults)[:3])
         count = (
             "the only combination is" if len(looks) == 1 else f"all {len(looks)} combinations are"
         )
-        message = f"{count} impossible: {some}"
+        message = f"{count} impossible: {texts}"
         raise InputError(Diagnostic(message, "change the values listed there", path="choices"))
 
 
-@np.errstate(all="ignore")  # a design without finite values is never the best
+@np.errstate(all="ignore")  # designs without finite values rank last
 def search_choices(
-    subject: PreparedDesign, settings: ChoiceSettings, most: int = MOST_SOLVED
+    subject: PreparedDesign, settings: ChoiceSettings, max_solved: int = MOST_SOLVED
 ) -> ChoiceSearch:
     """Look at every combination of the choices, and solve the best ones from many starts.
 
     Parameters
     ----------
     subject : the design with its choices
-    settings : settings for solving the best
-    most : maximum number solved
+    settings : of the full searches
+    max_solved : maximum number of combinations solved from many starts
 
     Raises
     ------
@@ -176,12 +169,12 @@ def search_choices(
         every combination is impossible
     """
     choice_search = ChoiceSearch(goal_of(subject), possible(subject))
-    moving = bool(subject.design.variables)
+    has_variables = bool(subject.design.variables)
     for look in choice_search.looks:
         if look.subject is None:
             continue
         try:
-            if moving:
+            if has_variables:
                 look.actuator = _with_goal(build(look.subject), choice_search.goal)
                 look.checks = _missed_checks(look.actuator.fixed)
             else:
@@ -189,14 +182,14 @@ def search_choices(
         except InputError as error:
             _give_up(look, error)
     _require_one(choice_search.looks)
-    if moving:
+    if has_variables:
         _look_at_all(choice_search, settings)
-        _solve_best(choice_search, settings, most)
+        _solve_best(choice_search, settings, max_solved)
     return choice_search
 
 
 def _with_goal(actuator: ActuatorProblem, goal: Goal) -> ActuatorProblem:
-    """The problem with the common objective, so that all combinations weigh metrics alike."""
+    """The problem with the common objective, so that all combinations have the same weights."""
     shared = replace(actuator, goal=goal)
     return replace(shared, problem=replace(actuator.problem, evaluate=shared.evaluate))
 
@@ -205,7 +198,7 @@ def _missed_checks(rows: Sequence[LimitRow]) -> frozenset[str]:
     return frozenset(
         row.limit_of.name
         for row in rows
-        if row.limit_of.origin == "check" and not float(row.margin[0]) >= -FEASIBLE
+        if row.limit_of.origin == "check" and not float(row.margin[0]) >= -MET
     )
 
 
@@ -236,12 +229,12 @@ def _look_at_all(choice_search: ChoiceSearch, settings: ChoiceSettings) -> None:
     """Look quickly at every combination, in half of the available time."""
     began = time.perf_counter()
     for look in choice_search.looks:
-        left = settings.left(0.5, began)
-        if look.actuator is None or (left is not None and left <= 0 and _any(choice_search)):
+        seconds = settings.left(0.5, began)
+        if look.actuator is None or (seconds is not None and seconds <= 0 and _any(choice_search)):
             continue
-        left = None if left is None else max(left, LEAST_SECONDS)
+        seconds = None if seconds is None else max(seconds, LEAST_SECONDS)
         try:
-            look_quickly(look, _starts(choice_search, look), settings.seed, left)
+            look_quickly(look, _starts(choice_search, look), settings.seed, seconds)
         except InputError as error:
             _give_up(look, error)
         if look.hessian is None and look.feasible:
@@ -255,51 +248,53 @@ def _any(choice_search: ChoiceSearch) -> bool:
 def _starts(choice_search: ChoiceSearch, look: Look) -> list[LookStart]:
     """Starts from the combinations that differ in the fewest values.
 
-    A feasible neighbour is a start for a descent. An infeasible one shows best how close this
-    combination comes to feasibility. The last neighbour, which changes least, may be followed step
-    by step.
+    A feasible neighbour is a start for a descent. An infeasible neighbour is the start for a
+    reduction of the violation. The latest neighbour with a Hessian differs least; steps may follow
+    its optimum.
     """
-    known = [other for other in choice_search.looks if other.x is not None and other is not look]
+    solved = [other for other in choice_search.looks if other.x is not None and other is not look]
 
     def distance(other: Look) -> tuple[int, float]:
         differing = sum(other.values[path] != value for path, value in look.values.items())
         return differing, other.objective
 
-    good = min((other for other in known if other.feasible), key=distance, default=None)
-    bad = min((other for other in known if not other.feasible), key=distance, default=None)
+    feasible = min((other for other in solved if other.feasible), key=distance, default=None)
+    infeasible = min((other for other in solved if not other.feasible), key=distance, default=None)
     starts = []
-    closer = bad is not None and (good is None or distance(bad)[0] <= distance(good)[0])
-    if closer and bad is not None and bad.x is not None:
-        starts.append(LookStart(bad.x, descend=False))
-    if good is not None and good.x is not None:
-        starts.append(LookStart(good.x, descend=True))
-    last = min(
-        (other for other in known if other.hessian is not None),
+    infeasible_is_closer = infeasible is not None and (
+        feasible is None or distance(infeasible)[0] <= distance(feasible)[0]
+    )
+    if infeasible_is_closer and infeasible is not None and infeasible.x is not None:
+        starts.append(LookStart(infeasible.x, descend=False))
+    if feasible is not None and feasible.x is not None:
+        starts.append(LookStart(feasible.x, descend=True))
+    latest = min(
+        (other for other in solved if other.hessian is not None),
         key=lambda other: (distance(other)[0], -other.order),
         default=None,
     )
-    if last is not None and last.x is not None:
-        starts.append(LookStart(last.x, descend=True, hessian=last.hessian))
-    own = None if look.actuator is None else look.actuator.problem.start
-    return starts or ([] if own is None else [LookStart(own, descend=True)])
+    if latest is not None and latest.x is not None:
+        starts.append(LookStart(latest.x, descend=True, hessian=latest.hessian))
+    start = None if look.actuator is None else look.actuator.problem.start
+    return starts or ([] if start is None else [LookStart(start, descend=True)])
 
 
-def _solve_best(choice_search: ChoiceSearch, settings: ChoiceSettings, most: int) -> None:
-    """Solve the winner and combinations close to it from many starts, best first."""
-    second = True
-    for _ in range(most):
+def _solve_best(choice_search: ChoiceSearch, settings: ChoiceSettings, max_solved: int) -> None:
+    """Solve the best combination, and those close to it, from many starts."""
+    first_gain = True
+    for _ in range(max_solved):
         look = _promising(choice_search)
-        left = settings.left()
-        if look is None or (left is not None and left <= 0):
+        seconds = settings.left()
+        if look is None or (seconds is not None and seconds <= 0):
             break
-        before = look.objective if look.feasible else math.inf
+        previous = look.objective if look.feasible else math.inf
         many_starts(look, settings)
-        gained = look.feasible and look.objective < before - BETTER * abs(look.objective)
-        if second and gained and look.x is not None:
-            second = False
+        gained = look.feasible and look.objective < previous - BETTER * abs(look.objective)
+        if first_gain and gained and look.x is not None:
+            first_gain = False
             for other in choice_search.looks:
-                near = other.violation <= DOUBTFUL
-                if other.solution is None and other.actuator is not None and near:
+                promising = other.violation <= DOUBTFUL
+                if other.solution is None and other.actuator is not None and promising:
                     start = LookStart(look.x, descend=True)
                     look_quickly(other, [start], settings.seed, settings.left())
     best = choice_search.ranked()[0]
@@ -308,7 +303,7 @@ def _solve_best(choice_search: ChoiceSearch, settings: ChoiceSettings, most: int
 
 
 def _promising(choice_search: ChoiceSearch) -> Look | None:
-    """The next combination worth many starts; None if the rest is clearly worse."""
+    """The next combination to solve from many starts; None if all others are clearly worse."""
     ranked, mendable = choice_search.ranked(), choice_search.mendable()
     best = ranked[0]
     if best.solution is None:
@@ -318,9 +313,9 @@ def _promising(choice_search: ChoiceSearch) -> Look | None:
         if look.solution is not None or look.how != "quick":
             continue
         gap = look.objective - best.objective
-        near = gap <= NEAR * abs(best.objective)
+        close = gap <= NEAR * abs(best.objective)
         as_good = len(look.checks & mendable) <= len(best.checks & mendable)
-        if best.feasible and look.feasible and near and as_good:
+        if best.feasible and look.feasible and close and as_good:
             return look
         doubtful = not look.feasible and look.violation <= best.violation + DOUBTFUL
         if doubtful and solved < MOST_DOUBTFUL:
@@ -329,18 +324,18 @@ def _promising(choice_search: ChoiceSearch) -> Look | None:
 
 
 def many_starts(look: Look, settings: ChoiceSettings) -> None:
-    """Solve a combination from many starts, including its best known point."""
+    """Solve a combination from many starts and its best known point."""
     assert look.actuator is not None
-    left = settings.left()
-    known = [] if look.x is None else [look.x]
+    seconds = settings.left()
+    starts = [] if look.x is None else [look.x]
     solution = solve(
         look.actuator.problem,
         algorithm=settings.algorithm,
         starts=settings.starts,
         samples=settings.samples,
         seed=settings.seed,
-        max_seconds=None if left is None else max(left, LEAST_SECONDS),
-        more_starts=known,
+        max_seconds=None if seconds is None else max(seconds, LEAST_SECONDS),
+        more_starts=starts,
     )
     look.how, look.solution = "multistart", solution
     look.x, look.objective, look.violation = solution.x, solution.objective, solution.violation
@@ -362,9 +357,9 @@ def record(choice_search: ChoiceSearch, design: Design) -> Choices:
     least = best.objective if best.rounded is None else best.rounded
     for look in ranked:
         cost = None
-        reached = look.objective if look.rounded is None else look.rounded
+        objective = look.objective if look.rounded is None else look.rounded
         if look.feasible and best.feasible and look.sizing not in _WITHOUT:
-            cost = reached - least
+            cost = objective - least
             cost = 0.0 if abs(cost) <= EQUAL * abs(least) else cost
         rows.append(
             Combination(
@@ -380,31 +375,31 @@ def record(choice_search: ChoiceSearch, design: Design) -> Choices:
                 rounded=None if look.rounded is None else choice_search.goal.shown(look.rounded),
             )
         )
-    made = Choices("", tuple(rows), left_out(design))
-    return replace(made, sentence=_sentence(made))
+    choices = Choices("", tuple(rows), left_out(design))
+    return replace(choices, sentence=_sentence(choices))
 
 
 def _status(look: Look, mendable: frozenset[str], sized: bool) -> str:
-    """Return the search of a combination and its outcome, in words."""
+    """The search of a combination and its outcome, in words."""
     if look.fault:
         return f"not possible: {look.fault}"
     if look.how == "not tried":
         return "not tried: time limit reached"
     checks = ", ".join(sorted(look.checks & mendable))
     if look.feasible:
-        said = (
+        outcome = (
             "all requirements are met" if look.solution is None else look.solution.outcome.sentence
         )
         if look.sizing:
-            said = f"{said}; {_SIZING[look.sizing]}"
+            outcome = f"{outcome}; {_SIZING[look.sizing]}"
         elif look.rounded is None and sized:
-            said = f"{said}; not searched further, as listed sizes cannot improve on the best"
+            outcome = f"{outcome}; not searched further, as listed sizes cannot improve on the best"
         if checks:
-            said = f"misses the check {checks}, which other choices meet; {said}"
+            outcome = f"misses the check {checks}, which other choices meet; {outcome}"
     else:
         by = f" by {100 * look.violation:.2g} %" if math.isfinite(look.violation) else ""
-        said = f"misses {look.missed}{by}" if look.missed else "no finite values at any point"
-    return _WAYS[look.how] + said
+        outcome = f"misses {look.missed}{by}" if look.missed else "no finite values at any point"
+    return _WAYS[look.how] + outcome
 
 
 _SIZING = {
@@ -424,71 +419,76 @@ _WITHOUT = ("none", "none better", "no size fits")
 _WAYS: dict[How, str] = {"multistart": "many starts: ", "quick": "quick look: ", "evaluated": ""}
 
 
-def _sentence(made: Choices) -> str:
-    """Count the combinations, the feasible ones, and those of each search, in words."""
-    total, fit = len(made.combinations), made.feasible
-    first = f"none of {total} combinations meets all requirements; the nearest one is shown"
-    if fit:
-        first = f"the best of {total} combinations; {fit} meet all requirements"
-    counts = ", ".join(_counts(made))
-    proof = "; a quick look proves nothing" if made.count("quick") else ""
-    return f"{first}; {counts}{proof}"
+def _sentence(choices: Choices) -> str:
+    """The numbers of combinations, feasible combinations, and combinations of each search."""
+    total, feasible = len(choices.combinations), choices.feasible
+    result = f"none of {total} combinations meets all requirements; the nearest one is shown"
+    if feasible:
+        result = f"the best of {total} combinations; {feasible} meet all requirements"
+    counts = ", ".join(_counts(choices))
+    proof = "; a quick look proves nothing" if choices.count("quick") else ""
+    return f"{result}; {counts}{proof}"
 
 
-def _counts(made: Choices) -> Iterator[str]:
-    words: dict[How, str] = {
+def _counts(choices: Choices) -> Iterator[str]:
+    texts: dict[How, str] = {
         "evaluated": "evaluated",
         "multistart": "solved from many starts",
         "quick": "quick look only",
         "not possible": "not possible",
         "not tried": "not tried within the time limit",
     }
-    for how, said in words.items():
-        if count := made.count(how):
-            yield f"{count} {said}"
+    for kind, text in texts.items():
+        if count := choices.count(kind):
+            yield f"{count} {text}"
 
 
 _NOTHING_BETTER = SizeSearch(None, None, None, {}, 0, complete=True)
-"""Same result as another combination."""
+"""Result of a combination that cannot improve on the best design."""
 
 
 @dataclass(frozen=True)
 class Sized:
-    """A combination with its sizes and their search result."""
+    """A combination with its sizes and the result of their search."""
 
     look: Look
     sizes: ListedSizes
-    found: SizeSearch
+    size_search: SizeSearch
     memory: Memory
 
 
-def best_of_sizes(choices: ChoiceSearch, wanted: Wanted, settings: ChoiceSettings) -> Sized | None:
+def best_of_sizes(
+    choices: ChoiceSearch, requested: Wanted, settings: ChoiceSettings
+) -> Sized | None:
     """Find the combination with the best design of listed sizes, solved from many starts.
 
-    If none fits, the combination with the best continuous optimum; None if no variable has sizes.
+    If no size fits, the combination with the best continuous optimum. None if no variable has
+    sizes.
 
     Raises
     ------
     InputError
         the requested sizes fit no combination
     """
-    searched = list(_searched(choices, wanted, settings))
-    better = [sized for sized in searched if sized.found.objective is not None]
-    winner = next(iter([*reversed(better), *searched]), None)
+    searched = list(_searched(choices, requested, settings))
+    improved = [sized for sized in searched if sized.size_search.objective is not None]
+    winner = next(iter([*reversed(improved), *searched]), None)
     if winner is None:
         return None
-    if better:
+    if improved:
         _runners_up(winner, searched)
     if winner.look.solution is None:
         many_starts(winner.look, settings)
     return winner
 
 
-def _searched(choices: ChoiceSearch, wanted: Wanted, settings: ChoiceSettings) -> Iterator[Sized]:
-    """Search each promising combination for a better design than those before."""
+def _searched(
+    choices: ChoiceSearch, requested: Wanted, settings: ChoiceSettings
+) -> Iterator[Sized]:
+    """Search the sizes of each promising combination for a better design."""
     error: InputError | None = None
     memories: dict[object, Memory] = {}
-    alike: dict[object, list[Evidence]] = {}
+    evidence_by_sizes: dict[object, list[Evidence]] = {}
     mendable = choices.mendable()
     best, count = (math.inf, math.inf), 0
     for look in choices.ranked():
@@ -500,43 +500,47 @@ def _searched(choices: ChoiceSearch, wanted: Wanted, settings: ChoiceSettings) -
             break
         try:
             subject = look.actuator.subject
-            sizes = sizes_of(subject.design, wanted, subject.materials)
+            sizes = sizes_of(subject.design, requested, subject.materials)
         except InputError as fault:
             error, look.sizing = error or fault, "no size fits"
             continue
         if sizes is None:
             continue
-        key = tuple((one.index, one.rows.tobytes()) for one in sizes.listed)
+        key = tuple((group.index, group.rows.tobytes()) for group in sizes.listed)
         memory = memories.setdefault(key, Memory())
         problem = look.actuator.problem
-        if any(one.holds_for(problem, look.objective) for one in alike.get(key, ())):
+        if any(
+            group.holds_for(problem, look.objective) for group in evidence_by_sizes.get(key, ())
+        ):
             look.sizing = "none" if best[1] == math.inf else "none better"
             yield Sized(look, sizes, _NOTHING_BETTER, memory)
             continue
-        found = search(
-            problem, sizes.listed, look.x, until=settings.until, below=best[1], memory=memory
+        size_search = search(
+            problem, sizes.listed, look.x, deadline=settings.until, cutoff=best[1], memory=memory
         )
-        if found.complete:
-            alike.setdefault(key, []).append(Evidence(problem, look.objective, found.ends))
-        look.rounded, count = found.objective, count + 1
-        if found.objective is not None:
-            look.sizing, best = "found", (checks, found.objective)
+        if size_search.complete:
+            evidence_by_sizes.setdefault(key, []).append(
+                Evidence(problem, look.objective, size_search.ends)
+            )
+        look.rounded, count = size_search.objective, count + 1
+        if size_search.objective is not None:
+            look.sizing, best = "found", (checks, size_search.objective)
         else:
             look.sizing = "none" if best[1] == math.inf else "none better"
-        yield Sized(look, sizes, found, memory)
+        yield Sized(look, sizes, size_search, memory)
     if not count and error is not None:
         raise error
 
 
 def _runners_up(winner: Sized, searched: Sequence[Sized]) -> None:
-    """Add the cost of the best sizes in the next best combinations."""
-    assert winner.found.assignment is not None
-    others = [sized for sized in searched if sized.look.sizing == "none better"]
-    for sized in others[:RUNNERS_UP]:
+    """Evaluate the best sizes in the next best combinations."""
+    assert winner.size_search.assignment is not None
+    candidates = [sized for sized in searched if sized.look.sizing == "none better"]
+    for sized in candidates[:RUNNERS_UP]:
         look = sized.look
         if sized.memory is not winner.memory or look.actuator is None or look.x is None:
             continue
         problem, listed = look.actuator.problem, sized.sizes.listed
-        objective = at(problem, listed, winner.found.assignment, look.x, sized.memory)
+        objective = at(problem, listed, winner.size_search.assignment, look.x, sized.memory)
         if objective is not None:
             look.rounded, look.sizing = objective, "sizes of the best"

@@ -1,9 +1,9 @@
-"""Remedies for an infeasible actuator: a fixed dimension or a choice whose change is enough.
+"""Remedies for an infeasible actuator: a sufficient change of a fixed dimension or of a choice.
 
-A dimension becomes a variable and may move in the direction that helps, from the design with the
-smallest joint relaxation. A choice replaces the value of the file. Each remedy is confirmed by a
-design that meets all limits and checks. Counts limit the effort, so the same input gives the same
-remedies; what was not tried is listed.
+A dimension becomes a variable that may move in the helpful direction, from the design of the
+smallest joint relaxation. A choice replaces the value of the file. A design that meets all limits
+and checks confirms each remedy. Counts, not time, limit the effort, so the same input gives the
+same remedies. Candidates that were not tried are listed.
 """
 
 from __future__ import annotations
@@ -20,16 +20,14 @@ from ..base.numeric import STEP, Array
 from ..base.progress import tell
 from ..base.quantities import INPUTS, Quantity
 from ..base.units import unit
-from ..design import quantity_of, standard_sizes as standards, with_values
-from ..design.material import Material
+from ..design import quantity_of, standard_sizes as standards
 from ..design.materials import Library, load_library
 from ..design.model import Design, Variable
 from ..design.seals import BACK_UPS, Seal
-from ..evaluation import PreparedDesign, prepare
-from ..evaluation.build import names_of_materials
+from ..evaluation import PreparedDesign
 from ..joints.kinds import JOINTS
 from . import repairs
-from .actuator import ActuatorProblem, build
+from .actuator import ActuatorProblem, build, variant
 from .evaluator import Evaluator
 from .infeasibility import Conflict
 from .problem import BoxProblem, PointValues, Vector
@@ -38,27 +36,26 @@ DIMENSIONS = (
     "bore", "wall_thickness", "winding_angle", "rod_diameter", "rod_inner_diameter", "part_length",
     "radial_clearance", "thread_diameter", "squeeze", "diameter",
 )  # fmt: skip
-"""Quantities of dimensions that may be freed; stroke and duty are excluded. A choice."""
+"""Quantities of dimensions that may change; stroke and duty are excluded. A choice."""
 
 PARTS = re.compile(r"(cylinder|barrel|rod|piston|head|caps|retention|clevis|seals|lines)\b")
-"""Parts that these dimensions belong to."""
+"""Parts to which these dimensions belong."""
 
 MOST_DIMENSIONS = 8
-"""Maximum dimensions freed, most helpful first: a choice, to limit the time."""
+"""Maximum dimensions tried, most helpful first: a choice, to limit the time."""
 
 MOST_CHOICES = 4
 """Maximum choices solved, least infeasible first: a choice, to limit the time."""
 
 ENOUGH = 3
-"""Remedies of one kind after which the search for that kind stops: a choice."""
+"""Number of remedies of one kind after which the search for this kind stops: a choice."""
 
 WORTH = 0.1
-"""Share of the missed margins that a number at twice, or half, its value must close by its slope. A
-number that closes less cannot be enough alone and is not tried. A choice."""
+"""Share of the missed margins that a factor of two on a number must close, by its slope. Numbers
+that close less are not tried. A choice."""
 
 DIGITS = 4
-"""Digits of a dimension, which is solved again as rounded, so that the printed value is
-feasible."""
+"""Digits of a dimension; a design with the rounded value confirms that it is feasible."""
 
 SUBSTITUTES = {
     "metal": ("al_7075_t6", "ti_6al4v", "steel_42crmo4", "steel_17_4ph_h1025"),
@@ -66,17 +63,17 @@ SUBSTITUTES = {
     "seal": ("nbr_70", "nbr_90", "hnbr_75", "fkm_90"),
     "adhesive": ("epoxy_structural",),
 }
-"""Library materials tried in place of one of the same kind: a choice, few and common."""
+"""Common library materials, tried in place of a material of the same kind. A choice."""
 
 BACK_UP = "back_up_ptfe"
-"""Material of a back-up ring if the design has none: the common one, a choice."""
+"""Material of a back-up ring if the design has none: a common material. A choice."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cure:
     """A sufficient change: a fixed dimension at another value (SI), or another choice.
 
-    `beside` lists further entries that a choice needs, by PATH, as in a file.
+    `beside` lists further entries that a choice needs, by PATH.
     """
 
     path: str
@@ -89,7 +86,7 @@ class Cure:
 class Cures:
     """Dimensions and choices that are enough alone, and the PATHs not tried.
 
-    `together` lists dimensions that are enough only together.
+    `together` lists dimensions that are only enough together.
     """
 
     dimensions: tuple[Cure, ...] = ()
@@ -108,34 +105,25 @@ def cures(actuator: ActuatorProblem, conflict: Conflict) -> Cures:
     """
     if conflict.laws or not conflict.joint:
         return Cures()
-    least = WORTH * conflict.total / math.log(repairs.WIDEST)
-    gains = {path: gain for path, gain in _gains(actuator, conflict).items() if abs(gain) >= least}
-    dimensions, together, left = _dimensions(actuator, conflict.x, gains)
-    choices, others = _choices(actuator, conflict, gains)
-    return Cures(dimensions, together, choices, (*left, *others))
+    threshold = WORTH * conflict.total / math.log(repairs.WIDEST)
+    gains = {
+        path: gain for path, gain in _gains(actuator, conflict).items() if abs(gain) >= threshold
+    }
+    dimensions, together, untried_dimensions = _dimensions(actuator, conflict.x, gains)
+    choices, untried_choices = _choices(actuator, conflict, gains)
+    return Cures(dimensions, together, choices, (*untried_dimensions, *untried_choices))
 
 
 def _gains(actuator: ActuatorProblem, conflict: Conflict) -> dict[str, float]:
     """Fall of the missed margins per relative growth of every number, by PATH."""
-    subject = actuator.subject
-    values = subject.values(
-        {path: np.array([x]) for path, x in zip(actuator.paths, conflict.x, strict=True)}
-    )
-    subject.touch(values)
     paths = [
         path
-        for path in sorted(values.read)
-        if path not in actuator.paths
-        and subject.numbers.get(path, 0.0) > 0
-        and (PARTS.match(path) or path.startswith("materials."))
+        for path in actuator.fixed_numbers(conflict.x)
+        if PARTS.match(path) or path.startswith("materials.")
     ]
     if not paths:
         return {}
-    present = np.array([subject.numbers[path] for path in paths])
-    varied = np.repeat(present[:, None].astype(complex), len(paths), axis=1)
-    varied += np.diag(1j * STEP * present)
-    points = np.repeat(conflict.x[:, None], len(paths), axis=1)
-    margins = actuator.evaluate(points, dict(zip(paths, varied, strict=True))).constraints
+    margins = actuator.number_steps(conflict.x, paths).constraints
     slopes = np.nan_to_num(np.imag(margins) / STEP, posinf=0.0, neginf=0.0)
     return dict(zip(paths, (conflict.multipliers @ slopes).tolist(), strict=True))
 
@@ -143,7 +131,7 @@ def _gains(actuator: ActuatorProblem, conflict: Conflict) -> dict[str, float]:
 def _dimensions(
     actuator: ActuatorProblem, x: Vector, gains: Mapping[str, float]
 ) -> tuple[tuple[Cure, ...], tuple[Cure, ...], list[str]]:
-    """Dimensions enough alone, least change first; else together; and those not tried."""
+    """Dimensions enough alone, smallest change first; else enough together; and those not tried."""
     design = actuator.subject.design
     candidates = sorted(
         (
@@ -156,22 +144,24 @@ def _dimensions(
     tried = candidates[:MOST_DIMENSIONS]
     if not tried:
         return (), (), []
-    problem = opened(actuator, tried)
+    problem = with_variables(actuator, tried)
     start = np.concatenate([x, problem.lower[len(x) :]])
     limits = {
         len(x) + k: _limit(quantity_of(path, design), start[len(x) + k], gains[path])
         for k, path in enumerate(tried)
     }
-    enough: list[Cure] = []
+    sufficient: list[Cure] = []
     for number, (path, place) in enumerate(zip(tried, limits, strict=True)):
-        if len(enough) == ENOUGH:
-            return _least_first(enough), (), candidates[number:]
+        if len(sufficient) == ENOUGH:
+            return _least_first(sufficient), (), candidates[number:]
         tell("infeasible: searching for a sufficient fixed dimension", number / len(tried))
-        enough += freed(problem, start, {place: limits[place]}, {place: path}, design)
+        sufficient += least_changes(problem, start, {place: limits[place]}, {place: path}, design)
     together: list[Cure] = []
-    if not enough and len(tried) > 1:
-        together = freed(problem, start, limits, dict(zip(limits, tried, strict=True)), design)
-    return _least_first(enough), tuple(together), candidates[len(tried) :]
+    if not sufficient and len(tried) > 1:
+        together = least_changes(
+            problem, start, limits, dict(zip(limits, tried, strict=True)), design
+        )
+    return _least_first(sufficient), tuple(together), candidates[len(tried) :]
 
 
 def _limit(quantity: Quantity, now: float, gain: float) -> float:
@@ -181,7 +171,7 @@ def _limit(quantity: Quantity, now: float, gain: float) -> float:
     return float(limit if quantity.upper is None else min(limit, quantity.upper))
 
 
-def freed(
+def least_changes(
     problem: BoxProblem,
     start: Vector,
     limits: Mapping[int, float],
@@ -190,13 +180,13 @@ def freed(
 ) -> list[Cure]:
     """The least change of some fixed variables that meets all limits; empty if there is none.
 
-    Values are rounded outwards, and a design is confirmed at the rounded values.
+    Values are rounded outwards, and a design confirms the rounded values.
 
     Parameters
     ----------
     problem, start : the problem with these variables fixed, and one of its points
-    limits, paths : limit of each change and its PATH, by index
-    design : gives the quantities of PATHs
+    limits, paths : limit of the change and PATH of each variable, by index
+    design : defines the quantities of the PATHs
     """
     places = [place for place, limit in limits.items() if limit != start[place]]
     if not places:
@@ -212,23 +202,23 @@ def freed(
         return PointValues(change, problem.evaluate(points).constraints)
 
     free = replace(problem, lower=lower, upper=upper, evaluate=evaluate)
-    near = repairs.near(free, start)
-    if near is None:
+    feasible = repairs.near(free, start)
+    if feasible is None:
         return []
     evaluator = Evaluator(free)
-    end = repairs.go(evaluator, evaluator.point(evaluator.space.to_z(near)))
+    end = repairs.go(evaluator, evaluator.point(evaluator.space.to_z(feasible)))
     if end.violation > repairs.NOTHING:
         return []
-    found = []
+    result = []
     for place, limit in zip(places, ends, strict=True):
         old, value = float(start[place]), float(end.x[place])
         if abs(math.log(value / old)) > repairs.NOTHING:
             value = rounded_outward(quantity_of(paths[place], design), value, upwards=limit > old)
             value = min(max(value, lower[place]), upper[place])
-            found.append(Cure(paths[place], old, value))
+            result.append(Cure(paths[place], old, value))
         lower[place] = upper[place] = value
     fixed = replace(problem, lower=lower, upper=upper)
-    return found if repairs.near(fixed, start) is not None else []
+    return result if repairs.near(fixed, start) is not None else []
 
 
 def rounded_outward(quantity: Quantity, value: float, *, upwards: bool) -> float:
@@ -243,22 +233,22 @@ def _least_first(enough: Sequence[Cure]) -> tuple[Cure, ...]:
     )
 
 
-def opened(actuator: ActuatorProblem, paths: Sequence[str]) -> BoxProblem:
-    """The problem with more variables, each starting at its value.
+def with_variables(actuator: ActuatorProblem, paths: Sequence[str]) -> BoxProblem:
+    """The problem with the numbers at `paths` as additional variables, fixed at their values.
 
-    Rows that only these variables affect count too, except for checks that cannot be met anyway.
+    It includes rows that only these variables affect, except for checks that no variable can fix.
     """
     subject, numbers = actuator.subject, actuator.subject.numbers
-    at = {path: numbers[path] for path in paths}
-    more = {path: Variable(lower=x, upper=x, start=x) for path, x in at.items()}
-    variables = dict(subject.design.variables) | more
-    wider = build(
+    values = {path: numbers[path] for path in paths}
+    added = {path: Variable(lower=x, upper=x, start=x) for path, x in values.items()}
+    variables = dict(subject.design.variables) | added
+    extended = build(
         replace(subject, design=subject.design.model_copy(update={"variables": variables}))
     )
-    return _kept(wider, _lost(actuator))
+    return _without_rows(extended, _unfixable_checks(actuator))
 
 
-def _kept(actuator: ActuatorProblem, lost: frozenset[str]) -> BoxProblem:
+def _without_rows(actuator: ActuatorProblem, lost: frozenset[str]) -> BoxProblem:
     """The problem without the rows of some checks."""
     rows = np.array([row.label not in lost for row in actuator.rows], dtype=bool)
 
@@ -273,8 +263,8 @@ def _kept(actuator: ActuatorProblem, lost: frozenset[str]) -> BoxProblem:
     )  # fmt: skip
 
 
-def _lost(actuator: ActuatorProblem) -> frozenset[str]:
-    """Checks that no variable can fix, by their rows."""
+def _unfixable_checks(actuator: ActuatorProblem) -> frozenset[str]:
+    """Labels of the missed checks that no variable can fix."""
     return frozenset(
         row.label
         for row in actuator.fixed
@@ -283,7 +273,7 @@ def _lost(actuator: ActuatorProblem) -> frozenset[str]:
 
 
 def outward(value: float, digits: int, upwards: bool) -> float:
-    """A number rounded to some digits, upwards or downwards (beyond floating-point noise).
+    """A number rounded to some digits, upwards or downwards; floating-point noise is ignored.
 
     >>> outward(283.0994, 4, True), outward(9.98645, 4, False), outward(400.00000001, 4, True)
     (283.1, 9.986, 400.0)
@@ -293,36 +283,38 @@ def outward(value: float, digits: int, upwards: bool) -> float:
     places = digits - 1 - math.floor(math.log10(abs(value)))
     scaled = value * 10.0**places
     slack = 1e-7 * abs(scaled)
-    whole = math.ceil(scaled - slack) if upwards else math.floor(scaled + slack)
-    return round(whole / 10.0**places, max(places, 0))
+    rounded = math.ceil(scaled - slack) if upwards else math.floor(scaled + slack)
+    return round(rounded / 10.0**places, max(places, 0))
 
 
 def _choices(
     actuator: ActuatorProblem, conflict: Conflict, gains: Mapping[str, float]
 ) -> tuple[tuple[Cure, ...], list[str]]:
-    """Choices enough alone, least infeasible first; and those not tried."""
+    """Choices that are enough alone, least infeasible first; and those not tried."""
     subject, library = actuator.subject, load_library()
-    before = _missed(actuator.problem, conflict.x)
+    present = _missed(actuator.problem, conflict.x)
     offered: list[tuple[float, Cure, BoxProblem]] = []
     margins = np.ravel(actuator.evaluate(conflict.x[:, None]).constraints)
     rows = zip(actuator.rows, margins.tolist(), strict=True)
     places = {row.place for row, margin in rows if not margin >= -repairs.NOTHING}
-    for path, word, beside in _vocabulary(subject, library, gains, places):
-        now = _word(subject.design, path)
-        problem = None if word == now else _chosen(actuator, {path: word, **beside}, library)
+    for path, word, beside in _candidate_choices(subject, library, gains, places):
+        now = _word_at(subject.design, path)
+        problem = None if word == now else _with_choice(actuator, {path: word, **beside}, library)
         missed = math.inf if problem is None else _missed(problem, conflict.x)
-        if problem is not None and missed < before - repairs.NOTHING:
+        if problem is not None and missed < present - repairs.NOTHING:
             offered.append((missed, Cure(path, now, word, beside), problem))
-    offered.sort(key=lambda one: (one[0], one[1].path))
-    enough: list[Cure] = []
+    offered.sort(key=lambda offer: (offer[0], offer[1].path))
+    sufficient: list[Cure] = []
     for number, (_, cure, problem) in enumerate(offered):
-        if len(enough) == ENOUGH or number == MOST_CHOICES:
-            rest = dict.fromkeys(one.path for _, one, _ in offered[number:])
-            return tuple(enough), [path for path in rest if path not in {c.path for c in enough}]
+        if len(sufficient) == ENOUGH or number == MOST_CHOICES:
+            untried = dict.fromkeys(offer.path for _, offer, _ in offered[number:])
+            return tuple(sufficient), [
+                path for path in untried if path not in {c.path for c in sufficient}
+            ]
         tell("infeasible: searching for a sufficient choice", number / len(offered))
         if repairs.near(problem, conflict.x) is not None:
-            enough.append(cure)
-    return tuple(enough), []
+            sufficient.append(cure)
+    return tuple(sufficient), []
 
 
 def _missed(problem: BoxProblem, x: Vector) -> float:
@@ -331,12 +323,13 @@ def _missed(problem: BoxProblem, x: Vector) -> float:
     return float(np.maximum(-rows, 0.0).sum()) if np.isfinite(rows).all() else math.inf
 
 
-def _vocabulary(
+def _candidate_choices(
     subject: PreparedDesign, library: Library, gains: Mapping[str, float], places: set[str]
 ) -> Iterator[tuple[str, str, dict[str, str]]]:
-    """Yield choices that may resolve the conflict: PATH, alternative, required further entries.
+    """Choices that may resolve the conflict: PATH, alternative, further entries it needs.
 
-    A part is included if its numbers matter (`gains`), a seal also if it misses a limit (`places`).
+    A part is included if its numbers have an effect (`gains`), a seal also if it misses a limit
+    (`places`).
     """
     design = subject.design
 
@@ -344,15 +337,15 @@ def _vocabulary(
         return any(path.startswith(starts) for path in gains)
 
     for name in ("piston", "rod"):
-        seal, here = getattr(design.seals, name), f"seals.{name}"
-        missing = any(place.startswith(f"{name} seal") for place in places)
-        if missing or matters(f"{here}.", f"materials.{seal.compound}."):
+        seal, section = getattr(design.seals, name), f"seals.{name}"
+        fails = any(place.startswith(f"{name} seal") for place in places)
+        if fails or matters(f"{section}.", f"materials.{seal.compound}."):
             for word, count in BACK_UPS.items():
-                if count > seal.back_ups and (beside := _rings(seal, here, count)) is not None:
-                    yield f"{here}.back_up", word, beside
+                if count > seal.back_ups and (beside := _rings(seal, section, count)) is not None:
+                    yield f"{section}.back_up", word, beside
             if seal.seal_type.o_ring_gland:
                 for compound in SUBSTITUTES["seal"]:
-                    yield f"{here}.compound", compound, {}
+                    yield f"{section}.compound", compound, {}
     if design.retention is not None and matters("retention."):
         for joint in JOINTS.names:
             yield "retention.type", joint, {}
@@ -360,14 +353,14 @@ def _vocabulary(
     parts += [f"barrel.layup[{i}]" for i in range(len(design.barrel.layup))]
     parts += [f"rod.layup[{i}]" for i in range(len(design.rod.layup))]
     for part in parts:
-        material = _word(design, f"{part}.material")
+        material = _word_at(design, f"{part}.material")
         if material and matters(f"materials.{material}."):
             for other in SUBSTITUTES.get(library.kind(material) or "", ()):
                 yield f"{part}.material", other, {}
 
 
-def _rings(seal: Seal, here: str, count: int) -> dict[str, str] | None:
-    """Further entries that more back-up rings need; None if no standard has their width."""
+def _rings(seal: Seal, section: str, count: int) -> dict[str, str] | None:
+    """Further entries for more back-up rings; None if no standard defines their gland width."""
     if seal.back_up_material is not None and seal.back_up_thickness is not None:
         return {}
     try:
@@ -376,37 +369,29 @@ def _rings(seal: Seal, here: str, count: int) -> dict[str, str] | None:
     except InputError:
         return None
     thickness = INPUTS["part_length"].text(room / count, 2)
-    return {f"{here}.back_up_material": BACK_UP, f"{here}.back_up_thickness": thickness}
+    return {f"{section}.back_up_material": BACK_UP, f"{section}.back_up_thickness": thickness}
 
 
-def _word(design: Design, path: str) -> str:
+def _word_at(design: Design, path: str) -> str:
     """The word or material at a PATH; "" if the design states none."""
-    found: object = design
+    value: object = design
     for step in re.split(r"\.|(?=\[)", path):
         layer = re.fullmatch(r"\[(\d+)\]", step)
-        if layer is not None and isinstance(found, tuple):
-            found = found[int(layer[1])]
+        if layer is not None and isinstance(value, tuple):
+            value = value[int(layer[1])]
         else:
-            found = getattr(found, step, None)
-    return found if isinstance(found, str) else ""
+            value = getattr(value, step, None)
+    return value if isinstance(value, str) else ""
 
 
-def _chosen(
+def _with_choice(
     actuator: ActuatorProblem, values: Mapping[str, str], library: Library
 ) -> BoxProblem | None:
-    """The problem with another choice; None if it contradicts the design or fails a check."""
+    """The problem with another choice; None if the choice is invalid or misses another check."""
     subject = actuator.subject
     try:
-        design = with_values(
-            subject.design, dict(values), materials=library, metrics=subject.quantities
-        )
-        known: dict[str, Material] = {
-            name: subject.materials.get(name) or library.get(name)
-            for name in names_of_materials(design)
-        }
-        made = prepare(design, known, subject.plugins)
-        other = build(replace(made, reserves=subject.reserves))
+        other = build(replace(variant(subject, values, library), reserves=subject.reserves))
     except InputError:
         return None
-    lost = _lost(actuator)
-    return _kept(other, lost) if _lost(other) <= lost else None
+    lost = _unfixable_checks(actuator)
+    return _without_rows(other, lost) if _unfixable_checks(other) <= lost else None

@@ -1,8 +1,8 @@
-"""The solver's view of a problem: one evaluation per point, exact gradients, NaN screened.
+"""Evaluates a problem for the solvers: values and exact gradients of each point, once.
 
-Values come from real evaluations, so that a domain error (the root of a negative number) shows as
-NaN. Gradients come from one batched complex step [Squire1998]. Rows that fail a single
-finite-difference check fall back to central differences.
+Real evaluations give the values, so that a domain error (the root of a negative number) becomes
+NaN. One batched complex step gives the gradients [Squire1998]. They are compared with finite
+differences once; rows that differ use central differences.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ CHUNK = 4096
 """Maximum columns in one model call."""
 
 DIFFERENCE_STEP = 6e-6
-"""Step of central differences of values in solver coordinates, near the cube root of rounding."""
+"""Step of central differences of values, in solver coordinates: near the cube root of rounding."""
 
 HESSIAN_STEP = 1e-5
 """Step of central differences of exact gradients."""
 
 CEILING = 1e9
-"""Substitute for an infinite margin (an unloaded part), with zero slope."""
+"""Substitute for an infinite margin of an unloaded part; its slope is zero."""
 
 
 class LimitReached(Exception):
@@ -84,54 +84,59 @@ class Evaluator:
         self.bad_slopes = 0
         self.complex_works = problem.has_complex_step
         self.eager = False
-        """Compute the gradient with every value: cheaper for solvers that need both."""
+        """Whether to compute the gradient with every value, for solvers that need both."""
         self.difference_rows = np.zeros(problem.row_count, dtype=bool)
         self.influence = np.zeros((2, self.space.size))
         self.trace: list[tuple[int, float, float]] = []
         self.best: Point | None = None
-        self.foreseen: dict[bytes, npt.NDArray[np.generic]] = {}
+        self.precomputed: dict[bytes, npt.NDArray[np.generic]] = {}
         """Precomputed rows of the `columns` of points, by coordinates."""
         self._cache: dict[bytes, Point] = {}
 
     @property
     def late(self) -> bool:
         """Whether the time limit is reached or a stop is requested."""
-        used = time.perf_counter() - self.began
-        over = self.max_seconds is not None and used >= self.max_seconds
-        return over or (self.stop is not None and self.stop())
+        elapsed = time.perf_counter() - self.began
+        timed_out = self.max_seconds is not None and elapsed >= self.max_seconds
+        return timed_out or (self.stop is not None and self.stop())
 
     def check_limits(self) -> None:
-        """Raise `LimitReached` if the run has used up its evaluations or its time."""
+        """Raise `LimitReached` at the limit of evaluations or time."""
         if not self.limited:
             return
-        over = self.max_evaluations is not None and self.evaluations >= self.max_evaluations
-        if over or self.late:
+        counted_out = self.max_evaluations is not None and self.evaluations >= self.max_evaluations
+        if counted_out or self.late:
             self.exhausted = True
             raise LimitReached
 
     def point(self, z: Vector) -> Point:
-        """Return the evaluated point at z (nf,); evaluated once."""
-        found = self._cache.get(z.tobytes())
-        if found is not None:
-            return found
-        foreseen = self.foreseen.pop(z.tobytes(), None)
-        if foreseen is not None:
-            return self.entered(z, foreseen)
+        """The evaluated point at z (nf,), from the cache if known."""
+        point = self._cache.get(z.tobytes())
+        if point is not None:
+            return point
+        precomputed = self.precomputed.pop(z.tobytes(), None)
+        if precomputed is not None:
+            return self.enter(z, precomputed)
         self.check_limits()
         slopes = None
         if self.eager and self.exact:
             rows, slopes = self.values_and_slopes(self.problem.rows(self.columns(z[:, None])))
         else:
             rows = self.screen(self.problem.rows(self.space.to_x(z[:, None])))
-        return self._enter(z, rows, slopes)
+        return self._store(z, rows, slopes)
+
+    def adopt_check(self, checked: Evaluator) -> None:
+        """Reuse the gradient check of an evaluator whose problem has the same rows."""
+        self.complex_works = checked.complex_works
+        self.difference_rows = checked.difference_rows
 
     @property
     def exact(self) -> bool:
         """Whether every gradient comes from the complex step."""
         return self.complex_works and not self.difference_rows.any() and self.space.size > 0
 
-    def _enter(self, z: Vector, rows: Vector, slopes: Vector | None) -> Point:
-        """Store a point with its rows."""
+    def _store(self, z: Vector, rows: Vector, slopes: Vector | None) -> Point:
+        """Count and cache a point with its rows."""
         valid = bool(np.isfinite(rows).all())
         self.evaluations += 1
         self.invalid += not valid
@@ -139,30 +144,30 @@ class Evaluator:
         point = Point(z.copy(), x, rows[:, 0], valid, float(self.violations(rows, "worst")[0]))
         if slopes is not None and valid:
             self.gradients += 1
-            self._keep(point, slopes)
+            self._store_jacobian(point, slopes)
         if len(self._cache) >= 256:
             self._cache.clear()
         self._cache[z.tobytes()] = point
         if valid:
-            self._note(point)
+            self._record(point)
         return point
 
-    def entered(self, z: Vector, rows: npt.NDArray[np.generic]) -> Point:
+    def enter(self, z: Vector, rows: npt.NDArray[np.generic]) -> Point:
         """The point at z (nf,) whose `columns` have these rows."""
-        return self._enter(z, *self.values_and_slopes(rows))
+        return self._store(z, *self.values_and_slopes(rows))
 
-    def enter_foreseen(self) -> None:
+    def enter_precomputed(self) -> None:
         """Count the precomputed points as visited."""
-        for z, rows in self.foreseen.items():
-            self.entered(np.frombuffer(z), rows)
-        self.foreseen.clear()
+        for z, rows in self.precomputed.items():
+            self.enter(np.frombuffer(z), rows)
+        self.precomputed.clear()
 
-    def _note(self, point: Point) -> None:
-        """Store a point, and add it to the trace if it improves on the last entry."""
-        missed = point.violation if point.violation > 1e-6 else 0.0
+    def _record(self, point: Point) -> None:
+        """Add a point to the trace if it improves on the last entry."""
+        excess = point.violation if point.violation > 1e-6 else 0.0
         if self.trace:
             _, objective, violation = self.trace[-1]
-            if (missed, point.objective) >= (violation if violation > 1e-6 else 0.0, objective):
+            if (excess, point.objective) >= (violation if violation > 1e-6 else 0.0, objective):
                 return
         self.best = point
         self.trace.append((self.evaluations, point.objective, point.violation))
@@ -173,7 +178,7 @@ class Evaluator:
 
     @staticmethod
     def screen(rows: npt.NDArray[np.generic]) -> Vector:
-        """Screen rows: infinite margins become their ceiling, other infinities NaN."""
+        """Replace infinite margins by their ceiling, and other infinities by NaN."""
         values = np.array(rows.real, dtype=float)
         margins = values[1:]
         margins[margins == np.inf] = CEILING
@@ -181,9 +186,9 @@ class Evaluator:
         return values
 
     def violations(self, rows: Vector, kind: str) -> Vector:
-        """Infeasibility (k,) of rows (rows, k): the "worst" missed margin, or the bounded "sum".
+        """Infeasibility (k,) of rows (rows, k): the "worst" violation, or the bounded "sum".
 
-        The sum uses v/(1 + v) of each violation v, so that no single row dominates. NaN rows are
+        The sum is that of v/(1 + v) over the violations v, so that no row dominates. NaN counts as
         infinitely infeasible.
         """
         margins = rows[1 : 1 + self.constraint_count]
@@ -195,18 +200,18 @@ class Evaluator:
         return np.where(np.isfinite(rows).all(axis=0), result, np.inf)
 
     def jacobian(self, point: Point) -> Vector:
-        """Gradients (rows, nf) at a point, in solver coordinates; a missing slope counts as 0."""
+        """Gradients (rows, nf) at a point in solver coordinates; an undefined slope is 0."""
         if point.jacobian is None:
-            return self._keep(point, self.jacobians(point.z[:, None])[:, 0])
+            return self._store_jacobian(point, self.jacobians(point.z[:, None])[:, 0])
         return point.jacobian
 
     def take_slopes(self, points: Sequence[Point]) -> None:
         """Compute the gradients at some points, in one model call."""
         slopes = self.jacobians(np.stack([point.z for point in points], axis=1))
         for k, point in enumerate(points):
-            self._keep(point, slopes[:, k])
+            self._store_jacobian(point, slopes[:, k])
 
-    def _keep(self, point: Point, slopes: Vector) -> Vector:
+    def _store_jacobian(self, point: Point, slopes: Vector) -> Vector:
         broken = ~np.isfinite(slopes)
         if broken.any():
             self.bad_slopes += 1
@@ -219,17 +224,13 @@ class Evaluator:
 
     def columns(self, z: Vector) -> npt.NDArray[np.complex128]:
         """Complex points (n, nf) whose rows contain value and gradient at coordinates (nf, 1)."""
-        x = self.space.to_x(z)
-        batch = np.repeat(x.astype(complex), z.shape[0], axis=1)
-        columns = np.arange(z.shape[0])
-        batch[self.space.free, columns] += 1j * STEP * self.space.slope(x)[:, 0]
-        return batch
+        return self.space.complex_steps(self.space.to_x(z))
 
     def values_and_slopes(self, rows: npt.NDArray[np.generic]) -> tuple[Vector, Vector]:
         """Rows (rows, 1) and gradients (rows, nf) of one point from the rows of its `columns`.
 
-        A large imaginary part reveals a root or logarithm outside its domain, which complex
-        arithmetic would hide. Such rows become NaN.
+        Outside its domain, a complex root or logarithm has a large imaginary part instead of NaN.
+        These rows become NaN.
         """
         hidden = (np.abs(rows.imag) > 1e-9 * (1.0 + np.abs(rows.real))).any(axis=1)
         values = self.screen(np.where(hidden, np.nan, rows.real[:, 0])[:, None])
@@ -256,20 +257,16 @@ class Evaluator:
 
     def _complex_step(self, z: Vector, *, inside: bool) -> Vector:
         n, count = z.shape
-        x = self.space.to_x(z, inside=inside)
-        seeds = self.space.slope(x)
-        batch = np.repeat(x.astype(complex), n, axis=1)
-        columns = np.arange(count * n).reshape(count, n)
-        batch[self.space.free[None, :], columns] += 1j * STEP * seeds.T
-        rows = self.problem.rows(batch)
+        rows = self.problem.rows(self.space.complex_steps(self.space.to_x(z, inside=inside)))
         return np.asarray(rows.imag / STEP, dtype=float).reshape(len(rows), count, n)
 
     def _differences(self, z: Vector) -> Vector:
         n, count = z.shape
         step = DIFFERENCE_STEP * np.eye(n)[:, None, :]
-        both = [(z[:, :, None] + sign * step).reshape(n, count * n) for sign in (1, -1)]
+        points = [(z[:, :, None] + sign * step).reshape(n, count * n) for sign in (1, -1)]
         above, below = (
-            self.screen(self.problem.rows(self.space.to_x(side, inside=False))) for side in both
+            self.screen(self.problem.rows(self.space.to_x(point_set, inside=False)))
+            for point_set in points
         )
         slopes = (above - below) / (2 * DIFFERENCE_STEP)
         broken = np.isnan(slopes)
@@ -283,7 +280,7 @@ class Evaluator:
         return np.where(np.isnan(above), (middle - below) / DIFFERENCE_STEP, forward)
 
     def hessian(self, point: Point, weights: Vector, columns: npt.NDArray[np.intp]) -> Vector:
-        """Hessian (nf, nf) of weights @ rows; only the rows and columns named, zero elsewhere."""
+        """Hessian (nf, nf) of weights @ rows in the given columns and rows; zero elsewhere."""
         n = self.space.size
         result = np.zeros((n, n))
         if len(columns) == 0:
@@ -296,7 +293,7 @@ class Evaluator:
         slopes = self.jacobians(np.concatenate([z + moves, z - moves], axis=1), inside=False)
         slopes = np.tensordot(weights[active], slopes[active], axes=1)
         above, below = slopes[: len(columns)], slopes[len(columns) :]
-        if not np.isfinite(slopes).all():  # outside the domain on one side: one-sided, or none
+        if not np.isfinite(slopes).all():  # undefined on one side: one-sided difference, or 0
             middle = weights @ self.jacobian(point)
             above = np.where(np.isfinite(above), above, 2 * middle - below)
             below = np.where(np.isfinite(below), below, 2 * middle - above)
@@ -306,9 +303,9 @@ class Evaluator:
         return result
 
     def check_gradients(self, point: Point) -> tuple[str, ...]:
-        """Compare the complex step with finite differences once; rows that differ fall back.
+        """Compare the complex step with finite differences; returns warnings.
 
-        Returns the warnings to show.
+        Rows that differ use finite differences from then on.
         """
         if not self.problem.has_complex_step:
             return (
@@ -335,34 +332,34 @@ class Evaluator:
     def _disagreement(self, point: Point, exact: Vector) -> npt.NDArray[np.bool_]:
         n = self.space.size
         wrong = np.ones(len(exact), dtype=bool)
-        for step in (1e-5, 1e-4, 1e-6):  # a kink or rounding affects one step size, not all three
+        for step in (1e-5, 1e-4, 1e-6):  # a kink or rounding does not affect all three
             moves = step * np.eye(n)
             z = point.z[:, None]
             sides = np.concatenate([z + moves, z - moves], axis=1)
             rows = self.screen(self.problem.rows(self.space.to_x(sides, inside=False)))
             slopes = (rows[:, :n] - rows[:, n:]) / (2 * step)
-            known = np.isfinite(slopes) & np.isfinite(exact)
-            size = np.abs(np.where(known, slopes, 0.0)).max(axis=1, initial=0.0)
+            comparable = np.isfinite(slopes) & np.isfinite(exact)
+            size = np.abs(np.where(comparable, slopes, 0.0)).max(axis=1, initial=0.0)
             room = 1e-4 * size + 1e-11 / step * (1.0 + np.abs(point.rows))
-            far = np.where(known, np.abs(slopes - exact) > room[:, None], False)
-            lost = np.isnan(exact).all(axis=1) & np.isfinite(slopes).all(axis=1)
-            wrong &= far.any(axis=1) | lost
+            differs = np.where(comparable, np.abs(slopes - exact) > room[:, None], False)
+            undefined = np.isnan(exact).all(axis=1) & np.isfinite(slopes).all(axis=1)
+            wrong &= differs.any(axis=1) | undefined
             if not wrong.any():
                 break
         return wrong
 
 
-def points_together(wanted: Sequence[tuple[Evaluator, Vector]]) -> list[Point]:
-    """Evaluate z (nf,) of each evaluator with its gradients, in one model call.
+def points_together(requests: Sequence[tuple[Evaluator, Vector]]) -> list[Point]:
+    """Evaluate a point z (nf,) of each evaluator with gradients, in one model call.
 
-    The problems may differ only in their bounds.
+    The problems differ at most in their bounds.
     """
-    if len(wanted) == 1 or not all(evaluator.exact for evaluator, _ in wanted):
-        return [evaluator.point(z) for evaluator, z in wanted]
-    parts = [evaluator.columns(z[:, None]) for evaluator, z in wanted]
-    rows = wanted[0][0].problem.rows(np.concatenate(parts, axis=1))
+    if len(requests) == 1 or not all(evaluator.exact for evaluator, _ in requests):
+        return [evaluator.point(z) for evaluator, z in requests]
+    parts = [evaluator.columns(z[:, None]) for evaluator, z in requests]
+    rows = requests[0][0].problem.rows(np.concatenate(parts, axis=1))
     ends = np.cumsum([part.shape[1] for part in parts])[:-1]
     return [
-        evaluator.entered(z, part)
-        for (evaluator, z), part in zip(wanted, np.split(rows, ends, axis=1), strict=True)
+        evaluator.enter(z, part)
+        for (evaluator, z), part in zip(requests, np.split(rows, ends, axis=1), strict=True)
     ]

@@ -1,10 +1,10 @@
-"""Problems that share the result of a search, as they differ only in irrelevant values.
+"""Detects problems with the same result of a search of sizes.
 
 Combinations of choices often differ in numbers that only enter inactive limits, such as the
-viscosity of oils with one bulk modulus. The search of listed sizes depends on the result of each
-box: its optimum or least infeasible point. Two problems have the same results if values and slopes
-agree there. Rows may differ if their limits are farther away than any optimum is from the result of
-its box.
+viscosity of oils with the same bulk modulus. The search of listed sizes depends on the result of
+each box: its optimum or least infeasible point. Two problems have the same results if values and
+slopes agree at these points. Rows may differ if their limits are farther away than the accuracy of
+these points.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from .problem import BoxProblem, Vector
 from .resolve.boxes import NEAR
 
 SAME_OPTIMUM = 1e-6
-"""Relative difference of continuous optima that counts as none: the accuracy of quick looks."""
+"""Relative difference of continuous optima that counts as zero: the accuracy of quick looks."""
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """Results of the boxes of a search; `optimum` is the problem's continuous objective."""
+    """Results of the boxes of a search; `optimum` is the continuous optimum's objective."""
 
     problem: BoxProblem
     optimum: float
@@ -35,12 +35,10 @@ class Evidence:
         problem = self.problem
         if not self.ends or abs(optimum - self.optimum) > SAME_OPTIMUM * abs(self.optimum):
             return False
-        same = problem.names == other.names and problem.constraint_names == other.constraint_names
-        boxed = np.array_equal(problem.lower, other.lower) and np.array_equal(
-            problem.upper, other.upper
-        )
+        if problem.names != other.names or not problem.same_rows_and_box(other):
+            return False
         exact = all(evaluator.exact for evaluator, _ in self.ends)
-        if not (same and boxed and exact) or problem.equality_names or other.equality_names:
+        if not exact or problem.equality_names or other.equality_names:
             return False
         parts = [evaluator.columns(end.z[:, None]) for evaluator, end in self.ends]
         rows = np.split(
@@ -48,17 +46,17 @@ class Evidence:
             np.cumsum([part.shape[1] for part in parts])[:-1],
             axis=1,
         )
-        found = [
+        comparisons = [
             (end, evaluator.jacobian(end), *evaluator.values_and_slopes(part))
             for (evaluator, end), part in zip(self.ends, rows, strict=True)
         ]
         differing = np.zeros(problem.row_count, dtype=bool)
-        for end, slopes, values, others in found:
-            differing |= (values[:, 0] != end.rows) | (slopes != others).any(axis=1)
+        for end, slopes, values, other_slopes in comparisons:
+            differing |= (values[:, 0] != end.rows) | (slopes != other_slopes).any(axis=1)
         return not differing[0] and all(
             (_distance(end.rows, slopes)[differing] > NEAR.step).all()
-            and (_distance(values[:, 0], others)[differing] > NEAR.step).all()
-            for end, slopes, values, others in found
+            and (_distance(values[:, 0], other_slopes)[differing] > NEAR.step).all()
+            for end, slopes, values, other_slopes in comparisons
         )
 
 

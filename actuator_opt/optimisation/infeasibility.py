@@ -1,9 +1,9 @@
-"""Why a problem is infeasible: joint relaxation, sufficient single changes, binding bounds.
+"""Explains why a problem is infeasible: joint relaxation, sufficient changes, binding bounds.
 
-All amounts are margins, that is fractions of the limits. The smallest joint relaxation minimises
-the sum of the margins given up (an elastic programme [Chinneck2008]). It names few requirements
-rather than a little of each; physical laws (geometry) are never relaxed. Every search is local,
-from the given points: a remedy it finds is valid, but it may miss others.
+All amounts are margins, as fractions of the limits. The smallest joint relaxation minimises the sum
+of the margins given up (an elastic programme [Chinneck2008]). The sum favours a large relaxation of
+few requirements over a small relaxation of many. Physical laws (geometry) are never relaxed. All
+searches are local, from the given points: their remedies are valid, but others may exist.
 """
 
 from __future__ import annotations
@@ -21,25 +21,25 @@ from .problem import BoxProblem, Vector
 from .repairs import NOTHING, Opening, RelaxedConstraint
 
 STARTS = 2
-"""Maximum points from which the joint relaxation is sought."""
+"""Maximum starts of the search for the joint relaxation."""
 
 ROOM = 1.001
-"""Relaxation granted to a limit, relative to the least sufficient one, to approach that design."""
+"""Relaxation granted to a limit, relative to the least sufficient relaxation."""
 
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
-    """Which requirements conflict, and by how much.
+    """The conflicting requirements, and the size of the conflict.
 
     Parameters
     ----------
     joint : the smallest joint relaxation, the largest first; empty if only laws conflict
     sole : sufficient relaxation of each conflicting requirement alone
-    bounds : variable bounds that bind there, the most helpful first
+    bounds : binding bounds of variables at the joint relaxation, the most helpful first
     laws : constraints that cannot be relaxed and conflict among themselves
     x : the point of the joint relaxation
     total : sum of the joint relaxation
-    residual : optimality of the joint relaxation (small: it is the smallest near x)
+    residual : of the optimality conditions of the joint relaxation
     multipliers : fall of the total per unit of margin granted to each constraint (m,)
     """
 
@@ -59,42 +59,42 @@ def explain(problem: BoxProblem, points: Sequence[Vector]) -> Conflict:
     Parameters
     ----------
     problem : the problem; `relaxable` separates requirements from laws (None: all relaxable)
-    points : where to start, such as the least infeasible points found (n,)
+    points : starts (n,), such as the least infeasible points of a search
     """
     tell("infeasible: searching for the smallest relaxation")
     m = len(problem.constraint_names)
     mask = np.ones(m, dtype=bool) if problem.relaxable is None else np.array(problem.relaxable)
-    everything = _groups(problem)
-    groups = [group for group in everything if mask[group].all()]
-    found, evaluator = _smallest(problem, groups, points)
+    all_groups = _groups(problem)
+    groups = [group for group in all_groups if mask[group].all()]
+    point, evaluator = _smallest(problem, groups, points)
     laws: tuple[str, ...] = ()
-    if found.violation > NOTHING and not mask.all():
-        groups = everything
-        found, evaluator = _smallest(problem, groups, points)
-        amounts = found.x[len(problem.names) :]
+    if point.violation > NOTHING and not mask.all():
+        groups = all_groups
+        point, evaluator = _smallest(problem, groups, points)
+        amounts = point.x[len(problem.names) :]
         laws = tuple(
             problem.constraint_names[group[0]]
             for group, amount in zip(groups, amounts, strict=True)
             if not mask[group].all() and amount > NOTHING
         )
-    quality = kkt.check(evaluator, found, objective_scale=1.0)
-    joint = _joint(problem, groups, mask, found)
+    quality = kkt.check(evaluator, point, objective_scale=1.0)
+    joint = _joint(problem, groups, mask, point)
     sole: tuple[RelaxedConstraint, ...] = ()
-    x = found.x[: len(problem.names)]
+    x = point.x[: len(problem.names)]
     if joint and not laws:
-        part = _taking_part(evaluator, found, quality)
+        part = _conflicting(evaluator, point, quality)
         named = {row.index for row in joint}
         candidates = [group for group in groups if part[group].any() or group[0] in named]
         sole = repairs.by_limits(problem, candidates, named, [x, *points[:STARTS]])
-        better = _less(problem, evaluator, groups, candidates, sole, found)
-        if better is not None:
-            found, quality = better, kkt.check(evaluator, better, objective_scale=1.0)
-            joint, x = _joint(problem, groups, mask, found), found.x[: len(problem.names)]
+        smaller = _smaller_relaxation(problem, evaluator, groups, candidates, sole, point)
+        if smaller is not None:
+            point, quality = smaller, kkt.check(evaluator, smaller, objective_scale=1.0)
+            joint, x = _joint(problem, groups, mask, point), point.x[: len(problem.names)]
     openings = _binding_bounds(problem, evaluator, quality)
     if joint and not laws:
         openings = repairs.by_bounds(problem, openings, x)
     return Conflict(
-        joint, sole, openings, laws, x, float(found.objective), quality.residual,
+        joint, sole, openings, laws, x, float(point.objective), quality.residual,
         quality.multipliers,
     )  # fmt: skip
 
@@ -115,7 +115,7 @@ def _joint(
     return tuple(sorted(joint, key=lambda r: -(r.amount or 0.0)))
 
 
-def _less(
+def _smaller_relaxation(
     problem: BoxProblem,
     evaluator: Evaluator,
     groups: list[repairs.Indices],
@@ -123,9 +123,12 @@ def _less(
     sole: Sequence[RelaxedConstraint],
     point: Point,
 ) -> Point | None:
-    """A smaller joint relaxation, if one limit alone gives up less because the descent stalled."""
-    alone = [(r.amount, group) for r, group in zip(sole, candidates, strict=True) if r.amount]
-    amount, group = min(alone, key=lambda one: one[0], default=(np.inf, groups[0]))
+    """A smaller joint relaxation, if a single limit needs less; None otherwise.
+
+    A single limit needs less than the joint relaxation if the descent stalled.
+    """
+    single = [(r.amount, group) for r, group in zip(sole, candidates, strict=True) if r.amount]
+    amount, group = min(single, key=lambda entry: entry[0], default=(np.inf, groups[0]))
     if amount >= point.objective - NOTHING:
         return None
     x = point.x[: len(problem.names)]
@@ -134,17 +137,17 @@ def _less(
         return None
     lacks = repairs.missed(Evaluator(problem), start, groups)
     end = repairs.descend(evaluator.problem, start, lacks)
-    better = end.violation <= NOTHING and end.objective < point.objective
-    return end if better else None
+    improved = end.violation <= NOTHING and end.objective < point.objective
+    return end if improved else None
 
 
-def _taking_part(
+def _conflicting(
     evaluator: Evaluator, point: Point, quality: kkt.KktResidual
 ) -> npt.NDArray[np.bool_]:
-    """Constraints that take part in the conflict; dropping the others does not resolve it.
+    """Mask of the constraints that cause the conflict; without the others, it persists.
 
-    The multipliers of the relaxation prove this (for a convex problem, else locally). Without
-    optimality every binding constraint may take part.
+    The multipliers of the relaxation prove this locally, or globally for a convex problem. Without
+    optimality, every binding constraint may be a cause.
     """
     if quality.residual <= NOTHING:
         return np.asarray(quality.multipliers > 1e-7)
@@ -152,7 +155,7 @@ def _taking_part(
 
 
 def _groups(problem: BoxProblem) -> list[repairs.Indices]:
-    """Rows of the constraints that are relaxed together."""
+    """Rows of the constraints, grouped by limit."""
     m = len(problem.constraint_names)
     numbers = np.arange(m) if problem.groups is None else np.asarray(problem.groups)
     return [np.flatnonzero(numbers == number) for number in dict.fromkeys(numbers.tolist())]
@@ -161,7 +164,7 @@ def _groups(problem: BoxProblem) -> list[repairs.Indices]:
 def _smallest(
     problem: BoxProblem, groups: list[repairs.Indices], points: Sequence[Vector]
 ) -> tuple[Point, Evaluator]:
-    """Return the smallest sum of slacks of the groups, from the best of several points."""
+    """The smallest sum of the groups' slacks over several starts, and its elastic problem."""
     judge = Evaluator(problem)
     room, starts = 1.0, []
     for x in list(points)[:STARTS] or [(problem.lower + problem.upper) / 2]:
@@ -171,29 +174,31 @@ def _smallest(
     stretched = repairs.separate(problem, groups, [room] * len(groups))
     ends: list[Point] = []
     for x, lacks in starts:
-        found = repairs.descend(stretched, x, lacks, ends)
-        if found.valid and not any(found is end for end in ends):
-            ends.append(found)
-    best = min(ends, key=lambda end: (max(end.violation - NOTHING, 0.0), end.objective))
-    return best, Evaluator(stretched)
+        elastic_end = repairs.descend(stretched, x, lacks, ends)
+        if elastic_end.valid and not any(elastic_end is end for end in ends):
+            ends.append(elastic_end)
+    smallest = min(ends, key=lambda end: (max(end.violation - NOTHING, 0.0), end.objective))
+    return smallest, Evaluator(stretched)
 
 
 def _binding_bounds(
     problem: BoxProblem, evaluator: Evaluator, quality: kkt.KktResidual
 ) -> tuple[Opening, ...]:
     """Bounds that limit the joint relaxation, the most helpful first."""
-    found = []
+    openings = []
     space = evaluator.space
     for k, j in enumerate(space.free):
         if j >= len(problem.names):
             continue
-        for side, held, limit in (
+        for side, multiplier, limit in (
             ("lower", quality.lower_multipliers[j], problem.lower[j]),
             ("upper", quality.upper_multipliers[j], problem.upper[j]),
         ):
-            if held > 1e-7:
+            if multiplier > 1e-7:
                 widening = 1.0 if space.logarithmic[k] else abs(limit) / space.scale[k]
-                found.append(
-                    Opening(problem.names[j], int(j), side, float(limit), float(held * widening))
+                openings.append(
+                    Opening(
+                        problem.names[j], int(j), side, float(limit), float(multiplier * widening)
+                    )
                 )
-    return tuple(sorted(found, key=lambda b: -b.gain))
+    return tuple(sorted(openings, key=lambda b: -b.gain))

@@ -1,4 +1,4 @@
-"""The infeasibility card of an actuator: limits by PATH, in display units."""
+"""The explanation of an infeasible actuator: limits by PATH, in display units."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ _ORIGINS = {"requirement": "requirement", "case": "load case", "check": "check l
 def explained(
     actuator: ActuatorProblem, solution: Solution
 ) -> tuple[Infeasibility | None, Solution]:
-    """Explain an infeasible result; returns the card and the design of the joint relaxation.
+    """Explain an infeasible result; returns the explanation and the joint relaxation's solution.
 
-    Both are missing if a limit stopped the search.
+    A feasible result, or a search that stopped at a limit, has no explanation.
     """
     limited = solution.outcome is Outcome.LIMIT_INFEASIBLE
     if solution.feasible or solution.kkt is None or limited:
         return None, solution
-    points = [found.x for found in solution.optima] or [solution.x]
+    points = [optimum.x for optimum in solution.optima] or [solution.x]
     conflict = explain(actuator.problem, points)
     objective = float(np.ravel(actuator.evaluate(conflict.x[:, None]).objective)[0])
     closest = replace(solution, x=conflict.x, objective=objective, kkt=None)
@@ -46,47 +46,47 @@ def explained(
 
 
 def _card(
-    actuator: ActuatorProblem, explanation: Explanation, others: Cures, solution: Solution
+    actuator: ActuatorProblem, explanation: Explanation, remedies: Cures, solution: Solution
 ) -> Infeasibility:
     named = {r.index for r in explanation.joint}
     sole = sorted(explanation.sole, key=lambda r: math.inf if r.amount is None else r.amount)
     joint = tuple(entry_of(actuator, r) for r in explanation.joint)
-    alone = tuple(
+    single = tuple(
         entry_of(actuator, r)
         for r in sole
         if r.amount is not None
         or r.index in named
         or actuator.rows[r.index].limit_of.origin != "check"
     )
-    bounds = tuple(_bound(actuator, bound) for bound in explanation.bounds)
-    enough = [
-        *(_cure(actuator, "dimension", cure) for cure in others.dimensions),
-        *([_together(actuator, others.together)] if others.together else []),
-        *(_cure(actuator, "choice", cure) for cure in others.choices),
-        *(_listed(bound, "bound") for bound in bounds if bound["needed"] is not None),
-        *(_listed(entry, _kind(entry)) for entry in alone if entry["needed"] is not None),
+    bounds = tuple(_bound_entry(actuator, bound) for bound in explanation.bounds)
+    sufficient = [
+        *(_cure_entry(actuator, "dimension", cure) for cure in remedies.dimensions),
+        *([_joint_entry(actuator, remedies.together)] if remedies.together else []),
+        *(_cure_entry(actuator, "choice", cure) for cure in remedies.choices),
+        *(_limit_entry(bound, "bound") for bound in bounds if bound["needed"] is not None),
+        *(_limit_entry(entry, _kind(entry)) for entry in single if entry["needed"] is not None),
     ]
-    enough.sort(key=lambda cure: KINDS.index(cure["kind"]))
+    sufficient.sort(key=lambda cure: KINDS.index(cure["kind"]))
     return Infeasibility(
         joint=joint,
-        sole=alone,
+        sole=single,
         bounds=bounds,
         laws=explanation.laws,
         total=explanation.total,
-        sentence=_sentence(joint, enough, explanation.laws),
+        sentence=_sentence(joint, sufficient, explanation.laws),
         evidence=_evidence(explanation, solution),
-        cures=tuple(enough),
-        untried=others.untried,
+        cures=tuple(sufficient),
+        untried=remedies.untried,
     )
 
 
 def _kind(entry: Mapping[str, Any]) -> str:
-    """Whether a limit is a requirement or a safety factor."""
+    """The kind of a limit: requirement or safety factor."""
     return "safety factor" if entry["safety_factor"] else "requirement"
 
 
-def _listed(entry: Mapping[str, Any], kind: str) -> dict[str, Any]:
-    """A sufficient limit or bound, as an entry of the list of cures."""
+def _limit_entry(entry: Mapping[str, Any], kind: str) -> dict[str, Any]:
+    """A sufficient change of a limit or bound, as an entry of the cures."""
     return {
         "kind": kind,
         "parameter": entry["parameter"] or entry["requirement"],
@@ -95,9 +95,9 @@ def _listed(entry: Mapping[str, Any], kind: str) -> dict[str, Any]:
     } | {name: entry[name] for name in ("needed", "change", "limit_text", "needed_text")}
 
 
-def _together(actuator: ActuatorProblem, dimensions: Sequence[Cure]) -> dict[str, Any]:
-    """Dimensions that are enough together, as an entry."""
-    parts = [_cure(actuator, "dimension", cure) for cure in dimensions]
+def _joint_entry(actuator: ActuatorProblem, dimensions: Sequence[Cure]) -> dict[str, Any]:
+    """Dimensions that are enough together, as an entry of the cures."""
+    parts = [_cure_entry(actuator, "dimension", cure) for cure in dimensions]
     texts = ("parameter", "limit_text", "needed_text")
     entry: dict[str, Any] = {
         "kind": "dimension",
@@ -111,12 +111,14 @@ def _together(actuator: ActuatorProblem, dimensions: Sequence[Cure]) -> dict[str
     }  # fmt: skip
 
 
-def _cure(actuator: ActuatorProblem, kind: str, cure: Cure) -> dict[str, Any]:
-    """A sufficient dimension or choice, as an entry."""
+def _cure_entry(actuator: ActuatorProblem, kind: str, cure: Cure) -> dict[str, Any]:
+    """A sufficient dimension or choice, as an entry of the cures."""
     entry: dict[str, Any] = {"kind": kind, "parameter": cure.path, "advised": True, "now": cure.now}
     if isinstance(cure.now, str) or isinstance(cure.needed, str):
-        more = ", ".join(f"{path.rpartition('.')[2]} {text}" for path, text in cure.beside.items())
-        needed = f"{cure.needed}, with {more}" if more else str(cure.needed)
+        further = ", ".join(
+            f"{path.rpartition('.')[2]} {text}" for path, text in cure.beside.items()
+        )
+        needed = f"{cure.needed}, with {further}" if further else str(cure.needed)
         texts = {"limit_text": str(cure.now), "needed_text": needed, "beside": dict(cure.beside)}
         return entry | {"needed": cure.needed, "change": None} | texts
     quantity = quantity_of(cure.path, actuator.subject.design)
@@ -129,7 +131,7 @@ def _cure(actuator: ActuatorProblem, kind: str, cure: Cure) -> dict[str, Any]:
 
 
 def entry_of(actuator: ActuatorProblem, relaxed: RelaxedConstraint) -> dict[str, Any]:
-    """A requirement as an entry: its limit as stated, and the sufficient one."""
+    """A requirement as an entry: its stated limit and the sufficient limit."""
     row, amount = actuator.rows[relaxed.index], relaxed.amount
     limit = float(np.ravel(row.limit)[0])
     path, sense = row.limit_of.path, row.limit_of.sense
@@ -141,12 +143,12 @@ def entry_of(actuator: ActuatorProblem, relaxed: RelaxedConstraint) -> dict[str,
         quantity = quantity_of(path, actuator.subject.design)
     needed = None if amount is None else _relaxed(row, limit, amount)
     change = None if needed is None or not limit else needed / limit - 1
-    shown = quantity or Quantity(row.limit_of.metric, "", "ratio", "", row.limit_of.metric)
+    display = quantity or Quantity(row.limit_of.metric, "", "ratio", "", row.limit_of.metric)
     entry: dict[str, Any] = {
         "requirement": row.limit_of.name,
         "parameter": path,
         "origin": _ORIGINS.get(row.limit_of.origin, row.limit_of.origin),
-        "safety_factor": _guards(row),
+        "safety_factor": _protects_safety(row),
         "metric": row.limit_of.metric,
         "sense": sense,
         "limit": limit,
@@ -154,21 +156,21 @@ def entry_of(actuator: ActuatorProblem, relaxed: RelaxedConstraint) -> dict[str,
         "relaxation": amount,
         "change": change,
     }
-    return entry | _texts(shown, limit, needed, upwards=sense == "max")
+    return entry | _texts(display, limit, needed, upwards=sense == "max")
 
 
-def _guards(row: LimitRow) -> bool:
-    """Whether a limit protects safety: the check list, and every factor."""
+def _protects_safety(row: LimitRow) -> bool:
+    """Whether a limit protects safety: a limit of the check list, or of a safety factor."""
     return row.limit_of.origin == "check" or row.limit_of.metric.endswith("_factor")
 
 
 def _relaxed(row: LimitRow, limit: float, amount: float) -> float:
-    """The limit after giving up a margin `amount`."""
+    """The limit that gives up a margin `amount`."""
     step = amount * (abs(limit) or 1.0)
     return limit - step if row.limit_of.sense == "min" else limit + step
 
 
-def _bound(actuator: ActuatorProblem, bound: Opening) -> dict[str, Any]:
+def _bound_entry(actuator: ActuatorProblem, bound: Opening) -> dict[str, Any]:
     quantity = quantity_of(bound.variable, actuator.subject.design)
     upper = bound.side == "upper"
     return {
@@ -186,7 +188,7 @@ def _bound(actuator: ActuatorProblem, bound: Opening) -> dict[str, Any]:
 def _texts(
     quantity: Quantity, limit: float, needed: float | None, *, upwards: bool
 ) -> dict[str, str]:
-    """Both values in the display unit; the needed one rounded to be sufficient as printed."""
+    """Both values in the display unit; the rounded needed value is sufficient as printed."""
     texts = {"limit_text": quantity.text(limit, MORE_DIGITS), "needed_text": ""}
     if needed is not None:
         fine = abs(needed - limit) < 0.01 * abs(limit)
@@ -199,7 +201,7 @@ def _texts(
 
 
 def change_text(entry: Any) -> str:
-    """``PATH 250 N -> 283.1 N (+13.2 %)``; joint changes one after the other."""
+    """``PATH 250 N -> 283.1 N (+13.2 %)``; joint changes are joined with "and"."""
     if "together" in entry:
         return " and ".join(change_text(part) for part in entry["together"])
     name = entry.get("parameter") or entry["requirement"]
@@ -220,11 +222,11 @@ def percent(share: float) -> str:
 
 
 _ACTS = {"dimension": "free {}", "choice": "change {}", "bound": "open {}"}
-"""Action for each kind of cure other than a limit."""
+"""Action for each kind of cure, except for limits."""
 
 
 def _sentence(
-    joint: Sequence[Mapping[str, Any]], enough: Sequence[Mapping[str, Any]], laws: Sequence[str]
+    joint: Sequence[Mapping[str, Any]], sufficient: Sequence[Mapping[str, Any]], laws: Sequence[str]
 ) -> str:
     """The advice in one line: the first cure, or the smallest change of limits."""
     if laws:
@@ -234,33 +236,35 @@ def _sentence(
         )
     if not joint:
         return "infeasible, and the search gave no sufficient relaxation"
-    first = enough[0] if enough else None
-    if first is not None and first["kind"] in _ACTS:
-        enough_text = "together are enough" if "together" in first else "alone is enough"
-        return f"infeasible: {_ACTS[first['kind']].format(change_text(first))} {enough_text}"
+    cure = sufficient[0] if sufficient else None
+    if cure is not None and cure["kind"] in _ACTS:
+        enough_text = "together are enough" if "together" in cure else "alone is enough"
+        return f"infeasible: {_ACTS[cure['kind']].format(change_text(cure))} {enough_text}"
     changes = "; ".join(change_text(entry) for entry in joint)
     unsafe = any(entry["safety_factor"] for entry in joint)
     if len(joint) == 1:
-        said = f"infeasible: the smallest change is {changes}"
+        sentence = f"infeasible: the smallest change is {changes}"
     else:
-        said = f"infeasible: the smallest joint change, of {len(joint)} limits, is {changes}"
+        sentence = f"infeasible: the smallest joint change, of {len(joint)} limits, is {changes}"
     if unsafe:
-        said += " (weakens a safety factor: not advised)"
-    if first is not None and (unsafe or len(joint) > 1) and first["advised"]:
-        said += f". One change alone is also enough: {change_text(first)}"
-    return said
+        sentence += " (weakens a safety factor: not advised)"
+    if cure is not None and (unsafe or len(joint) > 1) and cure["advised"]:
+        sentence += f". One change alone is also enough: {change_text(cure)}"
+    return sentence
 
 
 def _evidence(explanation: Explanation, solution: Solution) -> str:
-    """The status of the advice: confirmed by a design, or only not found."""
+    """The evidence for the advice."""
     count = len(solution.starts)
     starts = f"{count} start{'' if count == 1 else 's'}"
-    tried = f"no feasible design was found from {starts}, selected from {solution.samples} points"
+    statement = (
+        f"no feasible design was found from {starts}, selected from {solution.samples} points"
+    )
     if explanation.laws:
-        return f"{tried}: this is evidence, not proof"
+        return f"{statement}: this is evidence, not proof"
     return (
-        f"{tried}: this is evidence, not proof. Each change listed as enough was confirmed by a "
-        "feasible design. Smaller changes, or single changes not listed, were only not found to "
-        f"be enough. Bounds and fixed dimensions were varied up to {WIDEST:g} times or down to "
-        f"1/{WIDEST:g} of their value"
+        f"{statement}: this is evidence, not proof. Each change listed as enough was confirmed by "
+        "a feasible design. The search gave no feasible design for smaller changes, or for single "
+        "changes not listed. Bounds and fixed dimensions were varied up to "
+        f"{WIDEST:g} times or down to 1/{WIDEST:g} of their value"
     )

@@ -1,16 +1,14 @@
-"""First- and second-order optimality of a point: multipliers, residual, rank, curvature.
+"""Optimality of a point (multipliers, residual, rank, curvature), and Newton steps towards it.
 
-The residual is the contract's: the norm of grad f - sum(multiplier * grad g) over that of
-grad f, in solver coordinates, multipliers at least 0, over the constraints and bounds active
-within 1e-6. Multipliers are non-negative least squares [LawsonHanson1974].
+The residual is the norm of grad f - sum(multiplier * grad g) over the norm of grad f, in solver
+coordinates. The sum includes constraints and bounds that are active within 1e-6. The multipliers
+follow from non-negative least squares [LawsonHanson1974].
 
-Active-set Newton steps: the exact-Hessian polish that first-order solvers lack.
-
-Sequential quadratic programming with the Hessian of the Lagrangian from exact gradients
-[NocedalWright2006] ch. 18. Each quadratic programme is a least-distance problem, solved by
-non-negative least squares [LawsonHanson1974] ch. 23. This identifies the active set and copes with
-dependent rows and overdetermined vertices. Converges quadratically near the optimum; also re-solves
-a slightly changed problem.
+The Newton steps are sequential quadratic programming with the Hessian of the Lagrangian from exact
+gradients [NocedalWright2006] ch. 18. Each quadratic programme is a least-distance problem, solved
+by non-negative least squares [LawsonHanson1974] ch. 23. This identifies the active set and permits
+dependent rows and overdetermined vertices. The steps converge quadratically near the optimum, also
+near that of a slightly changed problem.
 """
 
 from __future__ import annotations
@@ -21,16 +19,15 @@ from enum import Enum
 import numpy as np
 import numpy.typing as npt
 
-from . import kkt
 from .evaluator import Evaluator, LimitReached, Point
 from .problem import Vector
 
 ACTIVE = 1e-6
-"""A margin, or a distance to a bound in solver coordinates, below this is active."""
+"""Margin, or distance to a bound in solver coordinates, below which a limit is active."""
 
 
 class Curvature(Enum):
-    """Sign of the Hessian of the Lagrangian along the directions the active set leaves free."""
+    """Sign of the Lagrangian's Hessian along the directions that the active set leaves free."""
 
     VERTEX = "vertex: the active set leaves no direction free"
     POSITIVE = "positive definite: a strict local minimum"
@@ -40,12 +37,12 @@ class Curvature(Enum):
 
 @dataclass(frozen=True)
 class Active:
-    """The active set at a point: rows of gradients of margins, bounds included.
+    """The active set at a point: margins of constraints and bounds, with gradients.
 
     Parameters
     ----------
-    gradients : (a, nf), each of a margin that is at least 0
-    margins : (a,)
+    gradients : of the margins (a, nf)
+    margins : (a,), at least 0 where met
     constraint, lower, upper : index of the constraint or variable of each row, in this order
     """
 
@@ -69,8 +66,7 @@ class KktResidual:
     ----------
     residual : relative norm of the gradient of the Lagrangian
     active : labels of active constraints, equalities and bounds ("NAME lower", "NAME upper")
-    count, rank : number of active gradients, and of independent ones; the multipliers are unique
-        when they are equal
+    count, rank : number of active gradients, and of independent gradients among them
     multipliers : (m,) of the constraints: change of the objective per unit of required margin
     equality_multipliers : (e,)
     lower_multipliers, upper_multipliers : (n,) of the bounds, per unit of solver coordinate
@@ -89,16 +85,16 @@ class KktResidual:
 
     @property
     def unique(self) -> bool:
-        """Whether the multipliers are unique (independent active gradients)."""
+        """Whether the multipliers are unique: the active gradients are independent."""
         return self.rank == self.count
 
 
-def nnls(matrix: Vector, vector: Vector, known: Vector | None = None) -> Vector:
+def nnls(matrix: Vector, vector: Vector, previous: Vector | None = None) -> Vector:
     """Non-negative least squares: min |matrix @ result - vector|, result >= 0.
 
-    First all columns unconstrained (enough at a regular optimum), else the active-set method of
-    Lawson and Hanson, which ends on independent columns. `known` is the result of a similar
-    problem: the search starts from its positive columns.
+    An unconstrained solution over all columns comes first; it suffices at a regular optimum. Else
+    follows the active-set method of Lawson and Hanson, which ends on independent columns. It starts
+    from the positive columns of `previous`, the result of a similar problem.
     """
     size = np.sqrt((matrix**2).sum(axis=0))
     used = np.flatnonzero(size > 1e-14 * size.max(initial=0.0))
@@ -111,14 +107,14 @@ def nnls(matrix: Vector, vector: Vector, known: Vector | None = None) -> Vector:
         if rank == len(used) and (guess >= 0).all():
             result[used] = guess / size[used]
             return result
-    first = np.zeros(len(used), dtype=bool) if known is None else known[used] > 0
-    result[used] = _lawson_hanson(scaled, vector, first) / size[used]
+    passive = np.zeros(len(used), dtype=bool) if previous is None else previous[used] > 0
+    result[used] = _lawson_hanson(scaled, vector, passive) / size[used]
     return result
 
 
 def _lawson_hanson(matrix: Vector, vector: Vector, passive: npt.NDArray[np.bool_]) -> Vector:
     count = matrix.shape[1]
-    result, passive = _begun(matrix, vector, passive)
+    result, passive = _initial_result(matrix, vector, passive)
     refused = np.zeros(count, dtype=bool)
     tolerance = 1e-13 * (1e-300 + float(np.linalg.norm(vector)))
     for _ in range(5 * count):
@@ -148,10 +144,10 @@ def _lawson_hanson(matrix: Vector, vector: Vector, passive: npt.NDArray[np.bool_
     return result
 
 
-def _begun(
+def _initial_result(
     matrix: Vector, vector: Vector, passive: npt.NDArray[np.bool_]
 ) -> tuple[Vector, npt.NDArray[np.bool_]]:
-    """A first result with some positive columns; none if there are none."""
+    """A first result on the largest subset of the columns that is positive and independent."""
     nothing = np.zeros(matrix.shape[1])
     while passive.any():
         trial, rank = _restricted(matrix, vector, passive)
@@ -172,7 +168,7 @@ def _restricted(
 
 
 def active_set(evaluator: Evaluator, point: Point, width: float = ACTIVE) -> Active:
-    """Constraints and bounds within `width` of their limit at a point, with gradients."""
+    """The constraints and bounds with a margin up to `width` at a point."""
     space, m = evaluator.space, evaluator.constraint_count
     jacobian = evaluator.jacobian(point)
     margins = point.rows[1 : 1 + m]
@@ -194,10 +190,10 @@ def active_set(evaluator: Evaluator, point: Point, width: float = ACTIVE) -> Act
 def multipliers(
     slope: Vector, active: Active, equalities: Vector, damping: float = 0.0
 ) -> tuple[Vector, Vector]:
-    """Multipliers (a,) >= 0 of an active set and (e,) free of the equalities.
+    """Multipliers (a,) >= 0 of an active set, and multipliers (e,) of the equalities.
 
-    `damping` > 0 discourages multipliers on rows with a margin left, which identifies the active
-    set from a point that is only near the optimum.
+    `damping` > 0 penalises multipliers of rows with a positive margin. This identifies the active
+    set from a point near the optimum.
     """
     matrix, vector = active.gradients.T, slope
     if len(equalities):
@@ -210,18 +206,19 @@ def multipliers(
         matrix = np.concatenate([matrix, extra])
         vector = np.concatenate([vector, np.zeros(active.count)])
     inequality = nnls(matrix, vector)
-    free = np.zeros(len(equalities))
+    equality_multipliers = np.zeros(len(equalities))
     if len(equalities):
-        rest = slope - active.gradients.T @ inequality
-        free = np.asarray(np.linalg.lstsq(equalities.T, rest, rcond=1e-12)[0], dtype=float)
-    return inequality, free
+        remainder = slope - active.gradients.T @ inequality
+        solution = np.linalg.lstsq(equalities.T, remainder, rcond=1e-12)[0]
+        equality_multipliers = np.asarray(solution, dtype=float)
+    return inequality, equality_multipliers
 
 
 def slope_scale(evaluator: Evaluator, point: Point, objective_scale: float = 0.0) -> float:
-    """Return the divisor of the residual, |grad f|.
+    """The divisor of the residual, |grad f|.
 
-    At a stationary objective without active constraints |grad f| vanishes. A thousandth of the
-    objective's magnitude then replaces it.
+    At a stationary objective, |grad f| vanishes. A thousandth of the objective's magnitude then
+    replaces it.
     """
     slope = float(np.linalg.norm(evaluator.jacobian(point)[0]))
     floor = max(1e-3 * abs(point.objective), 1e-6 * objective_scale)
@@ -235,14 +232,14 @@ def _priced(
     jacobian = evaluator.jacobian(point)
     active = active_set(evaluator, point)
     equalities = jacobian[1 + evaluator.constraint_count :]
-    inequality, free = multipliers(jacobian[0], active, equalities)
-    rest = jacobian[0] - active.gradients.T @ inequality - equalities.T @ free
+    inequality, equality_multipliers = multipliers(jacobian[0], active, equalities)
+    gradient = jacobian[0] - active.gradients.T @ inequality - equalities.T @ equality_multipliers
     size = slope_scale(evaluator, point, objective_scale)
-    return active, inequality, free, float(np.linalg.norm(rest)) / size
+    return active, inequality, equality_multipliers, float(np.linalg.norm(gradient)) / size
 
 
 def residual(evaluator: Evaluator, point: Point) -> float:
-    """The relative norm of the Lagrangian's gradient at a point, as in `check`."""
+    """Relative norm of the Lagrangian's gradient at a point, as in `check`."""
     return _priced(evaluator, point, 0.0)[-1]
 
 
@@ -252,7 +249,7 @@ def check(
     """Check the optimality conditions at a point."""
     problem, m = evaluator.problem, evaluator.constraint_count
     jacobian = evaluator.jacobian(point)
-    active, inequality, free, left = _priced(evaluator, point, objective_scale)
+    active, inequality, equality_multipliers, residual = _priced(evaluator, point, objective_scale)
     equalities = jacobian[1 + m :]
     stacked = np.concatenate([active.gradients, equalities])
     size = np.sqrt((stacked**2).sum(axis=1, keepdims=True))
@@ -260,20 +257,22 @@ def check(
     if len(stacked) == 0:
         rank = 0
     a, b = len(active.constraint), len(active.constraint) + len(active.lower)
-    held, low, high = np.zeros(m), np.zeros(len(problem.names)), np.zeros(len(problem.names))
+    constraints, (lower, upper) = np.zeros(m), np.zeros((2, len(problem.names)))
     free_variables = evaluator.space.free
-    held[active.constraint] = inequality[:a]
-    low[free_variables[active.lower]] = inequality[a:b]
-    high[free_variables[active.upper]] = inequality[b:]
+    constraints[active.constraint] = inequality[:a]
+    lower[free_variables[active.lower]] = inequality[a:b]
+    upper[free_variables[active.upper]] = inequality[b:]
     labels = [problem.constraint_names[i] for i in active.constraint]
     labels += list(problem.equality_names)
     labels += [f"{problem.names[free_variables[j]]} lower" for j in active.lower]
     labels += [f"{problem.names[free_variables[j]]} upper" for j in active.upper]
-    found = None
+    sign = None
     if curvature:
         strong = active.gradients[inequality * np.sqrt((active.gradients**2).sum(axis=1)) > 0]
-        found = _curvature(evaluator, point, held, free, np.concatenate([strong, equalities]))
-    return KktResidual(left, tuple(labels), len(stacked), rank, held, free, low, high, found)
+        rows = np.concatenate([strong, equalities])
+        sign = _curvature(evaluator, point, constraints, equality_multipliers, rows)
+    multipliers = constraints, equality_multipliers, lower, upper
+    return KktResidual(residual, tuple(labels), len(stacked), rank, *multipliers, sign)
 
 
 def lagrangian_weights(constraints: Vector, equalities: Vector) -> Vector:
@@ -291,10 +290,10 @@ def null_space(rows: Vector, size: int) -> Vector:
 
 
 def _curvature(
-    evaluator: Evaluator, point: Point, constraints: Vector, equalities: Vector, held: Vector
+    evaluator: Evaluator, point: Point, constraints: Vector, equalities: Vector, rows: Vector
 ) -> Curvature:
     size = evaluator.space.size
-    basis = null_space(held, size)
+    basis = null_space(rows, size)
     if basis.shape[1] == 0:
         return Curvature.VERTEX
     weights = lagrangian_weights(constraints, equalities)
@@ -309,7 +308,7 @@ def _curvature(
 DAMPING = 1e3
 """Weight of complementarity when multipliers are estimated away from the optimum."""
 FEASIBLE = 1e-9
-"""Violation below which a polished point counts as exactly feasible."""
+"""Violation up to which a polished point counts as exactly feasible."""
 RADIUS = 0.5
 """Longest step in any solver coordinate (a factor of 1.65 in a logarithmic variable)."""
 
@@ -319,7 +318,7 @@ class NewtonState:
     """A point with the data for the next step."""
 
     point: Point
-    near: kkt.Active
+    active: Active
     multipliers: Vector
     equality_multipliers: Vector
     measure: float
@@ -330,26 +329,26 @@ def state_at(evaluator: Evaluator, point: Point) -> NewtonState:
     """A point with its multipliers and optimality residual."""
     m = evaluator.constraint_count
     jacobian = evaluator.jacobian(point)
-    near = kkt.active_set(evaluator, point, width=0.1)
+    active = active_set(evaluator, point, width=0.1)
     equalities = jacobian[1 + m :]
-    held, free = kkt.multipliers(jacobian[0], near, equalities, damping=DAMPING)
-    scale = kkt.slope_scale(evaluator, point)
-    rest = jacobian[0] - near.gradients.T @ held - equalities.T @ free
-    slack = float(held @ np.maximum(near.margins, 0.0))
-    measure = (float(np.linalg.norm(rest)) + slack) / scale + point.violation
-    return NewtonState(point, near, held, free, measure, scale)
+    inequality, equality_multipliers = multipliers(jacobian[0], active, equalities, damping=DAMPING)
+    scale = slope_scale(evaluator, point)
+    gradient = jacobian[0] - active.gradients.T @ inequality - equalities.T @ equality_multipliers
+    slack = float(inequality @ np.maximum(active.margins, 0.0))
+    measure = (float(np.linalg.norm(gradient)) + slack) / scale + point.violation
+    return NewtonState(point, active, inequality, equality_multipliers, measure, scale)
 
 
 def polish(
     evaluator: Evaluator, start: Point, *, iterations: int = 12, tolerance: float = 1e-13
 ) -> Point:
-    """Improve a point towards the optimality conditions; never worse than the start.
+    """Improve a point by Newton steps; returns the start itself without a better point.
 
-    Returns the start itself without a better point.
+    The steps end once the measure of optimality is below `tolerance`.
     """
     if not start.valid or evaluator.space.size == 0:
         return start
-    first = state = state_at(evaluator, start)
+    initial = state = state_at(evaluator, start)
     visited = [state]
     try:
         for _ in range(iterations):
@@ -364,22 +363,25 @@ def polish(
         pass
     visited.sort(key=lambda s: (max(s.point.violation - FEASIBLE, 0.0), s.measure))
     for candidate in visited:
-        if _acceptable(evaluator, first, candidate):
+        if _acceptable(evaluator, initial, candidate):
             return candidate.point
     return start
 
 
-def _acceptable(evaluator: Evaluator, first: NewtonState, newton_state: NewtonState) -> bool:
-    """Whether a point is no less feasible, and not costlier than start plus priced violation."""
-    if newton_state.point.violation > max(FEASIBLE, first.point.violation):
+def _acceptable(evaluator: Evaluator, initial: NewtonState, newton_state: NewtonState) -> bool:
+    """Whether a point is no less feasible, and its objective at most that of the start.
+
+    The objective may rise by twice the price of the start's violation.
+    """
+    if newton_state.point.violation > max(FEASIBLE, initial.point.violation):
         return False
-    owed = float(first.multipliers @ np.maximum(-first.near.margins, 0.0))
+    allowance = float(initial.multipliers @ np.maximum(-initial.active.margins, 0.0))
     m = evaluator.constraint_count
-    owed += float(np.abs(first.equality_multipliers) @ np.abs(first.point.rows[1 + m :]))
-    room = 1e-9 * max(abs(first.point.objective), first.scale)
-    if first.point.violation > 1e-3:  # far away: any feasible point is an improvement
+    allowance += float(np.abs(initial.equality_multipliers) @ np.abs(initial.point.rows[1 + m :]))
+    room = 1e-9 * max(abs(initial.point.objective), initial.scale)
+    if initial.point.violation > 1e-3:  # far away: any feasible point is an improvement
         return True
-    return newton_state.point.objective <= first.point.objective + 2 * owed + room
+    return newton_state.point.objective <= initial.point.objective + 2 * allowance + room
 
 
 def _advance(evaluator: Evaluator, state: NewtonState) -> NewtonState | None:
@@ -402,16 +404,16 @@ def _advance(evaluator: Evaluator, state: NewtonState) -> NewtonState | None:
         trial = evaluator.point(z)
         if not trial.valid:
             continue
-        better = _merit(evaluator, trial, state.scale, price) < merit - 1e-9 * (1 + abs(merit))
-        if better or share == 1.0:
+        improves = _merit(evaluator, trial, state.scale, price) < merit - 1e-9 * (1 + abs(merit))
+        if improves or share == 1.0:
             following = state_at(evaluator, trial)
-            if better or following.measure < 0.9 * state.measure:
+            if improves or following.measure < 0.9 * state.measure:
                 return following
     return None
 
 
 def _merit(evaluator: Evaluator, point: Point, scale: float, price: float) -> float:
-    """Return the l1 merit: objective plus violations at more than their price."""
+    """The l1 merit: the objective plus the violations, weighted above their price."""
     m = evaluator.constraint_count
     missed = np.maximum(-point.rows[1 : 1 + m], 0.0).sum() + np.abs(point.rows[1 + m :]).sum()
     return point.objective / scale + price * float(missed)
@@ -429,48 +431,50 @@ def quadratic_step(
     `hessian` (nf, nf) is that of the Lagrangian over `scale`, positive definite.
     """
     m = evaluator.constraint_count
-    rows = kkt.active_set(evaluator, point, width=1.0)
+    rows = active_set(evaluator, point, width=1.0)
     jacobian = evaluator.jacobian(point)
     slope, equalities = jacobian[0] / scale, jacobian[1 + m :]
     shift = np.zeros_like(slope)
     basis = np.eye(len(slope))
     if len(equalities):
         shift = np.linalg.lstsq(equalities, -point.rows[1 + m :], rcond=1e-12)[0]
-        basis = kkt.null_space(equalities, len(slope))
+        basis = null_space(equalities, len(slope))
     inner, prices = quadratic_programme(
         basis.T @ hessian @ basis,
         basis.T @ (slope + hessian @ shift),
         rows.gradients @ basis,
         rows.margins + rows.gradients @ shift,
     )
-    held = prices[: len(rows.constraint)]
-    free = np.abs(equality_multipliers) / scale
-    return shift + basis @ inner, 2 * max(held.max(initial=0.0), free.max(initial=0.0)) + 1.0
+    constraint_prices = prices[: len(rows.constraint)]
+    equality_prices = np.abs(equality_multipliers) / scale
+    highest = max(constraint_prices.max(initial=0.0), equality_prices.max(initial=0.0))
+    return shift + basis @ inner, 2 * highest + 1.0
 
 
 def convex_hessian(evaluator: Evaluator, state: NewtonState) -> Vector:
-    """Scaled Hessian of the Lagrangian, made positive definite without changing the step.
+    """Scaled Hessian of the Lagrangian, made positive definite without a change of the step.
 
-    Adding multiples of the active rows' outer products leaves the solution on those rows unchanged.
-    If that is not enough, negative curvatures count by their magnitude.
+    Multiples of the active rows' outer products do not change the solution on these rows. If they
+    are not enough, the magnitude replaces a negative curvature.
     """
-    m, near = evaluator.constraint_count, state.near
-    full = np.zeros(m)
-    full[near.constraint] = state.multipliers[: len(near.constraint)]
-    firm = state.multipliers > 1e-6 * state.scale
-    a, b = len(near.constraint), len(near.constraint) + len(near.lower)
-    close = near.margins <= 1e-8
-    fixed = np.concatenate([near.lower[(firm & close)[a:b]], near.upper[(firm & close)[b:]]])
+    m, active = evaluator.constraint_count, state.active
+    constraint_multipliers = np.zeros(m)
+    constraint_multipliers[active.constraint] = state.multipliers[: len(active.constraint)]
+    significant = state.multipliers > 1e-6 * state.scale
+    a, b = len(active.constraint), len(active.constraint) + len(active.lower)
+    at_limit = active.margins <= 1e-8
+    binding = significant & at_limit
+    fixed = np.concatenate([active.lower[binding[a:b]], active.upper[binding[b:]]])
     columns = np.setdiff1d(np.arange(evaluator.space.size), fixed)
-    weights = kkt.lagrangian_weights(full, state.equality_multipliers)
+    weights = lagrangian_weights(constraint_multipliers, state.equality_multipliers)
     hessian = evaluator.hessian(state.point, weights, columns) / state.scale
     size = max(float(np.abs(hessian).max(initial=0.0)), 1e-3)
     hessian[fixed, fixed] = size
     floor = 1e-7 * size
-    held = near.gradients[firm]
-    held = held / np.sqrt((held**2).sum(axis=1, keepdims=True))
+    rows = active.gradients[significant]
+    rows = rows / np.sqrt((rows**2).sum(axis=1, keepdims=True))
     for weight in (0.0, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 100.0, 1e3):
-        convex = hessian + weight * size * (held.T @ held)
+        convex = hessian + weight * size * (rows.T @ rows)
         if np.linalg.eigvalsh(convex)[0] > floor:
             return np.asarray(convex)
     values, vectors = np.linalg.eigh(hessian)
@@ -478,33 +482,34 @@ def convex_hessian(evaluator: Evaluator, state: NewtonState) -> Vector:
 
 
 def quadratic_programme(
-    hessian: Vector, slope: Vector, rows: Vector, margins: Vector, known: Vector | None = None
+    hessian: Vector, slope: Vector, rows: Vector, margins: Vector, previous: Vector | None = None
 ) -> tuple[Vector, Vector]:
     """Minimise d'Hd/2 + slope'd subject to margins + rows d >= 0, with multipliers (a,) >= 0.
 
-    Inconsistent rows give the step of least violation instead. `known` are multipliers of a similar
-    programme, which only save time.
+    Inconsistent rows give the step of least violation instead. `previous` are multipliers of a
+    similar programme and only save time.
     """
     factor = np.linalg.cholesky(hessian)
-    moved = np.linalg.solve(factor, slope)
+    scaled_slope = np.linalg.solve(factor, slope)
     prices = np.zeros(len(margins))
     if len(margins) == 0:
-        return -np.linalg.solve(factor.T, moved), prices
-    turned = np.linalg.solve(factor, rows.T).T
-    needed = turned @ moved - margins
-    length = np.sqrt((turned**2).sum(axis=1))
+        return -np.linalg.solve(factor.T, scaled_slope), prices
+    scaled_rows = np.linalg.solve(factor, rows.T).T
+    needed = scaled_rows @ scaled_slope - margins
+    length = np.sqrt((scaled_rows**2).sum(axis=1))
     useful = length > 1e-12
-    turned, needed = turned[useful] / length[useful, None], needed[useful] / length[useful]
+    scaled_rows = scaled_rows[useful] / length[useful, None]
+    needed = needed[useful] / length[useful]
     unit = np.zeros(len(slope) + 1)
     unit[-1] = 1.0
-    stacked = np.concatenate([turned.T, needed[None, :]])
-    weights = kkt.nnls(stacked, unit, None if known is None else known[useful])
+    stacked = np.concatenate([scaled_rows.T, needed[None, :]])
+    weights = nnls(stacked, unit, None if previous is None else previous[useful])
     residual = stacked @ weights - unit
     if -residual[-1] <= 1e-12:  # the rows contradict each other
         missed = -margins
-        worst = missed > 0
-        step = np.linalg.lstsq(rows[worst], missed[worst], rcond=1e-8)[0]
+        violated = missed > 0
+        step = np.linalg.lstsq(rows[violated], missed[violated], rcond=1e-8)[0]
         return np.asarray(step, dtype=float), prices
     nearest = -residual[:-1] / residual[-1]
     prices[useful] = weights / -residual[-1] / length[useful]
-    return np.linalg.solve(factor.T, nearest - moved), prices
+    return np.linalg.solve(factor.T, nearest - scaled_slope), prices

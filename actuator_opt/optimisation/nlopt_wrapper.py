@@ -1,9 +1,9 @@
-"""NLopt behind a guard: named algorithms, screened callbacks, verified results.
+"""Guarded calls of NLopt: algorithms by name, screened callbacks, verified results.
 
-NLopt reports success on infeasible points (MMA, CCSAQ, COBYLA), crashes on NaN (AGS), replaces
-exceptions of callbacks and hides good results behind RoundoffLimited [NLopt]. Here its return code
-is only recorded. Callbacks never raise and never return NaN, the best feasible iterate is kept, and
-the caller judges the point itself.
+NLopt reports success at infeasible points (MMA, CCSAQ, COBYLA), crashes on NaN (AGS), replaces
+exceptions of callbacks, and discards good results with RoundoffLimited [NLopt]. The wrapper
+therefore only records the return code. Callbacks never raise and never return NaN, the best
+feasible iterate is stored, and the caller verifies the result.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Algorithm:
     scope : "local", "global", or "wrapper" for one that needs an inner algorithm
     inequalities, equalities : whether it supports them
     most_variables : maximum number of free variables
-    most_evaluations : of one run (the original DIRECT slows down with their cube)
+    most_evaluations : maximum of one run; the time of the original DIRECT grows with their cube
     about : description
     """
 
@@ -56,9 +56,11 @@ class Algorithm:
 def _table(text: str) -> dict[str, Algorithm]:
     table = {}
     for line in text.strip().splitlines():
-        name, scope, rows, most, effort, about = (cell.strip() for cell in line.split("|"))
+        name, scope, rows, variables, evaluations, about = (
+            cell.strip() for cell in line.split("|")
+        )
         table[name] = Algorithm(
-            name, scope, "i" in rows, "e" in rows, int(most), int(effort), about
+            name, scope, "i" in rows, "e" in rows, int(variables), int(evaluations), about
         )
     return table
 
@@ -106,35 +108,38 @@ OLDER = {
     "GN_MLSL_LDS": "G_MLSL_LDS+LN_BOBYQA",
     "G_MLSL": "G_MLSL_LDS+LD_LBFGS",
 }
-"""NLopt names of combinations that are written here as a sum."""
+"""NLopt names of combinations, and their notation as a sum."""
 
 INSIDE = {"AUGLAG": "LD_LBFGS", "AUGLAG_EQ": "LD_MMA", "G_MLSL_LDS": "LD_LBFGS"}
 """Default inner algorithm of a wrapper."""
 
 
 def find(text: str) -> tuple[Algorithm, Algorithm | None]:
-    """Return the algorithm named `text`, and its inner one ("AUGLAG+LD_LBFGS").
+    """The algorithm named `text` and its inner algorithm, as in "AUGLAG+LD_LBFGS".
 
-    Case does not matter, and a prefix may be omitted if the rest is unique ("slsqp").
+    Case does not matter. A prefix may be omitted if the name remains unique ("slsqp").
 
     Raises
     ------
     UsageError
-        no such algorithm; suggests the nearest names
+        the algorithm does not exist; suggests the nearest names
     """
     name = OLDER.get(text.strip().upper(), text.strip().upper())
     outer, _, inner = name.partition("+")
-    first = _one(outer)
-    if first.scope != "wrapper":
+    outer_algorithm = _one(outer)
+    if outer_algorithm.scope != "wrapper":
         if inner:
-            raise _refusal(f"{first.name} takes no inner algorithm", f"write {first.name}")
-        return first, None
-    second = _one(inner or INSIDE[first.name])
-    if second.scope == "wrapper":
+            raise _refusal(
+                f"{outer_algorithm.name} takes no inner algorithm", f"write {outer_algorithm.name}"
+            )
+        return outer_algorithm, None
+    inner_algorithm = _one(inner or INSIDE[outer_algorithm.name])
+    if inner_algorithm.scope == "wrapper":
         raise _refusal(
-            f"{second.name} cannot be the inner algorithm of {first.name}", "name a local algorithm"
+            f"{inner_algorithm.name} cannot be the inner algorithm of {outer_algorithm.name}",
+            "name a local algorithm",
         )
-    return first, second
+    return outer_algorithm, inner_algorithm
 
 
 def _one(name: str) -> Algorithm:
@@ -144,8 +149,8 @@ def _one(name: str) -> Algorithm:
     short = [a for a in ALGORITHMS.values() if a.name.split("_", 1)[-1] == name]
     if len(short) == 1:
         return short[0]
-    near = difflib.get_close_matches(name, [*ALGORITHMS, *OLDER], n=3, cutoff=0.5)
-    choice = ", ".join(near or ["LD_SLSQP", "AUGLAG+LD_LBFGS", "GN_ISRES"])
+    suggestions = difflib.get_close_matches(name, [*ALGORITHMS, *OLDER], n=3, cutoff=0.5)
+    choice = ", ".join(suggestions or ["LD_SLSQP", "AUGLAG+LD_LBFGS", "GN_ISRES"])
     raise _refusal(f'there is no algorithm "{name}"', f"did you mean {choice}?")
 
 
@@ -154,7 +159,7 @@ def _refusal(message: str, remedy: str) -> UsageError:
 
 
 def suit(text: str, problem: BoxProblem) -> str:
-    """Return the full name of an algorithm that can solve the problem.
+    """The full name of an algorithm, if it can solve the problem.
 
     Raises
     ------
@@ -163,7 +168,7 @@ def suit(text: str, problem: BoxProblem) -> str:
     """
     outer, inner = find(text)
     inequalities, equalities = bool(problem.constraint_names), bool(problem.equality_names)
-    free = int(np.count_nonzero(problem.upper > problem.lower))
+    count = int(np.count_nonzero(problem.upper > problem.lower))
     if (inequalities and not outer.inequalities) or (equalities and not outer.equalities):
         kind = "constraints" if not outer.inequalities else "equality constraints"
         remedy = "write LD_SLSQP or LN_COBYLA"
@@ -181,15 +186,15 @@ def suit(text: str, problem: BoxProblem) -> str:
             "write G_MLSL_LDS+LD_LBFGS",
         )
     for part in (outer, inner):
-        if part is not None and free > part.most_variables:
-            message = f"{part.name} supports at most {part.most_variables} variables, not {free}"
+        if part is not None and count > part.most_variables:
+            message = f"{part.name} supports at most {part.most_variables} variables, not {count}"
             raise _refusal(message, "fix some variables, or write LD_SLSQP or GN_ISRES")
     return outer.name if inner is None else f"{outer.name}+{inner.name}"
 
 
 ARRIVAL = (0.1, 1e-3, 1e-3)
-"""A run has reached a known optimum within this distance in solver coordinates, relative difference
-of the objective and violation; only its slow convergence is left."""
+"""Distance in solver coordinates, relative difference of the objective, and violation within which
+a run has reached a known optimum. Only its slow convergence would follow."""
 
 
 @dataclass(frozen=True)
@@ -208,7 +213,7 @@ class _Arrived(Exception):
 
 
 class _Guard:
-    """Callbacks that never raise and never return NaN, in logarithmic or linear coordinates."""
+    """Callbacks in logarithmic or linear coordinates that never raise and never return NaN."""
 
     def __init__(self, evaluator: Evaluator, start: Point, *, linear: bool, handle: Any) -> None:
         self.evaluator, self.handle, self.linear = evaluator, handle, linear
@@ -217,7 +222,7 @@ class _Guard:
         self.width = problem.upper[space.free] - self.low
         self.scale = abs(start.objective) if start.valid and start.objective != 0 else 1.0
         self.worst = 1.0
-        self.known: Sequence[Point] = ()
+        self.optima: Sequence[Point] = ()
         self.rank: Callable[[Point], Any] = _rank
         self.arrived: int | None = None
         self.error: BaseException | None = None
@@ -249,10 +254,10 @@ class _Guard:
         return np.asarray(jacobian * (self.width / slope))
 
     def _visit(self, u: Vector) -> Point | None:
-        """Return the point, or None where the run must stop."""
+        """The point at u, or None if the run must stop."""
         if self.error is not None:
             return None
-        with self._held():
+        with self._deferred():
             self.last = point = self.point(np.array(u, dtype=float))
             if point.valid:
                 self.worst = max(self.worst, abs(point.objective) / self.scale)
@@ -265,19 +270,19 @@ class _Guard:
         return None
 
     def _look_around(self, point: Point) -> None:
-        """Stop near a known optimum, which the run would only reach again."""
-        reach, share, missed = ARRIVAL
-        if point.violation > missed:
+        """Stop the run near a known optimum."""
+        distance, share, violation = ARRIVAL
+        if point.violation > violation:
             return
-        for index, known in enumerate(self.known):
-            near = abs(point.objective - known.objective) <= share * abs(known.objective)
-            if near and np.abs(point.z - known.z).max(initial=0.0) <= reach:
+        for index, optimum in enumerate(self.optima):
+            similar = abs(point.objective - optimum.objective) <= share * abs(optimum.objective)
+            if similar and np.abs(point.z - optimum.z).max(initial=0.0) <= distance:
                 self.arrived = index
                 raise _Arrived
 
     @contextmanager
-    def _held(self) -> Iterator[None]:
-        """Hold exceptions of the model and Ctrl-C until NLopt has returned."""
+    def _deferred(self) -> Iterator[None]:
+        """Defer exceptions of the model and Ctrl-C until NLopt has returned."""
         try:
             yield
         except BaseException as error:  # every exception, as NLopt turns them into SystemError
@@ -291,7 +296,7 @@ class _Guard:
         if point is None or not point.valid:
             return 10.0 * self.worst
         if slope.size:
-            with self._held():
+            with self._deferred():
                 slope[:] = self._slopes(point)[0] / self.scale
         return point.objective / self.scale
 
@@ -304,14 +309,14 @@ class _Guard:
             return
         result[:] = -point.rows[rows]
         if slopes.size:
-            with self._held():
+            with self._deferred():
                 slopes[:] = -self._slopes(point)[rows]
 
     def inequalities(self, result: Vector, u: Vector, slopes: Vector) -> None:
         self._rows(result, u, slopes, slice(1, 1 + self.evaluator.constraint_count), 1.0)
 
     def worst_margin(self, u: Vector, slope: Vector) -> float:
-        """Return the worst-violated constraint as one number (for AGS)."""
+        """The worst-violated constraint as one number, for AGS."""
         result = np.zeros(self.evaluator.constraint_count)
         self.inequalities(result, u, slope)
         return float(result.max())
@@ -327,26 +332,26 @@ def run(
     *,
     linear: bool = False,
     tolerance: float = 1e-9,
-    most: int | None = None,
+    max_evaluations: int | None = None,
     seed: int = 0,
-    known: Sequence[Point] = (),
+    optima: Sequence[Point] = (),
     rank: Callable[[Point], Any] | None = None,
 ) -> NloptRun:
-    """Run one algorithm from one point, at most `most` evaluations (default: its own).
+    """Run one algorithm from one point, for at most `max_evaluations` (default: the algorithm's).
 
-    A run that reaches one of the `known` optima (see `ARRIVAL`) stops there. Returns the best by
+    A run that reaches one of the known `optima` (see `ARRIVAL`) stops there. Returns the best by
     `rank` (default: feasible by objective, else by violation) of NLopt's point, the best feasible
     iterate, the last iterate and the start. Exceptions of the model, interrupts included, are
-    raised unchanged; reaching a limit ends the run quietly.
+    raised unchanged. A limit ends the run without an exception.
     """
     if evaluator.space.size == 0:
         return NloptRun(start, 1, algorithm)
     outer, inner = find(algorithm)
-    size, most = evaluator.space.size, most or outer.most_evaluations
+    size, max_evaluations = evaluator.space.size, max_evaluations or outer.most_evaluations
     evaluator.eager = (inner or outer).uses_gradients
-    handle = _handle(outer, size, tolerance, most)
+    handle = _handle(outer, size, tolerance, max_evaluations)
     guard = _Guard(evaluator, start, linear=linear, handle=handle)
-    guard.known, guard.rank = known, rank or _rank
+    guard.optima, guard.rank = optima, rank or _rank
     box = evaluator.space
     bounds = (np.zeros(size), np.ones(size)) if linear else (box.lower, box.upper)
     handle.set_lower_bounds(bounds[0])
@@ -360,35 +365,35 @@ def run(
     if e:
         handle.add_equality_mconstraint(guard.equalities, np.full(e, tolerance))
     if inner is not None:
-        local = _handle(inner, size, tolerance, max(20, most // 4))
+        local = _handle(inner, size, tolerance, max(20, max_evaluations // 4))
         handle.set_local_optimizer(local)
     nlopt.srand(seed + 1)
     try:
-        found = handle.optimize(guard.from_point(start))
-    except (RuntimeError, ValueError, SystemError, MemoryError) as error:  # NLopt's own errors
-        found = None
-        guard.error = guard.error or error.__cause__  # Ctrl-C outside any guard
+        end = handle.optimize(guard.from_point(start))
+    except (RuntimeError, ValueError, SystemError, MemoryError) as error:  # raised by NLopt
+        end = None
+        guard.error = guard.error or error.__cause__  # Ctrl-C outside a callback
     code = int(handle.last_optimize_result())
     if guard.error is not None and not isinstance(guard.error, (LimitReached, _Arrived)):
         raise guard.error
-    return NloptRun(_pick(evaluator, guard, found, start), code, algorithm, guard.arrived)
+    return NloptRun(_pick(evaluator, guard, end, start), code, algorithm, guard.arrived)
 
 
-def _handle(algorithm: Algorithm, size: int, tolerance: float, most: int) -> Any:
+def _handle(algorithm: Algorithm, size: int, tolerance: float, max_evaluations: int) -> Any:
     handle = nlopt.opt(getattr(nlopt, algorithm.name), size)
     handle.set_exceptions_enabled(False)
     handle.set_ftol_rel(tolerance)
     handle.set_xtol_rel(tolerance)
-    handle.set_maxeval(most)
+    handle.set_maxeval(max_evaluations)
     return handle
 
 
-def _pick(evaluator: Evaluator, guard: _Guard, found: Vector | None, start: Point) -> Point:
-    """Return the best of NLopt's point, the best feasible, the last iterate and the start."""
+def _pick(evaluator: Evaluator, guard: _Guard, end: Vector | None, start: Point) -> Point:
+    """The best of NLopt's point, the best feasible iterate, the last iterate and the start."""
     candidates = [guard.best, guard.last, start]
-    if found is not None and guard.error is None and np.isfinite(found).all():
+    if end is not None and guard.error is None and np.isfinite(end).all():
         limited, evaluator.limited = evaluator.limited, False
-        candidates.insert(0, guard.point(np.asarray(found)))
+        candidates.insert(0, guard.point(np.asarray(end)))
         evaluator.limited = limited
     usable = [p for p in candidates if p is not None]
     return min(usable, key=guard.rank)

@@ -1,4 +1,4 @@
-"""The Pareto front of an actuator for objectives by metric: designs, knee, spacing, checks."""
+"""The Pareto front of an actuator for several metrics: designs, knee, spacing, checks."""
 
 from __future__ import annotations
 
@@ -21,13 +21,12 @@ from ..evaluation import Evaluation, PreparedDesign, compute, evaluate
 from ..evaluation.build import spec_hash
 from ..evaluation.kernel import governing
 from ..evaluation.limits import MetricArrays
-from .actuator import ActuatorProblem, Fault, Goal, build, idle_metrics
-from .front.front import Front, FrontSettings, NoEnd, front
+from .actuator import MET, ActuatorProblem, Fault, Goal, build, idle_metrics
+from .front.front import Front, FrontSettings, NoAnchor, front
 from .front.objectives import Objectives
 from .front.plane import FrontGap
 from .infeasibility_card import explained
 from .problem import PointValues, Vector
-from .resolve.parallel_descents import FEASIBLE
 from .result import Infeasibility
 from .rounding import design_at
 
@@ -73,18 +72,18 @@ class ParetoFront(Displayed):
     Parameters
     ----------
     subject : the design studied
-    spec_hash : of it
+    spec_hash : hash of this design
     objectives : metrics with their direction
     points : designs, the best in the first objective first
-    knee : where the front bends most towards the ideal; None if it does not
-    design, evaluation : of the knee, else of the first point; as stated without a front
-    passed : objectives of dominated designs met during the search
+    knee : the design where the front bends most towards the ideal; None without a bend
+    design, evaluation : of the knee, else of the first point; without a front, of the file
+    passed : objectives of the dominated designs of the search
     gaps : normalised distances between neighbours (to the nearest for three or more objectives)
     wide : gaps of two objectives above three times the median, and the reason
     checked, improved : independent searches between designs, and how many improved the front
-    failed : number of places without a design at or near them
-    infeasibility : reason for a missing front
-    unsolved : objective whose best design was not found, and the outcome of its search
+    failed : number of levels without a design nearby
+    infeasibility : explanation of a missing front
+    unsolved : objective without a best design, and the outcome of its search
     """
 
     subject: Design
@@ -121,12 +120,12 @@ class ParetoFront(Displayed):
     @property
     def steps(self) -> tuple[float, ...]:
         """The gaps other than jumps."""
-        over = {gap.after for gap in self.jumps}
-        return tuple(gap for k, gap in enumerate(self.gaps) if k not in over)
+        jumps = {gap.after for gap in self.jumps}
+        return tuple(gap for k, gap in enumerate(self.gaps) if k not in jumps)
 
     @property
     def evenness(self) -> float | None:
-        """The largest gap over the median one, without jumps; None if there are no gaps."""
+        """Ratio of the largest gap to the median gap, without jumps; None without gaps."""
         return max(self.steps) / median(self.steps) if self.steps else None
 
     @property
@@ -137,20 +136,22 @@ class ParetoFront(Displayed):
                 f"no front: the search for the best of one objective alone failed, {self.unsolved}"
             )
         if self.infeasibility is not None or not self.points:
-            why = "" if self.infeasibility is None else f" {self.infeasibility.sentence}"
-            return f"no front: no design meets all requirements.{why}"
+            reason = "" if self.infeasibility is None else f" {self.infeasibility.sentence}"
+            return f"no front: no design meets all requirements.{reason}"
         if len(self.points) == 1:
             return "the objectives do not conflict: one design is best in every objective"
-        told = f"{len(self.points)} non-dominated designs; "
-        told += f"{self.checked} independent searches replaced {self.improved} merely local designs"
+        sentence = f"{len(self.points)} non-dominated designs; "
+        sentence += (
+            f"{self.checked} independent searches replaced {self.improved} merely local designs"
+        )
         if self.failed:
-            told += f"; no design at {self.failed} place" + "s" * (self.failed > 1)
-        return told
+            sentence += f"; no design at {self.failed} place" + "s" * (self.failed > 1)
+        return sentence
 
     def to_dict(self) -> dict[str, Any]:
         """The object of `pareto --json`: the evaluation's keys are those of the knee (SI)."""
         knee = self.knee
-        found = self.evaluation.to_dict() | {
+        result = self.evaluation.to_dict() | {
             "spec_hash": self.spec_hash,
             "status": self.status,
             "outcome": self.sentence,
@@ -178,40 +179,42 @@ class ParetoFront(Displayed):
             "seed": self.seed,
             "seconds": self.seconds,
         }
-        more = self.infeasibility
-        return found | ({} if more is None else {"infeasibility": asdict(more)})
+        infeasibility = self.infeasibility
+        return result | ({} if infeasibility is None else {"infeasibility": asdict(infeasibility)})
 
 
-def wishes(texts: Sequence[str], known: dict[str, Quantity]) -> tuple[Wish, ...]:
+def wishes(texts: Sequence[str], quantities: dict[str, Quantity]) -> tuple[Wish, ...]:
     """Parse objectives from ``METRIC:min`` or ``METRIC:max``.
 
     Raises
     ------
     UsageError : fewer than two or more than four, an unknown metric, or one metric twice
     """
-    found: list[Wish] = []
+    objectives: list[Wish] = []
     for text in texts:
         metric, colon, sense = (part.strip() for part in text.partition(":"))
         if not colon or sense not in ("min", "max"):
             message = f'objective "{text}" is not of the form METRIC:min or METRIC:max'
             raise UsageError(Diagnostic(message, 'write e.g. "mass:min"'))
-        if metric not in known:
+        if metric not in quantities:
             message = f'objective "{text}": there is no metric {metric}'
-            raise UsageError(Diagnostic(message, remedy(metric, known)))
-        before = next((one for one in found if one.metric == metric), None)
-        if before is not None:
-            both = before.sense != sense
-            message = f"objective {metric} is given twice" + (", min and max" if both else "")
+            raise UsageError(Diagnostic(message, remedy(metric, quantities)))
+        earlier = next((wish for wish in objectives if wish.metric == metric), None)
+        if earlier is not None:
+            contradictory = earlier.sense != sense
+            message = f"objective {metric} is given twice" + (
+                ", min and max" if contradictory else ""
+            )
             raise UsageError(Diagnostic(message, "keep one of them"))
-        found.append(Wish(metric, "min" if sense == "min" else "max", known[metric]))
-    if not 2 <= len(found) <= 4:
-        message = f"a front needs two to four objectives, not {len(found)}"
+        objectives.append(Wish(metric, "min" if sense == "min" else "max", quantities[metric]))
+    if not 2 <= len(objectives) <= 4:
+        message = f"a front needs two to four objectives, not {len(objectives)}"
         raise UsageError(Diagnostic(message, 'give e.g. "mass:min" and "stiffness_min:max"'))
-    return tuple(found)
+    return tuple(objectives)
 
 
 @dataclass(frozen=True)
-class _Many:
+class _ManyObjectives:
     """The problem of an actuator with several objectives."""
 
     actuator: ActuatorProblem
@@ -223,9 +226,9 @@ class _Many:
     def evaluate(self, points: Array) -> PointValues:
         """Objectives, to be minimised, and margins."""
         cases = self.actuator.subject.cases
-        done: list[MetricArrays] = []
-        found = self.actuator.evaluate(points, seen=done)
-        return replace(found, objective=[goal.value(done[0], cases) for goal in self.goals])
+        outputs: list[MetricArrays] = []
+        values = self.actuator.evaluate(points, outputs=outputs)
+        return replace(values, objective=[goal.value(outputs[0], cases) for goal in self.goals])
 
 
 def pareto(
@@ -243,9 +246,9 @@ def pareto(
     ----------
     subject : the prepared design
     objectives : two to four of ``METRIC:min`` or ``METRIC:max``
-    count : designs requested
+    count : requested number of designs
     seed : of the searches; the same seed gives the same front
-    checks : independent searches between designs, which reveal merely local ones
+    checks : number of independent searches between designs, which detect merely local designs
     fault : locates faults of variables in the file
     """
     began = time.perf_counter()
@@ -254,18 +257,20 @@ def pareto(
         message = f"-n {count}: a front has {FRONT.least} to {FRONT.most} designs"
         raise UsageError(Diagnostic(message, "choose a number between them"))
     many = _problem(subject, wished, fault)
-    names = [one.metric for one in wished]
-    found = front(
+    names = [wish.metric for wish in wished]
+    result = front(
         Objectives(names, many.actuator.problem, many.evaluate),
         FrontSettings(count=count, seed=seed, checks=checks),
     )
-    if isinstance(found, NoEnd):
-        return _without(many, found, began)
-    return _result(many, found, seed, began)
+    if isinstance(result, NoAnchor):
+        return _without(many, result, began)
+    return _result(many, result, seed, began)
 
 
-def _problem(subject: PreparedDesign, wished: tuple[Wish, ...], fault: Fault | None) -> _Many:
-    """The problem, with every objective defined and variable.
+def _problem(
+    subject: PreparedDesign, wished: tuple[Wish, ...], fault: Fault | None
+) -> _ManyObjectives:
+    """Build the problem; every objective must be defined and variable.
 
     Raises
     ------
@@ -274,37 +279,36 @@ def _problem(subject: PreparedDesign, wished: tuple[Wish, ...], fault: Fault | N
     present = compute(subject, subject.values()).computed
     for wish in wished:
         if not present.metrics.get(wish.metric):
-            why = present.why.get(wish.metric, "it does not apply to this design")
-            message = f"{wish.metric} cannot be an objective here: {why}"
+            reason = present.why.get(wish.metric, "it does not apply to this design")
+            message = f"{wish.metric} cannot be an objective here: {reason}"
             raise UsageError(
                 Diagnostic(message, "choose a metric that `evaluate` lists with a value")
             )
-    wish_all = Objective(minimise={one.metric: 1.0 for one in wished})
-    asked = replace(
+    wish_all = Objective(minimise={w.metric: 1.0 for w in wished})
+    weighted = replace(
         subject,
         design=subject.design.model_copy(update={"objective": wish_all}),
-        aims={one.metric: one.sense for one in wished},
+        aims={w.metric: w.sense for w in wished},
     )
-    actuator = build(asked, fault)
-    still = idle_metrics(actuator)
-    if still:
-        message = f"no variable affects {' and '.join(still)}: nothing to trade off"
+    actuator = build(weighted, fault)
+    idle = idle_metrics(actuator)
+    if idle:
+        message = f"no variable affects {' and '.join(idle)}: nothing to trade off"
         remedy_ = "choose another objective, or free a dimension that it depends on"
         raise InputError(Diagnostic(message, remedy_))
     goals = tuple(
-        Goal({one.metric: 1.0}, {one.metric: 1.0}, 1.0 if one.sense == "min" else -1.0)
-        for one in wished
+        Goal({w.metric: 1.0}, {w.metric: 1.0}, 1.0 if w.sense == "min" else -1.0) for w in wished
     )
-    return _Many(actuator, goals, wished, subject)
+    return _ManyObjectives(actuator, goals, wished, subject)
 
 
-def _points(many: _Many, found: Front) -> tuple[FrontPoint, ...]:
-    """Variables and metrics of every design: objectives, and those of the requirements."""
-    actuator, count = many.actuator, found.x.shape[1]
+def _points(many: _ManyObjectives, result: Front) -> tuple[FrontPoint, ...]:
+    """Variables of every design, and its metrics of the objectives and requirements."""
+    actuator, count = many.actuator, result.x.shape[1]
     subject = actuator.subject
-    numbers = subject.values(dict(zip(actuator.paths, found.x, strict=True)))
-    computed = compute(subject, numbers, actuator.wanted).computed
-    names = [one.metric for one in many.wished] + [
+    numbers = subject.values(dict(zip(actuator.paths, result.x, strict=True)))
+    computed = compute(subject, numbers, actuator.metrics).computed
+    names = [wish.metric for wish in many.wished] + [
         row.limit_of.metric
         for row in (*actuator.rows, *actuator.fixed)
         if row.limit_of.origin in ("requirement", "case")
@@ -315,35 +319,35 @@ def _points(many: _Many, found: Front) -> tuple[FrontPoint, ...]:
     }
     return tuple(
         FrontPoint(
-            dict(zip(actuator.paths, found.x[:, k].tolist(), strict=True)),
+            dict(zip(actuator.paths, result.x[:, k].tolist(), strict=True)),
             {name: float(column[k]) for name, column in columns.items()},
-            float(found.residuals[k]),
+            float(result.residuals[k]),
         )
         for k in range(count)
     )
 
 
-def _result(many: _Many, found: Front, seed: int, began: float) -> ParetoFront:
+def _result(many: _ManyObjectives, result: Front, seed: int, began: float) -> ParetoFront:
     """Assemble the result."""
-    knee = None if found.knee is None else Knee(*found.knee)
-    shown = 0 if knee is None else knee.index
-    design, evaluation = design_at(many.actuator, found.x[:, shown])
+    knee = None if result.knee is None else Knee(*result.knee)
+    index = 0 if knee is None else knee.index
+    design, evaluation = design_at(many.actuator, result.x[:, index])
     signs = np.array([goal.sign for goal in many.goals])
     return ParetoFront(
         subject=many.subject.design,
         spec_hash=spec_hash(many.subject),
         objectives=many.wished,
-        points=_points(many, found),
+        points=_points(many, result),
         knee=knee,
         design=design,
         evaluation=evaluation,
-        passed=tuple(map(tuple, _passed(found.passed, signs))),
-        gaps=tuple(found.gaps.tolist()),
-        wide=found.wide,
-        checked=found.checked,
-        improved=found.improved,
-        failed=found.failed,
-        warnings=(*found.warnings, *many.actuator.refusals.warnings(), *_held(many)),
+        passed=tuple(map(tuple, _passed(result.passed, signs))),
+        gaps=tuple(result.gaps.tolist()),
+        wide=result.wide,
+        checked=result.checked,
+        improved=result.improved,
+        failed=result.failed,
+        warnings=(*result.warnings, *many.actuator.refusals.warnings(), *_notes(many)),
         seed=seed,
         seconds=time.perf_counter() - began,
     )
@@ -354,34 +358,34 @@ def _passed(values: Vector, signs: Vector) -> list[list[float]]:
     return rows
 
 
-def _held(many: _Many) -> list[str]:
-    """Parts of a design that a front ignores: its choices, and the sizes of its variables."""
+def _notes(many: _ManyObjectives) -> list[str]:
+    """Warnings on parts of a design that a front ignores: choices, and sizes of variables."""
     design = many.actuator.subject.design
-    said = []
+    notes = []
     if design.choices:
-        said.append(f"choices stay as stated in the design: {', '.join(design.choices)}")
+        notes.append(f"choices stay as stated in the design: {', '.join(design.choices)}")
     sized = [
         path
         for path, variable in design.variables.items()
         if variable.sizes is not None or variable.step is not None
     ]
     if sized:
-        said.append(
+        notes.append(
             f"listed sizes are ignored, as the front uses continuous dimensions: {', '.join(sized)}"
         )
-    return said
+    return notes
 
 
-def _said(wish: Wish) -> str:
+def _text(wish: Wish) -> str:
     return f"{wish.metric}:{wish.sense}"
 
 
-def _without(many: _Many, no_end: NoEnd, began: float) -> ParetoFront:
-    """The result without a front: nothing is feasible, or an end is missing."""
+def _without(many: _ManyObjectives, no_anchor: NoAnchor, began: float) -> ParetoFront:
+    """The result without a front: no design is feasible, or an anchor is missing."""
     subject = many.subject
-    solution = no_end.solution
-    feasible = solution.violation <= FEASIBLE
-    why = None if feasible else explained(many.actuator, solution)[0]
+    solution = no_anchor.solution
+    feasible = solution.violation <= MET
+    infeasibility = None if feasible else explained(many.actuator, solution)[0]
     return ParetoFront(
         subject=subject.design,
         spec_hash=spec_hash(subject),
@@ -390,8 +394,8 @@ def _without(many: _Many, no_end: NoEnd, began: float) -> ParetoFront:
         knee=None,
         design=subject.design,
         evaluation=evaluate(replace(subject, aims=many.actuator.subject.aims)),
-        infeasibility=why,
-        unsolved=f"{_said(many.wished[no_end.objective])}: {solution.outcome.sentence}"
+        infeasibility=infeasibility,
+        unsolved=f"{_text(many.wished[no_anchor.objective])}: {solution.outcome.sentence}"
         if feasible
         else "",
         seconds=time.perf_counter() - began,

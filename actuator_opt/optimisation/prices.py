@@ -1,15 +1,12 @@
-"""Prices of the parameters of an optimum: value, range, and the check by re-solving.
+"""Prices of the parameters of an optimum: value, range of validity, and check by re-solving.
 
-The price of a parameter is the derivative of the Lagrangian [Fiacco1983]: exact for limits,
-material data, pressures and bounds, whatever algebraic form the constraints take. Its range of
-validity follows from the derivative of the optimum. Re-solving at plus and minus 10 % shows the
-error of the straight line.
+The price of a parameter is the derivative of the Lagrangian [Fiacco1983]. It is exact for limits,
+material data, pressures and bounds, for any algebraic form of the constraints. The derivative of
+the optimum solves the linearised optimality conditions [Fiacco1983]; the range of validity of the
+price follows from it. Re-solving at plus and minus 10 % shows the error of the straight line.
 
-Movement of an optimum with a parameter, validity of its active set, and one-sided prices.
-
-The derivative of the optimum solves the linearised optimality conditions [Fiacco1983]. At a
-degenerate vertex the multipliers form a polytope; the prices upwards and downwards are the
-largest and smallest over it [Gauvin1982].
+At a degenerate vertex the multipliers form a polytope. The prices upwards and downwards are then
+the largest and smallest over the polytope [Gauvin1982].
 """
 
 from __future__ import annotations
@@ -38,7 +35,7 @@ from .resolve.steps import valley_at
 INSTANT = 1e-7
 """Change of an active margin per relative parameter change that counts as zero."""
 BASES = 1000
-"""Maximum vertices of the multiplier polytope to enumerate; beyond, linear programming."""
+"""Maximum bases of the multiplier polytope for enumeration; beyond, linear programming."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +45,7 @@ class Optimum:
     Parameters
     ----------
     margins, multipliers : (M,)
-    gradients : (M, nf)
+    gradients : of the margins (M, nf)
     equalities : gradients (e, nf)
     equality_multipliers : (e,)
     slope : gradient of the objective (nf,)
@@ -68,13 +65,13 @@ class Optimum:
     weights: Vector
 
     @property
-    def held(self) -> npt.NDArray[np.intp]:
+    def active(self) -> npt.NDArray[np.intp]:
         """Margins with a positive multiplier."""
         size = self.multipliers * np.sqrt((self.gradients**2).sum(axis=1))
         return np.flatnonzero(size > 1e-10 * max(float(np.linalg.norm(self.slope)), 1e-300))
 
 
-def optimum(evaluator: Evaluator, point: Point, quality: kkt.KktResidual) -> Optimum:
+def optimum_at(evaluator: Evaluator, point: Point, quality: kkt.KktResidual) -> Optimum:
     """Collect margins, gradients, multipliers and the Hessian at an optimum."""
     space, m = evaluator.space, evaluator.constraint_count
     jacobian, unit = evaluator.jacobian(point), np.eye(evaluator.space.size)
@@ -105,50 +102,55 @@ def optimum(evaluator: Evaluator, point: Point, quality: kkt.KktResidual) -> Opt
     )
 
 
-def margin_slopes(found: Optimum, given: Responses) -> Vector:
+def margin_slopes(optimum: Optimum, derivatives: Responses) -> Vector:
     """Explicit derivative of every margin by every parameter (M, q)."""
-    m = len(found.margins) - len(given.bounds)
-    return np.concatenate([given.rows[1 : 1 + m], given.bounds])
+    m = len(optimum.margins) - len(derivatives.bounds)
+    return np.concatenate([derivatives.rows[1 : 1 + m], derivatives.bounds])
 
 
-def lagrangian_slopes(found: Optimum, given: Responses) -> Vector:
+def lagrangian_slopes(optimum: Optimum, derivatives: Responses) -> Vector:
     """Price of every parameter (q,): derivative of the Lagrangian."""
-    m = len(found.margins) - len(given.bounds)
-    return found.weights @ given.rows - found.multipliers[m:] @ given.bounds
+    m = len(optimum.margins) - len(derivatives.bounds)
+    return optimum.weights @ derivatives.rows - optimum.multipliers[m:] @ derivatives.bounds
 
 
-def movement(found: Optimum, given: Responses) -> tuple[Vector, Vector]:
-    """Return derivatives by the parameters of the optimum (nf, q) and its multipliers (M, q).
+def movement(optimum: Optimum, derivatives: Responses) -> tuple[Vector, Vector]:
+    """Derivatives of the optimum (nf, q) and of its multipliers (M, q) by the parameters.
 
-    Directions that change nothing to second order do not move.
+    Directions without effect to second order do not move.
     """
-    held, nf = found.held, len(found.slope)
-    rows = np.concatenate([found.gradients[held], found.equalities])
+    active, nf = optimum.active, len(optimum.slope)
+    rows = np.concatenate([optimum.gradients[active], optimum.equalities])
     explicit = np.concatenate(
-        [margin_slopes(found, given)[held], given.rows[len(given.rows) - len(found.equalities) :]]
+        [
+            margin_slopes(optimum, derivatives)[active],
+            derivatives.rows[len(derivatives.rows) - len(optimum.equalities) :],
+        ]
     )
-    # solves d gradient of the Lagrangian = 0 and d margin = 0 along the active rows, scaled
+    # scaled system: d(gradient of the Lagrangian) = 0 and d(margin) = 0 on the active rows
     size = np.sqrt((rows**2).sum(axis=1))
     size = np.where(size > 0, size, 1.0)
-    scale = max(float(np.linalg.norm(found.slope)), 1e-300)
+    scale = max(float(np.linalg.norm(optimum.slope)), 1e-300)
     rows, explicit = rows / size[:, None], explicit / size[:, None]
-    system = np.block([[found.hessian / scale, -rows.T], [rows, np.zeros((len(rows),) * 2)]])
-    right = -np.concatenate([given.mixed / scale, explicit])
-    answer = np.linalg.lstsq(system, right, rcond=1e-11)[0]
-    shifts = np.zeros((len(found.margins), right.shape[1]))
-    shifts[held] = answer[nf : nf + len(held)] * scale / size[: len(held), None]
-    return answer[:nf], shifts
+    system = np.block([[optimum.hessian / scale, -rows.T], [rows, np.zeros((len(rows),) * 2)]])
+    right = -np.concatenate([derivatives.mixed / scale, explicit])
+    solution = np.linalg.lstsq(system, right, rcond=1e-11)[0]
+    shifts = np.zeros((len(optimum.margins), right.shape[1]))
+    shifts[active] = solution[nf : nf + len(active)] * scale / size[: len(active), None]
+    return solution[:nf], shifts
 
 
 def reach(
-    found: Optimum, given: Responses, moves: Vector, shifts: Vector
+    optimum: Optimum, derivatives: Responses, moves: Vector, shifts: Vector
 ) -> list[tuple[float | None, str | None]]:
-    """For each parameter the nearest value at which the active set changes, and the change.
+    """For each parameter, the nearest value at which the active set changes, and the change.
 
-    None if beyond -100 % and +100 % of the parameter.
+    None beyond -100 % and +100 % of the parameter.
     """
     result: list[tuple[float | None, str | None]] = []
-    for value, changes in zip(given.values, _changes(found, given, moves, shifts), strict=True):
+    for value, changes in zip(
+        derivatives.values, _changes(optimum, derivatives, moves, shifts), strict=True
+    ):
         nearest = min(changes, key=lambda change: abs(change.distance), default=None)
         if nearest is None or abs(nearest.distance) > (abs(value) if value else 1.0):
             result.append((None, None))
@@ -160,8 +162,8 @@ def reach(
 class ActiveSetChange(NamedTuple):
     """A change of the active set: distance and direction of the parameter, and the change.
 
-    The direction matters at distance 0: a margin already used up without a multiplier becomes
-    active on one side only.
+    The direction matters at distance 0: a zero margin without a multiplier becomes active on one
+    side only.
     """
 
     distance: float
@@ -170,15 +172,15 @@ class ActiveSetChange(NamedTuple):
 
 
 def ends(
-    found: Optimum, given: Responses, moves: Vector, shifts: Vector
+    optimum: Optimum, derivatives: Responses, moves: Vector, shifts: Vector
 ) -> list[tuple[ActiveSetChange | None, ActiveSetChange | None]]:
-    """For each parameter the nearest change of the active set below and above its value."""
+    """For each parameter, the nearest change of the active set below and above its value."""
     return [
         (
             min((change for change in changes if change.direction < 0), key=_size, default=None),
             min((change for change in changes if change.direction > 0), key=_size, default=None),
         )
-        for changes in _changes(found, given, moves, shifts)
+        for changes in _changes(optimum, derivatives, moves, shifts)
     ]
 
 
@@ -187,129 +189,141 @@ def _size(change: ActiveSetChange) -> float:
 
 
 def _changes(
-    found: Optimum, given: Responses, moves: Vector, shifts: Vector
+    optimum: Optimum, derivatives: Responses, moves: Vector, shifts: Vector
 ) -> Iterator[list[ActiveSetChange]]:
-    """For each parameter the points where margins or multipliers vanish on their straight lines."""
-    rates = margin_slopes(found, given) + found.gradients @ moves
-    held = found.held
-    for k, value in enumerate(given.values):
+    """For each parameter, the values at which linear margins or multipliers vanish."""
+    rates = margin_slopes(optimum, derivatives) + optimum.gradients @ moves
+    active = optimum.active
+    for k, value in enumerate(derivatives.values):
         changes: list[ActiveSetChange] = []
         reference = abs(value) if value else 1.0
-        for i, label in enumerate(found.labels):
-            if i in held:
-                level, rate, event = found.multipliers[i], shifts[i, k], "stops being active"
+        for i, label in enumerate(optimum.labels):
+            if i in active:
+                level, rate, event = optimum.multipliers[i], shifts[i, k], "stops being active"
             else:
-                level, rate, event = max(found.margins[i], 0.0), rates[i, k], "becomes active"
-            if abs(rate) * reference <= INSTANT * max(level, 1.0 if i not in held else 0.0):
+                level, rate, event = max(optimum.margins[i], 0.0), rates[i, k], "becomes active"
+            if abs(rate) * reference <= INSTANT * max(level, 1.0 if i not in active else 0.0):
                 continue
             direction = -1 if rate > 0 else 1
             changes.append(ActiveSetChange(-level / rate, direction, f"{label} {event}"))
         yield changes
 
 
-def one_sided(found: Optimum, given: Responses, active: npt.NDArray[np.intp]) -> Vector:
+def one_sided(optimum: Optimum, derivatives: Responses, active: npt.NDArray[np.intp]) -> Vector:
     """Smallest and largest price (2, q) over all multipliers of the optimum."""
-    keep = _without_copies(found, given, active)
-    rows = np.concatenate([found.gradients[keep], found.equalities])
-    count, e = len(rows), len(found.equalities)
+    margins = _without_copies(optimum, derivatives, active)
+    rows = np.concatenate([optimum.gradients[margins], optimum.equalities])
+    count, e = len(rows), len(optimum.equalities)
     size = np.sqrt((rows**2).sum(axis=1))
     size = np.where(size > 0, size, 1.0)
     rank = int(np.linalg.matrix_rank(rows / size[:, None], tol=1e-8)) if count else 0
-    slopes = np.concatenate([margin_slopes(found, given)[keep], given.rows[len(given.rows) - e :]])
-    single = lagrangian_slopes(found, given)
+    slopes = np.concatenate(
+        [
+            margin_slopes(optimum, derivatives)[margins],
+            derivatives.rows[len(derivatives.rows) - e :],
+        ]
+    )
+    single = lagrangian_slopes(optimum, derivatives)
     if rank == count:
         return np.stack([single, single])
-    target = rows.T @ np.concatenate([found.multipliers[keep], found.equality_multipliers])
+    target = rows.T @ np.concatenate([optimum.multipliers[margins], optimum.equality_multipliers])
     if rank >= e and math.comb(count - e, rank - e) <= BASES:
         vertices = _vertices(rows / size[:, None], target, rank, e) / size
         vertices = np.concatenate(
-            [vertices, [np.concatenate([found.multipliers[keep], found.equality_multipliers])]]
+            [
+                vertices,
+                [np.concatenate([optimum.multipliers[margins], optimum.equality_multipliers])],
+            ]
         )
-        all_prices = given.rows[0] - vertices @ slopes
+        all_prices = derivatives.rows[0] - vertices @ slopes
         return np.stack([all_prices.min(axis=0), all_prices.max(axis=0)])
-    return _by_linear_programming(rows, target, slopes, given.rows[0], e)
+    return _by_linear_programming(rows, target, slopes, derivatives.rows[0], e)
 
 
 def _without_copies(
-    found: Optimum, given: Responses, active: npt.NDArray[np.intp]
+    optimum: Optimum, derivatives: Responses, active: npt.NDArray[np.intp]
 ) -> npt.NDArray[np.intp]:
-    """Active margins without exact copies (the same limit in two load cases); sums are kept.
+    """Active margins without exact copies, such as the same limit in two load cases.
 
-    Only copies without a multiplier are dropped; least squares leaves at most one with it.
+    Only copies without a multiplier are dropped; least squares gives at most one copy a multiplier.
     """
-    slopes = np.concatenate([found.gradients, margin_slopes(found, given)], axis=1)
-    kept: list[int] = []
-    order = sorted(active, key=lambda i: (found.multipliers[i] <= 0, i))
+    slopes = np.concatenate([optimum.gradients, margin_slopes(optimum, derivatives)], axis=1)
+    indices: list[int] = []
+    order = sorted(active, key=lambda i: (optimum.multipliers[i] <= 0, i))
     for i in order:
         size = 1e-9 * np.abs(slopes[i]).max(initial=1e-300)
-        if found.multipliers[i] > 0 or not any(
-            (np.abs(slopes[i] - slopes[j]) <= size).all() for j in kept
+        if optimum.multipliers[i] > 0 or not any(
+            (np.abs(slopes[i] - slopes[j]) <= size).all() for j in indices
         ):
-            kept.append(int(i))
-    return np.array(sorted(kept), dtype=np.intp)
+            indices.append(int(i))
+    return np.array(sorted(indices), dtype=np.intp)
 
 
-def _vertices(rows: Vector, target: Vector, rank: int, free: int) -> Vector:
-    """Vertices (v, a) of {multipliers : rows.T @ multipliers = target}, the last `free` free."""
+def _vertices(rows: Vector, target: Vector, rank: int, free_count: int) -> Vector:
+    """Vertices (v, a) of {m : rows.T @ m = target, m >= 0}; the last `free_count` of m are free."""
     count = len(rows)
-    found = []
-    for chosen in itertools.combinations(range(count - free), rank - free):
-        basis = [*chosen, *range(count - free, count)]
-        part, _, got, _ = np.linalg.lstsq(rows[basis].T, target, rcond=1e-10)
+    vertices = []
+    for combination in itertools.combinations(range(count - free_count), rank - free_count):
+        basis = [*combination, *range(count - free_count, count)]
+        part, _, part_rank, _ = np.linalg.lstsq(rows[basis].T, target, rcond=1e-10)
         fits = np.linalg.norm(rows[basis].T @ part - target) <= 1e-8 * np.linalg.norm(target)
-        if got == rank and fits and (part[: len(chosen)] >= -1e-9 * np.abs(part).max()).all():
-            full = np.zeros(count)
-            full[basis] = part
-            found.append(full)
-    return np.array(found).reshape(len(found), count)
+        if (
+            part_rank == rank
+            and fits
+            and (part[: len(combination)] >= -1e-9 * np.abs(part).max()).all()
+        ):
+            vertex = np.zeros(count)
+            vertex[basis] = part
+            vertices.append(vertex)
+    return np.array(vertices).reshape(len(vertices), count)
 
 
 def _by_linear_programming(
-    rows: Vector, target: Vector, slopes: Vector, objective: Vector, free: int
+    rows: Vector, target: Vector, slopes: Vector, objective: Vector, free_count: int
 ) -> Vector:
-    from scipy.optimize import linprog  # slow import, rarely used
+    from scipy.optimize import linprog  # slow import for a rare case
 
-    limits = [(0, None)] * (len(rows) - free) + [(None, None)] * free
+    limits = [(0, None)] * (len(rows) - free_count) + [(None, None)] * free_count
     result = np.empty((2, slopes.shape[1]))
     for k in range(slopes.shape[1]):
         for side, sign in ((0, 1.0), (1, -1.0)):
-            answer = linprog(-sign * slopes[:, k], A_eq=rows.T, b_eq=target, bounds=limits)
-            # an unbounded price means that this direction has no feasible point
-            value = -np.inf if answer.fun is None else float(answer.fun)
+            solution = linprog(-sign * slopes[:, k], A_eq=rows.T, b_eq=target, bounds=limits)
+            # an unbounded price: no feasible point in this direction
+            value = -np.inf if solution.fun is None else float(solution.fun)
             result[side, k] = objective[k] + sign * value
     return result
 
 
 CHANGE = 0.1
-"""Relative change at which every row is predicted and re-solved (contract)."""
+"""Relative change for prediction and re-solving (contract)."""
 STRAIGHT = 0.25
-"""Largest error of the straight line, as a share of the re-solved change, to call it straight."""
+"""Largest error of a straight response, as a share of the re-solved change."""
 Kind: TypeAlias = Literal["requirement", "parameter", "material"]
 """A limit to negotiate, a fixed number of the design, or a material property."""
 
 
 @dataclass(frozen=True, slots=True)
 class Sensitivity:
-    """The price of one requirement limit or one parameter, in SI of the objective per SI of it.
+    """The price of one limit or parameter, in SI units of objective and parameter.
 
     Parameters
     ----------
-    parameter : its PATH
+    parameter : PATH
     label : of its quantity
     unit : display unit
     scale : display value = SI value / scale
     limit : present value
-    price : change of the objective per unit of it
-    percent_per_percent : relative change of the objective per relative change of it; None if one of
-        the two is 0
-    predicted_10, resolved_10, predicted_minus10, resolved_minus10 : the objective at ±10 % by the
-        price, and re-optimised; None without a design
-    holds_until : where the active set changes; None beyond ±100 %
-    next_active : what changes there
+    price : change of the objective per unit of the parameter
+    percent_per_percent : relative change of the objective per relative change of the parameter;
+        None if one of both is 0
+    predicted_10, resolved_10, predicted_minus10, resolved_minus10 : the objective at ±10 %,
+        predicted by the price and re-optimised; None without a design
+    holds_until : value at which the active set changes; None beyond ±100 %
+    next_active : the change of the active set
     active : whether the limit is active at the optimum
-    price_up, price_down : prices of raising and of lowering it, which differ only at a degenerate
-        vertex; None if the next step that way leaves no design
-    movement : change of each variable of the optimum per unit of it, by PATH
+    price_up, price_down : prices of an increase and of a decrease, which differ only at a
+        degenerate vertex; None if no design exists in this direction
+    movement : change of each variable of the optimum per unit of the parameter, by PATH
     """
 
     parameter: str
@@ -332,7 +346,7 @@ class Sensitivity:
 
     @property
     def kind(self) -> Kind:
-        """Whether it is a limit to negotiate, a number of the design, or a material property."""
+        """Whether the parameter is a limit, a number of the design, or a material property."""
         root = self.parameter.partition(".")[0].partition("[")[0]
         if root in ("requirements", "load_cases"):
             return "requirement"
@@ -340,7 +354,7 @@ class Sensitivity:
 
     @property
     def ends(self) -> tuple[tuple[int, float | None, float | None], ...]:
-        """Sign, predicted and re-solved objective of both ends; none for a limit of 0."""
+        """Sign, predicted and re-solved objective at +10 % and -10 %; empty for a limit of 0."""
         if self.limit == 0:
             return ()
         return (
@@ -350,7 +364,7 @@ class Sensitivity:
 
     @property
     def one_sided(self) -> bool:
-        """Whether raising and lowering it have different prices."""
+        """Whether an increase and a decrease have different prices."""
         up, down = self.price_up, self.price_down
         if up is None or down is None:
             return up is not down
@@ -358,11 +372,11 @@ class Sensitivity:
 
     def effect(self, objective: float) -> float:
         """Largest re-solved change of the objective within ±10 %."""
-        found = [abs(solved - objective) for _, _, solved in self.ends if solved is not None]
-        return max(found, default=0.0)
+        changes = [abs(solved - objective) for _, _, solved in self.ends if solved is not None]
+        return max(changes, default=0.0)
 
     def straight(self, objective: float) -> bool:
-        """Whether the price predicts both ends to a quarter of their change."""
+        """Whether the price predicts the changes at ±10 % to a quarter."""
         for _, predicted, solved in self.ends:
             if predicted is None or solved is None:
                 if predicted is not solved:
@@ -375,10 +389,10 @@ class Sensitivity:
 
     def to_dict(self, objective: float) -> dict[str, Any]:
         """The row in JSON (SI)."""
-        shown = asdict(self)
+        result = asdict(self)
         for name in ("label", "unit", "scale"):
-            del shown[name]
-        return shown | {"kind": self.kind, "straight": self.straight(objective)}
+            del result[name]
+        return result | {"kind": self.kind, "straight": self.straight(objective)}
 
 
 def ranked(rows: Sequence[Sensitivity], objective: float) -> tuple[Sensitivity, ...]:
@@ -390,7 +404,7 @@ def ranked(rows: Sequence[Sensitivity], objective: float) -> tuple[Sensitivity, 
 
 @dataclass(frozen=True, slots=True)
 class Offer:
-    """The better end of a row: gain of a ±10 % change (SI, `gain` > 0 is better)."""
+    """The better of both ±10 % changes of a row (SI); `gain` > 0 is better."""
 
     row: Sensitivity
     change: float
@@ -400,16 +414,16 @@ class Offer:
 
     def to_dict(self) -> dict[str, Any]:
         """The offer in JSON (SI)."""
-        kept = {name: getattr(self, name) for name in ("change", "value", "objective", "gain")}
-        return {"parameter": self.row.parameter} | kept
+        values = {name: getattr(self, name) for name in ("change", "value", "objective", "gain")}
+        return {"parameter": self.row.parameter} | values
 
 
 @dataclass(frozen=True, slots=True)
 class Offers:
     """The most valuable changes: the best offer of each kind, None without one.
 
-    `no_design` are the requirements that cannot be tightened by 10 %: rows with the sign of the
-    infeasible change.
+    `no_design` lists the requirements that cannot change by 10 %, with the sign of the infeasible
+    change.
     """
 
     requirement: Offer | None
@@ -420,14 +434,16 @@ class Offers:
     @property
     def found(self) -> tuple[Offer, ...]:
         """The existing offers, requirements first."""
-        both = (self.requirement, self.parameter, self.material)
-        return tuple(one for one in both if one is not None)
+        existing = (self.requirement, self.parameter, self.material)
+        return tuple(offer for offer in existing if offer is not None)
 
     def to_dict(self) -> dict[str, Any]:
         """The "what_buys_most" of `optimise --json` (SI); its sentence is the optimisation's."""
         kinds = ("requirement", "parameter", "material")
-        found = {name: getattr(self, name) for name in kinds}
-        return {name: None if one is None else one.to_dict() for name, one in found.items()} | {
+        best_offers = {name: getattr(self, name) for name in kinds}
+        return {
+            name: None if offer is None else offer.to_dict() for name, offer in best_offers.items()
+        } | {
             "no_design": [
                 {"parameter": row.parameter, "change": sign * CHANGE}
                 for row, sign in self.no_design
@@ -436,22 +452,24 @@ class Offers:
 
 
 def offers(rows: Sequence[Sensitivity], objective: float, *, maximised: bool) -> Offers:
-    """The best re-solved end of each kind of row, if better than the optimum."""
-    wish = 1.0 if maximised else -1.0
+    """The best re-solved change of each kind of row, if better than the optimum."""
+    direction = 1.0 if maximised else -1.0
     best: dict[Kind, Offer] = {}
-    lost = []
+    infeasible = []
     for row in rows:
         for sign, _, solved in row.ends:
             if solved is None:
                 if row.kind == "requirement":
-                    lost.append((row, sign))
+                    infeasible.append((row, sign))
                 continue
-            gain = wish * (solved - objective)
+            gain = direction * (solved - objective)
             rival = best.get(row.kind)
             if gain > 1e-6 * abs(objective) and (rival is None or gain > rival.gain):
                 value = row.limit * (1 + sign * CHANGE)
                 best[row.kind] = Offer(row, sign * CHANGE, value, solved, gain)
-    return Offers(best.get("requirement"), best.get("parameter"), best.get("material"), tuple(lost))
+    return Offers(
+        best.get("requirement"), best.get("parameter"), best.get("material"), tuple(infeasible)
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -462,15 +480,15 @@ class ParameterPrice:
     ----------
     parameter, value : the parameter and its present value
     price : change of the objective per unit of the parameter
-    price_up, price_down : one-sided prices; they differ only at a degenerate vertex, and are
-        infinite where the next step that way leaves no feasible point
+    price_up, price_down : one-sided prices, which differ only at a degenerate vertex; infinite if
+        no feasible point exists in this direction
     percent_per_percent : relative change of the objective per relative change of the parameter;
         None where the objective or the parameter is 0
     predicted_up, predicted_down : objective at +10 % and -10 % by the price; None where infinite
-    resolved_up, resolved_down : the same re-optimised; None if infeasible or not requested
-    holds_until : the nearest value of the parameter at which the active set changes; None where
-        that is beyond -100 % and +100 %
-    change : what changes there, "LABEL becomes active" or "LABEL stops being active"
+    resolved_up, resolved_down : re-optimised objective; None if infeasible or not requested
+    holds_until : the nearest value of the parameter at which the active set changes; None beyond
+        -100 % and +100 %
+    change : of the active set, "LABEL becomes active" or "LABEL stops being active"
     movement : change of each variable (n,) per unit of the parameter
     """
 
@@ -497,15 +515,15 @@ def prices(
     resolve: bool = True,
     bounds: bool = True,
 ) -> tuple[ParameterPrice, ...]:
-    """Price every parameter, and every bound that costs, at the optimum.
+    """Price every parameter, and every bound with a multiplier, at the optimum.
 
     Parameters
     ----------
     parametric : the problem with its parameters
-    solution : its optimum; an infeasible or undefined one has no prices
-    change : relative change at which to predict and to re-solve
+    solution : its optimum; an infeasible or undefined solution has no prices
+    change : relative change for prediction and re-solving
     resolve : whether to re-solve
-    bounds : whether to price bounds too, as "NAME lower" and "NAME upper"
+    bounds : whether to price bounds, as "NAME lower" and "NAME upper"
     """
     if solution.kkt is None or not solution.feasible:
         return ()
@@ -513,54 +531,54 @@ def prices(
     point = evaluator.point(evaluator.space.to_z(solution.x))
     evaluator.check_gradients(point)
     quality = kkt.check(evaluator, point)
-    found = optimum(evaluator, point, quality)
-    given = responses(parametric, evaluator, point, found.weights)
+    optimum = optimum_at(evaluator, point, quality)
+    derivatives = responses(parametric, evaluator, point, optimum.weights)
     if bounds:
         m = evaluator.constraint_count
-        given = with_bounds(given, evaluator, found.multipliers[m:])
-    moves, shifts = movement(found, given)
-    active = np.flatnonzero(found.margins <= kkt.ACTIVE)
-    ends: list[tuple[float | None, float | None]] = [(None, None)] * len(given.values)
+        derivatives = with_bounds(derivatives, evaluator, optimum.multipliers[m:])
+    moves, shifts = movement(optimum, derivatives)
+    active = np.flatnonzero(optimum.margins <= kkt.ACTIVE)
+    ends: list[tuple[float | None, float | None]] = [(None, None)] * len(derivatives.values)
     if resolve and change:
         valleys = [
-            valley_at(evaluator, one) for one in (point, *ladder.other_optima(evaluator, solution))
+            valley_at(evaluator, p) for p in (point, *ladder.other_optima(evaluator, solution))
         ]
         solved = ladder.SolvedProblem(parametric, evaluator, valleys)
-        ends = _ends(solved, given, moves, change)
+        ends = _ends(solved, derivatives, moves, change)
     return _rows(
         evaluator,
         point,
-        given,
+        derivatives,
         change,
-        price=lagrangian_slopes(found, given),
-        sides=one_sided(found, given, active),
+        price=lagrangian_slopes(optimum, derivatives),
+        sides=one_sided(optimum, derivatives, active),
         moves=moves,
         ends=ends,
-        reach=reach(found, given, moves, shifts),
+        reach=reach(optimum, derivatives, moves, shifts),
     )
 
 
 def _ends(
-    solved: ladder.SolvedProblem, given: Responses, moves: Vector, change: float
+    solved: ladder.SolvedProblem, derivatives: Responses, moves: Vector, change: float
 ) -> list[tuple[float | None, float | None]]:
     """Re-optimised objectives at +change and -change of every parameter; None where infeasible.
 
     Parameters
     ----------
     solved : the unchanged problem
-    given : the parameters, bounds of variables included
-    moves : derivative of the optimum by them (nf, q)
-    change : relative
+    derivatives : the parameters, bounds of variables included
+    moves : derivative of the optimum by the parameters (nf, q)
+    change : relative change
     """
     parametric, point = solved.parametric, solved.valleys[0].point
     objectives: dict[tuple[int, int], float | None] = {}
     tasks: dict[tuple[int, int], ladder.ResolveTask] = {}
-    for k, value in enumerate(given.values.tolist()):
+    for k, value in enumerate(derivatives.values.tolist()):
         for sign in (1, -1):
-            if value == 0 or not given.matters(k):
+            if value == 0 or not derivatives.matters(k):
                 continue
             step = sign * change * value
-            problem = perturbed(parametric, given.names[k], k, value + step)
+            problem = perturbed(parametric, derivatives.names[k], k, value + step)
             objectives[k, sign] = None
             if problem is None:
                 continue
@@ -571,17 +589,17 @@ def _ends(
             tasks[k, sign] = ladder.ResolveTask(problem, point.z + moves[:, k] * step, parameters)
     for pair, optimum in zip(tasks, ladder.resolve(solved, list(tasks.values())), strict=True):
         objectives[pair] = None if optimum is None else optimum.objective
-    here = point.objective
+    present = point.objective
     return [
-        (objectives.get((k, 1), here), objectives.get((k, -1), here))
-        for k in range(len(given.values))
+        (objectives.get((k, 1), present), objectives.get((k, -1), present))
+        for k in range(len(derivatives.values))
     ]
 
 
 def _rows(
     evaluator: Evaluator,
     point: Point,
-    given: Responses,
+    derivatives: Responses,
     change: float,
     *,
     price: Vector,
@@ -591,11 +609,13 @@ def _rows(
     reach: list[tuple[float | None, str | None]],
 ) -> tuple[ParameterPrice, ...]:
     slope = evaluator.space.slope(point.x[:, None])
-    moved = np.zeros((len(point.x), len(price)))
-    moved[evaluator.space.free] = slope * moves
+    x_moves = np.zeros((len(point.x), len(price)))
+    x_moves[evaluator.space.free] = slope * moves
     objective = point.objective
     rows = []
-    for k, (name, value) in enumerate(zip(given.names, given.values.tolist(), strict=True)):
+    for k, (name, value) in enumerate(
+        zip(derivatives.names, derivatives.values.tolist(), strict=True)
+    ):
         below, above = float(sides[0, k]), float(sides[1, k])
         step = change * value
         first, second = (above, below) if step >= 0 else (below, above)
@@ -614,7 +634,7 @@ def _rows(
                 resolved_down=ends[k][1],
                 holds_until=reach[k][0],
                 change=reach[k][1],
-                movement=moved[:, k],
+                movement=x_moves[:, k],
             )
         )
     return tuple(rows)
@@ -625,16 +645,16 @@ def _finite(value: float) -> float | None:
 
 
 MOST_PARAMETERS = 10
-"""Parameters (not limits) priced in the sensitivity table, by importance."""
+"""Maximum parameters (not limits) in the sensitivity table, by importance."""
 LEAST_EFFECT = 1e-3
-"""Smallest elasticity (% per %) for a row in the table."""
+"""Least elasticity (% per %) of a parameter in the table."""
 FREE = 1e-9
-"""Price of a limit of 0, relative to the objective, below which it gets no row."""
+"""Price of a limit of 0, relative to the objective, up to which the limit has no row."""
 _NO_PERCENT = ("temperature", "temperature_difference", "angle", "count")
 
 
 def sensitivities(actuator: ActuatorProblem, solution: Solution) -> tuple[Sensitivity, ...]:
-    """Price every limit that could bind and the parameters that matter most."""
+    """Price the limits and the parameters with the largest effect."""
     active = _active_limits(actuator, solution)
     limits = dict.fromkeys(
         row.limit_of.path
@@ -642,13 +662,13 @@ def sensitivities(actuator: ActuatorProblem, solution: Solution) -> tuple[Sensit
         if row.limit_of.path is not None
         and (row.limit_of.origin in ("requirement", "case") or row.limit_of.path in active)
     )
-    chosen = (*limits, *_strongest(actuator, solution, set(limits)))
+    paths = (*limits, *_strongest(actuator, solution, set(limits)))
     numbers = actuator.subject.numbers
-    chosen = tuple(path for path in chosen if path in numbers and (numbers[path] or path in active))
-    found = prices(actuator.parametric(chosen), solution, change=CHANGE, bounds=False)
+    paths = tuple(path for path in paths if path in numbers and (numbers[path] or path in active))
+    parameter_prices = prices(actuator.parametric(paths), solution, change=CHANGE, bounds=False)
     shown = actuator.goal.shown
     rows = []
-    for price in found:
+    for price in parameter_prices:
         if price.value == 0 and abs(price.price) <= FREE * abs(solution.objective):
             continue
         quantity = _quantity(actuator, price.parameter)
@@ -668,20 +688,16 @@ def sensitivities(actuator: ActuatorProblem, solution: Solution) -> tuple[Sensit
                 holds_until=price.holds_until,
                 next_active=price.change,
                 active=price.parameter in active,
-                price_up=_finite_price(shown(price.price_up)),
-                price_down=_finite_price(shown(price.price_down)),
+                price_up=_finite(shown(price.price_up)),
+                price_down=_finite(shown(price.price_down)),
                 movement=dict(zip(actuator.paths, price.movement.tolist(), strict=True)),
             )
         )
     return ranked(rows, shown(solution.objective))
 
 
-def _finite_price(value: float) -> float | None:
-    return value if np.isfinite(value) else None
-
-
-def _shown(shown: Callable[[float], float], value: float | None) -> float | None:
-    return None if value is None else shown(value)
+def _shown(display: Callable[[float], float], value: float | None) -> float | None:
+    return None if value is None else display(value)
 
 
 def _active_limits(actuator: ActuatorProblem, solution: Solution) -> set[str]:
@@ -701,30 +717,22 @@ def _quantity(actuator: ActuatorProblem, path: str) -> Quantity:
     return quantity_of(path, actuator.subject.design)
 
 
-def _strongest(actuator: ActuatorProblem, solution: Solution, known: set[str]) -> tuple[str, ...]:
+def _strongest(
+    actuator: ActuatorProblem, solution: Solution, excluded: set[str]
+) -> tuple[str, ...]:
     """The parameters with the largest elasticity of the objective, by the Lagrangian."""
     if solution.kkt is None:
         return ()
-    numbers = actuator.subject.values(
-        {path: np.array([x]) for path, x in zip(actuator.paths, solution.x, strict=True)}
-    )
-    actuator.subject.touch(numbers)
     candidates = [
         path
-        for path in sorted(numbers.read)
-        if path not in known
-        and path not in actuator.paths
-        and actuator.subject.numbers.get(path, 0.0) > 0
+        for path in actuator.fixed_numbers(solution.x)
+        if path not in excluded
         and not path.startswith("requirements.")
         and _quantity(actuator, path).dimension not in _NO_PERCENT
     ]
     if not candidates:
         return ()
-    present = np.array([actuator.subject.numbers[path] for path in candidates])
-    varied = np.repeat(present[:, None].astype(complex), len(candidates), axis=1)
-    varied += np.diag(1j * STEP * present)
-    points = np.repeat(solution.x[:, None], len(candidates), axis=1)
-    values = actuator.evaluate(points, dict(zip(candidates, varied, strict=True)))
+    values = actuator.number_steps(solution.x, candidates)
     slope = np.imag(values.objective) - solution.kkt.multipliers @ np.imag(values.constraints)
     elasticity = np.nan_to_num(slope / STEP / abs(solution.objective or 1.0))
     order = np.argsort(-np.abs(elasticity), kind="stable")
@@ -737,7 +745,7 @@ PER_CENT = round(100 * CHANGE)
 
 
 def display_of(row: Sensitivity, value: float | None) -> float | None:
-    """A value of the parameter in its display unit; temperatures have an offset."""
+    """A value of the parameter in its display unit."""
     if value is None:
         return None
     offset = 273.15 if row.unit in ("degC", "°C") else 0.0
@@ -763,15 +771,15 @@ def short_name(row: Sensitivity) -> str:
 
 
 def buys_most(
-    found: Offers, quantity: Quantity, objective: float, *, maximised: bool
+    best_offers: Offers, quantity: Quantity, objective: float, *, maximised: bool
 ) -> tuple[str, ...]:
     """Sentences on the most valuable changes, and on requirements that cannot be tightened.
 
     Parameters
     ----------
-    found : the best offer of each kind
-    quantity, objective : of the objective, and its value at the optimum, SI
-    maximised : whether more of it is better
+    best_offers : the best offer of each kind
+    quantity, objective : quantity of the objective, and its value at the optimum (SI)
+    maximised : whether a larger objective is better
     """
 
     def gain(offer: Offer) -> str:
@@ -782,7 +790,7 @@ def buys_most(
             amount += f" ({short(100 * offer.gain / abs(objective), 2, full=True)} %)"
         return f"adds {amount}" if maximised else f"saves {amount}"
 
-    if (best := found.requirement) is not None:
+    if (best := best_offers.requirement) is not None:
         parts = [
             f"Relaxing {short_name(best.row)} by {PER_CENT} % (to {_at(best.row, best.value)}) "
             f"{gain(best)}, the most of any requirement."
@@ -790,25 +798,25 @@ def buys_most(
     else:
         parts = [f"Relaxing a single requirement by {PER_CENT} % gains nothing."]
     for best, group in (
-        (found.parameter, "Of the design's fixed numbers"),
-        (found.material, "Of the materials"),
+        (best_offers.parameter, "Of the design's fixed numbers"),
+        (best_offers.material, "Of the materials"),
     ):
         if best is not None:
-            more = "more" if best.change > 0 else "less"
+            direction = "more" if best.change > 0 else "less"
             name, value = short_name(best.row), _at(best.row, best.value)
-            parts.append(f"{group}, {PER_CENT} % {more} {name} ({value}) {gain(best)}.")
-    if found.no_design:
-        lost = ", ".join(
+            parts.append(f"{group}, {PER_CENT} % {direction} {name} ({value}) {gain(best)}.")
+    if best_offers.no_design:
+        infeasible = ", ".join(
             f"{short_name(row)} at {_at(row, row.limit * (1 + sign * CHANGE))}"
-            for row, sign in found.no_design
+            for row, sign in best_offers.no_design
         )
-        parts.append(f"No feasible design with {lost}.")
+        parts.append(f"No feasible design with {infeasible}.")
     return tuple(parts)
 
 
 def _at(row: Sensitivity, value: float) -> str:
     """A value of the parameter with its unit."""
-    shown = display_of(row, value)
-    assert shown is not None
+    display = display_of(row, value)
+    assert display is not None
     unit = "" if row.unit == "-" else row.unit
-    return f"{short(shown)} {unit}".rstrip()
+    return f"{short(display)} {unit}".rstrip()

@@ -1,8 +1,8 @@
-"""The problem given to the optimiser: a vector function in a box, without physical meaning.
+"""The optimisation problem: a vector function in a box, without physical meaning.
 
 Constraints are relative margins, at least zero if met. An evaluation is a pure function of a batch
-of points (one column per point), real or complex. Solver coordinates are logarithms for variables
-with a positive lower bound, and multiples of half the box width otherwise.
+of real or complex points, one per column. Solver coordinates are logarithms for variables with a
+positive lower bound; for others, multiples of half the box width.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..base.errors import InputError
-from ..base.numeric import Array
+from ..base.numeric import STEP, Array
 
 Vector: TypeAlias = npt.NDArray[np.float64]
 
@@ -47,12 +47,11 @@ class BoxProblem:
     evaluate : maps points (n, k), real or complex, to `PointValues`
     constraint_names, equality_names : label of each row of the values
     start : a first guess inside the box, or None
-    relaxable : for each constraint, whether it is a requirement (True) or a law such as geometry
-        (False)
-    groups : for each constraint, a number shared by the rows of one limit, which are relaxed
-        together; None gives each its own
-    has_complex_step : False if `evaluate` cannot take complex points; finite differences then
-    linear : labels of variables to keep linear although their lower bound is positive
+    relaxable : for each constraint, True for a requirement, False for a law such as geometry
+    groups : for each constraint, the number of its limit; the rows of one limit are relaxed
+        together. None: each constraint is a group
+    has_complex_step : False if `evaluate` takes only real points; gradients are differences then
+    linear : labels of variables that stay linear although their lower bound is positive
     """
 
     names: Sequence[str]
@@ -99,6 +98,14 @@ class BoxProblem:
             )
         object.__setattr__(self, "start", np.clip(start, self.lower, self.upper))
 
+    def same_rows_and_box(self, other: BoxProblem) -> bool:
+        """Whether another problem has the same constraints and bounds."""
+        return (
+            tuple(self.constraint_names) == tuple(other.constraint_names)
+            and np.array_equal(self.lower, other.lower)
+            and np.array_equal(self.upper, other.upper)
+        )
+
     def inside(self, x: Vector) -> Vector:
         """The point of the box nearest to another (n,)."""
         return np.clip(x, self.lower, self.upper)
@@ -113,11 +120,11 @@ class BoxProblem:
         count = points.shape[1]
         with np.errstate(all="ignore"):
             values = self.evaluate(points)
-        parts = []
-        wanted = (1, len(self.constraint_names), len(self.equality_names))
-        given = (values.objective, values.constraints, values.equalities)
-        for what, size, part in zip(
-            ("objective", "constraints", "equalities"), wanted, given, strict=True
+        arrays = []
+        sizes = (1, len(self.constraint_names), len(self.equality_names))
+        evaluated = (values.objective, values.constraints, values.equalities)
+        for kind, size, part in zip(
+            ("objective", "constraints", "equalities"), sizes, evaluated, strict=True
         ):
             if size == 0 and part is None:
                 continue
@@ -125,10 +132,10 @@ class BoxProblem:
             try:
                 array = np.broadcast_to(array.reshape(size, -1) if size else array, (size, count))
             except ValueError:
-                message = f"the {what} have shape {array.shape}, expected ({size}, {count})"
+                message = f"the {kind} have shape {array.shape}, expected ({size}, {count})"
                 raise InputError(message) from None
-            parts.append(array)
-        return np.concatenate(parts)
+            arrays.append(array)
+        return np.concatenate(arrays)
 
 
 @dataclass(frozen=True)
@@ -137,7 +144,7 @@ class ParametricProblem:
 
     Parameters
     ----------
-    problem : the problem at the present parameter values (its own `evaluate` may be faster)
+    problem : the problem at the present parameter values; its `evaluate` may be faster
     parameter_names : label of each parameter (q,)
     parameters : present values (q,)
     evaluate : maps points (n, k) and parameters (q, k) or (q, 1), real or complex, to `PointValues`
@@ -155,16 +162,16 @@ class ParametricProblem:
         object.__setattr__(self, "parameters", values)
 
     def at(self, parameters: Array) -> BoxProblem:
-        """Return the problem at other parameter values (q,)."""
+        """The problem at other parameter values (q,)."""
         return self.with_columns(np.asarray(parameters)[:, None])
 
     def with_columns(self, parameters: Array) -> BoxProblem:
-        """The problem with parameter values (q, k) of their own for each of k points."""
+        """The problem with separate parameter values (q, k) for each of k points."""
         return replace(self.problem, evaluate=lambda x: self.evaluate(x, parameters))
 
 
 ON_BOUND = 1e-12
-"""Share of a range within which a coordinate snaps to its bound: zero is 0, not 1e-23."""
+"""Share of a range within which a coordinate becomes its bound, so that 1e-23 becomes 0."""
 
 
 @dataclass(frozen=True)
@@ -181,8 +188,8 @@ class Space:
     def __post_init__(self) -> None:
         low, high = self.problem.lower, self.problem.upper
         free = np.flatnonzero(high > low)
-        kept = np.array([name in self.problem.linear for name in self.problem.names], dtype=bool)
-        logarithmic = ((low > 0) & ~kept)[free]
+        linear = np.array([name in self.problem.linear for name in self.problem.names], dtype=bool)
+        logarithmic = ((low > 0) & ~linear)[free]
         low, high = low[free], high[free]
         scale = np.where(logarithmic, 1.0, (high - low) / 2)
         for name, value in (
@@ -210,9 +217,9 @@ class Space:
         return np.asarray(np.clip(z, self.lower, self.upper))
 
     def to_x(self, z: Vector, *, inside: bool = True) -> Vector:
-        """Points (n, k) of coordinates (nf, k); exactly on a bound where z is, within rounding.
+        """Points (n, k) of coordinates (nf, k); exactly on a bound where z is at the bound.
 
-        `inside=False` lets a finite-difference step leave the box by its own width.
+        `inside=False` permits points outside the box, for finite-difference steps.
         """
         log, low, high = (
             a[:, None]
@@ -235,6 +242,20 @@ class Space:
         """dx/dz of the free variables (nf, k) at points (n, k)."""
         return np.where(self.logarithmic[:, None], x[self.free], self.scale[:, None])
 
+    def complex_steps(self, x: Vector) -> npt.NDArray[np.complex128]:
+        """Points x (n, k) with a complex step in each coordinate in turn (n, k nf)."""
+        count = x.shape[1]
+        batch = np.repeat(x.astype(complex), self.size, axis=1)
+        columns = np.arange(count * self.size).reshape(count, self.size)
+        batch[self.free[None, :], columns] += 1j * STEP * self.slope(x).T
+        return batch
+
+    @property
+    def reference(self) -> Vector:
+        """Coordinates of the start, else of the middle of the box."""
+        start = self.problem.start
+        return (self.lower + self.upper) / 2 if start is None else self.to_z(start)
+
 
 @dataclass(frozen=True, slots=True)
 class Round:
@@ -251,12 +272,13 @@ class Robust:
     Parameters
     ----------
     target : requested probability
-    rate, lower, upper : of meeting all covered limits, in an independent sample; 95 % bounds
-    samples : draws of that sample
+    rate, lower, upper : share of an independent sample that meets all covered limits, with 95 %
+        bounds
+    samples : number of draws of that sample
     converged : whether the reserves converged
     nominal_objective, nominal_rate : of the optimum without reserves
-    reserves : extra margin a robust search requires, by limit
-    rounds : the sequence of optima, the one without reserves first
+    reserves : extra margin that the robust search requires, by limit
+    rounds : the sequence of optima, first the optimum without reserves
     left_out : limits not covered: checks that the optimum misses anyway
     sentence : the result in words
     """
@@ -281,8 +303,8 @@ class Robust:
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON form (SI)."""
-        found = asdict(self)
+        result = asdict(self)
         for key in ("rate", "lower", "upper"):
-            del found[key]
+            del result[key]
         bounds = {"value": self.rate, "lower": self.lower, "upper": self.upper}
-        return found | {"yield": bounds, "left_out": list(self.left_out)}
+        return result | {"yield": bounds, "left_out": list(self.left_out)}

@@ -1,6 +1,6 @@
-"""A quick look at one combination of the choices: a descent from its solved neighbours.
+"""A quick look at one combination of the choices: descents from its solved neighbours.
 
-It usually finds the optimum of the combination, or that it is infeasible, but proves neither.
+It usually finds the optimum of the combination, or shows that it is infeasible, but proves neither.
 """
 
 from __future__ import annotations
@@ -16,33 +16,32 @@ import numpy as np
 from ..design.choice_list import Value
 from ..evaluation import PreparedDesign
 from . import kkt, nlopt_wrapper, repairs
-from .actuator import ActuatorProblem, Solution
+from .actuator import MET, ActuatorProblem, Solution
 from .evaluator import Evaluator, LimitReached, Point
 from .problem import Vector
 from .resolve.boxes import ROUGH, stepped
-from .resolve.parallel_descents import FEASIBLE
 from .resolve.steps import ScaledHessian, hessian_at
 from .result import How
 from .solver import solve, sweep
 
 EVALUATIONS = 40
-"""Maximum evaluations of one descent; from a nearby design 10 to 30 suffice."""
+"""Maximum evaluations of one descent; 10 to 30 suffice from a nearby design."""
 
 SAMPLES = 256
-"""Points of the sweep that suggests another start if the neighbours fail."""
+"""Number of points of the sweep for another start if the neighbours fail."""
 
 DOUBTFUL = 0.02
 """Least violation up to which a look may have overlooked a feasible design."""
 
 STUCK = 0.3
-"""Least violation above which its search may be stuck. Between the two, every start led to the same
-value on the shipped designs, so one start is enough."""
+"""Least violation above which a search may be stuck. Between both limits, all starts of the shipped
+designs led to the same value, so one start is enough."""
+
 SETTLED = 1e-2
 """Residual of the optimality conditions up to which a descent counts as converged."""
 
 STARTS = 3
-"""Starts if a descent did not converge: the point reached, the design's own, the best of a
-sweep."""
+"""Starts if a descent did not converge: its end point, the design's start, the best of a sweep."""
 
 
 @dataclass
@@ -60,30 +59,30 @@ class Look:
     objective: float = math.inf
     violation: float = math.inf
     missed: str = ""
-    """The limit missed most."""
+    """The limit with the largest violation."""
     checks: frozenset[str] = frozenset()
     """Missed checks that no variable can fix."""
     solution: Solution | None = None
     hessian: ScaledHessian | None = None
-    """Hessian at its optimum, or at the neighbour's it was followed from."""
+    """Hessian at its optimum, or at the optimum of the neighbour whose steps led to it."""
     sizing: str = ""
-    """Result of the search for listed sizes, if made."""
+    """Result of the search for listed sizes, if any."""
     rounded: float | None = None
     """Objective of the best design of listed sizes."""
 
     @property
     def feasible(self) -> bool:
         """Whether all requirements are met."""
-        return self.violation <= FEASIBLE
+        return self.violation <= MET
 
 
 class LookStart(NamedTuple):
-    """A starting point: `descend` directly, or first reduce the worst violation."""
+    """A start: `descend` directly, or reduce the worst violation first."""
 
     x: Vector
     descend: bool
     hessian: ScaledHessian | None = None
-    """Hessian at the optimum that the point is; it usually suits its neighbours too."""
+    """Hessian at the start, if it is an optimum of a neighbour."""
 
 
 def look_quickly(
@@ -96,8 +95,8 @@ def look_quickly(
 
     Parameters
     ----------
-    look : the combination; receives the best point found
-    starts : most reliable first
+    look : the combination; stores the best point
+    starts : the most reliable first
     seed : of the sweep
     seconds : time limit
     """
@@ -105,20 +104,22 @@ def look_quickly(
     evaluator = Evaluator(look.actuator.problem, max_seconds=seconds)
 
     def down(start: Point) -> Point:
-        run = nlopt_wrapper.run(evaluator, start, "LD_SLSQP", most=EVALUATIONS, seed=seed)
-        return _keep(look, evaluator, run.point)
+        run = nlopt_wrapper.run(
+            evaluator, start, "LD_SLSQP", max_evaluations=EVALUATIONS, seed=seed
+        )
+        return _store_best(look, evaluator, run.point)
 
     look.how = "quick"
     try:
-        if _followed(look, evaluator, starts):
+        if _follow_neighbour(look, evaluator, starts):
             return
         for z, descend in _coordinates(evaluator, starts, seed):
-            point = _keep(look, evaluator, evaluator.point(z))
-            if point.valid and (descend or point.violation <= FEASIBLE):
+            point = _store_best(look, evaluator, evaluator.point(z))
+            if point.valid and (descend or point.violation <= MET):
                 point = down(point)
-            if point.valid and point.violation > FEASIBLE and evaluator.space.size:
-                point = _keep(look, evaluator, repairs.least_missed(evaluator, point))
-                if point.violation <= FEASIBLE:
+            if point.valid and point.violation > MET and evaluator.space.size:
+                point = _store_best(look, evaluator, repairs.least_missed(evaluator, point))
+                if point.violation <= MET:
                     down(point)
             if look.feasible or DOUBTFUL < look.violation <= STUCK:
                 break
@@ -128,18 +129,18 @@ def look_quickly(
         look.how = "not tried" if look.x is None else "quick"
 
 
-def _followed(look: Look, evaluator: Evaluator, starts: Sequence[LookStart]) -> bool:
-    """Whether steps from a neighbour's optimum converge to the optimum of this combination."""
-    near = next((start for start in starts if start.hessian is not None), None)
-    if near is None or near.hessian is None or not evaluator.space.size:
+def _follow_neighbour(look: Look, evaluator: Evaluator, starts: Sequence[LookStart]) -> bool:
+    """Step from a neighbour's optimum to that of the combination; returns whether it succeeds."""
+    neighbour = next((start for start in starts if start.hessian is not None), None)
+    if neighbour is None or neighbour.hessian is None or not evaluator.space.size:
         return False
     evaluator.eager = True
-    point = evaluator.point(evaluator.space.to_z(near.x))
-    found = stepped(evaluator, point, near.hessian, ROUGH) if point.valid else None
-    if found is not None:
-        _keep(look, evaluator, found)
-        look.hessian = near.hessian
-    return found is not None
+    point = evaluator.point(evaluator.space.to_z(neighbour.x))
+    optimum = stepped(evaluator, point, neighbour.hessian, ROUGH) if point.valid else None
+    if optimum is not None:
+        _store_best(look, evaluator, optimum)
+        look.hessian = neighbour.hessian
+    return optimum is not None
 
 
 def hessian_of(look: Look) -> ScaledHessian | None:
@@ -150,35 +151,35 @@ def hessian_of(look: Look) -> ScaledHessian | None:
     point = evaluator.point(evaluator.space.to_z(look.x))
     if not point.valid or not evaluator.space.size:
         return None
-    settled = kkt.check(evaluator, point).residual <= SETTLED
-    return hessian_at(evaluator, point) if settled else None
+    converged = kkt.check(evaluator, point).residual <= SETTLED
+    return hessian_at(evaluator, point) if converged else None
 
 
 def _settle_quickly(look: Look, evaluator: Evaluator, x: Vector, seed: int) -> None:
-    """Solve from a few starts if a descent stopped before an optimum."""
-    found = kkt.check(evaluator, evaluator.point(evaluator.space.to_z(x)))
-    if found.residual <= SETTLED or not evaluator.space.size:
+    """Solve from a few starts if the descent ended before an optimum."""
+    quality = kkt.check(evaluator, evaluator.point(evaluator.space.to_z(x)))
+    if quality.residual <= SETTLED or not evaluator.space.size:
         return
-    left = None
+    seconds = None
     if evaluator.max_seconds is not None:
-        left = evaluator.began + evaluator.max_seconds - time.perf_counter()
-        if left <= 0:
+        seconds = evaluator.began + evaluator.max_seconds - time.perf_counter()
+        if seconds <= 0:
             return
     solution = solve(
         evaluator.problem,
         starts=STARTS,
         samples=SAMPLES,
         seed=seed,
-        max_seconds=left,
+        max_seconds=seconds,
         more_starts=[x],
     )
-    _keep(look, evaluator, evaluator.point(evaluator.space.to_z(solution.x)))
+    _store_best(look, evaluator, evaluator.point(evaluator.space.to_z(solution.x)))
 
 
 def _coordinates(
     evaluator: Evaluator, starts: Sequence[LookStart], seed: int
 ) -> Iterator[tuple[Vector, bool]]:
-    """The starts given, then the best of a small sweep."""
+    """The given starts, then the best point of a small sweep."""
     for x, descend, _ in starts:
         yield evaluator.space.to_z(x), descend
     if evaluator.space.size:
@@ -187,10 +188,10 @@ def _coordinates(
             yield swept.z[:, 0].copy(), not starts
 
 
-def _keep(look: Look, evaluator: Evaluator, point: Point) -> Point:
-    """Store a point if it is better than the known ones; returns the point."""
-    better = (max(point.violation, FEASIBLE), point.objective)
-    if not point.valid or better >= (max(look.violation, FEASIBLE), look.objective):
+def _store_best(look: Look, evaluator: Evaluator, point: Point) -> Point:
+    """Store a point if it is better than the stored point; returns the point."""
+    better = (max(point.violation, MET), point.objective)
+    if not point.valid or better >= (max(look.violation, MET), look.objective):
         return point
     look.x, look.objective, look.violation = point.x, point.objective, point.violation
     margins = point.rows[1 : 1 + evaluator.constraint_count]

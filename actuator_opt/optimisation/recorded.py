@@ -1,15 +1,15 @@
-"""An optimisation or a front as plain data, for storing and restoring a run record.
+"""Stores and restores an optimisation or a front as plain data of a run record.
 
-Designs are stored as trees of SI numbers, which rebuild exactly the same design. Evaluations are
-stored as their designs, with the estimated yield, and repeated on reading. Everything else is
-dataclasses, read by their annotations.
+Designs are stored as trees of SI numbers, which rebuild exactly the same design. An evaluation is
+stored as its design and estimated yield, and repeated on reading. All other data are dataclasses,
+restored by their annotations.
 """
 
 from __future__ import annotations
 
 import math
 import types
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields, is_dataclass, replace
 from functools import cache
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
@@ -35,8 +35,8 @@ _PLAIN: dict[Any, Any] = {float: (int, float), int: int, str: str, bool: bool}
 """Plain values, with the JSON types they may have."""
 
 
-def to_plain(found: Optimisation | ParetoFront) -> dict[str, Any]:
-    """A result as data for JSON: its `designs`, and the `result` that refers to them."""
+def to_plain(result: Optimisation | ParetoFront) -> dict[str, Any]:
+    """A result as JSON data: the `designs`, and the `result` with references to them."""
     designs: list[dict[str, Any]] = []
 
     def place(design: Design) -> int:
@@ -59,13 +59,13 @@ def to_plain(found: Optimisation | ParetoFront) -> dict[str, Any]:
         if isinstance(value, Evaluation):
             return {_EVALUATION: [place(value.design), plain(value.yield_estimate)]}
         if isinstance(value, Mapping):
-            return {key: plain(below) for key, below in value.items()}
+            return {key: plain(item) for key, item in value.items()}
         if is_dataclass(value):
             return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
         assert isinstance(value, Iterable), f"no plain data: {type(value).__name__}"
-        return [plain(below) for below in value]
+        return [plain(item) for item in value]
 
-    return {"result": plain(found), "designs": designs}
+    return {"result": plain(result), "designs": designs}
 
 
 def from_plain(
@@ -76,7 +76,7 @@ def from_plain(
     Parameters
     ----------
     kind : type of the result
-    data : as read from JSON
+    data : JSON data
     plugins : the user's own metrics, if the design needs them
 
     Raises
@@ -94,35 +94,44 @@ def from_plain(
             raise InputError(f"invalid design in the record: {built.faults[0].message}")
         return built.design
 
-    def evaluation(kept: Any) -> Evaluation:
-        index, known = kept if isinstance(kept, list) else (kept, None)  # before 0.7: no yield
+    def evaluation(entry: Any) -> Evaluation:
+        # the format before 0.7 has no yield
+        index, estimate = entry if isinstance(entry, list) else (entry, None)
         if index not in evaluated:
             subject = prepare(design(index), None, plugins)
             evaluated[index] = evaluate(replace(subject, lenient=True, aims=aims))
-        if known is None:
+        if estimate is None:
             return evaluated[index]
-        return replace(evaluated[index], yield_estimate=_typed(YieldEstimate, special(known)))
+        return replace(evaluated[index], yield_estimate=_typed(YieldEstimate, special(estimate)))
 
     def special(value: Any) -> Any:
         if isinstance(value, list):
-            return [special(below) for below in value]
+            return [special(item) for item in value]
         if not isinstance(value, dict):
             return value
         if len(value) == 1:
-            ((key, below),) = value.items()
-            known = {_DESIGN: design, _EVALUATION: evaluation, _FRACTION: Fraction, _NUMBER: float}
-            if key in known:
-                return known[key](below)
-        return {key: special(below) for key, below in value.items()}
+            ((key, item),) = value.items()
+            if key in readers:
+                return readers[key](item)
+        return {key: special(item) for key, item in value.items()}
 
+    readers: dict[str, Callable[[Any], Any]] = {
+        _DESIGN: design,
+        _EVALUATION: evaluation,
+        _FRACTION: Fraction,
+        _NUMBER: float,
+    }
     try:
-        aims |= {one["metric"]: one["sense"] for one in data["result"].get("objectives", ())}
-        found = _typed(kind, special(data["result"]))
-        if not isinstance(found, kind):
+        aims |= {
+            objective["metric"]: objective["sense"]
+            for objective in data["result"].get("objectives", ())
+        }
+        result = _typed(kind, special(data["result"]))
+        if not isinstance(result, kind):
             raise TypeError(f"no {kind.__name__}")
     except (LookupError, TypeError, ValueError, AttributeError, RecursionError) as error:
         raise InputError(f"does not fit this version ({type(error).__name__}: {error})") from None
-    return found
+    return result
 
 
 @cache
@@ -148,16 +157,16 @@ def _typed(kind: Any, value: Any) -> Any:
     if isinstance(kind, type) and is_dataclass(kind):
         if isinstance(value, kind):
             return value
-        return kind(**{name: _typed(_hints(kind)[name], below) for name, below in value.items()})
+        return kind(**{name: _typed(_hints(kind)[name], item) for name, item in value.items()})
     origin, inner = get_origin(kind), get_args(kind)
     if origin is tuple:
         inner = (inner[0],) * len(value) if inner[-1] is ... else inner
-        return tuple(_typed(one, below) for one, below in zip(inner, value, strict=True))
+        return tuple(_typed(option, item) for option, item in zip(inner, value, strict=True))
     if origin in (Union, types.UnionType):
-        options = [one for one in inner if one is not type(None)]
+        options = [option for option in inner if option is not type(None)]
         return _typed(options[0], value) if len(options) == 1 else value
     if isinstance(origin, type) and issubclass(origin, Mapping):
-        return {key: _typed(inner[1], below) for key, below in value.items()}
+        return {key: _typed(inner[1], item) for key, item in value.items()}
     if origin is Literal and value not in inner:
         raise ValueError(f"{value!r} is none of {', '.join(map(str, inner))}")
     return value

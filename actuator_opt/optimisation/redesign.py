@@ -1,4 +1,4 @@
-"""Effect of measured values on a design: its requirements, and its optimum."""
+"""Effect of measured values on a design: on its requirements and its optimum."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .run import optimise
 
 @dataclass(frozen=True, slots=True)
 class Shift:
-    """A requirement before and after, with the range due to the measured bounds.
+    """A requirement with the old and the new values, and its range over the measured bounds.
 
     `lower` and `upper` bound the value after (SI); None without a bound.
     """
@@ -31,7 +31,7 @@ class Shift:
 
     @property
     def move(self) -> float:
-        """Change of the margin as a share of the limit; negative is worse."""
+        """Change of the margin as a share of the limit; negative if it decreases."""
         if self.before.margin is None or self.after.margin is None:
             return 0.0
         return self.after.margin - self.before.margin
@@ -61,7 +61,7 @@ class Shift:
 
 
 class ObjectiveChange(NamedTuple):
-    """An objective metric at both optima [SI]; None without one."""
+    """An objective metric at both optima (SI); None without an optimum."""
 
     metric: str
     quantity: Quantity
@@ -71,13 +71,13 @@ class ObjectiveChange(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Redesign:
-    """A design before and after new values: as stated, and at its optimum.
+    """A design with the old and the new values: with the values of its file, and optimised.
 
     Parameters
     ----------
     evaluation : with the new values
     shifts : every requirement before and after
-    best_before, best_after : None for a design without variables and choices
+    best_before, best_after : the optima; None for a design without variables and choices
     """
 
     evaluation: Evaluation
@@ -90,24 +90,24 @@ class Redesign:
         """The requirement whose margin changed most; None if none changed."""
         if not self.shifts:
             return None
-        most = max(self.shifts, key=lambda one: abs(one.move))
-        return most if most.move != 0 else None
+        largest = max(self.shifts, key=lambda shift: abs(shift.move))
+        return largest if largest.move != 0 else None
 
     @property
     def sentences(self) -> tuple[str, ...]:
         """The changes in words."""
-        found = [self._moved_words()]
+        sentences = [self._moved_words()]
         before, after = self.best_before, self.best_after
         if before is not None and after is not None:
-            found += _optimum_words(before, after, self.goals)
-        return tuple(found)
+            sentences += _optimum_words(before, after, self.goals)
+        return tuple(sentences)
 
     @property
     def goals(self) -> tuple[ObjectiveChange, ...]:
         """The metrics of the objective at both optima, weighted terms separately.
 
-        A weighted sum divides each term by its value in the file's design, which new values change.
-        The sums before and after are therefore not comparable.
+        A weighted sum divides each term by its value in the design of the file, which the new
+        values change. The sums before and after are therefore not comparable.
         """
         before, after = self.best_before, self.best_after
         if before is None or after is None:
@@ -120,27 +120,27 @@ class Redesign:
         )
 
     def _moved_words(self) -> str:
-        most = self.moved
-        if most is None:
+        largest = self.moved
+        if largest is None:
             return "no requirement changes"
-        quantity = self.evaluation.metrics[most.after.metric].quantity
-        low, high = most.lower, most.upper
+        quantity = self.evaluation.metrics[largest.after.metric].quantity
+        low, high = largest.lower, largest.upper
         bounds = (
             ""
             if low is None or high is None
             else f" ({quantity.text(low)} to {quantity.text(high)})"
         )
-        sign = "at least" if most.after.sense == "min" else "at most"
-        old = "-" if most.before.value is None else quantity.text(most.before.value)
-        new = "-" if most.after.value is None else quantity.text(most.after.value)
+        sign = "at least" if largest.after.sense == "min" else "at most"
+        old = "-" if largest.before.value is None else quantity.text(largest.before.value)
+        new = "-" if largest.after.value is None else quantity.text(largest.after.value)
         return (
-            f"largest change: {most.after.name} from {old} to {new}{bounds}, required {sign} "
-            f"{quantity.text(most.after.limit)}: {most.verdict}"
+            f"largest change: {largest.after.name} from {old} to {new}{bounds}, required {sign} "
+            f"{quantity.text(largest.after.limit)}: {largest.verdict}"
         )
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data for JSON, SI."""
-        found: dict[str, Any] = {
+        result: dict[str, Any] = {
             "requirements": [shift.to_dict() for shift in self.shifts],
             "moved": None if self.moved is None else self.moved.after.name,
             "sentences": list(self.sentences),
@@ -148,19 +148,19 @@ class Redesign:
         }
         before, after = self.best_before, self.best_after
         if before is not None and after is not None:
-            was = {variable.path: variable.value for variable in before.variables}
-            found["optimum"] = {
+            previous = {variable.path: variable.value for variable in before.variables}
+            result["optimum"] = {
                 "objective": {
                     goal.metric: {"before": goal.before, "after": goal.after} for goal in self.goals
                 },
                 "status": {"before": before.status, "after": after.status},
                 "variables": {
-                    variable.path: {"before": was.get(variable.path), "after": variable.value}
+                    variable.path: {"before": previous.get(variable.path), "after": variable.value}
                     for variable in after.variables
                 },
                 "active": {"before": active(before), "after": active(after)},
             }
-        return found
+        return result
 
 
 def solved(optimisation: Optimisation) -> bool:
@@ -170,11 +170,13 @@ def solved(optimisation: Optimisation) -> bool:
 
 def _values(name: str, *optima: Optimisation) -> list[float | None]:
     """A metric at designs that meet their requirements."""
-    return [one.evaluation.metrics[name].value if solved(one) else None for one in optima]
+    return [
+        optimum.evaluation.metrics[name].value if solved(optimum) else None for optimum in optima
+    ]
 
 
 def active(optimisation: Optimisation) -> list[str]:
-    """The active limits of an optimum."""
+    """Labels of the active limits of an optimum."""
     return [] if optimisation.kkt is None else list(optimisation.kkt.active)
 
 
@@ -188,27 +190,29 @@ def redesign(
 ) -> Redesign:
     """Evaluate both designs and, if they have variables, optimise them.
 
-    Each group of measured values is set to its bounds with all others unchanged. The changes up and
-    down add as squares to the range of a requirement.
+    Each group of measured values takes its bounds, with all other values unchanged. The range of a
+    requirement is the root of the sum of the squared changes, upwards and downwards.
 
     Parameters
     ----------
     before, after : the design with the old and the new values
-    learned : lower and upper bounds by PATH, of groups of values that move together
+    learned : groups of measured values that vary together: lower and upper bounds by PATH
     seed : of the searches
     search : whether to optimise
     """
-    stood, stands = evaluate(before), evaluate(after)
-    bounds = _bounds(after, stands, learned)
+    evaluation_before, evaluation_after = evaluate(before), evaluate(after)
+    bounds = _bounds(after, evaluation_after, learned)
     shifts = tuple(
         Shift(old, new, *bounds.get(new.name, (None, None)))
-        for old, new in zip(stood.requirements, stands.requirements, strict=True)
+        for old, new in zip(
+            evaluation_before.requirements, evaluation_after.requirements, strict=True
+        )
     )
-    free = after.design.variables or after.design.choices
-    if not (search and free and after.design.requirements):
-        return Redesign(stands, shifts, None, None)
-    best = [optimise(one, seed=seed, prices=False) for one in (before, after)]
-    return Redesign(stands, shifts, *best)
+    has_choice = after.design.variables or after.design.choices
+    if not (search and has_choice and after.design.requirements):
+        return Redesign(evaluation_after, shifts, None, None)
+    optima = [optimise(subject, seed=seed, prices=False) for subject in (before, after)]
+    return Redesign(evaluation_after, shifts, *optima)
 
 
 def _bounds(
@@ -222,20 +226,20 @@ def _bounds(
     for group in learned:
         ends = []
         for end in (0, 1):
-            moved = {path: bounds[end] for path, bounds in group.items()}
+            numbers = {path: bounds[end] for path, bounds in group.items()}
             try:
-                design = with_values(subject.design, moved)
+                design = with_values(subject.design, numbers)
             except InputError:
                 return {}
             ends.append(evaluate(prepare(design, plugins=subject.plugins)).requirements)
-        for one, other in zip(*ends, strict=True):
-            middle_value = values[one.name]
-            if one.value is None or other.value is None or middle_value is None:
+        for at_lower, at_upper in zip(*ends, strict=True):
+            middle_value = values[at_lower.name]
+            if at_lower.value is None or at_upper.value is None or middle_value is None:
                 continue
-            down, up = reach[one.name]
-            reach[one.name] = (
-                hypot(down, max(middle_value - min(one.value, other.value), 0.0)),
-                hypot(up, max(max(one.value, other.value) - middle_value, 0.0)),
+            down, up = reach[at_lower.name]
+            reach[at_lower.name] = (
+                hypot(down, max(middle_value - min(at_lower.value, at_upper.value), 0.0)),
+                hypot(up, max(max(at_lower.value, at_upper.value) - middle_value, 0.0)),
             )
     return {
         name: (None, None) if value is None else (value - reach[name][0], value + reach[name][1])
@@ -249,8 +253,10 @@ def _optimum_words(
     """Changes of the optimum and of its active limits."""
     if not (solved(before) and solved(after)):
         states = [
-            "a design meets all requirements" if solved(one) else "no design meets all requirements"
-            for one in (before, after)
+            "a design meets all requirements"
+            if solved(optimum)
+            else "no design meets all requirements"
+            for optimum in (before, after)
         ]
         return [f"before, {states[0]}; now, {states[1]}", *_repairs(after)]
     parts = [_goal_words(goal) for goal in goals]
@@ -262,31 +268,33 @@ def _goal_words(objective_change: ObjectiveChange) -> str:
     old, new = objective_change.before, objective_change.after
     if old is None or new is None:
         return f"{objective_change.metric} has no value"
-    was, now = objective_change.quantity.text(old, 5), objective_change.quantity.text(new, 5)
-    if was == now:
-        return f"{objective_change.metric} stays {now}"
+    old_text, new_text = (objective_change.quantity.text(x, 5) for x in (old, new))
+    if old_text == new_text:
+        return f"{objective_change.metric} stays {new_text}"
     change = f" ({100 * (new / old - 1):+.1f} %)" if old else ""
-    return f"{objective_change.metric} {was} to {now}{change}"
+    return f"{objective_change.metric} {old_text} to {new_text}{change}"
 
 
 def _repairs(optimisation: Optimisation) -> list[str]:
     """The sufficient single change, and the smallest change of limits."""
     if optimisation.infeasibility is None:
         return []
-    first = next((cure for cure in optimisation.infeasibility.cures if cure["advised"]), None)
-    alone = [] if first is None else [f"enough alone: {change_text(first)}"]
+    first_cure = next((cure for cure in optimisation.infeasibility.cures if cure["advised"]), None)
+    single = [] if first_cure is None else [f"enough alone: {change_text(first_cure)}"]
     joint = optimisation.infeasibility.joint
-    found = "; ".join(change_text(row) for row in joint)
+    changes = "; ".join(change_text(row) for row in joint)
     unsafe = any(row["safety_factor"] for row in joint)
     warned = " (weakens a safety factor: not advised)" if unsafe else ""
-    said = [f"the smallest sufficient change of limits: {found}{warned}"] if found else []
-    return [*alone, *said]
+    joint_change = (
+        [f"the smallest sufficient change of limits: {changes}{warned}"] if changes else []
+    )
+    return [*single, *joint_change]
 
 
 def _active_words(old: Sequence[str], new: Sequence[str]) -> list[str]:
     """Limits that became active at the optimum, and those no longer active."""
     pairs = (
-        ([one for one in new if one not in old], "newly at its limit"),
-        ([one for one in old if one not in new], "no longer at its limit"),
+        ([limit for limit in new if limit not in old], "newly at its limit"),
+        ([limit for limit in old if limit not in new], "no longer at its limit"),
     )
-    return [f"{what}: {', '.join(names)}" for names, what in pairs if names]
+    return [f"{change}: {', '.join(names)}" for names, change in pairs if names]

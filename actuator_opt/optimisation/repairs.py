@@ -1,9 +1,9 @@
-"""Single changes that make an infeasible problem feasible: one requirement, or one bound.
+"""Single changes that make an infeasible problem feasible: of one requirement, or of one bound.
 
-First, shortest steps to the linearised rows look for a point that meets everything but this
-requirement (or lies beyond this bound), for all candidates at once. If they fail, the worst
-violation is minimised from several points, in an elastic problem: its constraints may be violated
-at a price. From there the least sufficient change follows.
+First, shortest steps to the linearised rows search for a point that meets everything except this
+requirement, or that lies beyond this bound, for all candidates at once. If the steps fail, an
+elastic problem with slacks on the constraints minimises the worst violation from several points.
+The least sufficient change follows from the feasible point.
 """
 
 from __future__ import annotations
@@ -27,10 +27,6 @@ from .resolve.changed import ChangedProblems, applicable
 Indices: TypeAlias = npt.NDArray[np.intp]
 
 
-FEASIBLE = 1e-6
-"""Slack that counts as zero."""
-
-
 MOST = 200
 """Maximum evaluations of one descent; 10 to 50 usually suffice."""
 
@@ -40,15 +36,15 @@ FINE = 1e-7
 
 
 EXACT = 1e-9
-"""Optimality at which further polishing does not pay."""
+"""Measure of optimality at which polishing ends."""
 
 
 ROUGH = 1e-5
-"""Relative tolerance of a descent that only tests whether a start is promising."""
+"""Relative tolerance of a descent that only tests a start."""
 
 
 def common(problem: BoxProblem, room: float) -> BoxProblem:
-    """Minimise one slack shared by every constraint and equality."""
+    """The elastic problem with one slack for all constraints and equalities."""
     m, e = len(problem.constraint_names), len(problem.equality_names)
     n = len(problem.names)
 
@@ -65,7 +61,7 @@ def common(problem: BoxProblem, room: float) -> BoxProblem:
 
 
 def separate(problem: BoxProblem, groups: Sequence[Indices], room: Sequence[float]) -> BoxProblem:
-    """Minimise the sum of one slack per group of constraints; all others must be met."""
+    """The elastic problem with one slack per group of constraints; all others must be met."""
     n, m = len(problem.names), len(problem.constraint_names)
 
     def evaluate(x: Array) -> PointValues:
@@ -82,14 +78,14 @@ def separate(problem: BoxProblem, groups: Sequence[Indices], room: Sequence[floa
 
 
 def _rows_once(problem: BoxProblem, points: Array) -> npt.NDArray[np.generic]:
-    """Rows of points (n, k) of which many differ only in slacks; the model evaluates each once."""
+    """Rows of points (n, k); repeated points, which differ only in slacks, are evaluated once."""
     columns = np.ascontiguousarray(points.T)
-    first: dict[bytes, int] = {}
-    places = [first.setdefault(column.tobytes(), len(first)) for column in columns]
-    if len(first) == len(columns):
+    numbers: dict[bytes, int] = {}
+    places = [numbers.setdefault(column.tobytes(), len(numbers)) for column in columns]
+    if len(numbers) == len(columns):
         return problem.rows(points)
-    _, kept = np.unique(places, return_index=True)
-    return problem.rows(points[:, kept])[:, places]
+    _, indices = np.unique(places, return_index=True)
+    return problem.rows(points[:, indices])[:, places]
 
 
 def _extended(
@@ -116,54 +112,58 @@ def _extended(
 
 
 def feasible_point(evaluator: Evaluator, point: Point) -> Point | None:
-    """Return a feasible point near `point`, by minimising one common slack, or None."""
-    if point.violation <= FEASIBLE:
+    """A feasible point near `point`, or None; minimises one common slack."""
+    if point.violation <= NOTHING:
         return point
-    found = least_missed(evaluator, point)
-    return found if found.violation <= FEASIBLE else None
+    end = least_missed(evaluator, point)
+    return end if end.violation <= NOTHING else None
 
 
 def least_missed(evaluator: Evaluator, point: Point, rough: float = np.inf) -> Point:
     """Minimise the worst violation near a point; a feasible point is returned unchanged.
 
-    A result that violates more than `rough` is not polished, which halves the effort.
+    A result with a violation above `rough` is not polished, which halves the effort.
     """
     inner = Evaluator(common(evaluator.problem, 2.0 * point.violation + 1.0))
-    start = found = inner.point(inner.space.to_z(np.append(point.x, point.violation)))
+    start = best = inner.point(inner.space.to_z(np.append(point.x, point.violation)))
     if not start.valid:
         return point
     inner.eager = True
     if rough < np.inf:
-        found = run(inner, start, "LD_SLSQP", tolerance=ROUGH, most=MOST, rank=_miss).point
-    if _miss(found) <= rough:
-        led = run(inner, found, "LD_SLSQP", tolerance=FINE, most=MOST, rank=_miss)
-        found = min((led.point, finish(inner, led.point)), key=_miss)
+        best = run(
+            inner, start, "LD_SLSQP", tolerance=ROUGH, max_evaluations=MOST, rank=_miss
+        ).point
+    if _miss(best) <= rough:
+        run_end = run(inner, best, "LD_SLSQP", tolerance=FINE, max_evaluations=MOST, rank=_miss)
+        best = min((run_end.point, finish(inner, run_end.point)), key=_miss)
     evaluator.evaluations += inner.evaluations
     evaluator.check_limits()
-    end = evaluator.point(evaluator.space.to_z(found.x[: len(point.x)]))
+    end = evaluator.point(evaluator.space.to_z(best.x[: len(point.x)]))
     return end if end.valid and end.violation < point.violation else point
 
 
 def _miss(point: Point) -> float:
-    """The worst violation at a point of a common slack; the slack covers what is violated."""
+    """The worst violation at a point of the problem with a common slack."""
     return point.objective + point.violation if point.valid else np.inf
 
 
 def descend(
-    problem: BoxProblem, x: Vector, slack: Sequence[float], known: Sequence[Point] = ()
+    problem: BoxProblem, x: Vector, slack: Sequence[float], ends: Sequence[Point] = ()
 ) -> Point:
-    """Solve an elastic problem from a point and slacks, unless it reaches a known result."""
+    """Solve an elastic problem from a point and slacks; a known end point stops the run."""
     inner = Evaluator(problem)
     start = inner.point(inner.space.to_z(np.concatenate([x, np.asarray(slack, dtype=float)])))
     if not start.valid:
         return start
-    led = run(inner, start, "LD_SLSQP", tolerance=FINE, most=MOST, known=known)
-    return known[led.arrived] if led.arrived is not None else finish(inner, led.point)
+    run_end = run(inner, start, "LD_SLSQP", tolerance=FINE, max_evaluations=MOST, optima=ends)
+    return ends[run_end.arrived] if run_end.arrived is not None else finish(inner, run_end.point)
 
 
 def go(evaluator: Evaluator, start: Point) -> Point:
     """Run one descent and polish the result."""
-    return finish(evaluator, run(evaluator, start, "LD_SLSQP", tolerance=FINE, most=MOST).point)
+    return finish(
+        evaluator, run(evaluator, start, "LD_SLSQP", tolerance=FINE, max_evaluations=MOST).point
+    )
 
 
 def finish(evaluator: Evaluator, point: Point) -> Point:
@@ -172,22 +172,22 @@ def finish(evaluator: Evaluator, point: Point) -> Point:
 
 
 NOTHING = 1e-6
-"""A relaxation below this counts as zero."""
+"""Relaxation or violation below which it counts as zero."""
 
 SETTLED = 1e-6
 """Residual of the optimality conditions up to which a result counts as an optimum."""
 
 CHALLENGE = 0.99
-"""Share of an amount that must not be enough, or the amount is too large."""
+"""Share of an amount; if it is also enough, the amount is too large."""
 
 FAINT = 1e-3
-"""Amounts below are not checked, as a hundredth of them is near the feasibility tolerance."""
+"""Least amount for this check; a hundredth of it must exceed the feasibility tolerance."""
 
 CHALLENGES = 8
-"""Maximum rounds of this check; halving comes within a per cent in seven."""
+"""Maximum rounds of this check; seven halvings reach one per cent."""
 
 WIDEST = 2.0
-"""A bound may change to twice, or half, its value at most: beyond, it is another actuator."""
+"""Largest factor on a bound or dimension; larger changes give another actuator."""
 
 _FREED = 1e9
 """Margin granted to an excluded requirement, larger than any violation."""
@@ -197,7 +197,7 @@ _FREED = 1e9
 class RelaxedConstraint:
     """A constraint and the margin (fraction of its limit) to give up.
 
-    `amount` is None if giving up this constraint entirely would not be enough.
+    `amount` is None if the problem is infeasible even without this constraint.
     """
 
     constraint: str
@@ -243,12 +243,12 @@ def by_limits(
     ----------
     problem : the infeasible problem
     groups : rows of the candidates
-    named : first rows of the groups to search from every point
-    points : where to start, the point of the smallest joint relaxation first
+    named : first rows of the groups that are searched from every point
+    points : starts, the point of the smallest joint relaxation first
     """
     amounts: list[float | None] = []
-    reached = without_each(problem, groups, points[0])
-    for number, (group, x) in enumerate(zip(groups, reached, strict=True)):
+    points_without = without_each(problem, groups, points[0])
+    for number, (group, x) in enumerate(zip(groups, points_without, strict=True)):
         tell("infeasible: searching for a sufficient requirement", number / len(groups))
         if x is None:
             x = _without(problem, group, points if int(group[0]) in named else points[:1])
@@ -268,28 +268,34 @@ def _challenged(
 ) -> list[float | None]:
     """The amounts, reduced where a share `CHALLENGE` is enough as well.
 
-    A descent may end on a kink or in a shallow valley; halving then finds a smaller amount.
+    A descent may end at a kink or in a shallow valley; halving then finds a smaller amount.
     """
-    enough = {k: amount for k, amount in enumerate(amounts) if amount is not None}
-    tried = {k: CHALLENGE * amount for k, amount in enough.items() if amount > FAINT}
-    short = dict.fromkeys(enough, 0.0)
+    sufficient = {k: amount for k, amount in enumerate(amounts) if amount is not None}
+    trials = {k: CHALLENGE * amount for k, amount in sufficient.items() if amount > FAINT}
+    insufficient = dict.fromkeys(sufficient, 0.0)
     for _ in range(CHALLENGES):
-        if not tried:
+        if not trials:
             break
-        reached: dict[int, Vector | None] = dict.fromkeys(tried)
+        starts: dict[int, Vector | None] = dict.fromkeys(trials)
         for x in points:
-            left = [k for k in tried if reached[k] is None]
-            ends = without_each(problem, [groups[k] for k in left], x, [tried[k] for k in left])
-            reached |= dict(zip(left, ends, strict=True))
-        for k, amount in tried.items():
-            found = reached[k]
-            if found is None:
-                short[k] = amount
+            missing = [k for k in trials if starts[k] is None]
+            ends = without_each(
+                problem, [groups[k] for k in missing], x, [trials[k] for k in missing]
+            )
+            starts |= dict(zip(missing, ends, strict=True))
+        for k, amount in trials.items():
+            start = starts[k]
+            if start is None:
+                insufficient[k] = amount
                 continue
-            less, _ = _least(problem, groups[k], found)
-            enough[k] = amount if less is None else min(amount, less)
-        tried = {k: (short[k] + enough[k]) / 2 for k in tried if short[k] < CHALLENGE * enough[k]}
-    return [enough.get(k) for k in range(len(groups))]
+            smaller, _ = _least(problem, groups[k], start)
+            sufficient[k] = amount if smaller is None else min(amount, smaller)
+        trials = {
+            k: (insufficient[k] + sufficient[k]) / 2
+            for k in trials
+            if insufficient[k] < CHALLENGE * sufficient[k]
+        }
+    return [sufficient.get(k) for k in range(len(groups))]
 
 
 def without_each(
@@ -298,12 +304,15 @@ def without_each(
     x: Vector,
     granted: Sequence[float] | None = None,
 ) -> list[Vector | None]:
-    """For each group a point that meets all else, with a margin granted to it (None: any)."""
+    """For each group, a point that meets all other rows, with a margin granted to the group.
+
+    `granted` is None for any margin. The result is None without this point.
+    """
     evaluator = Evaluator(problem)
     point = evaluator.point(evaluator.space.to_z(x))
-    freed = np.zeros((len(problem.constraint_names), len(groups)))
+    margins_granted = np.zeros((len(problem.constraint_names), len(groups)))
     for k, group in enumerate(groups):
-        freed[group, k] = _FREED if granted is None else granted[k]
+        margins_granted[group, k] = _FREED if granted is None else granted[k]
 
     def evaluate(points: Array, margins: Array) -> PointValues:
         rows = problem.rows(points)
@@ -315,25 +324,25 @@ def without_each(
     evaluator.check_gradients(point)
     if not groups or not applicable(parametric, evaluator):
         return [None] * len(groups)
-    found = ChangedProblems(parametric, evaluator, freed).restore(point.z)
-    return [None if z is None else evaluator.space.to_x(z[:, None])[:, 0] for z in found]
+    restored = ChangedProblems(parametric, evaluator, margins_granted).restore(point.z)
+    return [None if z is None else evaluator.space.to_x(z[:, None])[:, 0] for z in restored]
 
 
 def near(problem: BoxProblem, x: Vector) -> Vector | None:
-    """A feasible point near another, or None."""
+    """A feasible point near x, or None."""
     return without_each(problem, [np.empty(0, dtype=np.intp)], x)[0]
 
 
 def _without(problem: BoxProblem, group: Indices, points: Sequence[Vector]) -> Vector | None:
-    """A point that meets everything but one group, or None."""
+    """A point that meets all rows except one group, or None."""
     m = len(problem.constraint_names)
-    kept = np.setdiff1d(np.arange(m), group)
+    remaining = np.setdiff1d(np.arange(m), group)
 
-    def evaluate(at: Array) -> PointValues:
-        rows = problem.rows(at)
-        return PointValues(rows[0], rows[1 : 1 + m][kept], rows[1 + m :])
+    def evaluate(trial: Array) -> PointValues:
+        rows = problem.rows(trial)
+        return PointValues(rows[0], rows[1 : 1 + m][remaining], rows[1 + m :])
 
-    names = tuple(problem.constraint_names[i] for i in kept)
+    names = tuple(problem.constraint_names[i] for i in remaining)
     slim = replace(problem, evaluate=evaluate, constraint_names=names, relaxable=None, groups=None)
     evaluator = Evaluator(slim)
     for x in points:
@@ -345,17 +354,17 @@ def _without(problem: BoxProblem, group: Indices, points: Sequence[Vector]) -> V
 
 
 def _least_of_all(
-    problem: BoxProblem, group: Indices, x: Vector, others: Sequence[Vector]
+    problem: BoxProblem, group: Indices, x: Vector, points: Sequence[Vector]
 ) -> float | None:
     """The least relaxation of one group; also from other points if a descent stalled."""
-    amount, settled = _least(problem, group, x)
-    for other in others:
-        if settled:
+    amount, optimal = _least(problem, group, x)
+    for point in points:
+        if optimal:
             break
-        start = _without(problem, group, [other])
+        start = _without(problem, group, [point])
         if start is not None:
-            again, settled = _least(problem, group, start)
-            amount = again if amount is None else min(amount, again or amount)
+            retried, optimal = _least(problem, group, start)
+            amount = retried if amount is None else min(amount, retried or amount)
     return amount
 
 
@@ -365,41 +374,41 @@ def least(problem: BoxProblem, group: Indices, x: Vector) -> float | None:
 
 
 def _least(problem: BoxProblem, group: Indices, x: Vector) -> tuple[float | None, bool]:
-    """As `least`, with whether the result is optimal."""
+    """As `least`, and whether the result is optimal."""
     lacks = missed(Evaluator(problem), x, [group])
     stretched = separate(problem, [group], [2.0 * max(*lacks, 0.5)])
-    found = descend(stretched, x, lacks)
-    if found.violation > NOTHING:
+    end = descend(stretched, x, lacks)
+    if end.violation > NOTHING:
         return None, False
-    residual = kkt.check(Evaluator(stretched), found, objective_scale=1.0).residual
-    return float(found.objective), residual <= SETTLED
+    residual = kkt.check(Evaluator(stretched), end, objective_scale=1.0).residual
+    return float(end.objective), residual <= SETTLED
 
 
 def by_bounds(problem: BoxProblem, bounds: Sequence[Opening], x: Vector) -> tuple[Opening, ...]:
-    """The bounds, each with the value that is enough alone."""
-    found = []
+    """The bounds, with the value of each that is enough alone."""
+    result = []
     for number, bound in enumerate(bounds):
         tell("infeasible: searching for a sufficient bound", number / len(bounds))
-        found.append(replace(bound, needed=_opened(problem, bound, x)))
-    return tuple(found)
+        result.append(replace(bound, needed=_opened(problem, bound, x)))
+    return tuple(result)
 
 
 def _opened(problem: BoxProblem, bound: Opening, x: Vector) -> float | None:
-    """The value nearest to a bound at which a variable beyond it meets all requirements."""
-    j, upper = bound.index, bound.side == "upper"
+    """The value of a variable nearest to its bound, beyond it, that meets all requirements."""
+    j, is_upper = bound.index, bound.side == "upper"
     if bound.value <= 0:
         return None
-    lower, above = problem.lower.copy(), problem.upper.copy()
-    lower[j], above[j] = (
-        (bound.value, bound.value * WIDEST) if upper else (bound.value / WIDEST, bound.value)
+    lower_bounds, upper_bounds = problem.lower.copy(), problem.upper.copy()
+    lower_bounds[j], upper_bounds[j] = (
+        (bound.value, bound.value * WIDEST) if is_upper else (bound.value / WIDEST, bound.value)
     )
 
     def evaluate(points: Array) -> PointValues:
         rows = problem.rows(points)
         m = len(problem.constraint_names)
-        return PointValues(points[j] if upper else -points[j], rows[1 : 1 + m], rows[1 + m :])
+        return PointValues(points[j] if is_upper else -points[j], rows[1 : 1 + m], rows[1 + m :])
 
-    opened = replace(problem, lower=lower, upper=above, evaluate=evaluate, start=None)
+    opened = replace(problem, lower=lower_bounds, upper=upper_bounds, evaluate=evaluate, start=None)
     start = near(opened, x)
     if start is None:
         return None

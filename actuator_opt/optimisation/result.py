@@ -31,11 +31,11 @@ class VariableResult:
     at_bound: str | None
 
     def moved(self, value: float) -> VariableResult:
-        """The same dimension at another value."""
+        """The dimension at another value."""
         room = 1e-6 * max(abs(self.lower), abs(self.upper), self.upper - self.lower)
         bounds = {"lower": value - self.lower, "upper": self.upper - value}
-        near = next((name for name, distance in bounds.items() if distance <= room), None)
-        return replace(self, value=value, at_bound=near)
+        active_bound = next((name for name, distance in bounds.items() if distance <= room), None)
+        return replace(self, value=value, at_bound=active_bound)
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,27 +51,28 @@ class Kkt:
 
 @dataclass(frozen=True, slots=True)
 class Infeasibility:
-    """Why a design is infeasible: joint relaxation, sufficient single changes, binding bounds.
+    """Explanation of an infeasible design: joint relaxation, sufficient changes, binding bounds.
 
     `joint` and `sole` entries contain requirement, origin, parameter (PATH), metric, sense, limit,
-    needed (the sufficient limit; None if this one alone cannot help), relaxation (margin given up,
-    a fraction), change (of the limit, a fraction), safety_factor (whether it is of the check list
-    or a factor, so that relaxing it is not advised) and both limits as text in the display unit.
-    The text of `needed` is rounded to be sufficient as printed. If a torque is required through a
-    lever, limit and needed are torques.
+    needed (the sufficient limit; None if no change of this limit is enough alone), relaxation
+    (fraction of the margin given up), change (of the limit, a fraction), safety_factor (True for
+    the check list and factors, whose relaxation is not advised) and both limits as text in the
+    display unit. The text of `needed` is rounded so that it is sufficient as printed. If a torque
+    is required through a lever, limit and needed are torques.
 
-    `bounds` entries contain variable, parameter (PATH), quantity, bound (side), value, gain (fall
-    of `total` per unit of relative change: 0.01 of it for 1 %), needed (the bound that is enough
-    alone, None if no bound is), change and texts.
+    `bounds` entries contain variable, parameter (PATH), quantity, bound (side), value, gain
+    (decrease of `total` per unit of relative change; a change of 1 % gives 0.01 of it), needed (the
+    bound that is enough alone; None without one), change and texts.
 
     `cures` lists sufficient single changes, the most advisable first: kind (dimension, choice,
     bound, requirement, safety factor), parameter (PATH), now and needed (SI, or a word), change,
-    texts, and advised (False for safety factors). A dimension is one that is not a variable;
-    `together` lists several that are enough together, `beside` further entries that a choice needs,
-    by PATH. Each was confirmed by a design; `untried` names candidates that were not tried.
+    texts, and advised (False for safety factors). A dimension is not a variable of the design;
+    `together` lists dimensions that are only enough together; `beside` gives further entries that
+    a choice needs, by PATH. A design confirmed each cure. `untried` lists candidates that were not
+    tried.
 
-    `laws` names conflicting geometry, `total` is the sum of the joint relaxations, `sentence` the
-    advice in one line and `evidence` what is proven.
+    `laws` lists conflicting geometry, `total` is the sum of the joint relaxations, `sentence` the
+    advice in one line, and `evidence` states what is proven.
     """
 
     joint: tuple[Mapping[str, Any], ...]
@@ -91,8 +92,8 @@ class Certificate:
 
     No design that meets the covered limits has an objective below `lower_bound` (SI); `gap` is the
     remaining distance of this design, relative to its objective. Both are None without a proof;
-    `sentence` then gives the reason. `dropped` gives the reason for each limit not covered, which
-    can only lower the bound. `evidence` is the statistic of the starts, not a proof.
+    `sentence` then gives the reason. `dropped` gives the reason for each limit that is not covered;
+    dropped limits can only lower the bound. `evidence` is the statistic of the starts, not a proof.
     """
 
     sentence: str
@@ -110,9 +111,9 @@ class Certificate:
 
 @dataclass(frozen=True, slots=True)
 class RoundedVariable:
-    """A variable before and after rounding (SI); `discrete` ones only take listed values.
+    """A variable before and after rounding (SI); a `discrete` variable only takes listed values.
 
-    `plies` counts those of a layer's thickness, `sizes` names the list or series.
+    `plies` is the number of plies of a layer, `sizes` the name of the list or series.
     """
 
     path: str
@@ -126,7 +127,7 @@ class RoundedVariable:
 
 @dataclass(frozen=True, slots=True)
 class RunnerUp:
-    """Another rounded design that meets all requirements: its listed variables by PATH."""
+    """Another rounded design that meets all requirements, with its listed variables by PATH."""
 
     objective: float
     cost: float
@@ -152,15 +153,15 @@ class SizeRemedy:
 class Rounding:
     """The best design of whole plies, standard or other listed sizes, and the cost of rounding.
 
-    `name` says which ("whole plies", "standard sizes"). `cost` is the loss of the objective (≥ 0,
-    in its SI unit), `percent` relative to the continuous one. Both are None, with `design` and
-    `evaluation`, if no rounded design was feasible. `plies` counts those of every layer that states
-    its ply thickness, `tried` and `feasible` count rounded designs, `solves` re-optimisations;
-    `complete` is True if the search did not stop at a limit. Bounds of the search are local optima,
-    so the result is the best found, without proof. `unmade` names by PATH values that are not whole
-    plies or allowed angles because the requested sizes leave them free; such a design cannot be
-    built yet. `remedies` lists small changes of a limit, load or pressure that allow better sizes,
-    if rounding costs much.
+    `name` is the kind of sizes ("whole plies", "standard sizes"). `cost` is the loss of the
+    objective (≥ 0, in its SI unit), `percent` the loss relative to the continuous optimum. Both are
+    None, like `design` and `evaluation`, if no rounded design was feasible. `plies` gives the
+    number of plies of every layer with a ply thickness. `tried` and `feasible` count rounded
+    designs, `solves` re-optimisations; `complete` is True if the search did not stop at a limit.
+    The bounds of the search are local optima, so the result is not proven. `unmade` lists the PATHs
+    of values that are not whole plies or allowed angles because the requested sizes leave them
+    free; this design cannot be built yet. `remedies` lists small changes of a limit, load or
+    pressure that allow better sizes, if rounding costs much.
     """
 
     met: bool
@@ -197,8 +198,8 @@ class Rounding:
 
     def to_dict(self) -> dict[str, Any]:
         """The "rounding" of `optimise --json` (SI)."""
-        kept = ("met", "remedy", "cost", "percent", "tried", "feasible", "solves")
-        return {name: getattr(self, name) for name in kept} | {
+        keys = ("met", "remedy", "cost", "percent", "tried", "feasible", "solves")
+        return {name: getattr(self, name) for name in keys} | {
             "sizes": self.name,
             "outcome": self.sentence,
             "complete": self.complete,
@@ -217,20 +218,19 @@ class Rounding:
 
 
 How: TypeAlias = Literal["multistart", "quick", "evaluated", "not possible", "not tried"]
-"""Depth of the search of a combination."""
+"""Kind of search of a combination."""
 
 
 @dataclass(frozen=True, slots=True)
 class Combination:
     """One combination of the choices and its best design.
 
-    `how`: "multistart" from many starts like any optimisation, "quick" only from the nearest known
-    design (its best may be missed), "evaluated" if nothing else is free, "not possible" if its
-    values contradict each other, "not tried" if the time ran out. `feasible` is True if all
-    requirements are met; `cost` is the loss against the best objective (in its SI unit), `percent`
-    relative to the best; None without anything to compare. `rounded` is the objective with listed
-    sizes, if requested and better than those of the combinations before; costs then refer to the
-    best of these.
+    `how` is the search: "multistart" from many starts, "quick" from the nearest known design only
+    (it may miss the optimum), "evaluated" without variables, "not possible" for contradicting
+    values, "not tried" at the time limit. `feasible` is True if all requirements are met. `cost` is
+    the loss relative to the best objective (in its SI unit), `percent` the relative loss; None
+    without a comparison. `rounded` is the objective with listed sizes, if requested and better than
+    that of the combinations before; costs then refer to the best rounded objective.
     """
 
     values: Mapping[str, choice_list.Value]
@@ -250,7 +250,7 @@ class Combination:
 
 @dataclass(frozen=True, slots=True)
 class Choices:
-    """All combinations of the choices; the best one comes first and gives the result."""
+    """All combinations of the choices; the first is the best and gives the result."""
 
     sentence: str
     combinations: tuple[Combination, ...]
@@ -267,7 +267,7 @@ class Choices:
 
     @property
     def tried(self) -> int:
-        """Number of combinations solved, or evaluated if nothing else is free."""
+        """Number of combinations that were solved or evaluated."""
         return self.count("multistart", "quick", "evaluated")
 
     @property
@@ -277,16 +277,16 @@ class Choices:
 
     def to_dict(self) -> dict[str, Any]:
         """The "choices" of `optimise --json` (SI)."""
-        first, *others = (combination.to_dict() for combination in self.combinations)
+        best, *runners_up = (combination.to_dict() for combination in self.combinations)
         return {
             "outcome": self.sentence,
             "combinations": len(self.combinations),
             "tried": self.tried,
             "feasible": self.feasible,
             "complete": self.count("not tried") == 0,
-            "best": first.pop("values"),
-            "found": first,
-            "runners_up": others,
+            "best": best.pop("values"),
+            "found": best,
+            "runners_up": runners_up,
             "notes": list(self.notes),
         }
 
@@ -310,7 +310,7 @@ class Optimisation(Displayed):
     evaluations: int
     samples: int
     starts: tuple[float | None, ...]
-    """Objective that each start reached; None if its design misses a limit."""
+    """Objective that each start reached; None if the design misses a limit."""
     trace: tuple[tuple[int, float, float], ...]
     """(evaluation, objective, worst violation) of each improvement."""
     algorithm: str
@@ -318,45 +318,50 @@ class Optimisation(Displayed):
     seed: int
     seconds: float
     certificate: Certificate | None = None
-    """Distance of the design from the best possible, if requested."""
+    """Distance of the design from the best possible design, if requested."""
     rounding: Rounding | None = None
-    """The best design of listed sizes, if requested and a continuous one exists."""
+    """The best design of listed sizes, if requested and a continuous optimum exists."""
     choices: Choices | None = None
     """All combinations of the design's choices, if it has any."""
     robust: Robust | None = None
 
     @property
     def made(self) -> Rounding | None:
-        """The rounding, if it has a design of listed sizes, which is shown and saved."""
+        """The rounding, if it has a design of listed sizes; this design is shown and saved."""
         return None if self.rounding is None or self.rounding.design is None else self.rounding
 
     @property
     def best(self) -> Design:
-        """The design to build: that of listed sizes, if there is one."""
+        """The design to build: the design of listed sizes if any, else the continuous optimum."""
         return self.design if self.made is None or self.made.design is None else self.made.design
 
     @property
     def best_evaluation(self) -> Evaluation:
         """The evaluation of the design to build."""
-        found = None if self.made is None else self.made.evaluation
-        return self.evaluation if found is None else found
+        rounded = None if self.made is None else self.made.evaluation
+        return self.evaluation if rounded is None else rounded
 
     @property
     def tight(self) -> tuple[str, ...]:
-        """Limits without margin in the design to build; none if it has the requested yield."""
+        """Limits without margin in the design to build; empty if it has the requested yield."""
         return () if self.robust and self.robust.reached else self.best_evaluation.tight
 
     @property
     def best_objective(self) -> float:
         """The objective of the design to build (SI)."""
-        found = None if self.made is None else self.made.objective_after
-        return self.objective_value if found is None else found
+        rounded = None if self.made is None else self.made.objective_after
+        return self.objective_value if rounded is None else rounded
 
     @property
     def best_variables(self) -> tuple[VariableResult, ...]:
         """The free dimensions of the design to build."""
-        known = {} if self.made is None else {row.path: row.value for row in self.made.variables}
-        return tuple(v.moved(known[v.path]) if v.path in known else v for v in self.variables)
+        rounded_values = (
+            {} if self.made is None else {row.path: row.value for row in self.made.variables}
+        )
+        return tuple(
+            v.moved(rounded_values[v.path]) if v.path in rounded_values else v
+            for v in self.variables
+        )
 
     @property
     def optimum(self) -> bool:
@@ -365,11 +370,13 @@ class Optimisation(Displayed):
 
     @property
     def shown(self) -> str:
-        """Which design tables, drawing and JSON show, if sizes are requested; else ""."""
+        """The design in tables, drawing and JSON, in words; empty without requested sizes."""
         if self.rounding is None:
             return ""
         quantity, name = of_metric(self.objective_metric), self.rounding.name
-        before, after = (quantity.text(x, 5) for x in (self.objective_value, self.best_objective))
+        continuous_text, rounded_text = (
+            quantity.text(x, 5) for x in (self.objective_value, self.best_objective)
+        )
         if self.made is None:
             return (
                 "shows the continuous optimum, which is not the design to build: "
@@ -380,8 +387,8 @@ class Optimisation(Displayed):
             names = ", ".join(self.rounding.unmade)
             to_build = f"not to be built yet: {names} not in whole plies or allowed angles"
         return (
-            f"shows the design of {name} ({quantity.label} {after}), {to_build}; prices refer to "
-            f"the continuous optimum, with {before}"
+            f"shows the design of {name} ({quantity.label} {rounded_text}), {to_build}; "
+            f"prices refer to the continuous optimum, with {continuous_text}"
         )
 
     @property
@@ -392,7 +399,7 @@ class Optimisation(Displayed):
 
     @property
     def buys_most(self) -> tuple[str, ...]:
-        """The same in sentences; empty without prices."""
+        """The most valuable changes in sentences; empty without prices."""
         if not self.sensitivities:
             return ()
         maximised = self.design.objective.maximise is not None
@@ -406,37 +413,41 @@ class Optimisation(Displayed):
             quantity = INPUTS[v.quantity]
             numbers = [quantity.text(x, 6) for x in (v.value, v.lower, v.upper)]
             rows.append([v.path, *numbers, f"at {v.at_bound} bound" if v.at_bound else ""])
-        why = "" if self.infeasibility is None else self.infeasibility.sentence
-        said = [part for part in (self.sentence, why, self.shown) if part]
-        parts = [*said, "", aligned(rows, right=(1, 2, 3)), "", str(self.best_evaluation)]
+        reason = "" if self.infeasibility is None else self.infeasibility.sentence
+        sentences = [part for part in (self.sentence, reason, self.shown) if part]
+        parts = [*sentences, "", aligned(rows, right=(1, 2, 3)), "", str(self.best_evaluation)]
         return "\n".join(parts if self.rounding is None else [*parts, "", str(self.rounding)])
 
     def columns(self) -> dict[str, list[Any]]:
-        """The sensitivity table as columns: SI, but `limit` in its display `unit`."""
+        """The sensitivity table as columns (SI); `limit` is in its display `unit`."""
         names = (
             "parameter", "limit", "unit", "active", "price", "percent_per_percent",
             "predicted_10", "resolved_10", "predicted_minus10", "resolved_minus10",
             "holds_until", "next_active", "price_up", "price_down",
         )  # fmt: skip
-        found = {name: [getattr(row, name) for row in self.sensitivities] for name in names}
-        return found | {"limit": [row.limit / row.scale for row in self.sensitivities]}
+        table = {name: [getattr(row, name) for row in self.sensitivities] for name in names}
+        return table | {"limit": [row.limit / row.scale for row in self.sensitivities]}
 
     def to_dict(self) -> dict[str, Any]:
         """The `optimise --json` object (SI): the evaluation's keys and the optimiser's.
 
-        Metrics, requirements, checks, objective and variables are those of the design to build, as
-        `evaluate` reproduces them from the saved file. Multipliers, prices and certificate are
-        those of the continuous optimum.
+        Metrics, requirements, checks, objective and variables belong to the design to build;
+        `evaluate` reproduces them from the saved file. Multipliers, prices and certificate belong
+        to the continuous optimum.
         """
-        best, value, why = self.best_evaluation, self.best_objective, self.infeasibility
+        evaluation, value, infeasibility = (
+            self.best_evaluation,
+            self.best_objective,
+            self.infeasibility,
+        )
         return (
-            best.to_dict()
+            evaluation.to_dict()
             | {
                 "status": self.status,
                 "outcome": self.sentence,
                 "remedy": self.remedy,
                 "shown": self._shown(),
-                "warnings": [*best.warnings, *self.warnings],
+                "warnings": [*evaluation.warnings, *self.warnings],
                 "objective": {
                     "metric": self.objective_metric,
                     "value": value if isfinite(value) else None,
@@ -453,12 +464,12 @@ class Optimisation(Displayed):
                 "seed": self.seed,
                 "seconds": self.seconds,
             }
-            | ({} if why is None else {"infeasibility": asdict(why)})
+            | ({} if infeasibility is None else {"infeasibility": asdict(infeasibility)})
             | ({} if self.robust is None else {"robust": self.robust.to_dict()})
         )
 
     def _shown(self) -> dict[str, Any]:
-        """The design described: the continuous optimum, or that of the requested sizes."""
+        """The design shown: the continuous optimum, or the design of the requested sizes."""
         return {
             "design": "continuous" if self.made is None else "rounded",
             "sizes": None if self.rounding is None else self.rounding.name,
@@ -467,8 +478,8 @@ class Optimisation(Displayed):
 
     def _variables(self) -> dict[str, Any]:
         """Value, bounds and active bound of every variable, by PATH."""
-        kept = ("value", "lower", "upper", "at_bound")
-        return {v.path: {name: getattr(v, name) for name in kept} for v in self.best_variables}
+        keys = ("value", "lower", "upper", "at_bound")
+        return {v.path: {name: getattr(v, name) for name in keys} for v in self.best_variables}
 
     def _rounding(self) -> dict[str, Any] | None:
         """The rounding with the evaluation of the continuous optimum."""

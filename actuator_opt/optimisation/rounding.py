@@ -1,14 +1,14 @@
-"""Rounding of the continuous optimum to manufacturable sizes, its cost, and remedies.
+"""Rounds the continuous optimum to manufacturable sizes, with its cost and remedies.
 
-Variables take the sizes stated in their file (a list, a step, a standard series), whole plies and
-allowed angles, or all standard sizes, as requested: `design.sizes` lists them. All other variables
-stay continuous and are optimised again. The search proves nothing: see `branch_and_bound`.
+Variables take the sizes stated in the file (a list, a step, a standard series) and, on request,
+whole plies, allowed angles or all standard sizes; see `design.sizes`. All other variables remain
+continuous and are optimised again. The search proves nothing; see `branch_and_bound`.
 
 Remedies are small changes of a limit, a load or the supply pressure that allow better sizes. If
-rounding costs much, the size that moved most is fixed at its other neighbour, which some limit
-forbids. If no sized design is feasible, the least infeasible sizes are fixed. With all sizes fixed,
-the least relaxation of each limit is computed, and the best design with it. Each remedy was
-confirmed by a design of these sizes.
+rounding costs much, the size with the largest change takes its other neighbour, which some limit
+forbids. If no sized design is feasible, the least infeasible sizes are used. For these sizes, the
+least relaxation of each limit is computed, and the best design with this relaxation, which confirms
+the remedy.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from ..evaluation import Evaluation, evaluate, prepare
 from . import repairs
 from .actuator import ActuatorProblem, Fault, Solution
 from .branch_and_bound import SAME, Assignment, Listed, SizeSearch, search
-from .cures import freed, opened
+from .cures import least_changes, with_variables
 from .evaluator import Evaluator
 from .infeasibility_card import change_text, entry_of
 from .problem import BoxProblem, PointValues, Vector
@@ -43,11 +43,11 @@ from .result import Optimisation, RoundedVariable, Rounding, RunnerUp, SizeRemed
 from .solver import solve
 
 COSTLY = 10.0
-"""Cost of rounding (%) above which remedies are sought: a choice."""
+"""Cost of rounding (%) above which remedies are searched for: a choice."""
 
 
 SMALL = 0.25
-"""Largest relative change of a limit that is offered: a choice."""
+"""Largest relative change of a number in a remedy: a choice."""
 
 
 MOST_LIMITS = 6
@@ -66,83 +66,90 @@ def size_remedies(
     solution: Solution,
     listed: Sequence[Listed],
     size_search: SizeSearch,
-    until: float | None = None,
+    deadline: float | None = None,
 ) -> tuple[tuple[SizeRemedy, ...], str]:
-    """The changes of one number that allow better sizes, best design first; else a note.
+    """The changes of one number that allow better sizes, best design first, and a note without any.
 
     Parameters
     ----------
     actuator, solution : the problem and its continuous optimum
-    listed, found : the sizes, and the result of their search
-    until : time of `time.perf_counter` to stop at
+    listed, size_search : the sizes, and the result of their search
+    deadline : time of `time.perf_counter` at which the search stops
     """
-    below = math.inf if size_search.objective is None else size_search.objective
-    cheap = below - solution.objective <= COSTLY / 100 * abs(solution.objective)
+    objective = math.inf if size_search.objective is None else size_search.objective
+    cheap = objective - solution.objective <= COSTLY / 100 * abs(solution.objective)
     remedies: list[SizeRemedy] = []
-    smaller = [] if cheap else _smaller(listed, solution.x, size_search)
-    for assignment in smaller:
-        if until is not None and time.perf_counter() > until:
+    assignments = [] if cheap else _other_sizes(listed, solution.x, size_search)
+    for assignment in assignments:
+        if deadline is not None and time.perf_counter() > deadline:
             break
         tell("rounding costs much: searching for a limit that allows a smaller size")
-        held = _Held(actuator, listed, assignment, solution.x, below)
-        remedies += [*held.relaxed(_limits(actuator, solution, size_search)), *held.repressured()]
-    better = actuator.goal.sign
+        fixed = _FixedSizes(actuator, listed, assignment, solution.x, objective)
+        remedies += [
+            *fixed.relaxed(_limits(actuator, solution, size_search)),
+            *fixed.with_other_pressure(),
+        ]
+    sign = actuator.goal.sign
     note = f"no change of one limit, load or the supply pressure by up to {100 * SMALL:g} % "
-    note = f"{note}allows better sizes" if smaller and not remedies else ""
-    return tuple(sorted(remedies, key=lambda remedy: better * remedy.objective)), note
+    note = f"{note}allows better sizes" if assignments and not remedies else ""
+    return tuple(sorted(remedies, key=lambda remedy: sign * remedy.objective)), note
 
 
-def _smaller(listed: Sequence[Listed], x: Vector, size_search: SizeSearch) -> list[Assignment]:
-    """Combinations of sizes with the most rounded size at its other neighbour.
+def _other_sizes(listed: Sequence[Listed], x: Vector, size_search: SizeSearch) -> list[Assignment]:
+    """Assignments with the most rounded size at its other neighbour.
 
-    The least infeasible sizes if no sized design is feasible.
+    If no sized design is feasible, the least infeasible assignment.
     """
     if size_search.assignment is None:
         return [] if size_search.nearest is None else [size_search.nearest]
     moves = []
-    for k, (one, row) in enumerate(zip(listed, size_search.assignment, strict=True)):
-        here = x[list(one.index)]
-        scale = np.where(here == 0, 1.0, np.abs(here))
-        moves.append((float(np.max(np.abs(one.rows[row] - here) / scale)), k))
+    for k, (group, row) in enumerate(zip(listed, size_search.assignment, strict=True)):
+        values = x[list(group.index)]
+        scale = np.where(values == 0, 1.0, np.abs(values))
+        moves.append((float(np.max(np.abs(group.rows[row] - values) / scale)), k))
     _, k = max(moves)
-    others = set(listed[k].around(x[list(listed[k].index)])) - {size_search.assignment[k]}
-    missed = (a for a, objective in size_search.tried.items() if not math.isfinite(objective))
-    return [a for a in missed if a[k] in others][:MOST_SIZES]
+    other_rows = set(listed[k].around(x[list(listed[k].index)])) - {size_search.assignment[k]}
+    infeasible = (a for a, objective in size_search.tried.items() if not math.isfinite(objective))
+    return [a for a in infeasible if a[k] in other_rows][:MOST_SIZES]
 
 
 def _limits(actuator: ActuatorProblem, solution: Solution, size_search: SizeSearch) -> list[int]:
-    """Rows of the tightest requirements and loads, at the optimum or the sizes."""
+    """Rows of the requirements and loads with the least margins, at the optimum or the sizes."""
     margins = solution.constraints
     if size_search.missed is not None:
         margins = np.minimum(margins, size_search.missed.rows[1 : 1 + len(margins)])
-    least: dict[str, tuple[float, int]] = {}
+    smallest: dict[str, tuple[float, int]] = {}
     for index, (row, margin) in enumerate(zip(actuator.rows, margins.tolist(), strict=True)):
         limit = row.limit_of
-        own = limit.origin in ("requirement", "case") and not limit.metric.endswith("_factor")
-        if own and limit.path is not None:
-            least[limit.path] = min((margin, index), least.get(limit.path, (math.inf, index)))
-    return [index for _, index in sorted(least.values())[:MOST_LIMITS]]
+        negotiable = limit.origin in ("requirement", "case") and not limit.metric.endswith(
+            "_factor"
+        )
+        if negotiable and limit.path is not None:
+            smallest[limit.path] = min((margin, index), smallest.get(limit.path, (math.inf, index)))
+    return [index for _, index in sorted(smallest.values())[:MOST_LIMITS]]
 
 
 @dataclass(frozen=True)
-class _Held:
+class _FixedSizes:
     """The problem with every size of an assignment fixed."""
 
     actuator: ActuatorProblem
     listed: Sequence[Listed]
     assignment: Assignment
     x: Vector
-    below: float
+    objective: float
 
     @property
     def sizes(self) -> dict[int, float]:
         """The sizes by index of their variable."""
         pairs = zip(self.listed, self.assignment, strict=True)
         return {
-            i: float(v) for one, row in pairs for i, v in zip(one.index, one.rows[row], strict=True)
+            i: float(v)
+            for group, row in pairs
+            for i, v in zip(group.index, group.rows[row], strict=True)
         }
 
-    def held(self, problem: BoxProblem) -> BoxProblem:
+    def with_sizes(self, problem: BoxProblem) -> BoxProblem:
         """A problem with the sizes fixed."""
         lower, upper = problem.lower.copy(), problem.upper.copy()
         for place, value in self.sizes.items():
@@ -151,7 +158,7 @@ class _Held:
 
     def relaxed(self, indices: Sequence[int]) -> Iterator[SizeRemedy]:
         """The least relaxation of each limit that makes the sizes feasible."""
-        problem = self.held(self.actuator.problem)
+        problem = self.with_sizes(self.actuator.problem)
         assert problem.groups is not None
         numbers = np.asarray(problem.groups)
         groups = [np.flatnonzero(numbers == numbers[index]) for index in indices]
@@ -165,7 +172,7 @@ class _Held:
             if entry["change"] is None or abs(entry["change"]) > SMALL:
                 continue
             granted = np.zeros((len(problem.constraint_names), 1))
-            granted[group] = amount  # the printed value is rounded outwards: more, not less
+            granted[group] = amount  # the printed value is rounded outwards, so it grants more
 
             def evaluate(points: Array, granted: Array = granted) -> PointValues:
                 values = problem.evaluate(points)
@@ -173,46 +180,46 @@ class _Held:
 
             yield from self.remedy(replace(problem, evaluate=evaluate), start, entry)
 
-    def repressured(self) -> Iterator[SizeRemedy]:
+    def with_other_pressure(self) -> Iterator[SizeRemedy]:
         """The least change of the supply pressure that makes the sizes feasible."""
         if PRESSURE in self.actuator.paths:
             return
         design = self.actuator.subject.design
-        problem = self.held(opened(self.actuator, [PRESSURE]))
-        now = float(problem.lower[-1])
+        problem = self.with_sizes(with_variables(self.actuator, [PRESSURE]))
+        present = float(problem.lower[-1])
         for sign in (1.0, -1.0):
-            limit = {len(self.x): now * (1 + sign * SMALL)}
-            start = np.append(self.x, now)
-            for cure in freed(problem, start, limit, {len(self.x): PRESSURE}, design):
+            limit = {len(self.x): present * (1 + sign * SMALL)}
+            start = np.append(self.x, present)
+            for cure in least_changes(problem, start, limit, {len(self.x): PRESSURE}, design):
                 quantity = quantity_of(PRESSURE, design)
                 value = float(cure.needed)
                 lower, upper = problem.lower.copy(), problem.upper.copy()
                 lower[-1] = upper[-1] = value
                 entry = {
                     "parameter": PRESSURE,
-                    "limit": now,
+                    "limit": present,
                     "needed": value,
-                    "change": value / now - 1,
-                    "limit_text": quantity.text(now, 6),
+                    "change": value / present - 1,
+                    "limit_text": quantity.text(present, 6),
                     "needed_text": quantity.text(value, 6),
                 }
                 fixed = replace(problem, lower=lower, upper=upper)
                 yield from self.remedy(fixed, np.append(self.x, value), entry)
 
     def remedy(
-        self, eased: BoxProblem, near: Vector, entry: Mapping[str, Any]
+        self, eased: BoxProblem, x: Vector, entry: Mapping[str, Any]
     ) -> Iterator[SizeRemedy]:
-        """The best design of the sizes at the changed number, if better than without."""
-        point = repairs.near(eased, near)
+        """The best design of the sizes at the changed number, if better than without the change."""
+        point = repairs.near(eased, x)
         if point is None:
             return
         evaluator = Evaluator(eased)
         end = repairs.go(evaluator, evaluator.point(evaluator.space.to_z(point)))
-        if end.violation > repairs.NOTHING or not end.objective < self.below:
+        if end.violation > repairs.NOTHING or not end.objective < self.objective:
             return
-        kept = ("parameter", "limit", "needed", "change", "limit_text", "needed_text")
+        keys = ("parameter", "limit", "needed", "change", "limit_text", "needed_text")
         yield SizeRemedy(
-            change={name: entry[name] for name in kept},
+            change={name: entry[name] for name in keys},
             sentence=change_text(entry),
             objective=self.actuator.goal.shown(end.objective),
             values={self.actuator.paths[place]: value for place, value in self.sizes.items()},
@@ -220,7 +227,7 @@ class _Held:
 
 
 RUNNERS_UP = 3
-"""Next best designs reported."""
+"""Number of next best designs in the result."""
 
 MOST_SAID = 4
 """Maximum sizes named in a sentence."""
@@ -230,7 +237,7 @@ _OF_PLIES = ("whole plies", "allowed angles")
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """Sizes that a design must take, beside those stated in its file."""
+    """Requested sizes, in addition to those of the file."""
 
     whole_plies: bool = False
     standard: bool = False
@@ -238,7 +245,7 @@ class Wanted:
 
 @dataclass(frozen=True)
 class ListedSizes:
-    """The listed variables of a design: groups for the search, and the series of each."""
+    """The listed variables of a design: groups for the search, and the series of each variable."""
 
     listed: tuple[Listed, ...]
     labels: dict[str, str]
@@ -246,20 +253,20 @@ class ListedSizes:
 
     @property
     def name(self) -> str:
-        """Name of the rounding, in two words."""
+        """Name of the rounding: "whole plies" or "standard sizes"."""
         plies = set(self.labels.values()) <= set(_OF_PLIES)
         return "whole plies" if plies else "standard sizes"
 
 
 def layers(design: Design) -> Iterator[tuple[str, Ply]]:
-    """Every layer of barrel and rod with its PATH."""
+    """The layers of barrel and rod with their PATHs."""
     for part, wall in (("barrel", design.barrel.layup), ("rod", design.rod.layup)):
         for i, ply in enumerate(wall):
             yield f"{part}.layup[{i}]", ply
 
 
 def plies(ply: Ply) -> int | None:
-    """Number of plies of a layer; None if not whole, or without a ply thickness."""
+    """Number of plies of a layer; None if it is not whole, or without a ply thickness."""
     if ply.ply_thickness is None:
         return None
     step = 2 if ply.balanced and not along(ply.angle) else 1
@@ -270,107 +277,112 @@ def plies(ply: Ply) -> int | None:
 def uncounted(design: Design, materials: Mapping[str, Material]) -> tuple[str, ...]:
     """PATHs of fibre layer thicknesses whose plies cannot be counted.
 
-    These layers state no ply thickness, and no variable restricts them to sizes.
+    These layers state no ply thickness, and their thickness is no variable with sizes.
     """
-    found = []
+    paths = []
     for path, ply in layers(design):
-        free = design.variables.get(f"{path}.thickness")
-        own = free is not None and (free.sizes is not None or free.step is not None)
-        if ply.ply_thickness is None and not own and not materials[ply.material].isotropic:
-            found.append(f"{path}.thickness")
-    return tuple(found)
+        variable = design.variables.get(f"{path}.thickness")
+        has_sizes = variable is not None and (
+            variable.sizes is not None or variable.step is not None
+        )
+        if ply.ply_thickness is None and not has_sizes and not materials[ply.material].isotropic:
+            paths.append(f"{path}.thickness")
+    return tuple(paths)
 
 
 def misfits(design: Design) -> tuple[str, ...]:
     """PATHs of lay-up values that are not whole plies or not allowed angles."""
-    found = []
+    paths = []
     allowed = design.barrel.allowed_angles
     for path, ply in layers(design):
         if ply.ply_thickness is not None and plies(ply) is None:
-            found.append(f"{path}.thickness")
+            paths.append(f"{path}.thickness")
         concerned = ply.ply_thickness is not None or f"{path}.angle" in design.variables
         if allowed is None or not concerned:
             continue
         if all(abs(abs(ply.angle) - angle) > WHOLE for angle in allowed):
-            found.append(f"{path}.angle")
-    return tuple(found)
+            paths.append(f"{path}.angle")
+    return tuple(paths)
 
 
 def unrounded(optimisation: Optimisation) -> str:
-    """A remark on an optimum without whole plies, if not requested; else empty."""
+    """A note on an optimum without whole plies, if not requested; else empty."""
     design = optimisation.design
-    left = [path for path in misfits(design) if path in design.variables]
-    if optimisation.rounding is not None or not left or not optimisation.evaluation.met:
+    paths = [path for path in misfits(design) if path in design.variables]
+    if optimisation.rounding is not None or not paths or not optimisation.evaluation.met:
         return ""
-    return f"{', '.join(left)}: not whole plies or allowed angles yet; see --whole-plies"
+    return f"{', '.join(paths)}: not whole plies or allowed angles yet; see --whole-plies"
 
 
 def sizes_of(
     design: Design,
-    wanted: Wanted,
+    requested: Wanted,
     materials: Mapping[str, Material],
     fault: Fault | None = None,
 ) -> ListedSizes | None:
-    """The variables that only take listed values; None if there are none and none are requested.
+    """The variables that only take listed values; None if no variable does.
 
     Parameters
     ----------
     design : the design with its variables
-    wanted : sizes requested beside those of the file
+    requested : sizes in addition to those of the file
     materials : of the design, by name
     fault : locates a variable's fault in the file; default: by PATH only
 
     Raises
     ------
     InputError
-        sizes are requested and no variable has any, or the bounds of one contain none; whole plies
-        are requested and a layer has none
+        sizes are requested but no variable has sizes, the bounds of a variable contain no size, or
+        whole plies are requested but a layer states no ply thickness
     """
-    if wanted.whole_plies or wanted.standard:
-        _require_plies(design, wanted, materials)
-    found, faults = groups(design, plies=wanted.whole_plies, standard=wanted.standard)
+    if requested.whole_plies or requested.standard:
+        _require_plies(design, requested, materials)
+    size_groups, faults = groups(design, plies=requested.whole_plies, standard=requested.standard)
     if faults:
         raise InputError(
             [
-                (fault(str(one.loc[1]), one.message, one.remedy) if fault else None)
-                or Diagnostic(one.message, one.remedy, path=f"variables.{one.loc[1]}")
-                for one in faults
+                (fault(str(conflict.loc[1]), conflict.message, conflict.remedy) if fault else None)
+                or Diagnostic(
+                    conflict.message, conflict.remedy, path=f"variables.{conflict.loc[1]}"
+                )
+                for conflict in faults
             ]
         )
-    if not found and (wanted.whole_plies or wanted.standard):
-        raise InputError(_nothing(wanted))
+    if not size_groups and (requested.whole_plies or requested.standard):
+        raise InputError(_nothing_to_round(requested))
     place = {path: index for index, path in enumerate(design.variables)}
     listed = tuple(
-        Listed(tuple(place[path] for path in group.paths), np.array(group.rows)) for group in found
+        Listed(tuple(place[path] for path in group.paths), np.array(group.rows))
+        for group in size_groups
     )
     labels = {
         path: label
-        for group in found
+        for group in size_groups
         for path, label in zip(group.paths, group.labels, strict=True)
     }
-    return ListedSizes(listed, labels) if found else None
+    return ListedSizes(listed, labels) if size_groups else None
 
 
-def _require_plies(design: Design, wanted: Wanted, materials: Mapping[str, Material]) -> None:
-    """Check that every fibre layer has countable plies, and whole ones if it is fixed."""
-    known = dict(layers(design))
-    alone = "" if wanted.whole_plies else '; for bore and rod alone write "sizes: iso_3320"'
+def _require_plies(design: Design, requested: Wanted, materials: Mapping[str, Material]) -> None:
+    """Check that every fibre layer has countable plies, and whole plies if it is fixed."""
+    plies_by_path = dict(layers(design))
+    hint = "" if requested.whole_plies else '; for bore and rod alone write "sizes: iso_3320"'
     faults = [
         Diagnostic(
             "the layer states no ply_thickness, so its plies cannot be counted",
-            f'add e.g. "ply_thickness: 0.2 mm" to it{alone}',
+            f'add e.g. "ply_thickness: 0.2 mm" to it{hint}',
             path=path,
         )
         for path in uncounted(design, materials)
     ]
     for path in misfits(design):
-        ply = known.get(path.removesuffix(".thickness"))
+        ply = plies_by_path.get(path.removesuffix(".thickness"))
         if path not in design.variables and ply is not None and ply.ply_thickness is not None:
-            one = INPUTS["ply_thickness"].text(ply.ply_thickness)
+            thickness = INPUTS["ply_thickness"].text(ply.ply_thickness)
             pairs = "" if not ply.balanced or along(ply.angle) else "pairs of "
             faults.append(
                 Diagnostic(
-                    f"not a whole number of {pairs}plies of {one}, and not a variable",
+                    f"not a whole number of {pairs}plies of {thickness}, and not a variable",
                     "change it, or make it a variable",
                     path=path,
                 )
@@ -379,8 +391,8 @@ def _require_plies(design: Design, wanted: Wanted, materials: Mapping[str, Mater
         raise InputError(faults)
 
 
-def _nothing(wanted: Wanted) -> Diagnostic:
-    if wanted.standard:
+def _nothing_to_round(requested: Wanted) -> Diagnostic:
+    if requested.standard:
         message = "nothing to round: no variable has standard sizes"
         remedy = "make cylinder.bore or rod.outer_diameter a variable, or give a variable sizes"
     else:
@@ -397,49 +409,49 @@ def design_at(actuator: ActuatorProblem, x: Vector) -> tuple[Design, Evaluation]
     subject = actuator.subject
     values = dict(zip(actuator.paths, x.tolist(), strict=True))
     design = with_values(subject.design, values, metrics=subject.quantities, contradictions=False)
-    found = prepare(design, subject.materials, subject.plugins)
-    return design, evaluate(replace(found, lenient=True, aims=subject.aims))
+    prepared = prepare(design, subject.materials, subject.plugins)
+    return design, evaluate(replace(prepared, lenient=True, aims=subject.aims))
 
 
 def rounded(
     actuator: ActuatorProblem,
     solution: Solution,
     sizes: ListedSizes,
-    found: SizeSearch | None = None,
+    size_search: SizeSearch | None = None,
     *,
     until: float | None = None,
     seed: int = 0,
 ) -> tuple[Rounding, Solution]:
     """The best design with the sizes, and the continuous optimum.
 
-    The given optimum, unless the search finds a better one.
+    The continuous optimum is the given solution, unless the search of sizes finds a better design.
 
     Parameters
     ----------
     actuator, solution : the problem and a feasible point
     sizes : `sizes_of` the design
-    found : result of the search, if already made
+    size_search : result of the search, if already made
     until : time of `time.perf_counter` to stop at
     seed : of the sweeps
     """
     problem = actuator.problem
-    if found is None:
-        found = search(problem, sizes.listed, solution.x, until=until)
-    better = found.objective is not None and _cost(found.objective, solution) < 0
-    if better and found.x is not None:
-        again = solve(problem, starts=1, seed=seed, more_starts=[found.x])
-        if again.feasible and again.objective < solution.objective:
-            starts = (*solution.starts, *again.starts)
-            solution = replace(again, samples=solution.samples, starts=starts)
-            found = search(problem, sizes.listed, solution.x, until=until)
-    remedies, note = size_remedies(actuator, solution, sizes.listed, found, until)
-    made = _rounding(actuator, solution, sizes, found)
-    notes = (*made.notes, note) if note else made.notes
-    return replace(made, remedies=remedies, notes=notes), solution
+    if size_search is None:
+        size_search = search(problem, sizes.listed, solution.x, deadline=until)
+    improves = size_search.objective is not None and _cost(size_search.objective, solution) < 0
+    if improves and size_search.x is not None:
+        solution_again = solve(problem, starts=1, seed=seed, more_starts=[size_search.x])
+        if solution_again.feasible and solution_again.objective < solution.objective:
+            starts = (*solution.starts, *solution_again.starts)
+            solution = replace(solution_again, samples=solution.samples, starts=starts)
+            size_search = search(problem, sizes.listed, solution.x, deadline=until)
+    remedies, note = size_remedies(actuator, solution, sizes.listed, size_search, until)
+    rounding = _rounding(actuator, solution, sizes, size_search)
+    notes = (*rounding.notes, note) if note else rounding.notes
+    return replace(rounding, remedies=remedies, notes=notes), solution
 
 
 def _cost(objective: float, solution: Solution) -> float:
-    """Loss of an objective against the continuous optimum; rounding noise counts as zero."""
+    """Loss of an objective relative to the continuous optimum; rounding errors count as zero."""
     cost = objective - solution.objective
     return 0.0 if abs(cost) <= 10 * SAME * abs(solution.objective) else cost
 
@@ -453,7 +465,7 @@ def _rounding(
 ) -> Rounding:
     shown = actuator.goal.shown
     feasible = sum(math.isfinite(objective) for objective in size_search.tried.values())
-    before = Rounding(
+    failure = Rounding(
         met=False,
         sentence=f"none of {len(size_search.tried)} designs of {sizes.name} meets all requirements"
         + ("" if size_search.complete else ", and the search stopped at its limit")
@@ -465,16 +477,16 @@ def _rounding(
         feasible=feasible,
         solves=size_search.solves,
         complete=size_search.complete,
-        notes=_unmade(actuator, actuator.subject.design)[1],
+        notes=_unbuildable(actuator, actuator.subject.design)[1],
     )
     if size_search.x is None or size_search.objective is None:
-        return before
+        return failure
     design, evaluation = design_at(actuator, size_search.x)
     cost = _cost(size_search.objective, solution)
     sentence, remedy = _sentence(sizes.name, evaluation.met, size_search.complete)
-    unmade, notes = _unmade(actuator, design)
+    unmade, notes = _unbuildable(actuator, design)
     return replace(
-        before,
+        failure,
         unmade=unmade,
         notes=notes,
         met=evaluation.met,
@@ -492,7 +504,7 @@ def _rounding(
 
 
 def _nearest(actuator: ActuatorProblem, sizes: ListedSizes, size_search: SizeSearch) -> str:
-    """Describe the limits that the nearest sizes miss, if none is feasible."""
+    """The limit that the nearest sizes miss most, in words; empty if unknown."""
     if (
         size_search.nearest is None
         or size_search.missed is None
@@ -501,24 +513,24 @@ def _nearest(actuator: ActuatorProblem, sizes: ListedSizes, size_search: SizeSea
         return ""
     margins = size_search.missed.rows[1 : 1 + len(actuator.problem.constraint_names)]
     worst = actuator.problem.constraint_names[int(np.argmin(margins))]
-    said = [
+    texts = [
         f"{path} {quantity_of(path, actuator.subject.design).text(value)}"
-        for path, value in _chosen(actuator, sizes.listed, size_search.nearest).items()
+        for path, value in _values_of(actuator, sizes.listed, size_search.nearest).items()
     ]
-    if len(said) > MOST_SAID:
-        said = [*said[:MOST_SAID], "…"]
+    if len(texts) > MOST_SAID:
+        texts = [*texts[:MOST_SAID], "…"]
     by = 100 * size_search.missed.violation
-    return f"; the nearest, {', '.join(said)}, misses {worst} by {by:.2g} %"
+    return f"; the nearest, {', '.join(texts)}, misses {worst} by {by:.2g} %"
 
 
-def _chosen(
+def _values_of(
     actuator: ActuatorProblem, listed: Sequence[Listed], assignment: Assignment
 ) -> dict[str, float]:
     """The listed variables of an assignment by PATH."""
     return {
         actuator.paths[index]: float(value)
-        for one, row in zip(listed, assignment, strict=True)
-        for index, value in zip(one.index, one.rows[row], strict=True)
+        for group, row in zip(listed, assignment, strict=True)
+        for index, value in zip(group.index, group.rows[row], strict=True)
     }
 
 
@@ -529,7 +541,7 @@ _FINER = {
 
 
 def _sentence(name: str, met: bool, complete: bool) -> tuple[str, str]:
-    """The result of the search and the remedy."""
+    """The result of the search, and the remedy, in words."""
     if not met:
         return f"the design of {name} misses a requirement", f"relax it, or {_FINER[name]}"
     if not complete:
@@ -545,15 +557,19 @@ def _sentence(name: str, met: bool, complete: bool) -> tuple[str, str]:
     )
 
 
-def _unmade(actuator: ActuatorProblem, design: Design) -> tuple[tuple[str, ...], tuple[str, ...]]:
+def _unbuildable(
+    actuator: ActuatorProblem, design: Design
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """PATHs without whole plies, allowed angles or `ply_thickness`, and a sentence on each.
 
-    Before rounding, only those that are not variables.
+    For the design before rounding, without the variables.
     """
     start = design is actuator.subject.design
-    moved = design.variables if start else {}
-    odd = [path for path in misfits(design) if path not in moved]
-    open_ = [path for path in uncounted(design, actuator.subject.materials) if path not in moved]
+    excluded = design.variables if start else {}
+    not_whole = [path for path in misfits(design) if path not in excluded]
+    uncountable = [
+        path for path in uncounted(design, actuator.subject.materials) if path not in excluded
+    ]
     notes = [
         (
             f"{path} is not a variable and not "
@@ -561,11 +577,11 @@ def _unmade(actuator: ActuatorProblem, design: Design) -> tuple[tuple[str, ...],
             else f"{path} is not "
         )
         + ("an allowed angle" if path.endswith("angle") else "a whole number of plies")
-        for path in odd
+        for path in not_whole
     ]
     notes += [f"{path}: the layer states no ply_thickness, so its plies cannot be counted"
-              for path in open_]  # fmt: skip
-    return (*odd, *open_), tuple(notes)
+              for path in uncountable]  # fmt: skip
+    return (*not_whole, *uncountable), tuple(notes)
 
 
 def _variables(
@@ -575,10 +591,10 @@ def _variables(
     x: Vector,
     design: Design,
 ) -> tuple[RoundedVariable, ...]:
-    known = dict(layers(design))
+    plies_by_path = dict(layers(design))
     rows = []
     for i, path in enumerate(actuator.paths):
-        ply = known.get(path.removesuffix(".thickness"))
+        ply = plies_by_path.get(path.removesuffix(".thickness"))
         rows.append(
             RoundedVariable(
                 path=path,
@@ -596,16 +612,16 @@ def _variables(
 def _runners_up(
     actuator: ActuatorProblem, solution: Solution, listed: Sequence[Listed], size_search: SizeSearch
 ) -> tuple[RunnerUp, ...]:
-    """The next best of the rounded designs."""
-    others = sorted(
+    """The next best rounded designs."""
+    candidates = sorted(
         (objective, assignment)
         for assignment, objective in size_search.tried.items()
         if assignment != size_search.assignment and math.isfinite(objective)
     )
     rows = []
-    for objective, assignment in others[:RUNNERS_UP]:
+    for objective, assignment in candidates[:RUNNERS_UP]:
         cost = _cost(objective, solution)
-        values = _chosen(actuator, listed, assignment)
+        values = _values_of(actuator, listed, assignment)
         shown = actuator.goal.shown(objective)
         rows.append(RunnerUp(shown, cost, _percent(cost, solution), values))
     return tuple(rows)

@@ -1,4 +1,4 @@
-"""Optimise an actuator: problem, solution, prices and, if infeasible, the reason."""
+"""Optimises an actuator: problem, solution, rounding, prices, certificate, infeasibility."""
 
 from __future__ import annotations
 
@@ -37,11 +37,11 @@ from .solver import solve
 CHANCE = 0.95
 """Probability for the evidence of the starts."""
 SAME = 1e-3
-"""Relative difference of objectives up to which two starts reached the same optimum."""
+"""Relative difference of objectives up to which two starts count as equal."""
 
 
 def certified(actuator: ActuatorProblem, solution: Solution) -> Certificate:
-    """Bound the distance of a feasible design from the best possible one.
+    """Bound the distance of a feasible design from the best possible design.
 
     Parameters
     ----------
@@ -56,49 +56,51 @@ def certified(actuator: ActuatorProblem, solution: Solution) -> Certificate:
     from .certificate.relaxation import Unknown
 
     quantity = actuator.subject.quantities[actuator.goal.single or ""]
-    best = solution.objective
+    objective = solution.objective
 
     def told(value: float) -> None:
-        tell("proving the bound", math.exp(value) / best)
+        tell("proving the bound", math.exp(value) / objective)
 
     try:
-        relaxed, found = certify(actuator, solution.x, best, seconds=math.inf, report=told)
+        relaxed, proof = certify(actuator, solution.x, objective, seconds=math.inf, report=told)
     except Unknown as error:
         return Certificate(f"no proof: {error}", evidence)
-    bound = min(math.exp(found.bound), best)
-    gap = max(1 - bound / best, 0.0)
-    chosen = " with these choices" if actuator.subject.design.choices else ""
-    words = (
-        f"no design within the bounds{chosen} that meets the covered limits has a "
+    bound = min(math.exp(proof.bound), objective)
+    gap = max(1 - bound / objective, 0.0)
+    condition = " with these choices" if actuator.subject.design.choices else ""
+    sentence = (
+        f"no design within the bounds{condition} that meets the covered limits has a "
         f"{quantity.label} below {quantity.text(bound, 5)}: this design is within "
         f"{_percent(gap)} of the best possible"
     )
     covers = tuple(dict.fromkeys(claim.limit.name for claim in relaxed.covered))
     dropped = {name: why for name, why in relaxed.dropped.items() if name not in covers}
-    return Certificate(words, evidence, bound, gap, covers, dropped, found.boxes)
+    return Certificate(sentence, evidence, bound, gap, covers, dropped, proof.boxes)
 
 
 def enumerated(optimisation: Optimisation, goal: Goal) -> Certificate | None:
-    """The certificate from trying all combinations of the choices, if nothing else is free."""
+    """The certificate from an evaluation of all combinations, for a design without variables."""
     choices = optimisation.choices
     if choices is None or not optimisation.evaluation.met:
         return None
     if choices.count("not tried"):
         return Certificate("no proof: not every combination was evaluated", "")
-    words = f"all {len(choices.combinations)} combinations were evaluated: "
-    wish, value = goal.sign, optimisation.objective_value
-    met = [
+    sentence = f"all {len(choices.combinations)} combinations were evaluated: "
+    sign, value = goal.sign, optimisation.objective_value
+    objectives = [
         combination.objective
         for combination in choices.combinations
         if combination.feasible and combination.objective
     ]
-    best = min((wish * one for one in met), default=wish * value)
-    words += "none that meets all requirements is better"
-    if best < wish * value:  # a check that some combination meets outranks the objective
-        words += ", except those that miss more of the check list"
-    if goal.single is None or wish < 0 or not value > 0:
-        return Certificate(words, "")
-    return Certificate(words, "", best, 1 - best / value)
+    best = min((sign * objective for objective in objectives), default=sign * value)
+    sentence += "none that meets all requirements is better"
+    if (
+        best < sign * value
+    ):  # checks that another combination meets take precedence over the objective
+        sentence += ", except those that miss more of the check list"
+    if goal.single is None or sign < 0 or not value > 0:
+        return Certificate(sentence, "")
+    return Certificate(sentence, "", best, 1 - best / value)
 
 
 def _percent(share: float) -> str:
@@ -111,7 +113,7 @@ def _percent(share: float) -> str:
 
 
 def _unsuited(actuator: ActuatorProblem, solution: Solution) -> str:
-    """Why an objective has no bound; empty if it has one."""
+    """The reason why no bound can be proven; empty if it can."""
     if actuator.goal.single is None:
         return "a weighted sum of metrics cannot be bounded yet; minimise one metric"
     if actuator.goal.sign < 0:
@@ -122,26 +124,26 @@ def _unsuited(actuator: ActuatorProblem, solution: Solution) -> str:
 
 
 def _evidence(solution: Solution) -> str:
-    """The evidence of the starts against a better optimum elsewhere."""
+    """The evidence of the starts against a better optimum."""
     count = len(solution.starts)
     if count == 0:
         return ""
     best = solution.objective
-    same = sum(
+    count_same = sum(
         start.feasible and abs(start.objective - best) <= SAME * abs(best)
         for start in solution.starts
     )
     missed = 1 - (1 - CHANCE) ** (1 / count)
     return (
-        f"{same} of {count} starts reached this optimum, none a better one. A better optimum "
+        f"{count_same} of {count} starts reached this optimum, none a better one. A better optimum "
         f"reached by more than {100 * missed:.0f} % of all starts would have been seen with "
         f"{100 * CHANCE:.0f} % probability (evidence, not proof)"
     )
 
 
 SAMPLES = 2048
-"""Points of the global sweep: on every shipped design three seeds of 8192, 2048 and 1024 points led
-to the same optimum. With poles and margins the sweep takes most of the time."""
+"""Number of points of the global sweep. For every shipped design, 8192, 2048 and 1024 points led to
+the same optimum, with three seeds each. With poles and margins the sweep takes most of the time."""
 
 
 def optimise(
@@ -166,34 +168,31 @@ def optimise(
     subject : the prepared design
     fault : locates faults of variables in the file
     algorithm : "auto" or an NLopt name such as ``LD_SLSQP``
-    starts : starts taken from the global sweep
+    starts : number of starts from the global sweep
     seed : of sweep and stochastic algorithms; the same seed gives the same result
-    prices : price requirements and parameters (and re-solve at ±10 %)
+    prices : whether to price requirements and parameters, with re-solving at ±10 %
     max_seconds : time limit of the search; the best design so far is kept
-    whole_plies : also find the best design of whole plies and allowed angles
-    standard_sizes : also find the best design with all standard sizes
-    certify : prove the distance of the design from the best possible
-    explain : explain an infeasible result
-    keep_interrupted : Ctrl-C keeps the best design so far (without choices)
+    whole_plies : whether to find the best design of whole plies and allowed angles, too
+    standard_sizes : whether to find the best design with all standard sizes, too
+    certify : whether to prove the distance from the best possible design
+    explain : whether to explain an infeasible result
+    keep_interrupted : whether Ctrl-C keeps the best design so far; not with choices
     """
     began = time.perf_counter()
-    until = None if max_seconds is None else began + max_seconds
-    wanted = Wanted(whole_plies, standard_sizes)
-    sizes = sizes_of(subject.design, wanted, subject.materials, fault)
+    deadline = None if max_seconds is None else began + max_seconds
+    requested = Wanted(whole_plies, standard_sizes)
+    sizes = sizes_of(subject.design, requested, subject.materials, fault)
     sized: Sized | None = None
     choices: Choices | None = None
     if subject.design.choices:
-        settings = ChoiceSettings(algorithm, starts, SAMPLES, seed, until)
+        settings = ChoiceSettings(algorithm, starts, SAMPLES, seed, deadline)
         choice_search = search_choices(subject, settings, MOST_SOLVED if sizes is None else 1)
         if sizes is not None:
-            sized = best_of_sizes(choice_search, wanted, settings)
+            sized = best_of_sizes(choice_search, requested, settings)
         choices = record(choice_search, subject.design)
         best = choice_search.ranked()[0] if sized is None else sized.look
         if best.actuator is None or best.solution is None:
-            only = _enumerated(subject, choice_search, choices, seed, began)
-            return (
-                replace(only, certificate=enumerated(only, choice_search.goal)) if certify else only
-            )
+            return _enumerated(subject, choice_search, choices, seed, began, certify=certify)
         actuator, solution = best.actuator, best.solution
     else:
         actuator = build(subject, fault)
@@ -207,20 +206,20 @@ def optimise(
             max_seconds=max_seconds,
             keep_interrupted=keep_interrupted,
         )
-    after = _After(solution)
+    follow_up = _FollowUp(solution)
     try:
         if sizes is not None and solution.feasible and not solution.interrupted:
-            kept = (sizes, None) if sized is None else (sized.sizes, sized.found)
-            after.rounding, after.solution = rounded(
-                actuator, solution, *kept, until=until, seed=seed
+            search_args = (sizes, None) if sized is None else (sized.sizes, sized.size_search)
+            follow_up.rounding, follow_up.solution = rounded(
+                actuator, solution, *search_args, until=deadline, seed=seed
             )
-        _follow(actuator, after, prices=prices, certify=certify, explain=explain)
+        _complete(actuator, follow_up, prices=prices, certify=certify, explain=explain)
     except KeyboardInterrupt:
         if not keep_interrupted:
             raise
-        ended = Outcome.INTERRUPTED if solution.feasible else Outcome.INTERRUPTED_INFEASIBLE
-        after = _After(replace(solution, outcome=ended))
-    return _result(subject, actuator, after, choices, seed, began)
+        outcome = Outcome.INTERRUPTED if solution.feasible else Outcome.INTERRUPTED_INFEASIBLE
+        follow_up = _FollowUp(replace(solution, outcome=outcome))
+    return _result(subject, actuator, follow_up, choices, seed, began)
 
 
 def result_of(
@@ -241,49 +240,49 @@ def result_of(
     prices : as of `optimise`
     seed : of the search
     began : time of `time.perf_counter` when it began
-    start : start of the search; default: the design as stated
+    start : evaluation of the start; default: the design with the values of its file
     """
-    after = _After(solution)
-    _follow(actuator, after, prices=prices, certify=False, explain=False)
-    return _result(subject, actuator, after, None, seed, began, start)
+    follow_up = _FollowUp(solution)
+    _complete(actuator, follow_up, prices=prices, certify=False, explain=False)
+    return _result(subject, actuator, follow_up, None, seed, began, start)
 
 
 @dataclass
-class _After:
+class _FollowUp:
     """The solution and its follow-up results."""
 
     solution: Solution
     rounding: Rounding | None = None
-    why: Infeasibility | None = None
+    infeasibility: Infeasibility | None = None
     rows: tuple[Sensitivity, ...] = ()
     certificate: Certificate | None = None
 
 
-def _follow(
-    actuator: ActuatorProblem, after: _After, *, prices: bool, certify: bool, explain: bool
+def _complete(
+    actuator: ActuatorProblem, follow_up: _FollowUp, *, prices: bool, certify: bool, explain: bool
 ) -> None:
     """Explain, certify and price a solution."""
-    if after.solution.interrupted:
+    if follow_up.solution.interrupted:
         return
     if explain:
-        after.why, after.solution = explained(actuator, after.solution)
-    if certify and after.solution.feasible:
-        after.certificate = certified(actuator, after.solution)
-    if prices and after.solution.outcome is Outcome.OPTIMUM:
-        after.rows = sensitivities(actuator, after.solution)
+        follow_up.infeasibility, follow_up.solution = explained(actuator, follow_up.solution)
+    if certify and follow_up.solution.feasible:
+        follow_up.certificate = certified(actuator, follow_up.solution)
+    if prices and follow_up.solution.outcome is Outcome.OPTIMUM:
+        follow_up.rows = sensitivities(actuator, follow_up.solution)
 
 
 def _result(
     subject: PreparedDesign,
     actuator: ActuatorProblem,
-    after: _After,
+    follow_up: _FollowUp,
     choices: Choices | None,
     seed: int,
     began: float,
     start: Evaluation | None = None,
 ) -> Optimisation:
     """Assemble the result."""
-    solution = after.solution
+    solution = follow_up.solution
     design, evaluation = design_at(actuator, solution.x)
     return Optimisation(
         status=solution.outcome.status,
@@ -296,8 +295,8 @@ def _result(
         start=evaluate(subject) if start is None else start,
         variables=_variables(actuator, solution),
         kkt=_kkt(solution),
-        sensitivities=after.rows,
-        infeasibility=after.why,
+        sensitivities=follow_up.rows,
+        infeasibility=follow_up.infeasibility,
         evaluations=solution.evaluations,
         samples=solution.samples,
         starts=tuple(
@@ -314,8 +313,8 @@ def _result(
         ),
         seed=seed,
         seconds=time.perf_counter() - began,
-        certificate=after.certificate,
-        rounding=after.rounding,
+        certificate=follow_up.certificate,
+        rounding=follow_up.rounding,
         choices=choices,
     )
 
@@ -328,15 +327,21 @@ def _idle(actuator: ActuatorProblem) -> tuple[str, ...]:
 
 
 def _enumerated(
-    subject: PreparedDesign, choice_search: ChoiceSearch, choices: Choices, seed: int, began: float
+    subject: PreparedDesign,
+    choice_search: ChoiceSearch,
+    choices: Choices,
+    seed: int,
+    began: float,
+    *,
+    certify: bool,
 ) -> Optimisation:
-    """The best combination of the choices, if nothing else is free."""
+    """The best combination of the choices, for a design without variables."""
     best = choice_search.ranked()[0]
     assert best.subject is not None
     status, remedy = "optimal", ""
     if not best.feasible:
         status, remedy = "infeasible", "relax the requirement it misses, or add values to choices"
-    return Optimisation(
+    optimisation = Optimisation(
         status=status,
         sentence=choices.sentence,
         remedy=remedy,
@@ -359,6 +364,9 @@ def _enumerated(
         seconds=time.perf_counter() - began,
         choices=choices,
     )
+    if not certify:
+        return optimisation
+    return replace(optimisation, certificate=enumerated(optimisation, choice_search.goal))
 
 
 def _variables(actuator: ActuatorProblem, solution: Solution) -> tuple[VariableResult, ...]:
@@ -378,11 +386,11 @@ def _variables(actuator: ActuatorProblem, solution: Solution) -> tuple[VariableR
 
 
 def _kkt(solution: Solution) -> Kkt | None:
-    found = solution.kkt
-    if found is None:
+    quality = solution.kkt
+    if quality is None:
         return None
-    curvature = "" if found.curvature is None else found.curvature.value
-    return Kkt(float(found.residual), found.active, int(found.rank), curvature)
+    curvature = "" if quality.curvature is None else quality.curvature.value
+    return Kkt(float(quality.residual), quality.active, int(quality.rank), curvature)
 
 
 _DESIGN, _EVALUATION, _FRACTION, _NUMBER = "$design", "$evaluation", "$fraction", "$number"

@@ -1,15 +1,12 @@
 """The optimiser: sweep the box, descend from the best starts, polish, verify.
 
-Default path: a low-discrepancy sweep suggests starts. SLSQP runs from each in logarithmic
-variables, and again in linear ones if it failed. An augmented Lagrangian around LBFGS takes over if
-nothing worked. Active-set Newton steps polish the result to rounding. Feasibility and optimality
-are then verified here, whatever a solver claims.
+On the default path, a low-discrepancy sweep suggests starts. SLSQP runs from each in logarithmic
+variables, and in linear variables if it failed. If all runs fail, an augmented Lagrangian around
+LBFGS follows. Active-set Newton steps polish the result to rounding. Feasibility and optimality are
+then verified, whatever a solver reports.
 
-The global phase: a low-discrepancy sweep of the box, and its best starts.
-
-A scrambled Halton sequence [Halton1960] [Owen2017]: the radical inverse of the index in one
-prime base per variable, with seeded random digit permutations. It costs microseconds per
-thousand points and needs neither tables nor SciPy.
+The sweep is a scrambled Halton sequence [Halton1960] [Owen2017]: the radical inverse of the index
+in one prime base per variable, with seeded random digit permutations.
 """
 
 from __future__ import annotations
@@ -22,47 +19,46 @@ import numpy as np
 
 from ..base.progress import tell
 from . import kkt, nlopt_wrapper
-from .actuator import LocalOptimum, Outcome, Solution
+from .actuator import MET, LocalOptimum, Outcome, Solution
 from .evaluator import CHUNK, Evaluator, LimitReached, Point
 from .problem import BoxProblem, Vector
 from .resolve.parallel_descents import (
-    FEASIBLE,
     LOCAL_EVALUATIONS,
-    RESIDUAL,
     Descents,
     SearchResult,
     precompute,
 )
+from .resolve.steps import RESIDUAL
 
 KEEP = 256
 """Number of best points kept as candidate starts."""
 
 
 def primes(count: int) -> list[int]:
-    """Return the first `count` primes."""
-    found: list[int] = []
+    """The first `count` primes."""
+    result: list[int] = []
     candidate = 2
-    while len(found) < count:
-        if all(candidate % p for p in found if p * p <= candidate):
-            found.append(candidate)
+    while len(result) < count:
+        if all(candidate % p for p in result if p * p <= candidate):
+            result.append(candidate)
         candidate += 1
-    return found
+    return result
 
 
 class Halton:
-    """Scrambled Halton points in the unit cube, the same for the same seed."""
+    """Scrambled Halton points in the unit cube; a seed always gives the same points."""
 
-    def __init__(self, dimension: int, seed: int, most: int = 2**31) -> None:
+    def __init__(self, dimension: int, seed: int, max_points: int = 2**31) -> None:
         generator = np.random.default_rng(seed)
         self.tables: list[Vector] = []
         for base in primes(dimension):
             digits = 1
-            while base**digits < most:
+            while base**digits < max_points:
                 digits += 1
             order = generator.permuted(np.tile(np.arange(base), (digits, 1)), axis=1)
             self.tables.append(order * float(base) ** -np.arange(1, digits + 1)[:, None])
-        self.shift = generator.random(dimension)  # the remaining digits, as one remainder
-        self.most = most
+        self.shift = generator.random(dimension)  # all digits beyond the tables
+        self.most = max_points
 
     def points(self, first: int, count: int) -> Vector:
         """Points (dimension, count) from index `first`."""
@@ -87,10 +83,10 @@ class Sweep:
 
     Parameters
     ----------
-    z : candidates (nf, k), the best first: least violation, then least objective
+    z : candidates (nf, k), sorted by violation, then by objective
     violation, objective : of the candidates (k,)
-    count, valid, feasible : points swept, points with finite values, feasible points
-    spread : largest minus smallest objective seen, relative to its largest magnitude
+    count, valid, feasible : number of points, of points with finite values, of feasible points
+    spread : range of the objective over the sweep, relative to its largest magnitude
     scale : largest magnitude among the candidates' objectives
     """
 
@@ -107,11 +103,11 @@ class Sweep:
 def sweep(evaluator: Evaluator, samples: int, seed: int) -> Sweep:
     """Evaluate `samples` low-discrepancy points of the box, in chunks, and rank the best."""
     space = evaluator.space
-    sequence = Halton(space.size, seed, most=max(2, samples))
+    sequence = Halton(space.size, seed, max_points=max(2, samples))
     width = (space.upper - space.lower)[:, None]
-    kept = (np.empty((space.size, 0)), np.empty(0), np.empty(0))
+    best = (np.empty((space.size, 0)), np.empty(0), np.empty(0))
     count = valid = feasible = 0
-    low, high = np.inf, -np.inf
+    lowest, highest = np.inf, -np.inf
     for first in range(0, samples, CHUNK):
         try:
             evaluator.check_limits()
@@ -125,34 +121,34 @@ def sweep(evaluator: Evaluator, samples: int, seed: int) -> Sweep:
         count, valid = count + size, valid + int(good.sum())
         feasible += int((violation == 0).sum())
         z, violation, objective = z[:, good], violation[good], rows[0, good]
-        low = min(low, objective.min(initial=np.inf))
-        high = max(high, objective.max(initial=-np.inf))
-        merged = [
-            np.concatenate(p, axis=-1) for p in zip(kept, (z, violation, objective), strict=True)
+        lowest = min(lowest, objective.min(initial=np.inf))
+        highest = max(highest, objective.max(initial=-np.inf))
+        candidates = [
+            np.concatenate(p, axis=-1) for p in zip(best, (z, violation, objective), strict=True)
         ]
-        order = np.lexsort((merged[2], merged[1]))[:KEEP]
-        kept = (merged[0][:, order], merged[1][order], merged[2][order])
-    largest = max(abs(low), abs(high)) if valid else 0.0
-    spread = (high - low) / largest if largest > 0 else 0.0
-    scale = float(np.abs(kept[2]).max(initial=0.0))
-    return Sweep(*kept, count, valid, feasible, float(spread), scale)
+        order = np.lexsort((candidates[2], candidates[1]))[:KEEP]
+        best = (candidates[0][:, order], candidates[1][order], candidates[2][order])
+    largest = max(abs(lowest), abs(highest)) if valid else 0.0
+    spread = (highest - lowest) / largest if largest > 0 else 0.0
+    scale = float(np.abs(best[2]).max(initial=0.0))
+    return Sweep(*best, count, valid, feasible, float(spread), scale)
 
 
-def distinct(evaluator: Evaluator, z: Vector, wanted: int) -> list[Vector]:
-    """Up to `wanted` distinct points of the ranked candidates (nf, k)."""
+def distinct(evaluator: Evaluator, z: Vector, count: int) -> list[Vector]:
+    """Up to `count` points of the ranked candidates (nf, k) that are far apart."""
     space = evaluator.space
     unit = (z - space.lower[:, None]) / (space.upper - space.lower)[:, None]
-    chosen: list[int] = []
+    selected: list[int] = []
     distance = 0.25 * np.sqrt(space.size)
-    while len(chosen) < wanted and distance > 1e-3:
+    while len(selected) < count and distance > 1e-3:
         for k in range(unit.shape[1]):
-            if len(chosen) >= wanted:
+            if len(selected) >= count:
                 break
-            gaps = unit[:, chosen] - unit[:, k : k + 1]
-            if not chosen or np.sqrt((gaps**2).sum(axis=0)).min() >= distance:
-                chosen.append(k)
+            gaps = unit[:, selected] - unit[:, k : k + 1]
+            if not selected or np.sqrt((gaps**2).sum(axis=0)).min() >= distance:
+                selected.append(k)
         distance /= 2
-    return [z[:, k].copy() for k in chosen]
+    return [z[:, k].copy() for k in selected]
 
 
 LAGRANGIAN_EVALUATIONS = 1000
@@ -178,8 +174,8 @@ def solve(
     ----------
     problem : the problem; its own start, if any, is always tried
     algorithm : "auto" (the default path) or a name that `nlopt_wrapper.find` knows
-    starts : number of starts: those given, the rest from the global sweep
-    samples : points of the global sweep
+    starts : number of starts; beyond the given starts, they come from the global sweep
+    samples : number of points of the global sweep
     seed : of the sweep and of stochastic algorithms; the same seed gives the same result
     max_evaluations, max_seconds : limits of the whole run; the best point so far is kept
     more_starts : further starts (n,)
@@ -191,7 +187,7 @@ def solve(
     UsageError
         the algorithm does not exist or does not suit the problem
     """
-    chosen = "auto" if algorithm == "auto" else nlopt_wrapper.suit(algorithm, problem)
+    name = "auto" if algorithm == "auto" else nlopt_wrapper.suit(algorithm, problem)
     evaluator = Evaluator(
         problem, max_evaluations=max_evaluations, max_seconds=max_seconds, stop=stop
     )
@@ -205,10 +201,10 @@ def solve(
         points = _starts(search, swept, starts, more_starts)
         if points:
             search.warnings += evaluator.check_gradients(points[0])
-            if chosen == "auto":
+            if name == "auto":
                 _default_path(search, points)
             else:
-                _chosen_path(search, points, chosen)
+                _chosen_path(search, points, name)
     except LimitReached:
         pass
     except KeyboardInterrupt:
@@ -224,12 +220,12 @@ def _nothing(evaluator: Evaluator) -> Sweep:
     return Sweep(np.empty((size, 0)), np.empty(0), np.empty(0), 0, 0, 0, 0.0, 0.0)
 
 
-def _starts(search: Descents, swept: Sweep, wanted: int, more: Sequence[Vector]) -> list[Point]:
-    """Return valid starts: the user's, then further ones given, then the best of the sweep."""
+def _starts(search: Descents, swept: Sweep, count: int, further: Sequence[Vector]) -> list[Point]:
+    """Valid starts: the problem's start, then the further starts, then the best of the sweep."""
     evaluator = search.evaluator
-    given = [x for x in (evaluator.problem.start, *more) if x is not None]
-    coordinates = [evaluator.space.to_z(np.asarray(x, dtype=float)) for x in given]
-    coordinates += distinct(evaluator, swept.z, max(wanted - len(coordinates), 1))
+    user_starts = [x for x in (evaluator.problem.start, *further) if x is not None]
+    coordinates = [evaluator.space.to_z(np.asarray(x, dtype=float)) for x in user_starts]
+    coordinates += distinct(evaluator, swept.z, max(count - len(coordinates), 1))
     if not coordinates:
         coordinates = [(evaluator.space.lower + evaluator.space.upper) / 2]
     points = [evaluator.point(z) for z in coordinates]
@@ -237,49 +233,51 @@ def _starts(search: Descents, swept: Sweep, wanted: int, more: Sequence[Vector])
 
 
 def _default_path(search: Descents, points: list[Point]) -> None:
-    """SLSQP in logarithmic variables; failed starts again by other means.
+    """Run SLSQP in logarithmic variables, then other methods from failed starts.
 
-    If the first start leads to no feasible point, even after reducing its worst violation, the
-    others look for a feasible point first.
+    If the first start leads to no feasible point, even after a reduction of its worst violation,
+    the other starts reduce their worst violation first.
     """
     failed = []
-    precompute(search.evaluator, points, seed=search.seed, most=LOCAL_EVALUATIONS)
+    precompute(search.evaluator, points, seed=search.seed, max_evaluations=LOCAL_EVALUATIONS)
     for number, point in enumerate(points):
         tell("searching for a design", number / len(points))
-        if search.least and not search.feasible:
+        if search.least_infeasible and not search.feasible:
             search.restore(point, start=point)
-        elif not search.descend(point, "LD_SLSQP", linear=False, most=LOCAL_EVALUATIONS):
+        elif not search.descend(point, "LD_SLSQP", linear=False, max_evaluations=LOCAL_EVALUATIONS):
             failed.append(point)
             if not search.feasible:
                 search.restore(search.optima[-1].point, start=point)
-    if search.least and not search.feasible:
+    if search.least_infeasible and not search.feasible:
         return
     best = search.best()
-    if best is not None and best.point.violation <= FEASIBLE and not search.succeeded:
-        search.descend(best.point, "LD_SLSQP", linear=False, most=LOCAL_EVALUATIONS)
+    if best is not None and best.point.violation <= MET and not search.succeeded:
+        search.descend(best.point, "LD_SLSQP", linear=False, max_evaluations=LOCAL_EVALUATIONS)
     failed = [
         point
         for point in failed[:2]
-        if not search.descend(point, "LD_SLSQP", linear=True, most=LOCAL_EVALUATIONS)
+        if not search.descend(point, "LD_SLSQP", linear=True, max_evaluations=LOCAL_EVALUATIONS)
     ]
     if search.succeeded or not search.feasible:
         return
     for point in failed:
-        if search.descend(point, "AUGLAG+LD_LBFGS", linear=False, most=LAGRANGIAN_EVALUATIONS):
+        if search.descend(
+            point, "AUGLAG+LD_LBFGS", linear=False, max_evaluations=LAGRANGIAN_EVALUATIONS
+        ):
             return
 
 
-def _chosen_path(search: Descents, points: list[Point], chosen: str) -> None:
+def _chosen_path(search: Descents, points: list[Point], name: str) -> None:
     """Run local algorithms from every start; global ones once, then refine with SLSQP."""
-    outer, _ = nlopt_wrapper.find(chosen)
+    outer, _ = nlopt_wrapper.find(name)
     if outer.scope == "local" or outer.name.startswith("AUGLAG"):
         for point in points:
-            search.descend(point, chosen, linear=False)
+            search.descend(point, name, linear=False)
         return
-    run = nlopt_wrapper.run(search.evaluator, points[0], chosen, seed=search.seed)
-    search.descend(run.point, "LD_SLSQP", linear=False, most=LOCAL_EVALUATIONS)
+    run = nlopt_wrapper.run(search.evaluator, points[0], name, seed=search.seed)
+    search.descend(run.point, "LD_SLSQP", linear=False, max_evaluations=LOCAL_EVALUATIONS)
     for optimum in search.optima:
-        optimum.algorithm = f"{chosen}, {optimum.algorithm}"
+        optimum.algorithm = f"{name}, {optimum.algorithm}"
 
 
 def _fixed(search: Descents) -> Solution:
@@ -296,10 +294,12 @@ def _conclude(search: Descents, swept: Sweep) -> Solution:
     if best is None or search.interrupted or evaluator.exhausted or not search.feasible:
         best = _best_seen(search, swept)
     point, idle = _settle(search, best)
-    found = None
+    quality = None
     if point.valid and evaluator.space.size:
-        found = kkt.check(evaluator, point, curvature=True, objective_scale=search.objective_scale)
-    outcome = _outcome(search, swept, point, found)
+        quality = kkt.check(
+            evaluator, point, curvature=True, objective_scale=search.objective_scale
+        )
+    outcome = _outcome(search, swept, point, quality)
     if not point.valid:
         labels = np.array(
             [
@@ -309,8 +309,8 @@ def _conclude(search: Descents, swept: Sweep) -> Solution:
             ]
         )
         lost = labels[~np.isfinite(point.rows)]
-        more = f" and {len(lost) - 3} more" if len(lost) > 3 else ""
-        search.warnings.append(f"no finite value of {', '.join(lost[:3])}{more}")
+        others = f" and {len(lost) - 3} more" if len(lost) > 3 else ""
+        search.warnings.append(f"no finite value of {', '.join(lost[:3])}{others}")
     if evaluator.bad_slopes:
         search.warnings.append(
             f"{evaluator.bad_slopes} gradients had undefined entries (infinite slope)"
@@ -324,7 +324,7 @@ def _conclude(search: Descents, swept: Sweep) -> Solution:
         constraints=point.rows[1 : 1 + m],
         equalities=point.rows[1 + m :],
         violation=point.violation,
-        kkt=found,
+        kkt=quality,
         evaluations=evaluator.evaluations,
         gradients=evaluator.gradients,
         samples=swept.count,
@@ -342,22 +342,20 @@ def _conclude(search: Descents, swept: Sweep) -> Solution:
 
 
 def _best_seen(search: Descents, swept: Sweep) -> SearchResult:
-    """The best of all points: of the runs, the sweep, the start or the middle."""
+    """The best of all points: of the runs, the sweep, and the start or the middle."""
     evaluator = search.evaluator
-    space, start = evaluator.space, evaluator.problem.start
-    rest = (space.lower + space.upper) / 2 if start is None else space.to_z(start)
     if search.interrupted or evaluator.exhausted:
-        evaluator.enter_foreseen()
-    seen = [evaluator.point(z) for z in (*swept.z[:, :1].T.copy(), rest)]
+        evaluator.enter_precomputed()
+    points = [evaluator.point(z) for z in (*swept.z[:, :1].T.copy(), evaluator.space.reference)]
     if evaluator.best is not None:
-        seen.insert(0, evaluator.best)
-    best = search.best([SearchResult(p, search.residual(p), "best point seen") for p in seen])
+        points.insert(0, evaluator.best)
+    best = search.best([SearchResult(p, search.residual(p), "best point seen") for p in points])
     assert best is not None
     return best
 
 
 def _settle(search: Descents, best: SearchResult) -> tuple[Point, tuple[str, ...]]:
-    """Put variables without effect back to their start, or the middle of their bounds."""
+    """Reset variables without effect to their start, or to the middle of their bounds."""
     evaluator = search.evaluator
     space, problem = evaluator.space, evaluator.problem
     if not best.point.valid or space.size == 0:
@@ -366,22 +364,19 @@ def _settle(search: Descents, best: SearchResult) -> tuple[Point, tuple[str, ...
     idle = np.flatnonzero(evaluator.influence[1] == 0.0)
     if len(idle) == 0:
         return best.point, ()
-    rest = (space.lower + space.upper) / 2
-    if problem.start is not None:
-        rest = space.to_z(problem.start)
     z = best.point.z.copy()
-    z[idle] = rest[idle]
-    moved = evaluator.point(z)
+    z[idle] = space.reference[idle]
+    restored = evaluator.point(z)
     names = tuple(problem.names[space.free[j]] for j in idle)
-    same = moved.valid and np.array_equal(moved.rows, best.point.rows)
-    return (moved if same else best.point), names
+    unchanged = restored.valid and np.array_equal(restored.rows, best.point.rows)
+    return (restored if unchanged else best.point), names
 
 
 def _outcome(
     search: Descents, swept: Sweep, point: Point, kkt_residual: kkt.KktResidual | None
 ) -> Outcome:
     evaluator = search.evaluator
-    feasible = point.valid and point.violation <= FEASIBLE
+    feasible = point.valid and point.violation <= MET
     if search.interrupted:
         return Outcome.INTERRUPTED if feasible else Outcome.INTERRUPTED_INFEASIBLE
     if not point.valid:
@@ -403,7 +398,7 @@ def _outcome(
 
 def _local_optima(search: Descents) -> tuple[LocalOptimum, ...]:
     valid = [o for o in search.optima if o.point.valid]
-    valid.sort(key=lambda o: (not o.good, max(o.point.violation, FEASIBLE), o.point.objective))
+    valid.sort(key=lambda o: (not o.good, max(o.point.violation, MET), o.point.objective))
     return tuple(
         LocalOptimum(o.point.x, o.point.objective, o.point.violation, o.residual, o.hits)
         for o in valid

@@ -1,9 +1,9 @@
-"""An optimum prepared for nearby problems: re-solve, predict, price, trace.
+"""Re-solves problems near an optimum, and predicts its movement.
 
-Full steps, then restoration and descent, start from the optimum and the other local optima of its
-search (`resolve.ladder`), with their Hessians computed once. If they fail, a search from `STARTS`
-starts follows; if that finds nothing, the first search is repeated. So every problem that the first
-search would solve is solved.
+Full steps, then restoration and descent, start from the local optima of the search
+(`resolve.ladder`), with their Hessians computed once. If they fail, a search from `STARTS` starts
+follows; if it finds no design, the original search is repeated. So every problem that the original
+search solves is solved.
 """
 
 from __future__ import annotations
@@ -15,30 +15,30 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from . import kkt, prices
-from .actuator import ActuatorProblem, Outcome, Responses, Solution, responses
+from .actuator import MET, ActuatorProblem, Outcome, Responses, Solution, responses
 from .evaluator import Evaluator, LimitReached, Point
 from .problem import BoxProblem, ParametricProblem, Vector
 from .resolve import ladder
 from .resolve.changed import ChangedProblems, applicable
-from .resolve.steps import Valley, valley_at
+from .resolve.steps import RESIDUAL, Valley, valley_at
 from .solver import solve
 
 Stop = Callable[[], bool]
-"""Called between steps; True stops."""
+"""Called between steps; True stops the search."""
 
 STARTS = 3
-"""Starts of the search if the steps fail."""
+"""Number of starts of the search if the steps fail."""
 
 SAMPLES = 1024
-"""Points of its sweep."""
+"""Number of points of the sweep of this search."""
 
 AGREES = 1e-9
-"""Margin difference up to which parameters fully describe a changed problem: rounding."""
+"""Tolerance of margins, for rounding, to decide whether a parameter describes a changed problem."""
 
 
 @dataclass(frozen=True, slots=True)
 class SearchEffort:
-    """The search that led to the optimum: its starts, points of the sweep, and seed."""
+    """Effort of a search: number of starts, points of the sweep, and seed."""
 
     starts: int
     samples: int
@@ -53,7 +53,8 @@ class LinearPath:
     ----------
     below, above : slope of the objective downwards and upwards; infinite without a design
     moves : change of each variable (n,) per unit
-    low, high : the nearest change of the active set, as distance and words; None if none is near
+    low, high : distance and description of the nearest change of the active set on each side; None
+        without a change
     """
 
     below: float
@@ -64,13 +65,13 @@ class LinearPath:
 
 
 class WarmStart:
-    """An optimum with the data for re-solving.
+    """An optimum with the data to re-solve nearby problems.
 
     Parameters
     ----------
     actuator : the problem
     solution : its optimum
-    effort : how it was searched for
+    effort : of the search for the optimum
     """
 
     def __init__(self, actuator: ActuatorProblem, solution: Solution, effort: SearchEffort) -> None:
@@ -78,8 +79,8 @@ class WarmStart:
         self.evaluator = evaluator = Evaluator(actuator.problem)
         self.point = point = evaluator.point(evaluator.space.to_z(solution.x))
         evaluator.check_gradients(point)
-        known = [point, *ladder.other_optima(evaluator, solution)]
-        self.valleys = [valley_at(evaluator, one) for one in known]
+        optima = [point, *ladder.other_optima(evaluator, solution)]
+        self.valleys = [valley_at(evaluator, optimum) for optimum in optima]
         self._optimum: prices.Optimum | None = None
         self._responses: dict[str, Responses] = {}
 
@@ -92,34 +93,34 @@ class WarmStart:
         stop : called between steps; once True, the unchanged optimum is returned with the outcome
             "interrupted"
         """
-        near = Evaluator(problem, stop=stop)
-        if near.space.size == 0:
+        evaluator = Evaluator(problem, stop=stop)
+        if evaluator.space.size == 0:
             return solve(problem)
         try:
-            self._take_gradients(near)
-            optimum, inside = self._stepped(near, self._valleys(near))
+            self._take_gradients(evaluator)
+            optimum, feasible = self._stepped(evaluator, self._valleys(evaluator))
         except LimitReached:
-            return self._interrupted(near)
+            return self._interrupted(evaluator)
         if optimum is not None:
-            return _solution(near, optimum, "full steps, or restoration and descent")
-        known = problem.inside(self.point.x)
-        more = [known if inside is None else near.space.to_x(inside[:, None])[:, 0]]
+            return _solution(evaluator, optimum, "full steps, or restoration and descent")
+        guess = problem.inside(self.point.x)
+        starts = [guess if feasible is None else evaluator.space.to_x(feasible[:, None])[:, 0]]
         seed = self.effort.seed
-        found = solve(
-            problem, starts=STARTS, samples=SAMPLES, more_starts=more, seed=seed, stop=stop
+        solution = solve(
+            problem, starts=STARTS, samples=SAMPLES, more_starts=starts, seed=seed, stop=stop
         )
-        if not found.feasible and found.outcome is not Outcome.LIMIT_INFEASIBLE:
-            found = solve(
+        if not solution.feasible and solution.outcome is not Outcome.LIMIT_INFEASIBLE:
+            solution = solve(
                 problem,
                 starts=self.effort.starts,
                 samples=self.effort.samples,
-                more_starts=[found.x],
+                more_starts=[solution.x],
                 seed=seed,
                 stop=stop,
             )
-        if found.outcome is Outcome.LIMIT_INFEASIBLE:
-            return self._interrupted(near)
-        return _stopped(found) if found.outcome is Outcome.LIMIT else found
+        if solution.outcome is Outcome.LIMIT_INFEASIBLE:
+            return self._interrupted(evaluator)
+        return _stopped(solution) if solution.outcome is Outcome.LIMIT else solution
 
     def solve_together(
         self, path: str, values: Sequence[float], rebuilt: Callable[[float], ActuatorProblem],
@@ -127,39 +128,39 @@ class WarmStart:
     ) -> list[Point | None]:  # fmt: skip
         """The optimum at each value of a number, solved together.
 
-        Values that shared steps do not reach are searched in order, outwards. The search stops at
-        the first value without a design.
+        If shared steps do not reach a value, searches proceed outwards, up to the first value
+        without a design on each side.
 
         Parameters
         ----------
         path, values : the number
         rebuilt : the problem with the number at a value
-        stop : called between steps; values not reached by then are None
+        stop : called between steps; True ends the search, and further values are None
         """
         present = self.actuator.subject.numbers.get(path)
         optima: list[Point | None] = [None] * len(values)
-        left = list(range(len(values)))
+        missing = list(range(len(values)))
         if present is not None and self._follows(path, present, values, rebuilt):
             try:
                 optima = self._curve(path, values, stop)
             except LimitReached:
                 return optima
-            left = [k for k, one in enumerate(optima) if one is None]
-        here = present if present is not None else float(np.median(values))
+            missing = [k for k, optimum in enumerate(optima) if optimum is None]
+        middle = present if present is not None else float(np.median(values))
         for side in (-1, 1):
             outwards = sorted(
-                (k for k in left if (values[k] - here >= 0) == (side > 0)),
-                key=lambda k: abs(values[k] - here),
+                (k for k in missing if (values[k] - middle >= 0) == (side > 0)),
+                key=lambda k: abs(values[k] - middle),
             )
             for k in outwards:
                 if stop is not None and stop():
                     return optima
-                found = self.solve(rebuilt(values[k]).problem, stop)
-                if found.interrupted:
+                solution = self.solve(rebuilt(values[k]).problem, stop)
+                if solution.interrupted:
                     return optima
-                if not found.feasible:
+                if not solution.feasible:
                     break
-                optima[k] = ladder.point_of(self.evaluator, found)
+                optima[k] = ladder.point_of(self.evaluator, solution)
         return optima
 
     def line(self, changes: Mapping[str, float], size: float = 1.0) -> LinearPath:
@@ -168,19 +169,19 @@ class WarmStart:
         Parameters
         ----------
         changes : difference of each number by PATH
-        size : units that make a change of the numbers' own size
+        size : number of units in a change as large as the numbers themselves
         """
         optimum = self.optimum
-        given = self._along(changes, size)
-        moves, shifts = prices.movement(optimum, given)
+        derivatives = self._along(changes, size)
+        moves, shifts = prices.movement(optimum, derivatives)
         active = np.flatnonzero(optimum.margins <= kkt.ACTIVE)
-        below, above = prices.one_sided(optimum, given, active)[:, 0]
-        moved = np.zeros(len(self.point.x))
+        below, above = prices.one_sided(optimum, derivatives, active)[:, 0]
+        x_moves = np.zeros(len(self.point.x))
         slope = self.evaluator.space.slope(self.point.x[:, None])[:, 0]
-        moved[self.evaluator.space.free] = slope * moves[:, 0]
-        low, high = prices.ends(optimum, given, moves, shifts)[0]
+        x_moves[self.evaluator.space.free] = slope * moves[:, 0]
+        low, high = prices.ends(optimum, derivatives, moves, shifts)[0]
         return LinearPath(
-            float(below), float(above), moved,
+            float(below), float(above), x_moves,
             None if low is None else (float(low.distance), low.text),
             None if high is None else (float(high.distance), high.text),
         )  # fmt: skip
@@ -190,7 +191,7 @@ class WarmStart:
         """The linear algebra of the optimum, computed once."""
         if self._optimum is None:
             quality = kkt.check(self.evaluator, self.point)
-            self._optimum = prices.optimum(self.evaluator, self.point, quality)
+            self._optimum = prices.optimum_at(self.evaluator, self.point, quality)
         return self._optimum
 
     def _along(self, changes: Mapping[str, float], size: float) -> Responses:
@@ -208,11 +209,9 @@ class WarmStart:
         )
 
     def differentiate(self, paths: Iterable[str]) -> None:
-        """Compute the derivatives by some numbers, unless known; many cost little more than one.
+        """Compute the derivatives by the numbers at `paths`, unless known.
 
-        Parameters
-        ----------
-        paths : of the numbers
+        A joint call for many numbers costs little more than a call for one.
         """
         missing = tuple(path for path in dict.fromkeys(paths) if path not in self._responses)
         if missing:
@@ -225,52 +224,55 @@ class WarmStart:
                     mixed=new.mixed[:, column], bounds=new.bounds[:, column],
                 )  # fmt: skip
 
-    def _take_gradients(self, near: Evaluator) -> None:
-        """Reuse the gradient check for a changed problem, or run its own."""
-        own, problem = self.evaluator, near.problem
-        if tuple(problem.constraint_names) == tuple(own.problem.constraint_names):
-            near.complex_works, near.difference_rows = own.complex_works, own.difference_rows
+    def _take_gradients(self, evaluator: Evaluator) -> None:
+        """Reuse the gradient check for a changed problem with the same rows, else check again."""
+        solved, problem = self.evaluator, evaluator.problem
+        if tuple(problem.constraint_names) == tuple(solved.problem.constraint_names):
+            evaluator.adopt_check(solved)
         else:
-            near.check_gradients(near.point(near.space.to_z(problem.inside(self.point.x))))
+            evaluator.check_gradients(
+                evaluator.point(evaluator.space.to_z(problem.inside(self.point.x)))
+            )
 
-    def _valleys(self, near: Evaluator) -> list[Valley]:
-        """The valleys as starts of descents of a changed problem."""
-        own, space = self.evaluator.space, near.space
-        same = np.array_equal(own.free, space.free) and all(
-            np.array_equal(getattr(own, name), getattr(space, name))
+    def _valleys(self, evaluator: Evaluator) -> list[Valley]:
+        """The valleys as starts for a changed problem."""
+        solved, space = self.evaluator.space, evaluator.space
+        same_coordinates = np.array_equal(solved.free, space.free) and all(
+            np.array_equal(getattr(solved, name), getattr(space, name))
             for name in ("logarithmic", "scale")
         )
-        box = same and all(
-            np.array_equal(getattr(own, name), getattr(space, name)) for name in ("lower", "upper")
+        same_box = same_coordinates and all(
+            np.array_equal(getattr(solved, name), getattr(space, name))
+            for name in ("lower", "upper")
         )
-        if box:
-            return [replace(valley, rows=near.constraint_count) for valley in self.valleys]
+        if same_box:
+            return [replace(valley, rows=evaluator.constraint_count) for valley in self.valleys]
         result = []
         for valley in self.valleys:
-            point = near.point(space.to_z(near.problem.inside(valley.point.x)))
-            if same:
-                result.append(replace(valley, rows=near.constraint_count, point=point))
+            point = evaluator.point(space.to_z(evaluator.problem.inside(valley.point.x)))
+            if same_coordinates:
+                result.append(replace(valley, rows=evaluator.constraint_count, point=point))
             elif point.valid:
-                result.append(valley_at(near, point))
+                result.append(valley_at(evaluator, point))
         return result
 
     def _stepped(
-        self, near: Evaluator, valleys: Sequence[Valley]
+        self, evaluator: Evaluator, valleys: Sequence[Valley]
     ) -> tuple[Point | None, Vector | None]:
-        """The optimum that steps from the valleys reach, or a feasible point (nf,)."""
-        problem = near.problem
-        alone = ParametricProblem(problem, (), np.zeros(0), lambda x, _: problem.evaluate(x))
-        if not valleys or not applicable(alone, near):
+        """The optimum that steps from the valleys reach, and a feasible point (nf,); or None."""
+        problem = evaluator.problem
+        parametric = ParametricProblem(problem, (), np.zeros(0), lambda x, _: problem.evaluate(x))
+        if not valleys or not applicable(parametric, evaluator):
             return None, None
-        changed = ChangedProblems(alone, near, np.zeros((0, 1)))
-        optima, inside = ladder.resolve_batch(changed, valleys, valleys[0].point.z[:, None])
-        return optima[0], inside[0]
+        changed = ChangedProblems(parametric, evaluator, np.zeros((0, 1)))
+        optima, feasible = ladder.resolve_batch(changed, valleys, valleys[0].point.z[:, None])
+        return optima[0], feasible[0]
 
-    def _interrupted(self, near: Evaluator) -> Solution:
+    def _interrupted(self, evaluator: Evaluator) -> Solution:
         """The unchanged optimum as the result of a stopped search."""
-        near.limited = False
-        point = near.point(near.space.to_z(near.problem.inside(self.point.x)))
-        return _stopped(_solution(near, point, "interrupted"))
+        evaluator.limited = False
+        point = evaluator.point(evaluator.space.to_z(evaluator.problem.inside(self.point.x)))
+        return _stopped(_solution(evaluator, point, "interrupted"))
 
     def _follows(
         self,
@@ -279,45 +281,41 @@ class WarmStart:
         values: Sequence[float],
         rebuilt: Callable[[float], ActuatorProblem],
     ) -> bool:
-        """Whether the number alone makes the changed problems, judged at both ends.
+        """Whether the number as a parameter describes the changed problems; checked at both ends.
 
-        Some numbers affect more than the models read directly, as temperatures affect the factors
-        on materials.
+        Some numbers affect more than the models read directly: temperatures affect the factors on
+        materials.
         """
         parametric = self.actuator.parametric((path,))
         if not applicable(parametric, self.evaluator):
             return False
-        own = self.actuator.problem
+        problem = self.actuator.problem
         for value in {min(values), max(values)} - {present}:
-            other = rebuilt(value).problem
-            same = tuple(other.constraint_names) == tuple(own.constraint_names)
-            boxed = np.array_equal(own.lower, other.lower) and np.array_equal(
-                own.upper, other.upper
-            )
-            if not (same and boxed):
+            changed = rebuilt(value).problem
+            if not problem.same_rows_and_box(changed):
                 return False
             x = self.point.x[:, None]
-            ours, theirs = parametric.at(np.array([value])).rows(x), other.rows(x)
+            ours, theirs = parametric.at(np.array([value])).rows(x), changed.rows(x)
             if not np.allclose(ours, theirs, rtol=AGREES, atol=AGREES, equal_nan=True):
                 return False
         return True
 
     def _curve(self, path: str, values: Sequence[float], stop: Stop | None) -> list[Point | None]:
-        """The optima at values of a number that shared steps reach."""
-        near = Evaluator(self.actuator.problem, stop=stop)
-        self._take_gradients(near)
-        changed = ChangedProblems(self.actuator.parametric((path,)), near, np.array([values]))
+        """The optima at values of a number, where shared steps reach them."""
+        evaluator = Evaluator(self.actuator.problem, stop=stop)
+        self._take_gradients(evaluator)
+        changed = ChangedProblems(self.actuator.parametric((path,)), evaluator, np.array([values]))
         starts = np.repeat(self.point.z[:, None], len(values), axis=1)
         return ladder.resolve_batch(changed, self.valleys, starts)[0]
 
 
 def _solution(evaluator: Evaluator, point: Point, algorithm: str) -> Solution:
-    """A point as a search result; an optimum if it is feasible and stationary."""
-    found = kkt.check(evaluator, point) if point.valid else None
-    if point.violation > ladder.FEASIBLE or found is None:
+    """A point as a solution; an optimum if it is feasible and stationary."""
+    quality = kkt.check(evaluator, point) if point.valid else None
+    if point.violation > MET or quality is None:
         outcome = Outcome.INFEASIBLE
     else:
-        stationary = found.residual <= ladder.RESIDUAL
+        stationary = quality.residual <= RESIDUAL
         outcome = Outcome.OPTIMUM if stationary else Outcome.NOT_STATIONARY
     m = evaluator.constraint_count
     return Solution(
@@ -328,7 +326,7 @@ def _solution(evaluator: Evaluator, point: Point, algorithm: str) -> Solution:
         constraints=point.rows[1 : 1 + m],
         equalities=point.rows[1 + m :],
         violation=point.violation,
-        kkt=found,
+        kkt=quality,
         evaluations=evaluator.evaluations,
         gradients=evaluator.gradients,
         algorithm=algorithm,
@@ -337,6 +335,6 @@ def _solution(evaluator: Evaluator, point: Point, algorithm: str) -> Solution:
 
 
 def _stopped(solution: Solution) -> Solution:
-    feasible = solution.violation <= ladder.FEASIBLE
+    feasible = solution.violation <= MET
     outcome = Outcome.INTERRUPTED if feasible else Outcome.INTERRUPTED_INFEASIBLE
     return replace(solution, outcome=outcome)

@@ -14,7 +14,8 @@ import numpy as np
 
 from ..base.numeric import Array
 from ..evaluation.result import Evaluation
-from ..evaluation.wall_study import YIELD, Difference, Ratio, WallStudy
+from ..evaluation.wall_alternatives import Difference
+from ..evaluation.wall_study import YIELD, Ratio, WallStudy
 from ..models.strength import CRITERIA
 from ..rendering import text
 from ..rendering.axes import fitted

@@ -1,4 +1,4 @@
-"""What a PDF carries inside: files attached by an incremental update, and read back."""
+"""Files attached to a PDF: added by an incremental update, and read back."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ from ..base.errors import Diagnostic, InputError
 from ..base.files import read_bytes, read_json
 
 MOST_BYTES = 50_000_000
-"""Of an attachment: a choice far above any input."""
+"""Largest attachment (a choice far above any input)."""
 MOST_FILES = 16
-"""Attachments: a choice above the two of a report and what an editor may add."""
+"""Maximum number of attachments (a choice: a report has two, an editor may add some)."""
 NEAR = 4096
-"""Bytes from a dictionary's type to its begin and to its end: a choice; ours have some 200."""
+"""Maximum bytes from a dictionary's type to its begin and to its end (a choice; ours have 200)."""
 _MARK, _OBJECT = b"/EmbeddedFile", b" obj"
 _STREAM = re.compile(rb">>\s{0,16}stream\r?\n")
 _STEP = 1_000_000
 """Bytes unpacked at once."""
-_DAMAGED = Diagnostic("its attachment is damaged", "take the original file")
+_DAMAGED = Diagnostic("its attachment is damaged", "use the original file")
 
-_MOST_BYTES = 200_000_000
+_MOST_PDF_BYTES = 200_000_000
 _OURS = "give a PDF that actuator-opt wrote"
 
 
 @dataclass(frozen=True, slots=True)
 class Attachment:
-    """What a report carries inside: the design's text and how the report was made."""
+    """The files attached to a report: the text of the design, and data of the run."""
 
     source: str
     run: Mapping[str, Any]
@@ -46,8 +46,8 @@ def embed(pdf: bytes, files: Sequence[tuple[str, str, bytes]], timestamp: int = 
     trailer = pdf.rsplit(b"trailer", 1)[1]
     size = int(re.search(rb"/Size (\d+)", trailer)[1])  # type: ignore[index]
     root = int(re.search(rb"/Root (\d+) 0 R", trailer)[1])  # type: ignore[index]
-    found = re.search(rb"(?:^|\n)%d 0 obj\s*<<(.*?)>>\s*endobj" % root, pdf, re.DOTALL)
-    if found is None:
+    catalogue = re.search(rb"(?:^|\n)%d 0 obj\s*<<(.*?)>>\s*endobj" % root, pdf, re.DOTALL)
+    if catalogue is None:
         raise InputError("cannot attach the input: the PDF has no catalogue")
     day = datetime.fromtimestamp(timestamp, UTC).strftime("D:%Y%m%d%H%M%SZ").encode()
     objects: dict[int, bytes] = {}
@@ -61,16 +61,16 @@ def embed(pdf: bytes, files: Sequence[tuple[str, str, bytes]], timestamp: int = 
             b"/Params<</Size %d/ModDate(%s)>>>>\nstream\n%s\nendstream"
             % (len(packed), subtype, len(content), day, packed)
         )
-        written = b"<FEFF" + name.encode("utf-16-be").hex().upper().encode() + b">"
+        name_hex = b"<FEFF" + name.encode("utf-16-be").hex().upper().encode() + b">"
         objects[record] = (
             b"<</Type/Filespec/F%s/UF%s/EF<</F %d 0 R/UF %d 0 R>>/AFRelationship/Source>>"
-            % (written, written, stream, stream)
+            % (name_hex, name_hex, stream, stream)
         )
-        names.append((written, record))
+        names.append((name_hex, record))
     listed = b" ".join(b"%s %d 0 R" % entry for entry in sorted(names))
     refs = b" ".join(b"%d 0 R" % record for _, record in names)
     extra = b"/Names<</EmbeddedFiles<</Names[%s]>>>>/AF[%s]" % (listed, refs)
-    objects[root] = b"<<" + found[1].strip() + extra + b">>"
+    objects[root] = b"<<" + catalogue[1].strip() + extra + b">>"
     return pdf + _update(objects, len(pdf), size + 2 * len(files), root, start)
 
 
@@ -85,22 +85,22 @@ def _update(objects: dict[int, bytes], offset: int, size: int, root: int, previo
 
 
 def extract(pdf: bytes, kinds: Sequence[str]) -> dict[str, bytes]:
-    """Attached files by media type; reads what `embed`, the Typst report and most editors write.
+    """Attached files by media type, as written by `embed`, the Typst report and most editors.
 
-    Streams are found by their own dictionaries, whatever the cross-reference table says. A PDF may
-    come from a stranger: whatever it holds, it is looked through once, and at most `MOST_FILES`
-    dictionaries of at most `NEAR` bytes to either side and `MOST_BYTES` of content are read.
+    Streams are located by their own dictionaries, without the cross-reference table. A PDF may be
+    malicious, so it is searched only once, for at most `MOST_FILES` dictionaries of at most `NEAR`
+    bytes to either side, with at most `MOST_BYTES` of content each.
 
     Parameters
     ----------
     pdf : the file
-    kinds : media types to read; others are passed over
+    kinds : media types to read; others are ignored
 
     Raises
     ------
-    InputError : an attachment is damaged, too large, or not alone of its kind
+    InputError : a damaged or too large attachment, or several of the same kind
     """
-    found: dict[str, bytes] = {}
+    contents: dict[str, bytes] = {}
     for about, begin in streams(pdf):
         kind = re.search(rb"/Subtype\s*/([\w#.+-]+)", about)
         if kind is None:
@@ -109,19 +109,19 @@ def extract(pdf: bytes, kinds: Sequence[str]) -> dict[str, bytes]:
         if name not in kinds:
             continue
         content = _content(pdf, begin, about)
-        if found.setdefault(name, content) != content:
-            message = f"carries several attachments of the kind {name}"
+        if contents.setdefault(name, content) != content:
+            message = f"has several attachments of type {name}"
             raise InputError(Diagnostic(message, "give the report of one design"))
-    return found
+    return contents
 
 
 def streams(pdf: bytes) -> Iterator[tuple[bytes, int]]:
-    """Dictionaries of embedded files, and where their streams begin."""
+    """Dictionaries of embedded files, each with the start of its stream."""
     count, place = 0, pdf.find(_MARK)
     while place >= 0:
         end = place + len(_MARK)
         if count == MOST_FILES:
-            raise InputError(f"names more than {MOST_FILES} attachments")
+            raise InputError(f"has more than {MOST_FILES} attachments")
         if not pdf[end : end + 1].isalnum():  # another word
             count += 1
             begin = pdf.rfind(_OBJECT, max(place - NEAR, 0), place)
@@ -132,11 +132,11 @@ def streams(pdf: bytes) -> Iterator[tuple[bytes, int]]:
 
 
 def _content(pdf: bytes, begin: int, about: bytes) -> bytes:
-    """What an embedded file holds; its size must be the one it states."""
+    """Content of an embedded file, whose size must equal the stated size."""
     if re.search(rb"/Filter\s*(?:\[\s*)?/FlateDecode\s*\]?", about):
         content, whole = _unpacked(pdf, begin)
     elif b"/Filter" in about:
-        raise InputError("its attachment is packed in a way that is not read")
+        raise InputError("its attachment has an unknown compression")
     else:
         length = re.search(rb"/Length\s+(\d{1,12})(?!\d|\s+\d+\s+R)", about)
         end = begin + int(length[1]) if length else pdf.find(b"endstream", begin)
@@ -171,33 +171,32 @@ def _too_large() -> InputError:
 
 
 def read_attachment(path: Path) -> Attachment:
-    """The input and the command that a report of ours carries.
+    """The input and the command in a report of this program.
 
     Raises
     ------
-    InputError : no such file, no PDF, encrypted, damaged, or not written by this program
+    InputError : no such file, not a PDF, encrypted, damaged, or not written by this program
     """
-    content = read_bytes(path, most=_MOST_BYTES, kinds=(".pdf",), what="PDF")
+    content = read_bytes(path, most=_MOST_PDF_BYTES, kinds=(".pdf",), what="PDF")
     try:
         if b"%PDF-" not in content[:1024]:
-            raise InputError(Diagnostic("is no PDF", _OURS))
+            raise InputError(Diagnostic("is not a PDF", _OURS))
         if re.search(rb"/Encrypt\s+\d+\s+\d+\s+R", content):
             raise InputError(Diagnostic("is encrypted", "save it without a password"))
-        found = extract(content, ("application/yaml", "application/json"))
-        source, run = found["application/yaml"].decode(), read_json(found["application/json"])
+        contents = extract(content, ("application/yaml", "application/json"))
+        source, run = contents["application/yaml"].decode(), read_json(contents["application/json"])
         if not isinstance(run, dict) or "actuator_opt" not in run:
             raise KeyError("actuator_opt")
     except KeyError:
-        raise InputError(Diagnostic(_carries(content), _OURS, str(path))) from None
+        raise InputError(Diagnostic(_no_input(content), _OURS, str(path))) from None
     except ValueError:
-        fault = Diagnostic("its attachment is damaged", "take the original file", str(path))
-        raise InputError(fault) from None
+        raise InputError(replace(_DAMAGED, file=str(path))) from None
     except InputError as error:
         raise InputError([replace(x, file=str(path)) for x in error.diagnostics]) from None
     return Attachment(source, run)
 
 
-def _carries(content: bytes) -> str:
-    """Why there is no input in a PDF: it never was, or the end of the file is lost."""
-    ended = b"%%EOF" in content[-2048:]
-    return "carries no input to run again" if ended else "is cut off and carries no input"
+def _no_input(content: bytes) -> str:
+    """Why a PDF has no input: it was written without, or the end of the file is lost."""
+    complete = b"%%EOF" in content[-2048:]
+    return "has no input to repeat" if complete else "is truncated and has no input"

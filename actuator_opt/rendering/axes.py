@@ -23,7 +23,7 @@ AREAS = (
 )  # fmt: skip
 """Fills of stacked areas: distinct in hue for colour-blind eyes, in lightness on a grey print."""
 Ticks: TypeAlias = Sequence[tuple[float, str]]
-"""Places on an axis with what is written there."""
+"""Values on an axis with their words."""
 Box: TypeAlias = tuple[float, float, float, float]
 """Left, top, width and height on the paper [mm]."""
 THINNED = 640
@@ -52,7 +52,7 @@ def ticks(low: float, high: float, count: int = 5) -> list[float]:
 
 
 class Axes:
-    """A plot frame on ink; its axes are linear in the values given (which may be logarithms)."""
+    """A plot frame on ink; its axes are linear in their values, which may be logarithms."""
 
     def __init__(
         self,
@@ -76,7 +76,7 @@ class Axes:
         return self.top + (high - value) / (high - low) * self.height
 
     def frame(self, title: str, x_label: str) -> None:
-        """Grid, ticks, axis labels; the y label stands as the title above the axis."""
+        """Grid, ticks and axis labels; the y label is the title above the axis."""
         self.frame_at(
             title,
             x_label,
@@ -87,9 +87,9 @@ class Axes:
     def frame_at(
         self, title: str, x_label: str, x_ticks: Ticks, y_ticks: Ticks, *, upright: bool = False
     ) -> None:
-        """The same with ticks at stated places; `upright` draws their grid lines too.
+        """The same with stated ticks; `upright` also draws vertical grid lines.
 
-        Without an x label the ticks stay without their numbers: another frame stands below.
+        Without an x label the x ticks have no numbers, as another frame follows below.
         """
         bottom = self.top + self.height
         for value, words in y_ticks:
@@ -113,16 +113,16 @@ class Axes:
             self.ink.text(self.left - 1.4, self.top - 3.6, title, size=7.0, bold=True)
 
     def clipped(self, xs: Sequence[float], ys: Sequence[float]) -> list[list[Point]]:
-        """Polyline on paper, cut where it leaves the top or the bottom of the frame."""
+        """Polyline on paper, cut where it leaves the frame at the top or the bottom."""
         low, high = self.y_range
         lines: list[list[Point]] = [[]]
         for index, (x, y) in enumerate(zip(xs, ys, strict=True)):
-            before = ys[index - 1] if index else y
-            for level, beyond in ((low, y < low), (high, y > high))[:: 1 if y > before else -1]:
-                outside = before > level if level == high else before < level
+            previous = ys[index - 1] if index else y
+            for level, beyond in ((low, y < low), (high, y > high))[:: 1 if y > previous else -1]:
+                outside = previous > level if level == high else previous < level
                 if outside == beyond:
                     continue
-                share = (level - before) / (y - before)
+                share = (level - previous) / (y - previous)
                 edge = xs[index - 1] + share * (x - xs[index - 1])
                 lines[-1].append((self.x(edge), self.y(level)))
                 if beyond:
@@ -133,7 +133,7 @@ class Axes:
 
 
 def fitted(words: str, room: float, size: float = 6.5) -> str:
-    """Words cut with an ellipsis to what fits into `room` mm.
+    """Words that fit into `room` mm, cut with an ellipsis if too long.
 
     >>> fitted("weakest position", 12.0)
     'weakest…'
@@ -159,7 +159,7 @@ def per_cent(share: float) -> str:
 
 
 def level_words(value: float) -> str:
-    """A power of ten or a step between, short enough for an axis.
+    """A power of ten, or a step between two powers, short enough for an axis.
 
     >>> level_words(0.01), level_words(2000.0), level_words(1e5), level_words(5e-7)
     ('0.01', '2000', '10⁵', '5×10⁻⁷')
@@ -168,21 +168,25 @@ def level_words(value: float) -> str:
         return trimmed(value)
     power = math.floor(math.log10(value) + 1e-9)
     step = round(value / 10.0**power)
-    raised = f"10{str(power).translate(SUPERSCRIPTS)}"
-    return raised if step == 1 else f"{step}×{raised}"
+    power_text = f"10{str(power).translate(SUPERSCRIPTS)}"
+    return power_text if step == 1 else f"{step}×{power_text}"
 
 
 def level_ticks(low: float, high: float) -> Ticks:
-    """Ticks of a logarithmic axis (log10): decades, or 1, 2, 5 where there are few of them.
+    """Ticks of a logarithmic axis (log10): decades, or 1, 2, 5 on a short axis.
 
     >>> level_ticks(0.0, 0.8)
     [(0.0, '1'), (0.3010299956639812, '2'), (0.6989700043360189, '5')]
     """
     powers = range(math.floor(low), math.ceil(high) + 1)
-    every = max(1, math.ceil((high - low) / 7))
+    interval = max(1, math.ceil((high - low) / 7))
     steps = (1, 2, 5) if high - low < 2.2 else (1,)
-    pairs = [(step, power) for power in powers for step in steps if power % every == 0]
-    places = [(math.log10(step) + power, step * 10.0**power) for step, power in pairs]
+    places = [
+        (math.log10(step) + power, step * 10.0**power)
+        for power in powers
+        for step in steps
+        if power % interval == 0
+    ]
     return [(at, level_words(v)) for at, v in places if low - 1e-9 <= at <= high + 1e-9]
 
 
@@ -204,14 +208,14 @@ def even_ticks(low: float, high: float, count: int) -> Ticks:
 
 
 def spaced(candidates: Iterable[tuple[float, str, int]], axes: Axes) -> Ticks:
-    """Ticks of an x axis (place, words, rank) whose words do not touch; the least rank stays."""
-    kept: list[tuple[float, str]] = []
+    """Ticks of an x axis (value, words, rank) whose words do not touch; low ranks come first."""
+    labels: list[tuple[float, str]] = []
     for value, words, _ in sorted(candidates, key=lambda tick: (tick[2], abs(tick[0]))):
         half = text_width(words, 6.5) / 2
         x = axes.x(value)
-        if all(abs(x - axes.x(v)) > half + text_width(w, 6.5) / 2 + 1.0 for v, w in kept):
-            kept.append((value, words))
-    return sorted(kept)
+        if all(abs(x - axes.x(v)) > half + text_width(w, 6.5) / 2 + 1.0 for v, w in labels):
+            labels.append((value, words))
+    return sorted(labels)
 
 
 def log_range(values: Sequence[float], least: float = 0.5) -> tuple[float, float]:
@@ -222,7 +226,7 @@ def log_range(values: Sequence[float], least: float = 0.5) -> tuple[float, float
 
 
 def even_range(values: Sequence[float], *, zero: bool = False) -> tuple[float, float]:
-    """Range of a straight axis with a little room; never empty."""
+    """Range of a straight axis, slightly wider than the values; never empty."""
     known = [v for v in values if math.isfinite(v)] or [0.0]
     low, high = min(known), max(known)
     if zero:
@@ -243,7 +247,7 @@ def band(
     high: Sequence[float],
     fill: str = "#d5e6f0",
 ) -> None:
-    """The area between two curves, cut at the frame; nothing where a bound has no value."""
+    """The area between two curves, cut at the frame; empty where a bound has no value."""
     bottom, top = axes.y_range
     runs: list[list[tuple[float, float, float]]] = [[]]
     for x, below, above in zip(xs, low, high, strict=True):
@@ -259,7 +263,7 @@ def band(
 
 
 def thinned(values: Array, most: int = THINNED) -> Array:
-    """Samples that hold the least and the greatest value of every stretch, in order.
+    """Indices of samples with the least and greatest value of every interval, in order.
 
     >>> thinned(np.array([0.0, 5.0, 1.0, 2.0, -3.0, 3.0]), 4)
     array([0, 1, 4, 5])
@@ -268,15 +272,15 @@ def thinned(values: Array, most: int = THINNED) -> Array:
     if size <= most:
         return np.arange(size)
     edges = np.linspace(0, size, max(most // 2, 1) + 1).round().astype(int)
-    kept = {0, size - 1}
+    indices = {0, size - 1}
     for first, last in pairwise(edges.tolist()):
-        kept |= {first + int(np.argmin(values[first:last]))}
-        kept |= {first + int(np.argmax(values[first:last]))}
-    return np.array(sorted(kept))
+        indices |= {first + int(np.argmin(values[first:last]))}
+        indices |= {first + int(np.argmax(values[first:last]))}
+    return np.array(sorted(indices))
 
 
 def time_words(span: float, words: str = "time") -> tuple[str, float]:
-    """Label of a time axis, and what is shown over seconds.
+    """Label of a time axis, and its unit per second.
 
     >>> time_words(5.0), time_words(0.02)
     (('time, s', 1.0), ('time, ms', 1000.0))
@@ -298,7 +302,7 @@ def steady_range(ends: Sequence[float], *, zero: bool = False) -> tuple[float, f
 def names(
     ink: Ink, right: float, y: float, entries: Sequence[tuple[str, dict[str, Any]]], room: float
 ) -> None:
-    """Names of curves in one line that ends at `right`, each after its line, cut to the room."""
+    """Names of curves in a row that ends at `right`, cut to the room; their lines precede them."""
     if not entries:
         return
     words = [name for name, _ in entries]

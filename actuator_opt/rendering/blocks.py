@@ -1,7 +1,7 @@
-"""A page as data: verdict, key figures, one large figure, and blocks below each other.
+"""A page as data: verdict, key figures, a large figure, and blocks below each other.
 
-Subjects build a `Page`; `paper`, `terminal` and `html` render it. A block says where it belongs
-(`on`): on paper, on the terminal, or on both; HTML shows what paper shows.
+`pages` builds a `Page`; `paper`, `terminal` and `html` render it. The field `on` of a block names
+its medium: paper, terminal or both; HTML shows the same blocks as paper.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class Chart:
     panels : panels and columns of panels, from the left; an ink stands below the panels of its
         column
     note : below the chart
-    instead : what the terminal shows
+    instead : block for the terminal
     height : on paper [mm]
     widths : of the columns, relative; default: equal
     key : curves named once, above all panels
@@ -48,14 +48,14 @@ class Chart:
 
 
 State: TypeAlias = Literal["", "met", "no_reserve", "missed", "not_checked", "checks", "infeasible"]
-"""How a requirement, a check or a whole page fares; empty where nothing is judged."""
+"""Result of a requirement, a check or a whole page; empty without a judgement."""
 Medium: TypeAlias = Literal["both", "paper", "terminal"]
 Align: TypeAlias = Literal["left", "center", "right"]
 
 _PIECES = re.compile(r"(?:[^./=\[]|[./=\[]+(?=[0-9]))*(?:[./=\[]+|$)", re.DOTALL)
 _NAMES = re.compile(r"[^_]*(?:_+|$)")
 _NAME = 18
-"""Letters of a single name that any column has room for."""
+"""Letters of a single name that fit into any column."""
 _WORDS = re.compile(r"\s*\S+\s*|\s+")
 _CONTROL = re.compile(rf"[{CONTROLS}]")
 
@@ -69,7 +69,7 @@ _PAPER = re.compile(
     r"[^\n\t\u0020-\u007e\u00a0-\u02af\u0370-\u052f\u1e00-\u1eff\u2010-\u2029\u202f-\u205e"
     r"\u2070-\u209c\u20a0-\u20b5\u2100-\u2311\u2500-\u26b8\u2701-\u27be\u27e8\u27e9]"
 )
-"""What the report's typeface cannot draw (it covers Latin, Greek, Cyrillic and technical signs)."""
+"""Characters that the typeface lacks (it has Latin, Greek, Cyrillic and technical signs)."""
 
 
 def printable(text: str) -> str:
@@ -80,9 +80,9 @@ def printable(text: str) -> str:
 
 
 def soft(text: str, longest: int = 14) -> str | list[str]:
-    """A text that may break inside words beyond `longest` letters: behind ``. / = [``.
+    """A text whose words of more than `longest` letters may break after ``. / = [``.
 
-    A single name beyond what the column holds may break behind ``_`` too, then anywhere.
+    A single name that is wider than the column may also break after ``_``, then anywhere.
 
     >>> soft("materials.steel_42crmo4.density", 22)
     ['materials.', 'steel_42crmo4.', 'density']
@@ -100,7 +100,7 @@ def soft(text: str, longest: int = 14) -> str | list[str]:
 
 
 def _pieces(word: str, most: int) -> Iterator[str]:
-    """Parts of a word between which a line may break, none beyond `most` letters."""
+    """Parts of a word, of at most `most` letters, between which a line may break."""
     for part in filter(None, _PIECES.findall(word)):
         if len(part.rstrip()) <= most:
             yield part
@@ -130,7 +130,7 @@ class Status:
 
 @dataclass(frozen=True, slots=True)
 class Bar:
-    """A margin as a bar: room to the right of the mark, a miss to its left; full at 100 %."""
+    """A margin as a bar: reserve to the right of the mark, violation to the left; full at 100 %."""
 
     margin: float | None
     met: bool = True
@@ -145,21 +145,21 @@ class Share:
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """Where a value lies between its bounds, from zero to one; `at` names the bound it is at."""
+    """Place of a value between its bounds, from zero to one; `at` names a bound it has reached."""
 
     place: float
     at: str = ""
 
 
 FARTHEST = 0.3
-"""Relative change at which the bar of a `Reach` ends; it has ticks at a third of that."""
+"""Relative change at which the bar of a `Reach` ends; ticks are at a third of it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """How far a value may change, as a bar from its present place; None: as far as it was tried.
+    """Permitted relative change of a value, as a bar; None: permitted over the whole tested range.
 
-    `met`: whether the whole reach counts.
+    `met`: whether the result is valid over the whole change.
     """
 
     change: float | None
@@ -168,14 +168,14 @@ class Reach:
 
 @dataclass(frozen=True, slots=True)
 class Flag:
-    """Words that stand out where `raised`."""
+    """Words, emphasised if `raised`."""
 
     text: str
     raised: bool
 
 
 Cell: TypeAlias = str | list[str] | Status | Bar | Share | Slot | Reach | Flag
-"""Text (in pieces: a line may break between them), or a mark."""
+"""Text, also in pieces between which a line may break, or a mark."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,17 +184,17 @@ class Column:
 
     Parameters
     ----------
-    head : above it; a line break counts on paper
+    head : text above the column; line breaks only apply on paper
     align : of its cells
-    width : "auto", a part of the room that is left (number), or ``"12mm"``; a column of the second
-        kind shrinks on a narrow terminal
-    breaks : letters of a word beyond which it may break; 0 never
-    wraps : a cell too wide for the terminal goes on in further lines; otherwise it is cut
+    width : "auto", a share of the remaining width (number), or ``"12mm"``; a column with a share
+        shrinks on a narrow terminal
+    breaks : words with more letters may break; 0: never
+    wraps : whether a cell that is too wide for the terminal is wrapped; otherwise it is cut
     mono, strong : type on paper; on the terminal strong is bold
-    least : letters that a shrinking column keeps on the terminal
-    drop : on a narrow terminal the columns of the highest number go first; 0 never
+    least : minimum width in letters of a shrinking column on the terminal
+    drop : on a narrow terminal, columns with the highest number are dropped first; 0: never
     style : on the terminal "bold", "dim", a colour, or "state": the colour of the row's state
-    on : where the column is shown
+    on : medium of the column
     """
 
     head: str
@@ -211,13 +211,13 @@ class Column:
 
     @property
     def flexible(self) -> bool:
-        """Whether the column takes what the others leave."""
+        """Whether the column shares the remaining width."""
         return not isinstance(self.width, str)
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """Cells of a table; the state colours what its columns say."""
+    """Cells of a table; the state colours columns with the style "state"."""
 
     cells: Sequence[Cell]
     state: State = ""
@@ -225,11 +225,11 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Rows under their heads, plain cells or with a state; a rule parts the last `total` of them.
+    """Rows under their heads, plain or with a state; a rule precedes the last `total` rows.
 
-    `headless` leaves the title out on the terminal, and so does an empty title. Where every head
-    is empty, the terminal shows no line of heads. A table with `repeat` that is too wide is shown
-    in parts, each of which begins with its first `repeat` columns.
+    `headless` omits the title on the terminal, as does an empty title. If every head is empty, the
+    terminal shows no line of heads. A table with `repeat` that is too wide is shown in parts; each
+    part begins with the first `repeat` columns.
     """
 
     title: str
@@ -242,35 +242,32 @@ class Table:
     on: Medium = "both"
 
     def parts(self, widths: Sequence[float], room: float) -> list[Table]:
-        """The table in parts that fit a room; `widths` of its columns include their gaps."""
+        """The table in parts no wider than `room`; `widths` of the columns include their gaps."""
         if not self.repeat or sum(widths) <= room:
             return [self]
-        first, rest = list(range(self.repeat)), list(range(self.repeat, len(self.columns)))
+        first, remaining = list(range(self.repeat)), list(range(self.repeat, len(self.columns)))
         parts = []
-        while rest:
-            shown = [*first, rest.pop(0)]
-            while rest and sum(widths[k] for k in (*shown, rest[0])) <= room:
-                shown.append(rest.pop(0))
-            parts.append(self._of(shown))
+        while remaining:
+            part = [*first, remaining.pop(0)]
+            while remaining and sum(widths[k] for k in (*part, remaining[0])) <= room:
+                part.append(remaining.pop(0))
+            parts.append(self._of(part))
         return parts
 
-    def _of(self, shown: Sequence[int]) -> Table:
-        """The table with these columns alone."""
+    def _of(self, columns: Sequence[int]) -> Table:
+        """The table with only these columns."""
         rows = [
-            replace(row, cells=[row.cells[k] for k in shown])
+            replace(row, cells=[row.cells[k] for k in columns])
             if isinstance(row, Row)
-            else [row[k] for k in shown]
+            else [row[k] for k in columns]
             for row in self.rows
         ]
-        return replace(self, columns=[self.columns[k] for k in shown], rows=rows, repeat=0)
+        return replace(self, columns=[self.columns[k] for k in columns], rows=rows, repeat=0)
 
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """A figure drawn in ink, with a title and what to know of it.
-
-    `instead` is what the terminal shows.
-    """
+    """A figure drawn in ink, with a title and a note; the terminal shows `instead`."""
 
     title: str
     ink: Ink
@@ -280,7 +277,7 @@ class Drawing:
 
 @dataclass(frozen=True, slots=True)
 class TerminalFigure:
-    """A curve in a few lines of text: points (x, y), a level, what stands below both ends."""
+    """A curve in a few lines of text: points (x, y), a level, and words below both ends."""
 
     title: str
     points: Sequence[tuple[float, float]]
@@ -292,7 +289,7 @@ class TerminalFigure:
 
 @dataclass(frozen=True, slots=True)
 class Notes:
-    """Sentences under a title; `style` and `headless` as on the terminal."""
+    """Sentences under a title; `style` and `headless` apply to the terminal."""
 
     title: str
     items: Sequence[str]
@@ -304,7 +301,7 @@ class Notes:
 
 @dataclass(frozen=True, slots=True)
 class Listing:
-    """Numbered source text in monospace, on paper alone."""
+    """Numbered source text in monospace, only on paper and in HTML."""
 
     title: str
     text: str
@@ -312,7 +309,7 @@ class Listing:
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """Blocks side by side on paper; on the terminal one below the other."""
+    """Blocks side by side on paper, below each other on the terminal."""
 
     sides: Sequence[Sequence[Block]]
 
@@ -332,7 +329,7 @@ class Verdict:
 
 @dataclass(frozen=True, slots=True)
 class Tile:
-    """A key figure: what it is, its number and unit, what to know of it."""
+    """A key figure: label, number with unit, and note."""
 
     label: str
     value: str
@@ -348,15 +345,15 @@ class Page:
 
     Parameters
     ----------
-    name, kind : its title, and what kind of page it is
+    name, kind : title of the page, and kind of page
     verdict, sentence : the badge, and one or two sentences beside it
     tiles : up to five key figures
-    hero : the large figure below them, for a room of so many millimetres of height
+    hero : draws the large figure below them, for an available height [mm]
     blocks : below each other
     scale : of the large figure, for the title block
     items : numbered parts of the large figure: (number, part, material)
-    design : what the title block names; default: the name
-    least : height that the large figure needs [mm]; blocks give way to it
+    design : name in the title block; default: `name`
+    least : minimum height of the large figure [mm]; blocks move to the next sheet for it
     lists_input : whether the design file is listed at the end
     """
 
@@ -381,7 +378,7 @@ def text_table(
     note: str = "",
     widths: Sequence[float | str] = (),
 ) -> Table:
-    """A table of texts: its columns share the room alike or by `widths`, and long words break."""
+    """A table of texts: its columns have equal widths or `widths`, and long words break."""
     columns = [
         Column(head, "left", width, breaks=14)
         for head, width in zip(heads, widths or [1.0] * len(heads), strict=True)
@@ -390,6 +387,6 @@ def text_table(
 
 
 def tile(label: str, words: str, note: str, state: State = "") -> Tile:
-    """A key figure whose number and unit are in words ("12.3 N")."""
+    """A key figure from a text with its number and unit ("12.3 N")."""
     value, _, unit = words.partition(" ")
     return Tile(label, value, unit, note, state)

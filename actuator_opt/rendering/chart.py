@@ -1,6 +1,6 @@
 """A chart as data: panels with axes and their scales, curves, points, limits and shaded maps.
 
-Scales are straight, logarithmic, logarithmic in both directions, or rows by name. A chart names
+Scales are straight, logarithmic, logarithmic in both directions, or rows by name. A chart contains
 values and words; `chart_ink` places them on paper by rule.
 """
 
@@ -27,17 +27,17 @@ PointWeight: TypeAlias = Literal["normal", "guide", "strong"]
 class Axis:
     """An axis of a panel.
 
-    Of panels above each other, one without an x label shares the x axis of the next one below.
+    A panel without an x label shares the x axis of the next panel below it.
 
     Parameters
     ----------
     label : quantity and unit
-    log : logarithmic; values at or below zero have no place, unless `signed`
-    signed : both ways about zero; with `log`, logarithmic outside a straight core
+    log : logarithmic; values at or below zero are not shown, unless `signed`
+    signed : in both directions from zero; with `log`, logarithmic outside a straight core
     zero : the axis includes zero
-    range : both ends; default: by the values
-    ticks : places and words; default: round values
-    names : of rows, the first at the top; row k lies at the value k
+    range : both ends; default: from the values
+    ticks : values and words; default: round values
+    names : of rows, the first at the top; row k is at the value k
     """
 
     label: str = ""
@@ -58,7 +58,7 @@ class Curve:
     words : its name; empty: not named
     xs, ys : values
     low, high : bounds of a band around it
-    style : colour and dash by number; default: its place among the curves of the panel
+    style : colour and dash by number; default: its index among the curves of the panel
     weight : "thin" for a record over time, "guide" for a grey hairline, "broad" for a pale line
         under the other curves
     end : words at its right end
@@ -84,11 +84,11 @@ class Points:
     ----------
     words : their name; empty: not named
     xs, ys : values
-    low, high : ends of the error bars, along y, or along x where `across`
-    style : colour by number; default: their place among the points of the panel
+    low, high : ends of the error bars
+    style : colour by number; default: their index among the points of the panel
     small : small dots and crosses in the colours of the curves
-    across : error bars along x
-    shades : values that fill the points with the shade of the panel's surface
+    across : error bars are along x instead of y
+    shades : values of the panel's surface, whose shades fill the points
     labels : words beside each point
     weight : "guide" for pale dots in the background, "strong" for a ring around a chosen point
     """
@@ -114,11 +114,10 @@ class Level:
     ----------
     value : of y, or of x where `upright`
     words : its name
-    sense : of a limit, "min" or "max": red, the forbidden side hatched, named at the right, an
+    sense : of a limit, "min" or "max": red, forbidden side hatched, name at the right, of an
         upright limit above the frame
     style : of any other line: colour and dash by number
-    between : ends along x of a horizontal line, which then has its name beside it; default: the
-        whole frame
+    between : ends along x of a horizontal line, with its name beside it; default: the whole frame
     upright : a line at a value of x
     """
 
@@ -160,9 +159,9 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShadedMap:
-    """A quantity above zero over x (columns) and y (rows), shaded between round levels.
+    """A positive quantity over x (columns) and y (rows), shaded between round levels.
 
-    Where a value is missing the map is hatched.
+    The map is hatched where values are missing.
     """
 
     xs: Values
@@ -178,9 +177,9 @@ class Panel:
     ----------
     title : quantity and unit of y
     x, y : axes
-    curves, points, levels, surface, stretches : what it shows
-    note : below the title, or inside an empty frame, why it is empty
-    share : of the height, among the panels of a column
+    curves, points, levels, surface, stretches : its content
+    note : below the title; inside an empty frame, the reason
+    share : of the height among the panels of a column
     areas : filled areas
     """
 
@@ -198,50 +197,40 @@ class Panel:
 
 
 CORE = 0.35
-"""Decades of the straight core about zero (a choice: nothing is measured there)."""
-
-
+"""Decades of the straight core about zero (a choice: it contains no values)."""
 DECADE = 8.0
-"""Ratio of the ends from which an axis both ways is logarithmic (a choice: nearly a decade)."""
-
-
+"""Ratio of the ends above which a signed axis is logarithmic (a choice: nearly a decade)."""
 LARGEST, SMALLEST = 1e150, 1e-100
-"""Larger values have no place (their differences overflow); smaller ones count as zero."""
-
-
+"""Larger values are not shown, as their differences overflow; smaller values count as zero."""
 SIZE = 6.5
 """Type size of ticks [pt]."""
-
-
 Ranked: TypeAlias = list[tuple[float, str, int]]
-"""Ticks with a rank: the lowest rank stays where there is little room."""
+"""Ticks (value, words, rank); ticks of low rank have priority."""
 
 
 def known(values: Iterable[float], *, log: bool = False) -> list[float]:
     """The values that an axis can show."""
-    array = np.asarray(list(values), dtype=float)
-    array = _sized(array)
-    good = array > 0 if log else np.isfinite(array)
-    shown: list[float] = array[good].tolist()
-    return shown
+    array = _sized(np.asarray(list(values), dtype=float))
+    finite: list[float] = array[array > 0 if log else np.isfinite(array)].tolist()
+    return finite
 
 
 def _sized(values: Array) -> Array:
-    """Values of a size that an axis can show; others are zero, or not a number."""
+    """Values in the range that an axis can show; smaller values are zero, larger NaN."""
     sizes = np.abs(values)
     return np.where(sizes <= LARGEST, np.where(sizes < SMALLEST, 0.0, values), np.nan)
 
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """Places of values along an axis, its ends, and ticks for a number of them."""
+    """Places of values along an axis, its ends, and candidates for a number of ticks."""
 
     places: Callable[[Array], Array]
     range: tuple[float, float]
     candidates: Callable[[int], Ranked]
 
     def at(self, values: Values) -> Array:
-        """Places of values; not a number where a value has none."""
+        """Places of values; NaN for values that are not shown."""
         return self.places(_sized(np.asarray(values, dtype=float)))
 
     def place(self, value: float) -> float:
@@ -249,21 +238,23 @@ class Scale:
         return float(self.at([value])[0])
 
     def ticks(self, room: float, *, across: bool) -> Ticks:
-        """Ticks for an axis of so many millimetres whose words do not touch."""
+        """Ticks for an axis of length `room` [mm] whose words do not touch."""
         count = min(max(2, int(room / 9.0)), 10) if across else min(max(2, round(room / 8.0)), 6)
         low, high = self.range
-        inside = [tick for tick in self.candidates(count) if low - 1e-9 <= tick[0] <= high + 1e-9]
-        kept = self._spaced(sorted(inside, key=lambda tick: (tick[2], abs(tick[0]))), room, across)
-        if len(kept) < 2:  # both ends rather than zero alone
-            kept = self._spaced(sorted(inside, key=lambda tick: -abs(tick[0])), room, across)
-        return kept
+        ranked = [tick for tick in self.candidates(count) if low - 1e-9 <= tick[0] <= high + 1e-9]
+        ranked.sort(key=lambda tick: (tick[2], abs(tick[0])))
+        labels = self._spaced(ranked, room, across)
+        if len(labels) < 2:  # both ends rather than zero alone
+            ranked = sorted(ranked, key=lambda tick: -abs(tick[0]))
+            labels = self._spaced(ranked, room, across)
+        return labels
 
     def _spaced(self, ranked: Ranked, room: float, across: bool) -> Ticks:
-        kept: list[tuple[float, str]] = []
+        labels: list[tuple[float, str]] = []
         for place, words, _ in ranked:
-            if all(self._apart(place, words, tick, room, across) for tick in kept):
-                kept.append((place, words))
-        return sorted(kept)
+            if all(self._apart(place, words, tick, room, across) for tick in labels):
+                labels.append((place, words))
+        return sorted(labels)
 
     def _apart(
         self, place: float, words: str, tick: tuple[float, str], room: float, across: bool
@@ -275,7 +266,7 @@ class Scale:
 
 
 def scale(axis: Axis, values: Sequence[float], *, exact: bool = False) -> Scale:
-    """The scale of an axis for the values it shows; `exact`: it ends at the values."""
+    """The scale of an axis for its values; `exact`: it ends at the values."""
     if axis.names:
         return _rows(axis)
     if axis.signed and (speeds := [abs(value) for value in known(values) if value]):
@@ -330,14 +321,14 @@ def _even(low: float, high: float, count: int) -> Ticks:
     return list(zip(values, words, strict=True))
 
 
-def _logarithmic(axis: Axis, shown: Sequence[float], exact: bool) -> Scale:
-    given = axis.range if axis.range is not None and min(axis.range) > 0 else None
-    if given is not None:
-        ends = (math.log10(given[0]), math.log10(given[1]))
-    elif exact and shown and max(shown) > 1.5 * min(shown):
-        ends = (math.log10(min(shown)), math.log10(max(shown)))
+def _logarithmic(axis: Axis, values: Sequence[float], exact: bool) -> Scale:
+    bounds = axis.range if axis.range is not None and min(axis.range) > 0 else None
+    if bounds is not None:
+        ends = (math.log10(bounds[0]), math.log10(bounds[1]))
+    elif exact and values and max(values) > 1.5 * min(values):
+        ends = (math.log10(min(values)), math.log10(max(values)))
     else:
-        ends = log_range(shown or [1.0])
+        ends = log_range(values or [1.0])
 
     def at(values: Array) -> Array:
         return np.log10(np.where(values > 0, values, np.nan))
@@ -345,17 +336,17 @@ def _logarithmic(axis: Axis, shown: Sequence[float], exact: bool) -> Scale:
     def candidates(count: int) -> Ranked:
         if axis.ticks is not None:
             return _stated(axis, math.log10)
-        marks = level_ticks(*ends)
-        if len(marks) < 2:
+        levels = level_ticks(*ends)
+        if len(levels) < 2:
             even = _even(10.0 ** ends[0], 10.0 ** ends[1], 3)
-            marks = [(math.log10(value), words) for value, words in even if value > 0]
-        return [(place, words, int(abs(place - round(place)) > 1e-9)) for place, words in marks]
+            levels = [(math.log10(value), words) for value, words in even if value > 0]
+        return [(place, words, int(abs(place - round(place)) > 1e-9)) for place, words in levels]
 
     return Scale(at, ends, candidates)
 
 
 def _both_ways(low: float, high: float, ways: Sequence[int]) -> Scale:
-    """Logarithmic both ways about zero; straight within the core, below the least value."""
+    """Logarithmic in both directions from zero; straight in the core, below the least value."""
 
     def at(values: Array) -> Array:
         size = np.maximum(np.abs(values), low)  # NaN stays

@@ -1,7 +1,7 @@
-"""A chart as ink: frames, legends and labels get their places by rule.
+"""A chart as ink: frames, legends and labels are placed by rule.
 
-Legends stand above their frame, names of limits and curve ends to its right, spread so that none
-touch. Curves are cut at the frame. A frame without values says why.
+Legends are above their frame, names of limits and curve ends to its right, without overlaps.
+Curves are cut at the frame. A frame without values states the reason.
 """
 
 from __future__ import annotations
@@ -72,9 +72,9 @@ LIMIT: dict[str, Any] = {"stroke": RED, "pen": 0.25, "dash": (1.8, 1.0)}
 DOTS = {"normal": (0.75, 0.3), "guide": (0.55, 0.1), "strong": (1.15, 0.45)}
 """Radius and pen of points by weight [mm]."""
 SKETCH, BETWEEN = 4.6, 2.6
-"""Length of a line in the legend, room between its entries [mm]."""
+"""Length of a line in the legend, and gap between its entries [mm]."""
 GAP, ROW, BELOW = 6.0, 3.7, 2.2
-"""Room between columns, of a row of words above a frame, and between two frames [mm]."""
+"""Gap between columns, height of a row of words above a frame, gap between two frames [mm]."""
 FOOT, APART = 8.4, 1.8
 """Ticks and label below a frame, and from there to the title of the next one [mm]."""
 OVER = 2.8
@@ -82,15 +82,15 @@ OVER = 2.8
 LEAST = 4.0
 """Least height of a frame [mm]."""
 RIGHT, NAMES = 26.0, 36.0
-"""Most room for words right and left of a frame [mm]."""
+"""Maximum width of words to the right and to the left of a frame [mm]."""
 SHADES = 13.0
-"""Room of the scale of shades [mm]."""
+"""Width of the scale of shades [mm]."""
 SWATCH = 2.8
-"""Room of the swatch before the name of an area [mm]."""
+"""Width of the swatch before the name of an area [mm]."""
 LOOP = 4
 """Values of a loop over those of a function (a choice)."""
 JUMPS = 500
-"""Most instants with two values that a thinned curve keeps."""
+"""Maximum number of times with two values that a thinned curve keeps."""
 DENSE = 10.0
 """Values of a curve and cells of points drawn per mm (a choice: finer than the pen)."""
 TITLE, SIZE, SMALL = 6.8, 6.5, 6.2
@@ -106,7 +106,7 @@ def drawn(chart: Chart, *, width: float = 180.0, height: float | None = None) ->
     shares = [*chart.widths, *[1.0] * len(columns)][: len(columns)]
     room = width - GAP * (len(columns) - 1)
     wides = [room * share / sum(shares) for share in shares]
-    for _ in range(3):  # ticks need the height, heights need the rows of the legend
+    for _ in range(3):  # ticks depend on the height, heights on the rows of the legend
         row = all(len(column.frames) == 1 for column in columns)
         head = max((column.head for column in columns), default=0.0) if row else 0.0
         for column, wide in zip(columns, wides, strict=True):
@@ -166,17 +166,17 @@ class _Entry:
 
     @property
     def sketch(self) -> float:
-        """Width of what stands before the words."""
+        """Width of line or point before the words."""
         return SKETCH + 1.3 if self.line else 2.0 + DOTS[self.weight][0]
 
     def width(self) -> float:
-        """With the gap after it."""
+        """Width with the gap after the entry."""
         return self.sketch + text_width(self.words, SIZE) + BETWEEN
 
 
 @dataclass(slots=True)
 class _Frame:
-    """A panel with its scale of y, what stands above it, and its place."""
+    """A panel with its scales, the words above it, and its place."""
 
     panel: Panel
     x: Scale
@@ -233,7 +233,7 @@ class _Column:
         return self.frames[0].head if self.frames else 0.0
 
     def fit(self, room: float, top: float, bottom: float, head: float) -> None:
-        """Places of the frames in a room [mm]; the first frame begins below `head`."""
+        """Place the frames in a width `room` and a height [mm]; the first begins below `head`."""
         self.top = top if not self.frames else bottom - sum(ink.height for ink in self.inks)
         if not self.frames:
             return
@@ -259,7 +259,7 @@ class _Column:
             top = frame.top + frame.height
 
     def draw(self, ink: Ink, left: float) -> None:
-        """All frames, and the inks below them."""
+        """Draw all frames, and the inks below them."""
         for frame in self.frames:
             _draw(ink, (left + self.left, frame.top, self.wide, frame.height), frame, left)
         top = self.top
@@ -269,7 +269,7 @@ class _Column:
 
 
 def _overhang(frame: _Frame, wide: float) -> tuple[float, float]:
-    """Lengths by which the numbers of x reach beyond both ends of a frame."""
+    """Lengths by which the numbers of x extend beyond both ends of a frame."""
     low, high = frame.x.range
     before = after = 0.0
     for place, words in frame.x.ticks(wide, across=True) if frame.label else ():
@@ -279,7 +279,7 @@ def _overhang(frame: _Frame, wide: float) -> tuple[float, float]:
 
 
 def _x_scale(panels: Sequence[Panel]) -> Scale:
-    """The common scale of x; it ends at the values where there are only functions of x."""
+    """The common scale of x; if all panels only show functions of x, it ends at the values."""
     axis = panels[-1].x
     values = [
         value
@@ -306,8 +306,8 @@ def _xs(panel: Panel) -> list[Values]:
 
 def _rises(values: Values) -> bool:
     array = np.asarray(values, dtype=float)
-    known = array[np.isfinite(array)]
-    return bool(np.all(known[1:] >= known[:-1]))
+    finite = array[np.isfinite(array)]
+    return bool(np.all(finite[1:] >= finite[:-1]))
 
 
 def _frame(panel: Panel, x: Scale) -> _Frame:
@@ -331,7 +331,7 @@ def _frame(panel: Panel, x: Scale) -> _Frame:
 
 
 def _seen(curve: Curve, values: Values, x: Scale, log: bool) -> list[float]:
-    """Values of a curve, or of a bound of its band, that lie within the x axis."""
+    """Values of a curve, or of a bound of its band, within the range of x."""
     if not len(values):
         return []
     places = x.at(curve.xs)
@@ -347,7 +347,7 @@ def _near(
     *,
     cut: bool = True,
 ) -> list[float]:
-    """Values at most so many spans beyond the ends; farther ones are cut there, or left out."""
+    """Values at most `most` spans beyond the ends; farther values are cut there, or left out."""
     low, high = (math.log10(f(ends)) if log else f(ends) for f in (min, max))
     spare = most * ((high - low) or max(abs(high), 1.0))
     low, high = (10.0 ** min(max(v, -100), 150) if log else v for v in (low - spare, high + spare))
@@ -371,7 +371,7 @@ def _y_ticks(frame: _Frame) -> Ticks:
 
 
 def _fit_head(frame: _Frame, wide: float, right: float) -> None:
-    """Rows of the legend: beside the title where there is room, else below it."""
+    """Rows of the legend: beside the title if they fit, else below it."""
     panel = frame.panel
     note = "" if frame.why else panel.note
     frame.notes = wrap(note, wide + right - 0.5, SMALL) if note else []
@@ -390,14 +390,14 @@ def _fit_head(frame: _Frame, wide: float, right: float) -> None:
 
 
 def _entries(frame: _Frame, wide: float) -> Iterator[_Entry]:
-    """Names of points, curves and whole levels, each once."""
+    """Names of points, curves and levels over the whole frame, without duplicates."""
     panel, entries = frame.panel, dict[str, _Entry]()
 
     def add(words: str, **sketch: Any) -> None:
         if words:
-            before = entries.get(words)
-            line = sketch.get("line") or (before.line if before else None)
-            point = sketch.get("point") or (before.point if before else None)
+            known = entries.get(words)
+            line = sketch.get("line") or (known.line if known else None)
+            point = sketch.get("point") or (known.point if known else None)
             room = wide - (SKETCH + 1.3 if line else 2.8)
             small, weight = sketch.get("small"), sketch.get("weight", "normal")
             entries[words] = _Entry(fitted(words, room, SIZE), line, point, small, weight)
@@ -437,11 +437,11 @@ def _level_style(level: Level) -> dict[str, Any]:
 
 
 def _at_end(frame: _Frame) -> list[Curve]:
-    """Curves with words at their right end: none where the frame is too low for all of them."""
-    named = [curve for curve in frame.panel.curves if curve.end]
+    """Curves with words at their right end; empty if the frame is too low for all of them."""
+    curves = [curve for curve in frame.panel.curves if curve.end]
     limits = sum(bool(level.sense) for level in frame.panel.levels if not level.upright)
     limits += len(frame.panel.areas)
-    return named if 2.7 * (len(named) + limits) <= frame.height - 1.0 else []
+    return curves if 2.7 * (len(curves) + limits) <= frame.height - 1.0 else []
 
 
 def _right_room(frame: _Frame) -> float:
@@ -457,7 +457,7 @@ def _right_room(frame: _Frame) -> float:
 
 
 def _draw(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
-    """A frame with what it shows; `edge` is the left end of its column."""
+    """A frame with its content; `edge` is the left end of its column."""
     panel, x, label = frame.panel, frame.x, frame.label
     _head(ink, box, frame, edge)
     axes = Axes(ink, box, x.range, frame.y.range)
@@ -490,15 +490,15 @@ def _draw(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
     _words_over(axes, panel, x)
     spots = [_spots(axes, points, k, frame.y, x, bounds) for k, points in enumerate(panel.points)]
     _right_words(axes, frame, lines)
-    taken = [p for part in lines for line in part for p in _dotted(line)]
-    taken += [spot for part in spots for spot in part]
+    drawn_points = [p for part in lines for line in part for p in _dotted(line)]
+    drawn_points += [spot for part in spots for spot in part]
     for level in panel.levels:
         if level.between is not None and level.words and not (level.sense or level.upright):
-            _beside(axes, level, frame.y, x, taken)
+            _beside(axes, level, frame.y, x, drawn_points)
     if any(points.labels for points in panel.points):
-        taken += [spot for line in _level_lines(axes, frame, x) for spot in _dotted(line)]
+        drawn_points += [spot for line in _level_lines(axes, frame, x) for spot in _dotted(line)]
     for k, points in enumerate(panel.points):
-        _labels(axes, points, k, frame.y, x, taken)
+        _labels(axes, points, k, frame.y, x, drawn_points)
 
 
 def _area(axes: Axes, area: Area, y: Scale, x: Scale) -> None:
@@ -512,7 +512,7 @@ def _area(axes: Axes, area: Area, y: Scale, x: Scale) -> None:
 
 
 def _band(axes: Axes, curve: Curve, y: Scale, x: Scale) -> None:
-    """The band around a curve; on a logarithmic axis it goes down to the frame."""
+    """The band around a curve; a bound at or below zero is drawn at the end of a log axis."""
     xs, low, high = x.at(curve.xs), y.at(curve.low), y.at(curve.high)
     low = np.where(np.asarray(curve.low) <= 0, np.fmax(low, axes.y_range[0]), low)
     inside = (xs >= axes.x_range[0]) & (xs <= axes.x_range[1])
@@ -562,7 +562,7 @@ def _empty(ink: Ink, box: Box, why: str) -> None:
 
 
 def _zero_lines(axes: Axes, frame: _Frame, x: Scale) -> None:
-    """Lines at zero where zero lies inside a straight or signed axis."""
+    """Lines at zero inside straight and signed axes."""
     (left, right), (bottom, top) = axes.x_range, axes.y_range
     own = frame.panel
     if not (own.y.log and not own.y.signed) and not own.y.names and bottom < 0 < top:
@@ -572,13 +572,13 @@ def _zero_lines(axes: Axes, frame: _Frame, x: Scale) -> None:
 
 
 def _curve(axes: Axes, curve: Curve, index: int, y: Scale, x: Scale) -> list[Line]:
-    """A curve on paper: thinned, interrupted where it has no value, cut at the frame."""
+    """Draw a curve: thinned, interrupted where it has no value, cut at the frame."""
     xs, ys = x.at(curve.xs), y.at(curve.ys)
     style = _line(curve, index)
-    good = np.flatnonzero(np.isfinite(xs) & np.isfinite(ys))
+    defined = np.flatnonzero(np.isfinite(xs) & np.isfinite(ys))
     lines: list[Line] = []
     most = int(DENSE * axes.width)
-    for run in np.split(good, np.flatnonzero(np.diff(good) > 1) + 1):
+    for run in np.split(defined, np.flatnonzero(np.diff(defined) > 1) + 1):
         if run.size == 1:
             at = axes.x(float(xs[run[0]])), axes.y(float(ys[run[0]]))
             if _inside(axes, at):
@@ -586,8 +586,8 @@ def _curve(axes: Axes, curve: Curve, index: int, y: Scale, x: Scale) -> list[Lin
                 lines.append([at])
             continue
         if run.size:
-            kept = run[_kept(xs[run], ys[run], max(8, most * run.size // good.size))]
-            paper = [(axes.x(float(xs[k])), axes.y(float(ys[k]))) for k in kept]
+            indices = run[_kept(xs[run], ys[run], max(8, most * run.size // defined.size))]
+            paper = [(axes.x(float(xs[k])), axes.y(float(ys[k]))) for k in indices]
             lines += _cut(paper, axes)
     axes.ink.path([line for line in lines if len(line) > 1], **style)
     return lines
@@ -611,7 +611,7 @@ def _inside(axes: Axes, at: Point) -> bool:
 
 
 def _cut(line: Sequence[Point], axes: Axes) -> list[Line]:
-    """The parts of a line that lie inside the frame (Liang and Barsky 1984)."""
+    """The parts of a line inside the frame (Liang and Barsky 1984)."""
     box = ((axes.left, axes.left + axes.width), (axes.top, axes.top + axes.height))
     parts: list[Line] = []
     for start, end in pairwise(line):
@@ -637,21 +637,21 @@ def _cut(line: Sequence[Point], axes: Axes) -> list[Line]:
 def _spots(
     axes: Axes, points: Points, index: int, y: Scale, x: Scale, bounds: Sequence[float]
 ) -> list[Point]:
-    """Points with their error bars; of many in a place only one is drawn."""
+    """Draw points with their error bars; of many points, one per half millimetre."""
     style = index if points.style is None else points.style
     edge, fill = _mark(points, style)
     radius, pen = DOTS[points.weight]
     color = str(LINES[style % len(LINES)]["stroke"]) if points.small else edge
     xs, ys = x.at(points.xs), y.at(points.ys)
-    good = np.flatnonzero(np.isfinite(xs) & np.isfinite(ys))
-    places = [(axes.x(float(xs[k])), axes.y(float(ys[k]))) for k in good]
+    defined = np.flatnonzero(np.isfinite(xs) & np.isfinite(ys))
+    places = [(axes.x(float(xs[k])), axes.y(float(ys[k]))) for k in defined]
     inside = [n for n, at in enumerate(places) if _inside(axes, at)]
     bars: list[Point] = []
     if len(inside) > 400:
         cells = {(round(places[n][0] * 2), round(places[n][1] * 2)): n for n in inside}
         inside = sorted(cells.values())
     for n in inside:
-        at, k = places[n], int(good[n])
+        at, k = places[n], int(defined[n])
         if len(points.low):
             bars += _bar(axes, points, k, at, y, x, color)
         if points.small:
@@ -676,14 +676,14 @@ def _mark(points: Points, style: int) -> tuple[str, str]:
 
 
 def _bar(axes: Axes, points: Points, k: int, at: Point, y: Scale, x: Scale, color: str) -> Line:
-    """An error bar, cut at the frame, with feet where it ends inside; points along it."""
+    """Draw an error bar, cut at the frame, with feet at ends inside; returns points along it."""
     along, on_paper = (x, axes.x) if points.across else (y, axes.y)
     bottom, top = along.range
-    given = (points.low[k], points.high[k])
-    if any(math.isnan(end) for end in given):
+    ends = (points.low[k], points.high[k])
+    if any(math.isnan(end) for end in ends):
         return []
-    low, high = (float(end) for end in along.at(given))
-    low = low if math.isfinite(low) else bottom - 1.0  # without a place: beyond the frame
+    low, high = (float(end) for end in along.at(ends))
+    low = low if math.isfinite(low) else bottom - 1.0  # not shown: beyond the frame
     high = high if math.isfinite(high) else top + 1.0
     if high < bottom or low > top:
         return []
@@ -693,7 +693,7 @@ def _bar(axes: Axes, points: Points, k: int, at: Point, y: Scale, x: Scale, colo
 
     first, last = on_paper(max(low, bottom)), on_paper(min(high, top))
     pen, foot = (0.4, 0.9) if points.across else (0.2, 0.7)
-    if points.across and last - first < 2.0:  # it lies behind its point
+    if points.across and last - first < 2.0:  # hidden behind its point
         return []
     axes.ink.line(spot(first), spot(last), pen=pen, stroke=color)
     for end, place in ((low, first), (high, last)):
@@ -801,18 +801,18 @@ def _words_over(axes: Axes, panel: Panel, x: Scale) -> None:
 def _right_words(axes: Axes, frame: _Frame, lines: Sequence[Sequence[Line]]) -> None:
     """Names of curve ends, limits and areas right of the frame, nearest to their places."""
     low, high = axes.top, axes.top + axes.height
-    named: list[tuple[float, str, str]] = []
+    labels: list[tuple[float, str, str]] = []
     paints: dict[str, str] = {}
     for area in frame.panel.areas:
         known_ends = frame.y.at([area.low[-1], area.high[-1]])
         if np.isfinite(known_ends).all():
-            named.append((axes.y(float(np.mean(known_ends))), area.words, BLACK))
+            labels.append((axes.y(float(np.mean(known_ends))), area.words, BLACK))
             paints[area.words] = AREAS[area.fill % len(AREAS)]
     ends = _at_end(frame)
     for k, (curve, parts) in enumerate(zip(frame.panel.curves, lines, strict=True)):
         if curve in ends and parts:
             last = max((line[-1] for line in parts), key=lambda at: at[0])
-            named.append((last[1], curve.end, str(_line(curve, k)["stroke"])))
+            labels.append((last[1], curve.end, str(_line(curve, k)["stroke"])))
     for level in frame.panel.levels:
         if level.sense and level.words and not level.upright:
             place = frame.y.place(level.value)
@@ -821,14 +821,14 @@ def _right_words(axes: Axes, frame: _Frame, lines: Sequence[Sequence[Line]]) -> 
                 place, words = axes.y_range[0], f"{words} ↓"
             elif place > axes.y_range[1]:
                 place, words = axes.y_range[1], f"{words} ↑"
-            named.append((axes.y(place), words, RED))
-    named.sort()
+            labels.append((axes.y(place), words, RED))
+    labels.sort()
     most = max(int((axes.height + 2.0) / 2.7), 1)
-    named = named[:most]
-    wanted = [y for y, _, _ in named]
-    places = spread_within(wanted, [2.9] * len(wanted), low + 0.5, high - 0.5)
+    labels = labels[:most]
+    heights = [y for y, _, _ in labels]
+    places = spread_within(heights, [2.9] * len(heights), low + 0.5, high - 0.5)
     right = axes.left + axes.width
-    for (y, words, color), at in zip(named, places, strict=True):
+    for (y, words, color), at in zip(labels, places, strict=True):
         if abs(at - y) > 1.4:
             axes.ink.line((right + 0.2, y), (right + 1.3, at), pen=0.1, stroke=color)
         if words in paints:
@@ -838,8 +838,8 @@ def _right_words(axes: Axes, frame: _Frame, lines: Sequence[Sequence[Line]]) -> 
         axes.ink.text(right + 1.6, at, fitted(words, RIGHT, SIZE), color=color)
 
 
-def _beside(axes: Axes, level: Level, y: Scale, x: Scale, taken: Sequence[Point]) -> None:
-    """The name of a short level at its nearest free side; none where no side is free."""
+def _beside(axes: Axes, level: Level, y: Scale, x: Scale, drawn_points: Sequence[Point]) -> None:
+    """The name of a short level at the side with the fewest crossings, if a side is free."""
     place = y.place(level.value)
     if level.between is None or not axes.y_range[0] <= place <= axes.y_range[1]:
         return
@@ -853,14 +853,14 @@ def _beside(axes: Axes, level: Level, y: Scale, x: Scale, taken: Sequence[Point]
         sides += [(start - 1.2 * way, before, dy), (end + 1.2 * way, beyond, dy)]
     sides += [((start + end) / 2, "center", dy) for dy in (-2.0, 2.0)]
     sides = [(across, anchor, at + dy) for across, anchor, dy in sides]
-    _written(axes, level.words, sides, taken, str(_level_style(level)["stroke"]))
+    _written(axes, level.words, sides, drawn_points, str(_level_style(level)["stroke"]))
 
 
 def _written(
     axes: Axes,
     words: str,
     sides: Sequence[tuple[float, Anchor, float]],
-    taken: Sequence[Point],
+    drawn_points: Sequence[Point],
     color: str,
     *,
     halo: bool = False,
@@ -868,15 +868,15 @@ def _written(
     """Words at the side that crosses the fewest lines; nowhere where no side is free of words."""
     wide = text_width(words, 6.0)
     best: tuple[int, float, Anchor, float] | None = None
-    written = [box[1:] for box in axes.ink.text_boxes()]
+    text_boxes = [box[1:] for box in axes.ink.text_boxes()]
     for across, anchor, at in sides:
         left = across - {"left": 0.0, "center": wide / 2, "right": wide}[anchor]
         box = (left - 0.3, at - 1.0, left + wide + 0.3, at + 1.0)
         if not (_inside(axes, box[:2]) and _inside(axes, box[2:])) or any(
-            box[0] < b[2] and b[0] < box[2] and box[1] < b[3] and b[1] < box[3] for b in written
+            box[0] < b[2] and b[0] < box[2] and box[1] < b[3] and b[1] < box[3] for b in text_boxes
         ):
             continue
-        crossed = sum(box[0] < p[0] < box[2] and box[1] < p[1] < box[3] for p in taken)
+        crossed = sum(box[0] < p[0] < box[2] and box[1] < p[1] < box[3] for p in drawn_points)
         if best is None or crossed < best[0]:
             best = (crossed, across, anchor, at)
     if best is not None:
@@ -907,7 +907,7 @@ def _level_lines(axes: Axes, frame: _Frame, x: Scale) -> Iterator[Line]:
 
 
 def _labels(
-    axes: Axes, points: Points, index: int, y: Scale, x: Scale, taken: Sequence[Point]
+    axes: Axes, points: Points, index: int, y: Scale, x: Scale, drawn_points: Sequence[Point]
 ) -> None:
     """Words beside points, each at its nearest free side."""
     style = index if points.style is None else points.style
@@ -927,7 +927,7 @@ def _labels(
             for dy in sorted({-away, away}):
                 sides += [(at[0] + 1.5, "left", at[1] + dy), (at[0] - 1.5, "right", at[1] + dy)]
             sides += [(middle, "center", at[1] + way * (away + 2.4)) for way in (1, -1)]
-        _written(axes, words, sides, taken, color, halo=True)
+        _written(axes, words, sides, drawn_points, color, halo=True)
 
 
 def _dotted(line: Line) -> Iterator[Point]:
@@ -940,7 +940,7 @@ def _dotted(line: Line) -> Iterator[Point]:
 
 
 def _shaded(axes: Axes, frame: _Frame, x: Scale) -> list[float]:
-    """The surface in bands with its scale; the levels between them."""
+    """Draw the surface in bands with its scale; returns the levels between them."""
     surface = frame.panel.surface
     assert surface is not None
     shown = [value for points in frame.panel.points for value in known(points.shades, log=True)]
@@ -965,7 +965,7 @@ def _shaded(axes: Axes, frame: _Frame, x: Scale) -> list[float]:
 
 
 def _outside_ticks(axes: Axes, x_ticks: Ticks, y_ticks: Ticks, label: str) -> None:
-    """A closed frame with ticks outside: no grid crosses the bands."""
+    """A closed frame with ticks outside and no grid across the bands."""
     ink, bottom = axes.ink, axes.top + axes.height
     for value, words in y_ticks:
         y = axes.y(value)

@@ -1,4 +1,4 @@
-"""Columns of text for a terminal: measured, cut and coloured by rule, in Unicode or plain ASCII."""
+"""Columns of text for a terminal: measured, cut and coloured by rule, in Unicode or ASCII."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from .text import plain
 _CODES = {"bold": "1", "dim": "2", "red": "31", "green": "32", "yellow": "33", "cyan": "36"}
 _CODE = "|".join(_CODES.values())
 PAINT = rf"\x1b\[(?:0|(?:{_CODE})(?:;(?:{_CODE}))*)m"
-"""What `Console.paint` writes, as a regular expression."""
+"""Regular expression of the codes that `Console.paint` writes."""
 GAP = 2
 """Spaces between two columns of a table."""
 _BREAK = re.compile(r"[\t\n\r\v\f\u2028\u2029]+")
 
 
 class Style(TypedDict):
-    """How text may look: colour codes, Unicode signs, columns."""
+    """Form of a text: colour codes, Unicode signs, columns."""
 
     colour: bool
     unicode: bool
@@ -30,7 +30,7 @@ class Style(TypedDict):
 
 
 def visible(text: str) -> int:
-    """Columns a text takes on a terminal (wide East Asian letters take two).
+    """Width of a text in columns of a terminal (wide East Asian letters take two).
 
     >>> visible("25 mm"), visible("膝")
     (5, 2)
@@ -41,19 +41,19 @@ def visible(text: str) -> int:
 
 @dataclass(frozen=True, slots=True)
 class Console:
-    """What the terminal can show."""
+    """Capabilities of a terminal."""
 
     colour: bool = False
     unicode: bool = True
     width: int = 100
 
     def say(self, text: str) -> str:
-        """User text and our own symbols in what the terminal can show; never a control code."""
+        """A text in characters that the terminal can show, without control codes."""
         text = clean(_BREAK.sub(" ", text))
         return text if self.unicode else plain(text)
 
     def paint(self, text: str, *styles: str) -> str:
-        """Text in colour, where there is any."""
+        """Text in colour, if the terminal has colours."""
         codes = [_CODES[style] for style in styles if style]
         if not self.colour or not codes or not text:
             return text
@@ -69,7 +69,7 @@ class Console:
         return text + mark if width > 0 else ""
 
     def wrap(self, text: str, *styles: str) -> str:
-        """A paragraph, broken at the width of the terminal."""
+        """A paragraph, wrapped to the width of the terminal."""
         lines = textwrap.wrap(self.say(text), self.width, break_on_hyphens=False) or [""]
         return "\n".join(self.paint(line, *styles) for line in lines)
 
@@ -83,7 +83,7 @@ class Console:
         rows: Sequence[Sequence[str]],
         styles: Sequence[Sequence[str]] = (),
     ) -> list[str]:
-        """Lines of a table, `styles` by cell; on a narrow terminal columns shrink, wrap or go."""
+        """Lines of a table, `styles` by cell; to fit the terminal, columns shrink, wrap or drop."""
         cells = [[self.say(cell) for cell in row] for row in rows]
         heads = [self.say(column.head.replace("\n", " ")) for column in columns]
         keep = list(range(len(columns)))
@@ -116,7 +116,7 @@ class Console:
         cells: Sequence[str],
         styles: Sequence[str],
     ) -> list[str]:
-        """Lines of a row: as many as its highest cell has."""
+        """Lines of a row, as many as its highest cell needs."""
         pieces = {k: self._pieces(columns[k], cells[k], sizes[k]) for k in keep}
         lines = []
         for index in range(max(len(piece) for piece in pieces.values())):
@@ -130,14 +130,14 @@ class Console:
         return lines
 
     def _pieces(self, column: Column, cell: str, size: int) -> list[str]:
-        """A cell in lines of its column: wrapped, or cut to one line."""
+        """Lines of a cell: wrapped, or cut to a single line."""
         if not column.wraps or visible(cell) <= size:
             return [self.cut(cell, size)]
         long = column.breaks > 0
         return textwrap.wrap(cell, size, break_long_words=long, break_on_hyphens=False) or [""]
 
     def margin_bar(self, margin: float | None, half: int = 5) -> str:
-        """Room to the right of the mark, what is missing to its left; full at 100 %."""
+        """Reserve to the right of the mark, violation to its left; full at 100 %."""
         if margin is None:
             return ""
         size = min(abs(margin), 1.0) * half

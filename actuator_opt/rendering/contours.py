@@ -1,6 +1,6 @@
 """Contours as ink: shaded bands between levels, on a grid or over a mesh of triangles.
 
-Lighter is less, so that a grey print reads the same.
+Small values are light, so that a grey print can be read.
 """
 
 from __future__ import annotations
@@ -18,28 +18,29 @@ from .text import number, trimmed
 
 _LIGHT, _DARK = (0xF1, 0xF6, 0xF9), (0x0B, 0x3C, 0x5D)
 _MOST = 11
-"""Most bands between levels."""
+"""Maximum number of bands."""
 
 Name = TypeVar("Name", bound=Hashable)
 Key: TypeAlias = tuple[int, int, int]
-"""A corner (itself, itself, 0), or where the edge between two corners meets a level."""
+"""A corner (k, k, 0), or the point of the edge (i, j) at a level (i, j, level)."""
 
 
 def levels(low: float, high: float) -> list[float]:
-    """Round levels across a range above zero: six in a decade, or fewer over many decades.
+    """Round levels over a positive range: six per decade, or fewer over many decades.
 
     >>> levels(33.0, 121.0), levels(110.0, 2.2e7)[:3]
     ([30.0, 50.0, 70.0, 100.0, 150.0], [100.0, 300.0, 1000.0])
     """
     powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
     for steps in ((1, 1.5, 2, 3, 5, 7), (1, 2, 5), (1, 3), (1,)):
-        every = [step * 10.0**power for power in powers for step in steps]
-        first = max(k for k, v in enumerate(every) if v <= low * (1 + 1e-9))
-        last = min((k for k, v in enumerate(every) if v >= high * (1 - 1e-9)), default=len(every))
-        chosen = every[first : last + 1]
-        if len(chosen) <= _MOST + 1:
-            return chosen if len(chosen) > 1 else [chosen[0], 10 * chosen[0]]
-    return chosen
+        candidates = [step * 10.0**power for power in powers for step in steps]
+        first = max(k for k, v in enumerate(candidates) if v <= low * (1 + 1e-9))
+        above = (k for k, v in enumerate(candidates) if v >= high * (1 - 1e-9))
+        last = min(above, default=len(candidates))
+        bounds = candidates[first : last + 1]
+        if len(bounds) <= _MOST + 1:
+            return bounds if len(bounds) > 1 else [bounds[0], 10 * bounds[0]]
+    return bounds
 
 
 def shades(count: int) -> list[str]:
@@ -78,7 +79,7 @@ def bands(
 
 
 def scale(ink: Ink, box: tuple[float, float, float, float], bounds: Sequence[float]) -> None:
-    """The bands beside the frame, with the level between two of them."""
+    """Scale of the bands to the right of the frame, with the levels between them."""
     x, count = box[0] + box[2] + 2.5, len(bounds) - 1
     high = min(box[3] / count, 6.0)
     top = box[1] + box[3] - high * count
@@ -96,13 +97,13 @@ def _level(value: float) -> str:
 
 
 def corner_values(nodes: np.ndarray, triangles: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Values at the corners from those of the triangles: means weighted by area.
+    """Values at the corners: means of the adjacent triangles, weighted by area.
 
     Parameters
     ----------
     nodes : coordinates (x, y) of the corners
-    triangles : three corners each; bodies share none
-    values : one per triangle
+    triangles : three corners each; bodies share no corner
+    values : of the triangles
     """
     a, b, c = (nodes[triangles[:, k]] for k in range(3))
     area = np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
@@ -116,9 +117,9 @@ def corner_values(nodes: np.ndarray, triangles: np.ndarray, values: np.ndarray) 
 def mesh_outlines(
     nodes: np.ndarray, triangles: np.ndarray, body: np.ndarray
 ) -> list[list[list[Point]]]:
-    """Outlines of every body, in the mesh's coordinates; `body` is the number of each triangle's.
+    """Outlines of every body, in the mesh's coordinates; `body` is its number by triangle.
 
-    Holes turn the other way.
+    Holes have the opposite orientation.
     """
     places = [(float(x), float(y)) for x, y in nodes]
     bodies = []
@@ -142,7 +143,7 @@ def mesh_bands(
     levels : rising; the lowest and the highest enclose the values
     """
     aside = 1e-9 * (levels[-1] - levels[0])
-    for level in levels:  # no corner exactly on a level: it would be two points in one place
+    for level in levels:  # a corner exactly on a level would give two points at the same place
         nudged = level + (aside if level < levels[-1] else -aside)
         values = np.where(np.abs(values - level) < aside, nudged, values)
     corners = triangles.tolist()
@@ -158,13 +159,13 @@ def _between(
     corners: Sequence[int], values: np.ndarray, levels: Sequence[float], low: int, high: int
 ) -> list[Key]:
     """The part of a triangle between two levels, as keys of its corners in order."""
-    own = [float(values[k]) for k in corners]
-    if max(own) <= levels[low] or min(own) >= levels[high]:
+    at_corners = [float(values[k]) for k in corners]
+    if max(at_corners) <= levels[low] or min(at_corners) >= levels[high]:
         return []
     keys: list[Key] = []
     for (i, start), (j, end) in zip(
-        zip(corners, own, strict=True),
-        zip([*corners[1:], corners[0]], [*own[1:], own[0]], strict=True),
+        zip(corners, at_corners, strict=True),
+        zip([*corners[1:], corners[0]], [*at_corners[1:], at_corners[0]], strict=True),
         strict=True,
     ):
         if levels[low] < start < levels[high]:
@@ -186,7 +187,7 @@ def _place(key: Key, nodes: np.ndarray, values: np.ndarray, levels: Sequence[flo
 
 
 def _rings(polygons: Iterable[Sequence[Name]]) -> list[list[Name]]:
-    """Outlines of polygons that turn one way and share edges: what two of them share goes."""
+    """Outlines of polygons of the same orientation; edges that two of them share are removed."""
     edges: dict[tuple[Name, Name], bool] = {}
     for polygon in polygons:
         for start, end in zip(polygon, [*polygon[1:], polygon[0]], strict=True):
@@ -194,20 +195,20 @@ def _rings(polygons: Iterable[Sequence[Name]]) -> list[list[Name]]:
                 del edges[end, start]
             else:
                 edges[start, end] = True
-    after: dict[Name, list[Name]] = {}
+    successors: dict[Name, list[Name]] = {}
     for start, end in edges:
-        after.setdefault(start, []).append(end)
+        successors.setdefault(start, []).append(end)
     outlines = []
-    while after:
-        first = next(iter(after))
-        ring, here = [], first
+    while successors:
+        first = next(iter(successors))
+        ring, corner = [], first
         while True:
-            ring.append(here)
-            following = after[here]
-            here = following.pop()
-            if not following:
-                del after[ring[-1]]
-            if here == first:
+            ring.append(corner)
+            targets = successors[corner]
+            corner = targets.pop()
+            if not targets:
+                del successors[ring[-1]]
+            if corner == first:
                 break
         outlines.append(ring)
     return outlines

@@ -1,8 +1,8 @@
 """Heights of blocks on a sheet of paper, estimated from the widths of their words.
 
-`room` says how much of the first sheet is left for the large figure. The estimate is a little
-too high rather than too low: a figure that is a few millimetres smaller does no harm, a block
-that moves to the next sheet does.
+`room` is the height of the first sheet that remains for the large figure. The estimate is rather
+too high than too low: a figure may be a few millimetres smaller, but a block must not move to the
+next sheet.
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ SHEET, TILES, FOOT, HEAD = 265.0, 23.0, 24.5, 8.2
 """Heights inside the margins of the sheet, of the key figures, of the title block, and of the
 title of a block [mm]."""
 HALF, FULL = 86.0, 172.0
-"""Width of words in half a sheet and in a whole one [mm]."""
+"""Width of text in half a sheet and in a whole sheet [mm]."""
 LINE, NOTE_LINE = 3.6, 2.75
 """Height of a line of a table and of the note below it [mm]."""
 MARKED = 1.06
-"""Lines that a row with a bar takes."""
+"""Height of a row with a bar, in lines."""
 FRAME, SPARE = 3.0, 9.0
-"""Height around the large figure, and by how much the heights above exceed those measured on a
-sheet with a large figure and two tables [mm]."""
+"""Height around the large figure, and excess of the estimate on a sheet with a large figure and
+two tables, as measured [mm]."""
 
 
 def joined(cell: Cell) -> str:
@@ -61,7 +61,7 @@ def joined(cell: Cell) -> str:
 
 
 def wrap(text: str, width: float, size: float) -> list[str]:
-    """Lines of a text no wider than `width` mm; words that are too long are cut.
+    """Lines of a text, at most `width` mm wide; longer words are cut.
 
     >>> wrap("one two three", 12.0, 7.0)
     ['one two', 'three']
@@ -89,9 +89,9 @@ def cells_of(row: Row | Sequence[Cell]) -> Sequence[Cell]:
 
 
 def height(block: Block, width: float = FULL) -> float:
-    """Height of a block on paper [mm]; 0 of what paper does not show."""
+    """Height of a block on paper [mm]; 0 for blocks of the terminal."""
     if isinstance(block, Pair):
-        return max(sum(height(one, HALF) for one in side) for side in block.sides)
+        return max(sum(height(part, HALF) for part in side) for side in block.sides)
     if isinstance(block, Table):
         if block.on == "terminal":
             return 0.0
@@ -112,14 +112,14 @@ def height(block: Block, width: float = FULL) -> float:
 
 
 def fitting(table: Table, width: float) -> list[Table]:
-    """A table in the parts that paper shows."""
+    """The parts of a table that fit the width [mm]."""
     return table.parts(_widths(table), width) if table.repeat else [table]
 
 
 def room(page: Page) -> float:
-    """Height left for the large figure on the first sheet [mm].
+    """Height that remains for the large figure on the first sheet [mm].
 
-    Blocks at the end go on to the next sheet where the figure would be lower than `Page.least`.
+    If the figure would be lower than `Page.least`, the last blocks move to the next sheet.
     """
     head = 6.0 + (8.0 if len(page.name) <= 28 else 6.0 * math.ceil(len(page.name) / 45))
     head += 3.1 * len(wrap(page.sentence, 112.0, 7.5))
@@ -131,11 +131,11 @@ def room(page: Page) -> float:
 
 
 def rest(page: Page, hero: float) -> float:
-    """Height left on the first sheet below a large figure of this height and the blocks [mm]."""
-    named = sum(
+    """Height that remains on the first sheet below a figure of this height and the blocks [mm]."""
+    legend = sum(
         text_width(f"{n} {part}, {material}", 5.8) + 4.0 for n, part, material in page.items
     )
-    below = 1.8 + 1.9 * math.ceil(named / FULL) if page.items else 0.0
+    below = 1.8 + 1.9 * math.ceil(legend / FULL) if page.items else 0.0
     return room(page) + SPARE - hero - below - FRAME
 
 
@@ -144,7 +144,7 @@ def _note(words: str, width: float) -> float:
 
 
 def _widths(table: Table) -> list[float]:
-    """Widths of the columns where no cell breaks [mm]."""
+    """Widths of the columns without line breaks [mm]."""
     body = [cells_of(row) for row in table.rows]
     widths = []
     for k, column in enumerate(table.columns):
@@ -157,7 +157,7 @@ def _widths(table: Table) -> list[float]:
 
 
 def _lines(table: Table, width: float) -> list[float]:
-    """Lines of the heads and of every row: the flexible columns share what the others leave."""
+    """Lines of the heads and of every row; flexible columns share the remaining width."""
     columns = [k for k, column in enumerate(table.columns) if column.on != "terminal"]
     body = [cells_of(row) for row in table.rows]
     wides = dict(zip(columns, (_widths(table)[k] for k in columns), strict=True))
@@ -165,9 +165,9 @@ def _lines(table: Table, width: float) -> list[float]:
     flexible = [k for k in columns if table.columns[k].flexible] or columns[:1]
     for k in flexible:
         wides[k] = max(wides[k] + min(spare, 0.0) / len(flexible), 10.0)
-    found = [float(max(table.columns[k].head.count("\n") + 1 for k in columns))]
+    lines = [float(max(table.columns[k].head.count("\n") + 1 for k in columns))]
     for row in body:
         most = max(len(wrap(joined(row[k]), wides[k] - 2.0, 6.8)) for k in columns)
         marked = any(isinstance(row[k], (Bar, Slot, Share, Reach)) for k in columns)
-        found.append((MARKED if marked else 1.0) + 0.72 * (most - 1))
-    return found
+        lines.append((MARKED if marked else 1.0) + 0.72 * (most - 1))
+    return lines

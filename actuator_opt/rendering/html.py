@@ -1,8 +1,8 @@
-"""A page as HTML: one file that needs nothing else, for screens dark and light and for print.
+"""A page as a single HTML file, for dark and light screens and for print.
 
-The large figure and all drawings are SVG, drawn from the same ink as on paper. Colours are named
-by variables, so that a dark screen turns them over. No script, no font, no address: the file can
-be mailed, and opens without a network.
+The large figure and all drawings are SVG, from the same ink as on paper. Colours are variables,
+which a dark screen inverts. Without scripts, fonts and addresses, the file can be mailed and opens
+without a network.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ from .ink import POINT, Ink, PathMark, TextMark
 from .origin import Origin, ReportFile, with_input
 
 HERO = 110.0
-"""Height of a large figure that fits its room [mm] (a choice: it is seen whole on a laptop)."""
+"""Height of a scalable large figure [mm] (a choice: a laptop shows it without scrolling)."""
 _MARKS = {
     "met": "✔",
     "no_reserve": "!",
@@ -53,7 +53,7 @@ _MARKS = {
     "infeasible": "✘",
 }
 _GAPS = re.compile(r"([._/=](?=[^\W\d]))")
-"""Where a word may break: in front of a letter that follows a separator."""
+"""Places where a word may break: before a letter that follows a separator."""
 _STYLE = """
 .ao{--ink:#16202a;--grey:#5b6670;--pale:#c9d0d6;--wash:#f2f4f6;--paper:#fff;--good:#00654a;
 --bad:#a8321a;--amber:#8a5a00;--blue:#0b4f83;color:var(--ink);background:var(--paper);
@@ -104,11 +104,11 @@ padding:0}.ao svg.drawing{filter:none}.ao tr,.ao svg,.ao .tile{break-inside:avoi
 
 
 def write(page: Page, origin: Origin | None, *, folder: Path, stem: str) -> list[ReportFile]:
-    """Write ``STEM.html`` into a folder, whole or not at all.
+    """Write ``STEM.html`` into a folder, completely or not at all.
 
     Raises
     ------
-    InputError : when the folder cannot be written
+    InputError : the folder cannot be written
     """
     content = document(page, origin).encode("utf-8", "replace")
     name = f"{stem}.html"
@@ -117,7 +117,7 @@ def write(page: Page, origin: Origin | None, *, folder: Path, stem: str) -> list
 
 
 def document(page: Page, origin: Origin | None) -> str:
-    """A page as an HTML document of its own; equal input gives equal text."""
+    """A page as a complete HTML document; equal input gives equal text."""
     return (
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width,initial-scale=1">'
@@ -130,14 +130,14 @@ def document(page: Page, origin: Origin | None) -> str:
 
 
 def fragment(page: Page, origin: Origin | None = None) -> str:
-    """A page as a piece of HTML, for notebooks; its style counts inside it alone."""
+    """A page as a piece of HTML, for notebooks; its style only applies to this piece."""
     parts = [f"<style>{_STYLE}</style>", '<article class="ao">', *_top(page)]
     if page.tiles:
         parts += ['<div class="tiles">', *map(_tile, page.tiles), "</div>"]
     parts.append(svg(page.hero(max(HERO, page.least)), page.kind))
     if page.items:
-        named = (f"<b>{n}</b> {_say(part)}, {_say(material)}" for n, part, material in page.items)
-        parts.append(f'<p class="note">{" · ".join(named)}</p>')
+        items = (f"<b>{n}</b> {_say(part)}, {_say(material)}" for n, part, material in page.items)
+        parts.append(f'<p class="note">{" · ".join(items)}</p>')
     for block in with_input(page, origin):
         parts += _block(block)
     parts += [*_footer(page, origin), "</article>"]
@@ -311,7 +311,7 @@ def _reach(change: float, met: bool) -> str:
 
 
 def svg(ink: Ink, title: str = "") -> str:
-    """A drawing as SVG, millimetres of paper for units."""
+    """A drawing as SVG, in millimetres of paper."""
     size = f'viewBox="0 0 {ink.width:g} {ink.height:g}" width="{6 * ink.width:g}"'
     parts = [f'<svg class="drawing" {size} role="img" xmlns="http://www.w3.org/2000/svg">']
     parts.append(f"<title>{_say(title)}</title>" if title else "")

@@ -1,8 +1,8 @@
-"""Ink: a small vector canvas in millimetres of paper, y downwards from the top left corner.
+"""Ink: a vector canvas in millimetres of paper, y downwards from the top left corner.
 
-Figures and drawings are built from two marks, paths and texts, which the Typst template and the
-plain fallback both know how to draw. Widths of texts are estimated from the advance widths of
-the report's typeface, so that labels can be placed by rule and tested for collisions.
+Figures and drawings consist of two marks, paths and texts, which all renderers can draw. Widths of
+texts are estimated from the advance widths of the report's typeface, so that labels can be placed
+by rule and tested for overlaps.
 """
 
 from __future__ import annotations
@@ -111,8 +111,8 @@ def text_width(text: str, size: float, *, bold: bool = False) -> float:
     return width * size * POINT * (1.1 if bold else 1.0)
 
 
-def spread(wanted: Sequence[float], gaps: Sequence[float]) -> list[float]:
-    """Positions nearest to the wanted (ascending) ones that keep the gaps between neighbours.
+def spread(targets: Sequence[float], gaps: Sequence[float]) -> list[float]:
+    """Positions nearest to the ascending targets, with gaps between neighbours.
 
     `gaps[i]` is the least distance between positions i and i+1; least squares by pooling
     adjacent violators.
@@ -121,10 +121,10 @@ def spread(wanted: Sequence[float], gaps: Sequence[float]) -> list[float]:
     [-1.0, 1.0, 10.0]
     """
     offsets = [0.0]
-    for gap in gaps[: max(len(wanted) - 1, 0)]:
+    for gap in gaps[: max(len(targets) - 1, 0)]:
         offsets.append(offsets[-1] + gap)
     pools: list[list[float]] = []
-    for value, offset in zip(wanted, offsets, strict=False):
+    for value, offset in zip(targets, offsets, strict=False):
         pools.append([value - offset, 1.0])
         while len(pools) > 1 and pools[-2][0] > pools[-1][0]:
             mean, count = pools.pop()
@@ -135,14 +135,14 @@ def spread(wanted: Sequence[float], gaps: Sequence[float]) -> list[float]:
 
 
 def spread_within(
-    wanted: Sequence[float], gaps: Sequence[float], lower: float, upper: float
+    targets: Sequence[float], gaps: Sequence[float], lower: float, upper: float
 ) -> list[float]:
-    """`spread`, kept inside [lower, upper] as long as the gaps leave room."""
+    """`spread` within [lower, upper]; too large gaps are reduced."""
     room = upper - lower
-    total = sum(gaps[: max(len(wanted) - 1, 0)])
+    total = sum(gaps[: max(len(targets) - 1, 0)])
     if total > room > 0:
         gaps = [gap * room / total for gap in gaps]
-    places = spread([min(max(value, lower), upper) for value in wanted], gaps)
+    places = spread([min(max(value, lower), upper) for value in targets], gaps)
     if not places:
         return places
     for index, value in enumerate(places):
@@ -159,7 +159,7 @@ def hatch(
 ) -> list[tuple[Point, Point]]:
     """Parallel lines inside the polygons (even-odd), at `angle` degrees, `spacing` apart.
 
-    The phase is fixed to the page, so that both halves of a section hatch alike.
+    The phase is fixed to the page, so that the hatches of both halves of a section match.
     """
     cosine, sine = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     edges = []
@@ -181,8 +181,8 @@ def hatch(
     lines = []
     for row in range(math.floor(lowest / spacing) - 1, math.ceil(highest / spacing) + 1):
         level = (row + 0.5) * spacing
-        found = sorted(crossings.get(row, ()))
-        for start, end in zip(found[::2], found[1::2], strict=False):
+        cuts = sorted(crossings.get(row, ()))
+        for start, end in zip(cuts[::2], cuts[1::2], strict=False):
             if end - start > 0.02:
                 lines.append(
                     tuple(
@@ -193,7 +193,7 @@ def hatch(
 
 
 class Ink:
-    """A drawing of a given width and height (mm) that collects marks, in drawing order."""
+    """A drawing of a width and height (mm) that collects marks in drawing order."""
 
     def __init__(self, width: float, height: float) -> None:
         self.width = width
@@ -221,7 +221,7 @@ class Ink:
             )
 
     def line(self, *points: Point, **style: Any) -> None:
-        """One polyline."""
+        """A single polyline."""
         self.path([points], **style)
 
     def box(self, x: float, y: float, width: float, height: float, **style: Any) -> None:

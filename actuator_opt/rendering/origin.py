@@ -1,4 +1,4 @@
-"""Where a page comes from: the design as read, the command, the date; and its files."""
+"""Origin of a page: the design as read, the command and the date; and the files of a report."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from .blocks import Block, Listing, Page
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """How a page was made.
+    """Input, command and date of a page.
 
     Parameters
     ----------
-    source_text, source_name : the design file as read: attached to the PDF
+    source_text, source_name : the design file as read, attached to the PDF
     command : the command line, printed and attached
     spec_hash : of the design
-    date : ISO date to print, or None for none
+    date : ISO date to print, or None
     """
 
     source_text: str
@@ -28,7 +28,7 @@ class Origin:
     date: str | None = None
 
     def run(self) -> dict[str, str]:
-        """How the page was made, for its attachment."""
+        """Data of the run, for the attachment."""
         return {
             "actuator_opt": VERSION,
             "command": self.command,
@@ -39,7 +39,7 @@ class Origin:
 
 @dataclass(frozen=True, slots=True)
 class ReportFile:
-    """A file of a report, with its hash and how many sheets it holds."""
+    """A file of a report, with its hash and its number of sheets."""
 
     path: Path
     sha256: str
@@ -51,7 +51,7 @@ class ReportFile:
 
 
 def with_input(page: Page, origin: Origin | None) -> list[Block]:
-    """The blocks of a page, the design file listed at the end where the page lists it."""
+    """The blocks of a page, with the listing of the design file at the end, if it has one."""
     blocks = [*page.blocks]
     if page.lists_input and origin is not None:
         blocks.append(Listing(f"Input: {origin.source_name}", origin.source_text))

@@ -1,7 +1,7 @@
-"""A page on paper: PDF and PNG by Typst, complete or not written at all; drawings as PNG and SVG.
+"""A page on paper: PDF and PNG by Typst; drawings as PNG and SVG.
 
-Everything is made in memory, written beside its place, then renamed. The PDF carries the input
-file and the command inside itself (PDF/A-3), so that a report can be run again.
+Files are made in memory, written under a temporary name and renamed when complete. The PDF
+contains the input file and the command (PDF/A-3), so that a report can be run again.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ from .origin import Origin, ReportFile, with_input
 
 PIXELS_PER_INCH = 150.0
 _SUSPECTS = b"/Suspects false"
-"""What Typst writes by default; Poppler warns of it. Blanks of the same length keep every place."""
+"""Default entry of Typst that Poppler warns of; blanks of the same length keep all offsets."""
 TEMPLATE = Path(__file__).with_name("template.typ")
 
 
@@ -68,11 +68,11 @@ def write(
     Parameters
     ----------
     page : to write
-    origin : its source, as it is, and how it was made: both are attached to the PDF
-    folder, stem : where to; the folder is made if missing
-    all_pages : also ``STEM-page-N.png`` of the later sheets
+    origin : its input and command, attached to the PDF
+    folder, stem : target; the folder is made if missing
+    all_pages : also write ``STEM-page-N.png`` of the later sheets
     format : "pdf" (with PNG), "html", or "both"
-    run : more of how it was made, attached
+    run : further data of the run, attached
 
     Returns
     -------
@@ -80,7 +80,7 @@ def write(
 
     Raises
     ------
-    InputError : when the folder cannot be written; no partial file is left
+    InputError : the folder cannot be written; no partial file is left
     """
     web = html.write(page, origin, folder=folder, stem=stem) if format in ("html", "both") else []
     if format == "html":
@@ -151,7 +151,7 @@ def plain(page: Page, origin: Origin) -> dict[str, object]:
 
 
 def plain_blocks(blocks: Sequence[Block], width: float = FULL) -> list[dict[str, object]]:
-    """Blocks that paper shows in a width [mm], as plain data for the template."""
+    """Blocks for a width on paper [mm], as plain data for the template."""
     parts = [
         part
         for block in blocks
@@ -265,7 +265,7 @@ def _printable(data: Any) -> Any:
 
 
 def _encodable(text: str) -> str:
-    """Text that UTF-8 can hold: bytes of a file name in another encoding are spelt out."""
+    """Text in UTF-8; bytes of a file name in another encoding are escaped."""
     return text.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
@@ -275,7 +275,7 @@ def _attachment_name(source_name: str) -> str:
 
 
 def _timestamp(date: str | None) -> int:
-    """Seconds since 1970 of an ISO date, for the PDF's own metadata; 0 without one."""
+    """Seconds since 1970 of an ISO date, for the metadata of the PDF; 0 without a date."""
     try:
         moment = datetime.fromisoformat(date or "1970-01-01")
     except ValueError:
@@ -294,12 +294,12 @@ def _render(data: Mapping[str, Any], timestamp: int) -> tuple[bytes, list[bytes]
 
 
 def sheets(source: bytes, data: Mapping[str, Any], timestamp: int) -> tuple[bytes, list[bytes]]:
-    """A Typst source with its data as PDF/A and as an image of every sheet; no font but ours."""
+    """A Typst source with its data as PDF/A and an image of every sheet, with our own fonts."""
     import typst
 
     compiler = typst.Compiler(
         source,
-        root=TEMPLATE.parent,  # not the working directory, which may be gone
+        root=TEMPLATE.parent,  # the working directory may be deleted
         font_paths=typst.Fonts(
             include_system_fonts=False, include_embedded_fonts=True, font_paths=font_folders()
         ),
@@ -316,15 +316,15 @@ def sheets(source: bytes, data: Mapping[str, Any], timestamp: int) -> tuple[byte
 
 
 def font_folders() -> list[str]:
-    """Matplotlib's fonts, found without importing it."""
-    found = importlib.util.find_spec("matplotlib")
-    if found is None or found.origin is None:
+    """Folder of matplotlib's fonts, located without importing matplotlib."""
+    spec = importlib.util.find_spec("matplotlib")
+    if spec is None or spec.origin is None:
         return []
-    return [str(Path(found.origin).parent / "mpl-data" / "fonts" / "ttf")]
+    return [str(Path(spec.origin).parent / "mpl-data" / "fonts" / "ttf")]
 
 
 def _remove_later_pages(folder: Path, stem: str, count: int) -> None:
-    """Remove images of later sheets that an earlier report left under the same name."""
+    """Remove images of later sheets of an earlier report with the same name."""
     index = max(count + 1, 2)
     while (path := folder / f"{stem}-page-{index}.png").is_file():
         path.unlink()
@@ -357,7 +357,7 @@ def images(ink: Ink, stem: str) -> dict[str, bytes]:
 
 
 def write_ink(ink: Ink, folder: Path, stem: str) -> list[Path]:
-    """Write STEM.png and STEM.svg into a folder, whole or not at all."""
+    """Write STEM.png and STEM.svg into a folder, completely or not at all."""
     contents = images(ink, stem)
     write_all(folder, contents, what="the figure")
     return [folder / name for name in contents]

@@ -1,4 +1,4 @@
-"""A plainer report by matplotlib, for machines without the typst wheel. It says so on the sheet."""
+"""A plain report by matplotlib, with a note on it, for installations without Typst."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class _Flow:
         self.y = TOP
 
     def need(self, height: float) -> bool:
-        """Make room for something `height` mm high; True if that took a new sheet."""
+        """Start a new sheet unless `height` mm remain; returns whether it did."""
         if self.y + height <= BOTTOM or self.y == TOP:
             return False
         self.turn()
@@ -66,20 +66,20 @@ class _Flow:
             self.y += step
 
     def paste(self, drawing: Mapping[str, Any]) -> None:
-        """A ready drawing at the left margin."""
+        """Copy a drawing to the left margin."""
         self.need(drawing["height"])
         for mark in drawing["marks"]:
-            moved: Any = dict(mark)
+            copy: Any = dict(mark)
             if "path" in mark:
-                moved["path"] = [[[x + LEFT, y + self.y] for x, y in line] for line in mark["path"]]
+                copy["path"] = [[[x + LEFT, y + self.y] for x, y in line] for line in mark["path"]]
             else:
-                moved["at"] = [mark["at"][0] + LEFT, mark["at"][1] + self.y]
-            self.ink.marks.append(moved)
+                copy["at"] = [mark["at"][0] + LEFT, mark["at"][1] + self.y]
+            self.ink.marks.append(copy)
         self.y += drawing["height"]
 
 
 def _joined(cell: Any) -> str:
-    """A cell as one text."""
+    """A cell as a single text."""
     if isinstance(cell, dict):
         return str(cell.get("text", ""))
     return cell if isinstance(cell, str) else "".join(cell)
@@ -122,8 +122,8 @@ def _title(flow: _Flow, data: Mapping[str, Any]) -> None:
 
 def _block(flow: _Flow, block: Mapping[str, Any]) -> None:
     if block["kind"] == "pair":
-        for one in (one for side in block["sides"] for one in side):
-            _block(flow, one)
+        for part in (part for side in block["sides"] for part in side):
+            _block(flow, part)
         return
     height = block["ink"]["height"] if block["kind"] == "figure" else 8.0
     flow.need(9.0 + height)
@@ -155,21 +155,21 @@ def _block(flow: _Flow, block: Mapping[str, Any]) -> None:
 
 
 def _widths(block: Mapping[str, Any]) -> list[float]:
-    """Column widths (mm): fixed and natural ones first, the rest in the stated proportion."""
+    """Column widths (mm): stated and natural widths first, the remaining width by shares."""
     columns, rows = block["columns"], block["rows"]
     widths = [0.0] * len(columns)
-    rest = RIGHT - LEFT
+    room = RIGHT - LEFT
     for k, column in enumerate(columns):
         if isinstance(column["width"], str) and column["width"].endswith("mm"):
             widths[k] = min(float(column["width"][:-2]), 40.0)
         elif column["width"] == "auto":
             texts = [*_joined(column["head"]).split("\n"), *(_joined(row[k]) for row in rows)]
             widths[k] = min(max(text_width(t, _SIZE, bold=True) for t in texts) + 2.6, 32.0)
-        rest -= widths[k]
+        room -= widths[k]
     shares = sum(c["width"] for c in columns if not isinstance(c["width"], str))
     for k, column in enumerate(columns):
         if not isinstance(column["width"], str):
-            widths[k] = max(rest, 40.0) * column["width"] / shares
+            widths[k] = max(room, 40.0) * column["width"] / shares
     return widths
 
 
@@ -265,7 +265,7 @@ def _draw(sheets: Sequence[Ink], title: str) -> tuple[bytes, list[bytes]]:
 
 
 def drawn(sheet: Ink) -> Any:
-    """A sheet as a matplotlib figure of its own size."""
+    """A sheet as a matplotlib figure of the same size."""
     from matplotlib.figure import Figure
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path

@@ -1,7 +1,7 @@
-"""Sheets of a worked study, and how its script runs: print the tables, write the report.
+"""Sheets of a worked study, and its script: print the tables, write the report.
 
-Most studies share one sheet (``script_sheet.typ``): a heading, what it says, blocks. A study with
-prose of its own has its sheets in a .typ file beside the script.
+Most studies share a sheet (``script_sheet.typ``) with heading, lead and blocks. Other studies have
+a .typ file beside the script.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ from .blocks import Block, Column, Table
 from .paper import TEMPLATE, plain_blocks, sheets
 
 Numbers: TypeAlias = Mapping[str, Any]
-"""What a study computed, SI: plain numbers, lists and records."""
+"""Results of a study, SI: plain numbers, lists and records."""
 Sheets: TypeAlias = tuple[bytes, list[bytes]]
 """A report as PDF, and an image of every sheet."""
 Study = TypeVar("Study")
 
 SHEET = Path(__file__).with_name("script_sheet.typ")
 _MARK = "// ---- sheet ----"
-"""Where the template's definitions end and the sheets of a design begin."""
+"""Line of the template between its definitions and the sheets of a design."""
 
 
 def rounded(study: Numbers, digits: int = 7) -> dict[str, Any]:
-    """Plain numbers to some digits: the last bits of a machine do not show.
+    """Plain numbers rounded to some digits, so that all machines give the same text.
 
     >>> rounded({"mass": 0.123456789, "rows": (1, None)})
     {'mass': 0.1234568, 'rows': [1, None]}
@@ -51,21 +51,21 @@ def grid_table(
     words: Sequence[int] = (),
     widths: Mapping[int, float | str] | float | str = "auto",
 ) -> Table:
-    """A table whose first row is its heads; numbers stand right.
+    """A table from a grid whose first row has the heads; numbers are aligned to the right.
 
     Parameters
     ----------
-    title, note : above and below it
+    title, note : above and below the table
     grid : heads, then rows
-    words : columns of words, which stand left; negative from the end
-    widths : of every column, or of some by their number; the others are "auto"
+    words : columns of words, aligned to the left; negative numbers count from the end
+    widths : of every column, or by number of the column; the others are "auto"
     """
     heads, *rows = grid
-    left = {k if k >= 0 else k + len(heads) for k in words}
-    given = widths if isinstance(widths, Mapping) else dict.fromkeys(range(len(heads)), widths)
-    wide = {k if k >= 0 else k + len(heads): width for k, width in given.items()}
+    text_columns = {k if k >= 0 else k + len(heads) for k in words}
+    by_column = widths if isinstance(widths, Mapping) else dict.fromkeys(range(len(heads)), widths)
+    column_widths = {k if k >= 0 else k + len(heads): width for k, width in by_column.items()}
     columns = [
-        Column(head, "left" if k in left else "right", wide.get(k, "auto"))
+        Column(head, "left" if k in text_columns else "right", column_widths.get(k, "auto"))
         for k, head in enumerate(heads)
     ]
     return Table(title, columns, rows, note=note)
@@ -87,12 +87,12 @@ def study_report(
     ----------
     script : the study's file
     study : its numbers, attached as JSON
-    title, heading : of the PDF, and printed
+    title, heading : title of the PDF, and printed heading
     lead : paragraphs below the heading
-    blocks : below each other; plain data of a block passes as it is
-    whole : whether no table breaks across sheets
+    blocks : below each other, also as plain data
+    whole : whether tables must not break across sheets
     """
-    shown = {
+    data = {
         "script": Path(script).stem,
         "version": study["version"],
         "title": title,
@@ -101,21 +101,21 @@ def study_report(
         "blocks": _plain(list(blocks)),
         "whole": whole,
     }
-    return _compiled(SHEET, study, shown)
+    return _compiled(SHEET, study, data)
 
 
-def study_sheets(script: str | Path, study: Numbers, shown: Numbers) -> Sheets:
-    """A study on its own sheets, the .typ file beside its script, which take `shown`."""
-    return _compiled(Path(script).with_suffix(".typ"), study, _plain(shown))
+def study_sheets(script: str | Path, study: Numbers, data: Numbers) -> Sheets:
+    """A study on the sheets of the .typ file beside its script, filled with `data`."""
+    return _compiled(Path(script).with_suffix(".typ"), study, _plain(data))
 
 
-def _compiled(sheet: Path, study: Numbers, shown: Numbers) -> Sheets:
-    """PDF and images: the same numbers give the same bytes."""
+def _compiled(sheet: Path, study: Numbers, data: Numbers) -> Sheets:
+    """PDF and images; the same numbers give the same bytes."""
     definitions, mark, _ = TEMPLATE.read_text("utf-8").partition(_MARK)
-    assert mark, "the report template no longer says where its definitions end"
+    assert mark, "the report template lacks the line that ends its definitions"
     numbers = json.dumps(study, indent=1, allow_nan=False)
     source = definitions + sheet.read_text("utf-8")
-    return sheets(source.encode(), {**shown, "numbers": numbers}, timestamp=0)
+    return sheets(source.encode(), {**data, "numbers": numbers}, timestamp=0)
 
 
 def _plain(value: Any) -> Any:
@@ -128,7 +128,7 @@ def _plain(value: Any) -> Any:
 
 
 def write_study(pages: Sheets, folder: Path, name: str) -> int:
-    """Write NAME.pdf and the PNG of its first sheet; the number of sheets."""
+    """Write NAME.pdf and the PNG of its first sheet; returns the number of sheets."""
     pdf, images = pages
     write_all(folder, {f"{name}.pdf": pdf, f"{name}.png": images[0]})
     return len(images)
@@ -149,18 +149,18 @@ def run_script(
     ----------
     script : its file
     description : of the command
-    compute : makes the study; takes `quick` where there is that option
-    printed : what the terminal shows
+    compute : computes the study, with `quick=` if the script has this option
+    printed : text for the terminal
     page : the report
-    quick : what ``--quick`` leaves out; empty where there is no such option
+    quick : help of the option ``--quick``; empty: no such option
     """
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--out", type=Path, help="folder for the report")
     if quick:
         parser.add_argument("--quick", action="store_true", help=quick)
-    given = parser.parse_args()
-    study = compute(quick=given.quick) if quick else compute()
-    if given.out is None:
+    options = parser.parse_args()
+    study = compute(quick=options.quick) if quick else compute()
+    if options.out is None:
         return printed(study)
-    count = write_study(page(study), given.out, Path(script).stem)
+    count = write_study(page(study), options.out, Path(script).stem)
     return f"{printed(study)}\n{count} sheets"

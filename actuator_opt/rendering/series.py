@@ -1,8 +1,7 @@
-"""Columns of data as files: CSV whole or growing by rows, and Apache Parquet.
+"""Columns of data as files: CSV, at once or row by row, and Apache Parquet.
 
-Parquet stores numbers in double precision (null where there is none), texts by dictionaries and
-flags as booleans. Every field carries its name, label and unit. A file gets its final name only
-when it is complete.
+Parquet stores numbers in double precision (null if missing), texts by dictionaries and flags as
+booleans. Every field has its name, label and unit. A file gets its final name when it is complete.
 """
 
 from __future__ import annotations
@@ -30,8 +29,8 @@ from .origin import ReportFile
 class Series:
     """A column: its head with the unit, and its values (numbers, text, None where missing).
 
-    `digits` are the significant digits of its numbers; whole numbers have all of theirs. `form`,
-    where given, is their format instead: ``"5f"`` are five decimals.
+    `digits` is the number of significant digits; whole numbers have all digits. `form`, if given,
+    replaces it by a format: ``"5f"`` gives five decimals.
     """
 
     head: str
@@ -50,7 +49,7 @@ def heading(name: str, unit: str) -> str:
 
 
 def csv_text(columns: Sequence[Series]) -> str:
-    """The columns as CSV; a value that is None or not a number stays empty."""
+    """The columns as CSV; the cells of None and NaN are empty."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow([column.head for column in columns])
@@ -63,7 +62,7 @@ def csv_text(columns: Sequence[Series]) -> str:
 
 
 def write_csv(columns: Sequence[Series], path: Path) -> ReportFile:
-    """Write the columns as a CSV file, whole or not at all."""
+    """Write the columns as a CSV file, completely or not at all."""
     text = csv_text(columns)
     write_text(path, text)
     return ReportFile(path, hashlib.sha256(text.encode()).hexdigest(), 1)
@@ -84,9 +83,9 @@ def _cell(value: Any, form: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class FileColumn:
-    """A column of a file that grows: its head, the kind of its cells, and what they mean.
+    """A column of a file that grows: its head, the kind of its cells, and their meaning.
 
-    `name` is a path or a metric, `unit` that of a number.
+    `name` is a PATH or a metric; numbers have a `unit`.
     """
 
     head: str
@@ -97,7 +96,7 @@ class FileColumn:
 
 
 class Coded(NamedTuple):
-    """Texts by their place among `words`; a negative code is an empty cell."""
+    """Texts as indices of `words`; a negative code is an empty cell."""
 
     codes: Array
     words: Sequence[str]
@@ -108,7 +107,7 @@ Values: TypeAlias = Array | Coded
 
 
 class CsvFile(AbstractContextManager["CsvFile"]):
-    """A CSV file that grows by rows: written aside, and in place once it is complete."""
+    """A CSV file that grows by rows under a temporary name, and is renamed when complete."""
 
     def __init__(self, fields: Sequence[FileColumn], path: Path) -> None:
         self.fields, self.path = fields, path
@@ -152,7 +151,7 @@ def _quoted(text: str) -> str:
 
 
 GROUP = 32_768
-"""Rows from which a row group is written: all that memory holds at once."""
+"""Number of rows in memory from which a row group is written."""
 
 
 class ParquetFile(AbstractContextManager["ParquetFile"]):
@@ -188,7 +187,7 @@ class ParquetFile(AbstractContextManager["ParquetFile"]):
         return self
 
     def add(self, columns: Sequence[Values]) -> None:
-        """Keep rows, and write what makes a row group."""
+        """Store rows in memory, and write full row groups."""
         cells = list(map(self._cells, self.fields, columns))
         self._waiting.append(self._arrow.record_batch(cells, schema=self._schema))
         if sum(batch.num_rows for batch in self._waiting) >= GROUP:
@@ -209,13 +208,13 @@ class ParquetFile(AbstractContextManager["ParquetFile"]):
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """Write what is left, unless the work failed; in any case the writer is done."""
+        """Write the remaining rows, unless the work failed, and close the writer."""
         try:
             if error is None:
                 self._write()
                 self._writer.close()
         finally:
-            self._writer.is_open = False  # else it ends the file again when it is forgotten
+            self._writer.is_open = False  # otherwise its destructor would end the file again
 
     def _field(self, field: FileColumn) -> Any:
         arrow = self._arrow
@@ -242,7 +241,7 @@ class ParquetFile(AbstractContextManager["ParquetFile"]):
         return arrow.array(values == 1.0 if field.kind == "flag" else values, mask=missing)
 
     def _write(self) -> None:
-        """Write what waits as one row group."""
+        """Write the rows in memory as a row group."""
         if self._waiting:
             table = self._arrow.Table.from_batches(self._waiting, self._schema)
             self._waiting = []

@@ -1,7 +1,7 @@
-"""A page on the terminal: verdict, sentence, and its blocks one below the other.
+"""A page on the terminal: verdict, sentence, and its blocks below each other.
 
-Curves are drawn in a few lines of braille dots. All functions return text and print nothing.
-Without Unicode the text is plain ASCII.
+Curves are drawn in a few lines of braille dots. Functions return text and print nothing. Without
+Unicode the text is plain ASCII.
 """
 
 from __future__ import annotations
@@ -179,31 +179,31 @@ def text(page: Page, **style: Unpack[Style]) -> str:
 
 
 def blocks_text(blocks: Sequence[Block], **style: Unpack[Style]) -> str:
-    """Blocks one below the other, as text that ends in a line break."""
+    """Blocks below each other, as text that ends in a line break."""
     console = Console(**style)
     parts = [block_text(block, console) for block in blocks]
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
 def heading(name: str, verdict: Verdict, sentence: str, console: Console) -> list[str]:
-    """Name and verdict, what stands behind it, cautions, and the sentence."""
+    """Name and verdict, lines of the verdict, cautions, and the sentence."""
     mark = f"{MARKS[verdict.state][0]} " if console.unicode and verdict.state else ""
     state = console.paint(console.say(mark + verdict.text.lower()), *PAINTS[verdict.state].split())
-    said = [f"{console.paint(console.say(name), 'bold')}  {state}"]
+    lines = [f"{console.paint(console.say(name), 'bold')}  {state}"]
     if visible(console.say(name) + console.say(mark + verdict.text)) + 2 > console.width:
         paint = PAINTS[verdict.state].split()
-        said = [console.wrap(name, "bold"), console.wrap(mark + verdict.text.lower(), *paint)]
+        lines = [console.wrap(name, "bold"), console.wrap(mark + verdict.text.lower(), *paint)]
     if verdict.lines:
-        said.append(console.wrap("; ".join(verdict.lines), "dim"))
+        lines.append(console.wrap("; ".join(verdict.lines), "dim"))
     if verdict.cautions:
-        said.append(console.wrap("; ".join(verdict.cautions), "yellow"))
-    return [*said, console.wrap(sentence)] if sentence else said
+        lines.append(console.wrap("; ".join(verdict.cautions), "yellow"))
+    return [*lines, console.wrap(sentence)] if sentence else lines
 
 
 def block_text(block: Block, console: Console) -> str:
-    """A block as text; empty for what the terminal does not show."""
+    """A block as text; empty for blocks of paper."""
     if isinstance(block, Pair):
-        parts = [block_text(one, console) for side in block.sides for one in side]
+        parts = [block_text(part, console) for side in block.sides for part in side]
         return "\n\n".join(part for part in parts if part)
     if isinstance(block, (Drawing, Chart)):
         return "" if block.instead is None else block_text(block.instead, console)
@@ -217,9 +217,9 @@ def block_text(block: Block, console: Console) -> str:
 
 
 def _notes(block: Notes, console: Console) -> str:
-    said = [] if block.headless else [console.heading(block.title)]
-    said += [console.wrap(item, *block.style.split()) for item in block.items]
-    return "\n".join([*said, *([console.wrap(block.note, "dim")] if block.note else [])])
+    lines = [] if block.headless else [console.heading(block.title)]
+    lines += [console.wrap(item, *block.style.split()) for item in block.items]
+    return "\n".join([*lines, *([console.wrap(block.note, "dim")] if block.note else [])])
 
 
 def _figure(figure: TerminalFigure, console: Console) -> str:
@@ -232,7 +232,7 @@ def _figure(figure: TerminalFigure, console: Console) -> str:
 
 
 def _tables(table: Table, console: Console) -> str:
-    """A table, in parts where it is wider than the terminal and repeats its first columns."""
+    """A table; if it is too wide and repeats its first columns, in parts."""
     if not table.repeat:
         return _table(table, console)
     cells = [[_cell(cell, console) for cell in cells_of(row)] for row in table.rows]
@@ -247,14 +247,14 @@ def _table(table: Table, console: Console) -> str:
     columns = [table.columns[k] for k in shown]
     body, styles = [], []
     last = len(table.rows) - table.total
-    for index, given in enumerate(table.rows):
-        row = given if isinstance(given, Row) else Row(given)
+    for index, entry in enumerate(table.rows):
+        row = entry if isinstance(entry, Row) else Row(entry)
         body.append([_cell(row.cells[k], console) for k in shown])
         total = "bold" if index >= last else ""
         styles.append([_paint(table.columns[k], row.cells[k], row.state) or total for k in shown])
-    said = [] if table.headless or not table.title else [console.heading(table.title)]
-    said += console.table(columns, body, styles)
-    return "\n".join([*said, *([console.wrap(table.note, "dim")] if table.note else [])])
+    lines = [] if table.headless or not table.title else [console.heading(table.title)]
+    lines += console.table(columns, body, styles)
+    return "\n".join([*lines, *([console.wrap(table.note, "dim")] if table.note else [])])
 
 
 def _paint(column: Column, cell: Cell, state: State) -> str:
@@ -295,5 +295,5 @@ def slot(console: Console, share: float, size: int = 13) -> str:
 
 
 def words(sentences: Sequence[str], console: Console, *styles: str) -> str:
-    """Paragraphs, broken at the width of the terminal."""
+    """Paragraphs, wrapped to the width of the terminal."""
     return "\n".join(console.wrap(sentence, *styles) for sentence in sentences if sentence)

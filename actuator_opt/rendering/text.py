@@ -1,17 +1,13 @@
-"""Numbers, units and margins as people read them, the same on paper and in the terminal."""
+"""Numbers, units and margins in print, equal on paper and on the terminal."""
 
 from __future__ import annotations
 
 import math
 import re
-from typing import TYPE_CHECKING
 
 from ..base import quantities
 from ..base.quantities import Quantity
 from ..metrics import METRICS, of_metric
-
-if TYPE_CHECKING:
-    pass
 
 MINUS = "\N{MINUS SIGN}"
 DASH = "\N{EN DASH}"
@@ -128,7 +124,7 @@ def decimals(value: float, digits: int) -> int:
 
 
 def trimmed(value: float | None, digits: int = 4) -> str:
-    """Like `number`, without trailing zeros: for limits and bounds, which a person wrote.
+    """Like `number`, without trailing zeros, for limits and bounds as the user writes them.
 
     >>> trimmed(10.0), trimmed(0.25), trimmed(1200.0)
     ('10', '0.25', '1200')
@@ -149,32 +145,32 @@ def unit_text(unit: str) -> str:
 
 
 def pretty(words: str) -> str:
-    """Free text with its numbers and units as printed: true minus, °C, µm, squares and cubes.
+    """Text with its numbers and units as printed: true minus, °C, µm, squares and cubes.
 
     >>> pretty("-20 degC, 30 um, 1570 kg/m^3, 38 N*s/m, 4e-05")
     '−20 °C, 30 µm, 1570 kg/m³, 38 N·s/m, 4×10⁻⁵'
     """
-    for pattern, written in _PRETTY:
-        words = pattern.sub(written, words)
+    for pattern, replacement in _PRETTY:
+        words = pattern.sub(replacement, words)
     return _POWER_E.sub(lambda m: f"×10{str(int(m[1])).translate(SUPERSCRIPTS)}", words)
 
 
 def with_unit(text: str, unit: str) -> str:
-    """Number text and unit text with a space, none before a degree sign."""
+    """Number and unit with a space, except before a degree sign."""
     if not unit or text == DASH:
         return text
     return f"{text}{unit}" if unit == "°" else f"{text} {unit}"
 
 
 def metric(name: str) -> Quantity:
-    """The declared quantity of a metric; an undeclared one (a user's own) is a plain ratio."""
+    """The declared quantity of a metric; a user's undeclared metric is a plain ratio."""
     return of_metric(name)
 
 
 def input_quantity(name: str) -> Quantity:
-    """The declared quantity of an input; an undeclared one is a plain ratio."""
-    known = quantities.INPUTS.get(name) or METRICS.get(name)
-    return known or Quantity(name, "", "ratio", "", name)
+    """The declared quantity of an input; an undeclared input is a plain ratio."""
+    quantity = quantities.INPUTS.get(name) or METRICS.get(name)
+    return quantity or Quantity(name, "", "ratio", "", name)
 
 
 def display(quantity: Quantity, value: float | None) -> float | None:
@@ -196,7 +192,7 @@ def value_text(quantity: Quantity, value: float | None, digits: int = 4) -> str:
 
 
 def margin_text(margin: float | None, *, met: bool = True) -> str:
-    """A relative margin in per cent; an active limit reads 0, a miss never does.
+    """A relative margin in per cent: 0 for an active limit, never 0 for a violation.
 
     >>> margin_text(0.031), margin_text(-1e-9), margin_text(-0.0002, met=False)
     ('+3.1 %', '0.0 %', '−0.02 %')
@@ -210,13 +206,13 @@ def margin_text(margin: float | None, *, met: bool = True) -> str:
         return f"> {MINUS if percent < 0 else '+'}999 %"
     if math.fabs(percent) >= 100:
         return f"{number(round(percent, 1), 4, signed=True)} %"
-    return f"{_tenth(percent)} %"
+    return f"{percent:+.1f} %".replace("-", MINUS)
 
 
 def margin_of(
     quantity: Quantity, limit: float | None, margin: float | None, *, met: bool = True
 ) -> str:
-    """A margin in per cent of its limit; of a limit of 0 the room itself, in its unit.
+    """A margin in per cent of its limit; for a limit of 0, the difference in its unit.
 
     >>> margin_of(metric("pressure_loss"), 2.0, 0.031), margin_of(metric("bore_growth"), 0.0, -3e-5)
     ('+3.1 %', '−30.0 µm')
@@ -225,10 +221,6 @@ def margin_of(
         return margin_text(margin, met=met)
     room = quantity.to_display(margin) - quantity.to_display(0.0)
     return with_unit(number(room, 3, signed=True), unit_text(quantity.unit))
-
-
-def _tenth(percent: float) -> str:
-    return f"{percent:+.1f}".replace("-", MINUS)
 
 
 def degrees(temperature: float) -> str:
@@ -241,7 +233,7 @@ def degrees(temperature: float) -> str:
 
 
 def bars(pressure: float) -> str:
-    """A pressure in bar as short as it was written.
+    """A pressure in bar without trailing zeros.
 
     >>> bars(2e5), bars(20.5e6)
     ('2 bar', '205 bar')
@@ -264,13 +256,13 @@ def share_text(share: float) -> str:
 
 
 def plain(text: str) -> str:
-    """The same text for an ASCII stream."""
+    """A text in ASCII."""
     text = _POWER.sub(lambda m: f"e{m[1].translate(_DIGITS)}", text)
     return text.translate(_ASCII).encode("ascii", "backslashreplace").decode("ascii")
 
 
 def sentence(words: str) -> str:
-    """Words with a capital letter and a full stop; a name as pressure_a stays as it is.
+    """Words with a capital letter and a full stop; a name such as pressure_a is unchanged.
 
     >>> sentence("optimum found"), sentence("pressure_a: left out")
     ('Optimum found.', 'pressure_a: left out.')
@@ -295,6 +287,6 @@ def brief(case: str | None, place: str | None) -> str:
     >>> brief("stance", "retracting, 25 % of the stroke"), brief(None, "weakest position")
     ('stance, retract, 25 %', 'weakest')
     """
-    for pattern, written in _PLACES:
-        place = pattern.sub(written, place or "")
+    for pattern, replacement in _PLACES:
+        place = pattern.sub(replacement, place or "")
     return ", ".join(part for part in (case, place) if part)

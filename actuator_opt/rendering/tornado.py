@@ -1,4 +1,4 @@
-"""A tornado: bars of the changes by both ends of each input, the largest first."""
+"""A tornado: bars of the changes at the two ends of each input, the largest first."""
 
 from __future__ import annotations
 
@@ -10,23 +10,22 @@ from .axes import Axes, fitted, ticks
 from .ink import BLACK, BLUE, GREY, RED, Ink
 
 MOST = 16
-"""Most rows drawn, the largest first."""
+"""Maximum number of rows, the largest first."""
 ROW = 5.0
 """Height of a row (mm): two bars of 1.8 mm."""
 LABELS, FIGURES = 64.0, 34.0
-"""Room for the names at the left and the changes in per cent at the right (mm)."""
+"""Width of the names at the left and of the changes in per cent at the right (mm)."""
 LIGHT = "#9ec3da"
-"""Fill of a decrease; an increase is dark: apart on a grey print too."""
+"""Fill of the lower end; the upper end is dark, which a grey print also shows."""
 BEYOND = 1.4
-"""Most room that predictions take beyond the re-solved changes."""
+"""Maximum range with predictions, over the range of the re-solved changes."""
 
 
 @dataclass(frozen=True, slots=True)
 class TornadoBar:
-    """One input: changes in display units at its upper, then its lower end.
+    """An input: changes in display units at its upper, then its lower end.
 
-    `predicted` of each end is drawn as a stroke where there is one; `words` stand at the right,
-    red where the end has no design.
+    A prediction is drawn as a stroke. `words` are at the right, red if the end has no design.
     """
 
     name: str
@@ -45,7 +44,7 @@ def bars(
     predicted: bool = False,
     width: float = 180.0,
 ) -> Ink:
-    """Bars of changes about a centre, those of the upper end dark, of the lower end light.
+    """Bars of changes about a centre, dark for the upper end and light for the lower end.
 
     Drawn, not a chart: each bar has its name and both changes in figures beside it.
 
@@ -55,7 +54,7 @@ def bars(
     axis, centre : words under the axis and above the centre
     ends : names of the upper and the lower end
     columns : heads of the words at the right; default: the names of the ends
-    predicted : whether strokes of predictions are in the key
+    predicted : whether the key has the strokes of predictions
     """
     solved = [change for row in rows for change in row.changes if change is not None]
     predictions = [change for row in rows for change in row.predicted if change is not None]
@@ -77,7 +76,7 @@ def bars(
 
 
 def _frame(solved: list[float], predicted: list[float]) -> tuple[float, float]:
-    """The range of changes drawn: every solved change, and predictions close to them."""
+    """Range of the axis: all re-solved changes, and predictions close to them."""
     low, high = min([0.0, *solved]), max([0.0, *solved])
     span = (high - low) or max(map(abs, predicted), default=0.0) or 1.0
     room = (BEYOND - 1.0) * span / 2
@@ -94,7 +93,7 @@ def _heads(
     columns: tuple[str, str],
     predicted: bool,
 ) -> None:
-    """The key of the bars above the names, the heads of the columns of figures."""
+    """The key of the bars above the names, and the heads of the columns at the right."""
     y = axes.top - 6.5
     for x, fill, words in ((0.0, BLUE, ends[0]), (17.0, LIGHT, ends[1])):
         ink.box(x, y - 0.9, 4.0, 1.8, fill=fill, pen=0.1)

@@ -1,8 +1,8 @@
-"""Tables that set [AaltoThesis] beside this project's models, and the notes below them.
+"""Tables that compare [AaltoThesis] with this project's models, and their notes.
 
-The text of the thesis gives ranges and forces; its stiffness curves stand in figures without
-numbers. So the columns are its own formula and ours, and measured ranges where it prints them.
-A verdict follows from the numbers of the design at hand; shares are of the static stiffness with
+The text of the thesis gives ranges and forces; its stiffness curves are in figures without numbers.
+The columns are therefore the printed formula, ours, and measured ranges if it prints them. A
+verdict follows from the numbers of the design at hand; shares are of the static stiffness with
 hoses at mid-stroke.
 """
 
@@ -57,14 +57,14 @@ from .papers import (
 
 
 def air_text(content: float) -> str:
-    """Air content, or the end of those searched that it lies beyond."""
+    """Air content, or the end of the searched range if it lies beyond."""
     if content == 0:
         return f"less than {percent(CONTENTS[0])}"
     return percent(content) if math.isfinite(content) else f"more than {percent(CONTENTS[1])}"
 
 
 def other_cylinder(design: Design) -> str:
-    """Whose cylinder was measured, if it is not this one."""
+    """Note that the thesis measured another cylinder; empty if it is the same."""
     return of_another_cylinder(design, "thesis", (PAPER.bore, PAPER.rod, PAPER.stroke))
 
 
@@ -98,7 +98,7 @@ def stiffness_note(design: Design, figures: Sequence[Theory]) -> str:
     return (
         f"kN/mm at {scaled(places(design), 1e3)} mm. {other_cylinder(design)}"
         f"{', '.join(parts)}{_moduli(design)} are assumed, so the "
-        "thesis' curves are met in form, not read off: its text prints no number of them. "
+        "thesis' curves are compared in form only: its text prints no number of them. "
         "Why ours is softer: eq. 3 puts the totals of oil, barrel and hoses in series, as if the "
         "stiff chamber's hose could help the other chamber's oil; and eq. 23 lets the wall swell "
         f"over the rod's annulus only (too stiff by A_A/A_B = {text.trimmed(ratio, 3)}). Together "
@@ -117,11 +117,11 @@ def static_note(design: Design, test: StaticTest) -> str:
 
 
 def _air(test: StaticTest) -> tuple[str, ...]:
-    """Air behind the largest displacements, the thesis' bubbles, and whether all of it fits."""
+    """Sentences on the air behind the largest displacements, and on the thesis' bubbles."""
     up, down = test.air_up[1], test.air_down[1]
     alike = math.isfinite(up * down) and up > 0 and abs(down / up - 1) < SAME
     if alike and test.assumptions[3].down.range[0] > (1 - SAME) * PAPER.moved_down[0]:
-        return _air_up(test), _air_down(test), _bubbles(test), "One oil does for both directions."
+        return _air_up(test), _air_down(test), _bubbles(test), "One oil explains both directions."
     suspect = "The thesis suspects air that leaves the oil at 17 to 19 bar. We do not know."
     return _air_up(test), _air_down(test), _bubbles(test), suspect
 
@@ -142,7 +142,7 @@ def _air_up(test: StaticTest) -> str:
 
 
 def _air_down(test: StaticTest) -> str:
-    """How much more the other direction takes, and whether its least displacement is met."""
+    """Sentence on the air for load down, and on its least displacement."""
     up, down = test.air_up[1], test.air_down[1]
     if math.isinf(down):
         words = f"Load down not even {percent(CONTENTS[1])} does"
@@ -172,7 +172,7 @@ def _fraction(share: float) -> str:
 
 
 def _judged(answer: Answer, measured: tuple[float, float]) -> str:
-    """The largest displacement against the largest of each piston direction."""
+    """Verdict on the largest displacement against the largest of each piston direction."""
     if answer.cavitating:
         return "into cavitation"
     if answer.range[1] < min(measured):
@@ -207,29 +207,30 @@ def softer(loaded: tuple[float, float]) -> float:
 
 
 def _pressures(test: StaticTest) -> str:
-    """Which chamber the measured pressures call the softer."""
+    """Sentences on the softer chamber by the measured pressures."""
     ours = test.assumptions[1]
     even = [softer((answer.pressure_a, answer.pressure_b)) for answer in (ours.up, ours.down)]
     measured = [softer(PAPER.loaded_up), softer(PAPER.loaded_down)]
     words = (
-        f"The pressures say where to look: at {text.trimmed(1e3 * test.place)} mm the rod chamber "
-        f"changes {text.trimmed(measured[0], 2)} (up) and {text.trimmed(measured[1], 2)} (down) "
-        "times as much as the head chamber, where evenly spread air gives "
+        f"The pressures show the softer chamber: at {text.trimmed(1e3 * test.place)} mm the rod "
+        f"chamber changes {text.trimmed(measured[0], 2)} (up) and "
+        f"{text.trimmed(measured[1], 2)} (down) times as much as the head chamber; evenly "
+        "spread air gives "
     )
     if not all(map(math.isfinite, even)):
         return words + "cavitation."
     words += f"{text.trimmed(even[0], 2)} and {text.trimmed(even[1], 2)}. "
     if all(m < e for m, e in zip(measured, even, strict=True)):
         return words + (
-            "The rod chamber, at the top of the upright cylinder, is softer than that, as with "
-            "most of the air there and not in the head chamber."
+            "The rod chamber, at the top of the upright cylinder, is softer than that, as if most "
+            "of the air were there and not in the head chamber."
         )
     if all(m > e for m, e in zip(measured, even, strict=True)):
         return words + (
-            "The head chamber is softer than that, as with "
-            "most of the air there and not in the rod chamber."
+            "The head chamber is softer than that, as if most of the air were there and not in the "
+            "rod chamber."
         )
-    return words + "The two directions do not call the same chamber the softer."
+    return words + "The two directions do not agree on the softer chamber."
 
 
 def _by_pass(test: StaticTest) -> str:
@@ -269,7 +270,7 @@ def _times(values: Array) -> str:
 
 
 def judged_statements(share: Array) -> tuple[tuple[str, bool, Array], ...]:
-    """Each statement of the thesis on the stiffness, whether the shares bear it, and those."""
+    """Statements of the thesis on the stiffness, whether shares confirm them, and the shares."""
     slow, twenty, above, last = share[:, :2], share[:, 2], share[:, 3], share[:, 4]
     return (
         ("soft up to 15 Hz", bool(np.all(slow < 1)), slow),
@@ -284,7 +285,7 @@ def judged_statements(share: Array) -> tuple[tuple[str, bool, Array], ...]:
 
 
 def does_it(test: DynamicTest) -> bool:
-    """Whether the valve bears every statement at every needle, and is stable.
+    """Whether the valve confirms every statement with every needle, and is stable.
 
     Sections 4.2.2, 5.2 and 5.5: soft up to 15 Hz, "more than doubled" at 20 Hz, "slightly higher"
     at 25 Hz, static at 30 Hz.
@@ -312,14 +313,14 @@ def _valve(test: DynamicTest) -> str:
         words += f" With these numbers the cylinder is {listed(missed)}."
     if test.peak.slowest_decay >= 0:
         words += (
-            " And it is not stable: the valve feeds the swing, which then grows by itself, so that "
-            "these stiffnesses would not be seen."
+            " And it is not stable: the valve feeds the oscillation, which then grows by itself, "
+            "so that these stiffnesses would not be seen."
         )
     return words
 
 
 def _moves(share: Array, *, more: str, less: str, none: str) -> tuple[str, bool]:
-    """What throttling does, words and whether it does anything."""
+    """Words for the effect of throttling, and whether there is an effect."""
     if np.ptp(share) < NOTHING:
         return none, False
     return more if share[-1] > share[0] else less, True
@@ -358,7 +359,7 @@ def _throttle(test: DynamicTest) -> str:
 
 
 def _alike(neighbour: Neighbour) -> bool:
-    """Whether a neighbour does much the same: stable, soft, about twice at 20 Hz, then static."""
+    """Whether a neighbour behaves alike: stable, soft, about twice static at 20 Hz, then static."""
     return bool(
         neighbour.slowest_decay < 0
         and np.all(neighbour.ratio[:2] < 0.95)
@@ -368,17 +369,17 @@ def _alike(neighbour: Neighbour) -> bool:
 
 
 def _neighbours(test: DynamicTest) -> str:
-    """Whether the answer hangs on the valve's exact numbers, and on its opening."""
+    """Sentences on how the result depends on the valve's exact numbers, and on its opening."""
     frequencies = [neighbour.valve.natural_frequency for neighbour in test.neighbours]
     dampings = [neighbour.valve.damping_ratio for neighbour in test.neighbours]
     open_needle = shares(test, test.stated["reducing_valve"])[0]
     ours = _alike(Neighbour(test.valve, open_needle, test.peak.slowest_decay))
     alike = [_alike(neighbour) for neighbour in test.neighbours]
-    verdict = "do not all do the same"
+    verdict = "do not all behave alike"
     if ours and all(alike):
-        verdict = "do much the same"
+        verdict = "behave alike"
     elif not ours and not any(alike):
-        verdict = "do not do it either"
+        verdict = "do not behave so either"
     words = (
         f"Valves of {text.trimmed(min(frequencies))} to {text.trimmed(max(frequencies))} Hz with a "
         f"damping ratio of {text.trimmed(min(dampings), 3)} to {text.trimmed(max(dampings), 3)} "
@@ -386,7 +387,7 @@ def _neighbours(test: DynamicTest) -> str:
     )
     if test.valve.passive_conductance == 0 or test.peak.slowest_decay >= 0:
         return words + "."
-    feeds = "would feed the swing" if test.without_opening >= 0 else "would be stable as well"
+    feeds = "would feed the oscillation" if test.without_opening >= 0 else "would be stable as well"
     return f"{words}; without the opening beside it the valve {feeds}."
 
 
@@ -439,9 +440,9 @@ def dynamic_note(design: Design, test: DynamicTest) -> str:
         f"{text.trimmed(valve.conductance * 1e11, 2)} ml/s/bar beside an opening of "
         f"{text.trimmed(valve.passive_conductance * 1e11, 2)}"
     )
-    end = "So such a valve would not do it with these numbers."
+    end = "So such a valve does not explain it with these numbers."
     if does_it(test):
-        end = "It shows that such a valve would do it, not that this one did."
+        end = "It shows that such a valve would explain it, not that this valve did."
     return (
         "kN/mm at mid-stroke; line end: constant pressure, or a reducing valve. "
         f"{other_cylinder(design)}The thesis prints no number of these curves. {_closed(test)} "
@@ -456,7 +457,7 @@ def dynamic_note(design: Design, test: DynamicTest) -> str:
 
 
 def needles_caption(test: DynamicTest) -> str:
-    """Below the curves over frequency: which needle is where, and whether it throttles."""
+    """Caption of the curves over frequency: needle of each row, and whether it throttles."""
     peaks = shares(test, test.stated["reducing_valve"])[:, 2]
     change = float(np.max(peaks) / np.min(peaks))
     whose = "as the thesis states it"
@@ -472,7 +473,7 @@ def needles_caption(test: DynamicTest) -> str:
 
 
 def _oil(design: Design) -> str:
-    """Name of the oil; that of the thesis has the viscosity of a VG 32."""
+    """Name of the oil; the oil of the thesis has the viscosity of a VG 32."""
     name, library = design.fluid.material, load_library()
     if name == "aalto_thesis_oil":
         return "a VG 32"
@@ -503,7 +504,7 @@ def peak_note(design: Design, test: DynamicTest) -> str:
 
 
 def _drop(design: Design, test: DynamicTest) -> str:
-    """Whether flow, area and pressure drop fit together."""
+    """Sentence on whether flow, area and pressure drop fit together."""
     less = PAPER.cracking_pressure / test.needle.drop
     theirs = close(test.area, PAPER.throttle) and close(design.cylinder.bore, PAPER.bore)
     if 0.8 < less < 1.25:
@@ -695,7 +696,7 @@ def _five(values: Array) -> list[str]:
 
 
 def peak_table(evaluation: Evaluation) -> list[Block]:
-    """What the thesis says about the orifice and the 20 Hz peak, read back."""
+    """Statements of the thesis on the orifice and the 20 Hz peak, recomputed."""
     test = dynamic_test(evaluation.design)
     needle, degrees = test.needle, evaluation.design.fluid.temperature - 273.15
     frequencies = [
@@ -765,16 +766,16 @@ TABLES: tuple[Callable[[Evaluation], list[Block]], ...] = (
     lambda evaluation: [trends.trends_table(evaluation)],
     equations_table,
 )
-"""Every table, in the order of the thesis; the equations last."""
+"""Every table in the order of the thesis; the equations are last."""
 TRACES = equations("aalto")
 
 
 def table() -> list[Block]:
     """Every equation of the thesis with its function."""
     note = (
-        "Functions stand in actuator_opt.models with formula, range and source. The thesis prints "
-        "46 equations; dq/dt of eq. 43–45 and the force balance of eq. 40–42 are rows of one "
-        "system here."
+        "The functions are in actuator_opt.models with formula, range and source. The thesis "
+        "prints 46 equations; dq/dt of eq. 43–45 and the force balance of eq. 40–42 are here rows "
+        "of one system."
     )
     return [
         text_table("Aalto thesis: where its equations are", TRACE_COLUMNS, trace_rows(TRACES), note)

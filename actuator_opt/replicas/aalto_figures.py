@@ -1,13 +1,13 @@
 """Figures 5, 29, 32 and 42 of [AaltoThesis] and its dynamic tests as ink.
 
-Curves differ in dash as well as in colour and carry their label beside the frame.
+Curves differ in dash as well as in colour; their labels are beside the frame.
 """
 
 from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -60,23 +60,51 @@ class LabelledCurve:
     label: tuple[str, ...]
 
 
-def _curve(xs: Array, ys: Array, style: Style, *label: str) -> LabelledCurve:
+def curve(xs: Array, ys: Array, style: Style, *label: str) -> LabelledCurve:
+    """A curve over arrays."""
     return LabelledCurve([float(x) for x in xs], [float(y) for y in ys], style, label)
 
 
-def _pieces(curve: LabelledCurve) -> Iterable[tuple[list[float], list[float]]]:
+def _unbroken(curve: LabelledCurve) -> list[tuple[list[float], list[float]]]:
     """Stretches of a curve without gaps."""
-    xs: list[float] = []
-    ys: list[float] = []
-    for x, y in zip(curve.xs, curve.ys, strict=True):
-        if math.isfinite(y):
-            xs.append(x)
-            ys.append(y)
-        elif xs:
-            yield xs, ys
-            xs, ys = [], []
-    if xs:
-        yield xs, ys
+    pairs = [
+        list(group)
+        for finite, group in itertools.groupby(
+            zip(curve.xs, curve.ys, strict=True), key=lambda pair: math.isfinite(pair[1])
+        )
+        if finite
+    ]
+    return [([x for x, _ in group], [y for _, y in group]) for group in pairs]
+
+
+CurveEnd: TypeAlias = tuple[Point, Style, tuple[str, ...]]
+"""End of a curve on the paper, with its style and the lines of its label."""
+
+
+def draw_curves(
+    ink: Ink,
+    axes: Axes,
+    curves: Sequence[LabelledCurve],
+    frame: tuple[float, float, float],
+    others: Sequence[CurveEnd] = (),
+) -> None:
+    """Curves with labels to the right of a frame (right, top, bottom), and other labels there."""
+    right, top, bottom = frame
+    ends = list(others)
+    for drawn in curves:
+        lines = [line for xs, ys in _unbroken(drawn) for line in axes.clipped(xs, ys)]
+        ink.path(lines, **drawn.style)
+        if lines:
+            ends.append((lines[-1][-1], drawn.style, drawn.label))
+    ends.sort(key=lambda end: end[0][1])
+    heights = [_LABEL * len(label) for *_, label in ends]
+    gaps = [(a + b) / 2 + 0.6 for a, b in itertools.pairwise(heights)]
+    levels = spread_within([end[1] for end, *_ in ends], gaps, top, bottom + 3.0)
+    for (end, style, label), height, y in zip(ends, heights, levels, strict=True):
+        ink.line(end, (right + 1.0, end[1]), (right + 3.0, y), pen=0.13, stroke=GREY)
+        for k, words in enumerate(label):
+            level = y - height / 2 + _LABEL * (k + 0.5)
+            ink.text(right + 3.6, level, words, size=6.5, color=style["stroke"])
 
 
 def _panel(
@@ -102,25 +130,11 @@ def _panel(
     if mark is not None:
         ink.line((axes.x(mark), box[1]), (axes.x(mark), bottom), stroke=PALE, pen=0.25)
     axes.frame(title, x_label)
-    ends: list[tuple[Point, Style, tuple[str, ...]]] = []
+    measured: list[CurveEnd] = []
     if band is not None:
-        ends.append(
-            ((right, axes.y(sum(band) / 2)), {"stroke": GREY}, ("measured", _between(band)))
-        )
-    for curve in curves:
-        lines = [line for xs, ys in _pieces(curve) for line in axes.clipped(xs, ys)]
-        ink.path(lines, **curve.style)
-        if lines:
-            ends.append((lines[-1][-1], curve.style, curve.label))
-    ends.sort(key=lambda end: end[0][1])
-    heights = [_LABEL * len(label) for *_, label in ends]
-    gaps = [(a + b) / 2 + 0.6 for a, b in itertools.pairwise(heights)]
-    places = spread_within([end[1] for end, *_ in ends], gaps, box[1], bottom + 3.0)
-    for (end, style, label), height, y in zip(ends, heights, places, strict=True):
-        ink.line(end, (right + 1.0, end[1]), (right + 3.0, y), pen=0.13, stroke=GREY)
-        for k, words in enumerate(label):
-            level = y - height / 2 + _LABEL * (k + 0.5)
-            ink.text(right + 3.6, level, words, size=6.5, color=style["stroke"])
+        middle = (right, axes.y(sum(band) / 2))
+        measured = [(middle, {"stroke": GREY}, ("measured", _between(band)))]
+    draw_curves(ink, axes, curves, (right, box[1], bottom), measured)
 
 
 def _between(band: tuple[float, float]) -> str:
@@ -141,7 +155,7 @@ def theory_figure(
     *,
     width: float = 180.0,
 ) -> Ink:
-    """Figure 5, 29 and 32 along the stroke, and what the totals in series make of it."""
+    """Figures 5, 29 and 32 along the stroke, and the excess of the totals in series."""
     ink = Ink(width, 2 * _ROW)
 
     span = (0.0, 1e3 * stroke)
@@ -150,7 +164,7 @@ def theory_figure(
         return 1e3 * theory.position
 
     curves = [
-        _curve(millimetres(theory), theory.published / 1e6, style, words, _weakest(theory, False))
+        curve(millimetres(theory), theory.published / 1e6, style, words, _weakest(theory, False))
         for (words, theory), style in zip(oil, (DASHED, FULL, CHAIN), strict=False)
     ]
     title = "Figure 5: oil alone, kN/mm"
@@ -166,14 +180,14 @@ def theory_figure(
             title,
             _POSITION,
             [
-                _curve(
+                curve(
                     millimetres(theory),
                     theory.published / 1e6,
                     DASHED,
                     equation,
                     _weakest(theory, False),
                 ),
-                _curve(
+                curve(
                     millimetres(theory),
                     theory.per_chamber / 1e6,
                     FULL,
@@ -185,7 +199,7 @@ def theory_figure(
             top=1.08 * most,
         )
     excess = [
-        _curve(millimetres(theory), 100 * (theory.published / theory.per_chamber - 1), style, words)
+        curve(millimetres(theory), 100 * (theory.published / theory.per_chamber - 1), style, words)
         for theory, style, words in ((figure_29, DASHED, "eq. 37"), (figure_32, CHAIN, "eq. 38"))
     ]
     highest = max(max(curve.ys) for curve in excess)
@@ -195,7 +209,7 @@ def theory_figure(
 
 
 def static_figure(stroke: float, test: StaticTest, *, width: float = 180.0) -> Ink:
-    """Displacement over position under every assumption, on the measured range."""
+    """Displacement over position under every assumption, with the measured range."""
     ink = Ink(width, _ROW)
     styles = (FULL, DASHED, THIN, CHAIN, DOTTED)
     for column, words, load, band in (
@@ -207,7 +221,7 @@ def static_figure(stroke: float, test: StaticTest, *, width: float = 180.0) -> I
             moved = (assumption.up if words == "up" else assumption.down).displacement
             label = assumption.name.split(", ")
             tail = [label[0] + ",", *label[1:]] if len(label) > 1 else label
-            curves.append(_curve(1e3 * test.position, 1e3 * moved, style, *tail))
+            curves.append(curve(1e3 * test.position, 1e3 * moved, style, *tail))
         _panel(
             ink,
             (0, column),
@@ -239,13 +253,13 @@ def dynamic_figure(test: DynamicTest, *, width: float = 180.0) -> Ink:
     for row, (needle, by_end) in enumerate(needles):
         for column, (end, words) in enumerate(columns):
             curves = [
-                _curve(FREQUENCIES, np.abs(response.over) / 1e6, style, _throttle(response.opening))
+                curve(FREQUENCIES, np.abs(response.over) / 1e6, style, _throttle(response.opening))
                 for response, style in zip(by_end[end], (FULL, DASHED, CHAIN), strict=True)
             ]
             shut = np.abs(test.closed.over) / 1e6
-            curves.append(_curve(FREQUENCIES, shut, THIN, "throttle 100 %"))
+            curves.append(curve(FREQUENCIES, shut, THIN, "throttle 100 %"))
             static = np.full(FREQUENCIES.shape, test.static / 1e6)
-            curves.append(_curve(FREQUENCIES, static, DOTTED, "static, with hoses"))
+            curves.append(curve(FREQUENCIES, static, DOTTED, "static, with hoses"))
             most = max(max(curve.ys) for curve in curves)
             _panel(
                 ink,

@@ -1,14 +1,15 @@
 """The cylinder of [AaltoThesis] in this project's models: stiffness, static and dynamic tests.
 
-Every curve is the evaluation of the design itself with the oil, lines and load cell of the figure,
-so the re-creation uses no formula of its own. SI throughout.
+Every curve is an evaluation of the design with the oil, lines and load cell of the figure, so the
+re-creation needs no further formula. All values are in SI.
 
-Static test: walls count as oil of the same compliance, so that `trapped_air_load_step` serves them
-too: its volumes are K C of oil and barrel. Rod and load cell give way behind the chambers, because
-the position is measured there.
+Static test: walls count as oil of the same compliance, so that `trapped_air_load_step` includes
+them: its volumes are K C of oil and barrel. The compliance of rod and load cell adds to the
+displacement, because the position is measured behind them.
 
-Dynamic tests: the linear model leaves friction out. The thesis gives no number of it, and sliding
-seals only add damping. The numbers of the reducing valve are ours; the thesis only suspects it.
+Dynamic tests: the linear model leaves friction out. The thesis gives no number of friction, and
+sliding seals only add damping. The numbers of the reducing valve are ours; the thesis only suspects
+it.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ Topology = Literal["per_chamber", "aalto_as_published"]
 
 @dataclass(frozen=True, slots=True)
 class AaltoThesis:
-    """What the thesis prints, SI; ``notes/aalto.yaml`` has the places."""
+    """Numbers the thesis prints, SI; ``notes/aalto.yaml`` has the places."""
 
     bore: float
     rod: float
@@ -73,7 +74,7 @@ class AaltoThesis:
 PAPER = published_numbers(AaltoThesis, "aalto")
 
 MARGIN = 0.005
-"""How near the ends of the stroke the thesis' test runs came (m)."""
+"""Least distance of the thesis' test runs from the ends of the stroke (m)."""
 
 
 def places(design: Design) -> Array:
@@ -96,9 +97,9 @@ def variant(
     load_cell: bool = True,
 ) -> Springs:
     """Springs of the design with one bulk modulus, no air, chosen lines and topology."""
-    chain = {"topology": topology, "seals": "sliding"}
+    options = {"topology": topology, "seals": "sliding"}
     if not load_cell:
-        chain["load_cell"] = None  # type: ignore[assignment]
+        options["load_cell"] = None  # type: ignore[assignment]
     oil = design.fluid.material
     changed = design.model_copy(
         update={
@@ -106,7 +107,7 @@ def variant(
                 update={"air_content": 0.0, "bulk_modulus_law": "constant"}
             ),
             "lines": tuple(lines),
-            "stiffness": design.stiffness.model_copy(update=chain),
+            "stiffness": design.stiffness.model_copy(update=options),
             "materials": design.materials
             | {oil: design.materials.get(oil, {}) | {"bulk_modulus": bulk_modulus}},
         }
@@ -115,7 +116,7 @@ def variant(
 
 
 def evaluated(design: Design) -> ModelRun:
-    """One pass over the models."""
+    """The models evaluated once."""
     subject = prepare(design)
     return compute(subject, subject.values())
 
@@ -123,13 +124,13 @@ def evaluated(design: Design) -> ModelRun:
 def temperature_of(design: Design, viscosity: float) -> float:
     """Temperature [K] between -20 and 120 degC at which the oil has a kinematic viscosity.
 
-    NaN where it has it at none.
+    NaN if no such temperature exists.
     """
     subject = prepare(design)
     v = subject.values()
-    stock = MaterialValues(v, subject.materials, subject.factors, subject.constants)
+    materials = MaterialValues(v, subject.materials, subject.factors, subject.constants)
     warm = np.linspace(253.15, 393.15, 1401)
-    viscosities = np.log(np.ravel(state.kinematic_viscosity(v, design.fluid, stock, warm)))
+    viscosities = np.log(np.ravel(state.kinematic_viscosity(v, design.fluid, materials, warm)))
     return float(np.interp(-np.log(viscosity), -viscosities, warm, left=np.nan, right=np.nan))
 
 
@@ -139,17 +140,17 @@ def first(values: Array) -> Array:
 
 
 def unstretched(springs: Springs) -> Springs:
-    """The same without the barrel's axial stretch, which the thesis does not have."""
-    rest = {name: give for name, give in springs.chambers.items() if name != "stretch"}
-    return replace(springs, chambers=rest)
+    """The springs without the barrel's axial stretch, which the thesis leaves out."""
+    others = {name: give for name, give in springs.chambers.items() if name != "stretch"}
+    return replace(springs, chambers=others)
 
 
 @dataclass(frozen=True, slots=True)
 class Theory:
-    """One stiffness curve of the thesis [N/m] along `position` [m]: its own form and ours.
+    """A stiffness curve of the thesis [N/m] along `position` [m]: the printed form and ours.
 
-    `per_chamber` has the causes of the thesis, `stretched` the barrel's axial stretch too; the
-    columns `at` hold the same at `places`.
+    `per_chamber` includes the compliances of the thesis, `stretched` also the barrel's axial
+    stretch. The fields that end in `_at` are values at `places`.
     """
 
     position: Array
@@ -161,7 +162,7 @@ class Theory:
 
     @property
     def weakest(self) -> tuple[float, float]:
-        """Position and stiffness of the softest place, by the thesis' form."""
+        """Position and stiffness of the softest place, by the printed form."""
         k = int(np.argmin(self.published))
         return float(self.position[k]), float(self.published[k])
 
@@ -172,7 +173,7 @@ def _along(design: Design) -> Array:
 
 
 def oil_alone(design: Design, lines: Sequence[Line]) -> Theory:
-    """Figure 5: eq. 6 with rigid walls, with the volume of some lines; both forms agree."""
+    """Figure 5: eq. 6 with rigid walls and the volume of some lines; both forms agree."""
     springs = variant(design, lines=lines, bulk_modulus=PAPER.bulk_modulus)
     position = _along(design)
     curve, at = (first(springs.hydraulic(x, springs.oil)) for x in (position, places(design)))
@@ -222,11 +223,11 @@ ENTRAINED = 0.005
 """Air content of a usual mineral oil."""
 
 CONTENTS = (0.001, 0.15)
-"""Air contents searched for the one behind a displacement."""
+"""Range of air contents searched for a displacement."""
 
 
 class Bypass(NamedTuple):
-    """Force on the chambers by the pressures of figure 41 [N]; share of the load beside them."""
+    """Force on the chambers by the pressures of figure 41 [N]; by-passing share of the load."""
 
     force: float
     share: float
@@ -242,7 +243,7 @@ class Air:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What one assumption makes of a load step; arrays along `position`, SI.
+    """Response to a load step under an assumption; arrays along `position`, SI.
 
     Displacements are magnitudes, NaN where no state of the chambers carries the load (cavitation).
     """
@@ -250,11 +251,11 @@ class Answer:
     displacement: Array
     pressure_a: float
     pressure_b: float
-    """At 185 mm, as figure 41."""
+    """Pressures at 185 mm, as in figure 41."""
 
     @property
     def range(self) -> tuple[float, float]:
-        """Least and largest displacement over the positions that have one; NaN without any."""
+        """Least and largest finite displacement over the positions; NaN without any."""
         known = self.displacement[np.isfinite(self.displacement)]
         if not known.size:
             return float("nan"), float("nan")
@@ -262,7 +263,7 @@ class Answer:
 
     @property
     def cavitating(self) -> int:
-        """Positions without a state."""
+        """Number of positions without a state."""
         return int(np.count_nonzero(np.isnan(self.displacement)))
 
 
@@ -292,7 +293,7 @@ class ClosedCylinder:
         self.volume = Air(scale * first(walls.a), scale * first(walls.b))
 
     def bypass(self, loaded: tuple[float, float], load: float) -> Bypass:
-        """What the measured pressures say of the force beside the chambers."""
+        """Force on the chambers by the measured pressures, and the by-passing share of a load."""
         a = (loaded[0] - PAPER.pressure_a) * self.geometry.area_a
         b = (loaded[1] - PAPER.pressure_b) * self.geometry.area_b
         force = abs(float(a - b))
@@ -331,7 +332,7 @@ class ClosedCylinder:
         )
 
     def answer(self, load: float, air: Air, *, share: float = 0.0) -> Answer:
-        """Displacement behind the load cell; `share` of the load passes the chambers by."""
+        """Displacement behind the load cell; `share` of the load by-passes the chambers."""
         step = self.step((1 - share) * load, air)
         moved = np.abs(step.displacement) + abs(load) * self.flexibility
         return Answer(
@@ -341,9 +342,9 @@ class ClosedCylinder:
         )
 
     def air_needed(self, load: float, most: float, *, share: float) -> float:
-        """Entrained air at which the largest displacement is the measured one.
+        """Entrained air at which the largest displacement equals the measured value.
 
-        0 where the least of `CONTENTS` already moves more, infinite where the most moves less.
+        0 if the least of `CONTENTS` already gives more, infinite if the most gives less.
         """
         content = np.linspace(*CONTENTS, 300)
         air = Air(content[:, None] * self.oil.a, content[:, None] * self.oil.b)
@@ -362,12 +363,12 @@ class StaticTest:
 
     position: Array
     place: float
-    """Of the pressures of every answer."""
+    """Position of the pressures of every response [m]."""
     up: Bypass
     down: Bypass
     assumptions: tuple[Assumption, ...]
     air_up: tuple[float, float]
-    """Entrained air behind the largest displacement: all of the load on the chambers, and less
+    """Entrained air behind the largest displacement: with the whole load on the chambers, and with
     the measured by-pass. 0 and infinite beyond `CONTENTS`."""
     air_down: tuple[float, float]
 
@@ -421,7 +422,7 @@ def _needed(bench: ClosedCylinder, load: float, most: float, bypass: Bypass) -> 
 End = Literal["constant_pressure", "reducing_valve"]
 
 OPENINGS = (1.0, 0.5, 0.25)
-"""Throttle 0, 50 and 75 %, read as the share of the needle's area that is left."""
+"""Open share of the needle's area, for a throttle of 0, 50 and 75 %."""
 
 TESTED = (10.0, 15.0, 20.0, 25.0, 30.0)
 """Loading frequencies of the thesis (Hz)."""
@@ -431,13 +432,14 @@ FREQUENCIES = np.linspace(5.0, 50.0, 361)
 VALVE = ReducingValve(
     conductance=8e-12, passive_conductance=1e-11, natural_frequency=19.0, damping_ratio=0.2
 )
-"""Ours: peaks at 20 Hz at mid-stroke, soft below, near the closed cylinder above."""
+"""Our valve: the stiffness peaks at 20 Hz at mid-stroke, is low below and near closed ports
+above."""
 
 NEAR = 0.5
-"""How far the natural frequencies of the neighbouring valves lie (Hz)."""
+"""Difference of the natural frequencies of neighbouring valves (Hz)."""
 
 MORE_DAMPING = (1.0, 1.25)
-"""Their damping ratios over the valve's."""
+"""Damping ratios of neighbouring valves over that of the valve."""
 
 THROTTLE = Throttle(
     area=one_way_valve.NEEDLE_AREA,
@@ -456,16 +458,16 @@ class Needle:
     viscosity: float
     """Kinematic viscosity behind the thesis' Reynolds number."""
     temperature: float
-    """At which the design's oil has it [K]; NaN where it never does."""
+    """Temperature at which the design's oil has this viscosity [K]; NaN without any."""
     reynolds: float
-    """With the design's oil."""
+    """Reynolds number with the design's oil."""
     flow_coefficient: float
     flow_coefficient_slow: float
-    """At the base velocity alone."""
+    """Flow coefficient at the base velocity alone."""
     drop: float
-    """Of the head side, fully open."""
+    """Pressure drop of the head side, fully open."""
     area: float
-    """Needle that drops the cracking pressure there, as was measured."""
+    """Area of the needle at which this drop is the measured cracking pressure."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -479,13 +481,13 @@ class StiffnessResponse:
 
 @dataclass(frozen=True, slots=True)
 class Neighbour:
-    """A reducing valve beside ours: what it makes of the open needle as the thesis states it."""
+    """A reducing valve near ours: stiffness with the open needle that the thesis states."""
 
     valve: ReducingValve
     ratio: Array
     """Dynamic stiffness at `TESTED` over the static one, mid-stroke."""
     slowest_decay: float
-    """As of `Peak`."""
+    """Largest real part of the poles, as in `Peak`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -493,7 +495,8 @@ class Peak:
     """The reducing valve's resonance with the cylinder."""
 
     antiresonance_frequency: tuple[float, float]
-    """Where chamber A, and B, with its line and the valve takes no reactive flow [Hz]."""
+    """Frequencies at which chamber A, or B, with its line and the valve takes no reactive flow
+    [Hz]."""
     position: Array
     ratio: Array
     """Dynamic stiffness at 20 Hz over the static one along `position`, throttle 0 %."""
@@ -503,20 +506,20 @@ class Peak:
 
 @dataclass(frozen=True, slots=True)
 class DynamicTest:
-    """Everything the page on the dynamic tests shows."""
+    """All results on the page of the dynamic tests."""
 
     static: float
     """Closed ports with hoses, mid-stroke [N/m]."""
     closed: StiffnessResponse
     """Throttle 100 %: cylinder and pipes alone."""
     area: float
-    """The needle as stated [m^2]."""
+    """Area of the needle as stated [m^2]."""
     needle: Needle
     valve: ReducingValve
     stated: dict[End, tuple[StiffnessResponse, ...]]
-    """By line end, for every opening, needle as the thesis states it."""
+    """Responses by line end for every opening, with the needle that the thesis states."""
     read_back: dict[End, tuple[StiffnessResponse, ...]]
-    """The same with the needle behind the measured pressure drop."""
+    """Responses with the needle behind the measured pressure drop."""
     peak: Peak
     neighbours: tuple[Neighbour, ...]
     without_opening: float
@@ -554,7 +557,7 @@ class HeldCylinder:
     def model(self, end: End, position: Array, *, area: float) -> linear.LinearActuator:
         """Linear model; a needle of zero area is closed.
 
-        Both chambers press through their needle, as in the half cycle that empties them; the
+        Oil leaves both chambers through their needle, as in the half cycle that empties them. The
         tangent is taken where it dissipates as much as the sine of the thesis' speed amplitude.
         """
         throttles = {}
@@ -578,7 +581,7 @@ class HeldCylinder:
         return value[:, 0, :]
 
     def response(self, end: End, opening: float, area: float) -> StiffnessResponse:
-        """A needle, opened to a share of its area, at mid-stroke."""
+        """Response at mid-stroke with a needle opened to a share of its area."""
         middle = np.array([self.stroke / 2])
         over, tested = (
             self.stiffness(end, middle, frequency, area=opening * area)[:, 0]
@@ -587,7 +590,7 @@ class HeldCylinder:
         return StiffnessResponse(opening, over, tested)
 
     def responses(self, end: End, area: float) -> tuple[StiffnessResponse, ...]:
-        """Every opening at mid-stroke."""
+        """Responses of every opening at mid-stroke."""
         return tuple(self.response(end, opening, area) for opening in OPENINGS)
 
     @property
@@ -630,7 +633,7 @@ class HeldCylinder:
         )
 
     def peak(self, areas: Sequence[float]) -> Peak:
-        """Where the valve peaks, how much along the stroke, and whether all is stable."""
+        """Frequency and height of the valve's peak along the stroke, and its stability."""
         position = np.linspace(MARGIN, self.stroke - MARGIN, 22)
         give = self.motion.springs.total().at(np.array([self.stroke / 2]), self.stroke)
         frequencies = [
@@ -664,7 +667,7 @@ class HeldCylinder:
 
 
 def _neighbours(bench: HeldCylinder, areas: Sequence[float]) -> tuple[Neighbour, ...]:
-    """Valves a little slower, faster and more damped."""
+    """Valves that are a little slower, faster and more damped."""
     ours, neighbours = bench.valve, []
     slow = max(ours.natural_frequency - NEAR, ours.natural_frequency / 2)
     for frequency in (slow, ours.natural_frequency + NEAR):
@@ -684,7 +687,7 @@ def _neighbours(bench: HeldCylinder, areas: Sequence[float]) -> tuple[Neighbour,
 
 
 def dynamic_test(design: Design) -> DynamicTest:
-    """The linear model's answer to the dynamic tests of the thesis."""
+    """Response of the linear model to the dynamic tests of the thesis."""
     bench = HeldCylinder(design)
     slow = max((case.speed for case in design.load_cases), default=0.0) or PAPER.speed
     needle, stated = bench.needle(slow), bench.throttle.area

@@ -1,4 +1,4 @@
-"""Tables of the numbers that [ElAsswad2018] prints beside ours, contradictions named.
+"""Tables of the numbers that [ElAsswad2018] prints beside ours, with its contradictions.
 
 One table per subject; the columns are what the paper prints, what its own formula gives with the
 paper's numbers, and what this project's models give for the design.
@@ -62,7 +62,7 @@ def _hidden(tube: Tube, span: float) -> str:
 
 
 def bending_table(evaluation: Evaluation) -> list[Block]:
-    """What shear, dents and section would make of the bending modulus, and eq. 12 of it."""
+    """Bending modulus corrected for shear, dents and section, and the bore growth of eq. 12."""
     tube = tube_of(evaluation)
     supply, growth = evaluation.design.supply.pressure, value(evaluation, "bore_growth")
     thickness = wall_thickness(evaluation)
@@ -130,12 +130,12 @@ def _bending_note(tube: Tube, times: float) -> str:
     most = max(tube.modulus(span, solid=True, shear=True, local=True) for span in SPANS)
     upper = f"to {in_gpa(most)}" if math.isfinite(most) else "without an upper limit"
     return (
-        "The paper prints neither span, section, k₀ nor rollers, and says itself that the change "
+        "The paper prints neither span, section, k₀ nor rollers, and states that the change "
         "of section is left out. Assumed: the spans (its two strokes), a tube "
         f"{in_mm(tube.outer_diameter)}/{in_mm(tube.inner_diameter)} of woven carbon with "
         f"G = {in_gpa(tube.shear_modulus)}, rollers of {in_mm(ROLLER_RADIUS)} radius at "
         f"{in_n(FORCE)} (Hertz; a thin tube flattens as well). That leaves the modulus open from "
-        f"{in_gpa(least)} {upper}, and does not tell a soft wall from a soft test. Whatever it "
+        f"{in_gpa(least)} {upper}, and does not separate a soft wall from a soft test. Whatever it "
         "is, it is stiffness along the axis; eq. 12 needs that around the bore. The two are equal "
         "only where warp and weft are: in a hoop-wound wall they differ "
         f"{text.trimmed(wide, 2)} times. Eq. 12 with {in_gpa(PAPER.bending_modulus)} swells the "
@@ -202,7 +202,7 @@ def force_table(evaluation: Evaluation) -> list[Block]:
         f"{in_mm2(PAPER.area)} of the bore: forces and pressure losses cannot both be of this "
         f"cylinder. Our forces are no check of the paper's: they hold at the "
         f"{in_mpa(evaluation.design.supply.pressure)} assumed in the design, running and at "
-        "breakaway; the rod's ring sees it on the way in only."
+        "breakaway; the ring of the rod is under this pressure on the way in only."
     )
     return [text_table("El Asswad 2018: friction force", COLUMNS, rows, note)]
 
@@ -339,7 +339,7 @@ def _oil(evaluation: Evaluation) -> list[Block]:
     )
     note = (
         f"Eq. 9 at mid-stroke gives {text.trimmed(bare / PAPER.oil_stiffness, 2)} times the "
-        f"published k_oil unless {in_ml(volume)} of line stand on each side, of which the paper "
+        f"published k_oil unless each side has {in_ml(volume)} of line volume, of which the paper "
         f"says nothing. The bulk modulus is that of a mineral oil with {percent(air)} of entrained"
         f" air at the {in_mpa(design.supply.pressure)} of this design."
     )
@@ -384,8 +384,8 @@ def _rod(evaluation: Evaluation) -> list[Block]:
         ),
     )
     note = (
-        f"k_rod means {in_gpa(short)} or {in_gpa(long)}, by which of its two strokes the paper "
-        f"divided; neither is the measured {in_gpa(PAPER.bending_modulus)} nor what woven carbon "
+        f"k_rod implies {in_gpa(short)} or {in_gpa(long)}, depending on which stroke the paper "
+        f"used; neither is the measured {in_gpa(PAPER.bending_modulus)} nor what woven carbon "
         "has along its warp."
     )
     return [text_table("El Asswad 2018: rod stiffness", COLUMNS, rows, note)]
@@ -400,7 +400,7 @@ def _eq_10(pressure: float, *, growth_per_pressure: float) -> float:
 
 
 def _stretch(evaluation: Evaluation) -> str:
-    """What the barrel's axial stretch adds, as a stiffness at the weakest position."""
+    """Axial stretch of the barrel as a stiffness at the weakest position."""
     curve = evaluation.curve
     place = min(range(len(curve.stiffness)), key=lambda k: float(curve.stiffness[k]))
     share = curve.contributions.get("stretch")
@@ -491,7 +491,7 @@ def _viscous(evaluation: Evaluation) -> list[Block]:
         f"c was computed with {in_mm(PAPER.damping_stroke)}; the stroke of table 1 gives "
         f"{in_ns_per_m(float(by_table))}. Eq. 6 is the wall shear on the barrel, not on the "
         f"piston, and the seals' secant damping is {text.number(seal / PAPER.damping, 2)} times as "
-        "large: two quantities, never one."
+        "large: these are two quantities."
     )
     return [text_table("El Asswad 2018: viscous damping", COLUMNS, rows, note)]
 
@@ -540,8 +540,8 @@ def _record(evaluation: Evaluation) -> list[Block]:
         "El Asswad 2018: k_eq and radial expansion along a record, as its figure 10",
         record_figure(record, curves),
         "A record of our own with the pressures behind the paper's friction, not its measured "
-        "one. Eq. 7 with eq. 10 follows the pressure and leaves no stiffness where there is none. "
-        "Per chamber it follows the place of the piston: with the paper's numbers "
+        "record. Eq. 7 with eq. 10 follows the pressure and leaves no stiffness at zero pressure. "
+        "Per chamber it follows the position of the piston: with the paper's numbers "
         f"({in_gpa(PAPER.bending_modulus)}, k_rod, its constant K and the line volume behind its "
         f"k_oil), and as designed (case {evaluation.curve.case}, ports closed).",
     )
@@ -559,7 +559,7 @@ TABLES: tuple[Callable[[Evaluation], list[Block]], ...] = (
     coefficient_table,
     _record,
 )
-"""Every table, in the order of the paper but for the record, which needs them all."""
+"""Every table in the order of the paper; the record comes last, as it needs all others."""
 
 
 def blocks(evaluation: Evaluation) -> list[Block]:

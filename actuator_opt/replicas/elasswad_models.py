@@ -32,11 +32,11 @@ from ..models import (
 from .papers import published_numbers
 
 POISSONS_RATIO = 0.3
-"""Of the barrel in eq. 12; the paper prints none. Assumed, as usual for its isotropic form."""
+"""Poisson's ratio of the barrel in eq. 12: assumed, as the paper prints none."""
 
 
 def root(function: Callable[[float], float], low: float, high: float) -> float:
-    """Where a falling function is zero, by bisection; an end of the bracket where it never is."""
+    """Zero of a falling function by bisection; an end of the bracket without a zero inside."""
     for _ in range(60):
         middle = (low + high) / 2
         low, high = (middle, high) if function(middle) > 0 else (low, middle)
@@ -45,7 +45,7 @@ def root(function: Callable[[float], float], low: float, high: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class ElasswadPaper:
-    """What the paper prints, SI; ``notes/elasswad.yaml`` has the places."""
+    """Numbers the paper prints, SI; ``notes/elasswad.yaml`` has the places."""
 
     bore: float
     piston_diameter: float
@@ -70,12 +70,12 @@ class ElasswadPaper:
 
     @property
     def rod_modulus_per_length(self) -> float:
-        """E/L that the rod stiffness means for the full section, Pa/m."""
+        """E/L behind the rod stiffness for the full section, Pa/m."""
         return float(self.rod_stiffness / rod.section_area(outer_diameter=self.rod_diameter))
 
     @property
     def viscosity(self) -> float:
-        """Dynamic viscosity that eq. 6 needs for the damping over its own stroke."""
+        """Dynamic viscosity that eq. 6 needs for the printed damping over its stroke."""
         return self.damping / float(
             damping.pipe_flow(dynamic_viscosity=1.0, length=self.damping_stroke)
         )
@@ -149,10 +149,10 @@ PAPER = published_numbers(ElasswadPaper, "elasswad")
 SPANS = (PAPER.stroke, PAPER.damping_stroke)
 
 ROLLER_RADIUS = 5e-3
-"""Rollers as usual in bending tests of composites (m)."""
+"""Radius of the rollers, as usual in bending tests of composites (m)."""
 
 FORCE = 500.0
-"""Where the slope is taken (N)."""
+"""Force at which the slope is taken (N)."""
 
 STIFF_END = 20e-3
 """Length of a much stiffer cap over each support (m)."""
@@ -160,7 +160,7 @@ STIFF_END = 20e-3
 
 @dataclass(frozen=True, slots=True)
 class Tube:
-    """The specimen assumed: section, and the library's woven carbon for what bending leaves out."""
+    """The assumed specimen: its section, and the constants of the library's woven carbon."""
 
     outer_diameter: float
     inner_diameter: float
@@ -170,7 +170,7 @@ class Tube:
     contact_modulus: float
 
     def second_moment(self, *, solid: bool = False) -> float:
-        """Of the tube, or of the solid bar it might be taken for."""
+        """Second moment of the tube, or of a solid bar of the same diameter."""
         inner = 0.0 if solid else self.inner_diameter
         return float(rod.second_moment(outer_diameter=self.outer_diameter, inner_diameter=inner))
 
@@ -184,7 +184,7 @@ class Tube:
 
     @property
     def local_compliance(self) -> float:
-        """Of the three rollers."""
+        """Deflection per force at the three rollers."""
         return float(
             bending_test.indentation_compliance(
                 force=FORCE,
@@ -197,7 +197,7 @@ class Tube:
     def modulus(
         self, span: float, *, solid: bool = False, shear: bool = False, local: bool = False
     ) -> float:
-        """Modulus of the tube behind the published one, if eq. 13 left these out."""
+        """Modulus of the tube if the published value by eq. 13 left these effects out."""
         measured = PAPER.bending_slope(span=span, second_moment=self.second_moment(solid=solid))
         return float(
             bending_test.bending_modulus(
@@ -210,7 +210,7 @@ class Tube:
         )
 
     def modulus_between_caps(self, span: float) -> float:
-        """The same with stiff caps over the supports."""
+        """Modulus of the tube with stiff caps over the supports."""
         even = self.second_moment()
         stepped = bending_test.equivalent_second_moment(
             second_moments=[1e3 * even, even], steps=[STIFF_END], span=span
@@ -221,7 +221,7 @@ class Tube:
         )
 
     def hidden(self, span: float) -> tuple[float, float]:
-        """What must give beside the tube for woven carbon to look like that; its share of all."""
+        """Further compliance for woven carbon to give the published slope; its share of all."""
         even = self.second_moment()
         slope = bending_test.bending_slope(
             youngs_modulus=self.warp_modulus,
@@ -235,7 +235,7 @@ class Tube:
 
 
 def tube_of(evaluation: Evaluation) -> Tube:
-    """The specimen assumed: the design's wall on the published bore, of woven carbon."""
+    """The assumed specimen: woven carbon with the design's wall on the published bore."""
     woven = load_library().get("woven_cfrp").numbers
     across = woven["poissons_ratio_13"]
     return Tube(
@@ -265,7 +265,8 @@ class CycleRecord:
 class Along:
     """Radial expansion [m] and equivalent stiffness [N/m] at every time of a record.
 
-    By the published formulas; by the same numbers in the right ones, per chamber; as designed.
+    Fields end in the method: the published formulas, the paper's numbers in the correct formulas,
+    or the design.
     """
 
     growth_published: Array
@@ -308,7 +309,7 @@ def pressure_record(
 def own_record(evaluation: Evaluation) -> CycleRecord:
     """The record whose pressures give the published friction, 166 N on average and 400 N at most.
 
-    By eq. 15 to 20 with the published coefficient and the design's ring.
+    Friction follows from eq. 15 to 20 with the published coefficient and the design's ring.
     """
     width = chord(evaluation.design.seals.piston)
     return pressure_record(
@@ -320,10 +321,10 @@ def own_record(evaluation: Evaluation) -> CycleRecord:
 
 
 def chambers(place: Array, *, growth_per_pressure: float) -> Array:
-    """Stiffness per chamber with the paper's own numbers, at places of the piston.
+    """Stiffness per chamber with the numbers of the paper, at positions of the piston.
 
-    A^2/C of both chambers, C = V/K + dV/dp of the swelling bore, in series with k_rod. V holds the
-    line volume behind the published k_oil.
+    A^2/C of both chambers, C = V/K + dV/dp of the swelling bore, in series with k_rod. V includes
+    the line volume behind the published k_oil.
     """
     line = PAPER.line_volume(bore=PAPER.bore)
     areas = (
@@ -377,20 +378,20 @@ def along(evaluation: Evaluation, record: CycleRecord) -> Along:
 
 
 def value(evaluation: Evaluation, name: str) -> float:
-    """Value of a metric; NaN where it has none."""
+    """Value of a metric; NaN without a value."""
     number = evaluation.metrics[name].value
     return float("nan") if number is None else number
 
 
 def properties(evaluation: Evaluation, name: str) -> Mapping[str, float]:
-    """What the library and the design state of a material; nothing of one of the user's files."""
+    """Numbers of a material from library and design; empty for a material of the user's files."""
     library = load_library()
     known = library.get(name).numbers if name in library else {}
     return {**known, **evaluation.design.materials.get(name, {})}
 
 
 def wall_thickness(evaluation: Evaluation) -> float:
-    """Thickness of the barrel; the paper prints none, so the design's stands for it."""
+    """Thickness of the design's barrel, used because the paper prints none."""
     return sum(layer.thickness for layer in evaluation.design.barrel.layup)
 
 

@@ -1,8 +1,8 @@
-"""Tables that set [Huang2017] beside this project's films, claims judged, and the notes below.
+"""Tables that compare [Huang2017] with this project's films, judge its claims, and their notes.
 
 The text of the paper prints few numbers: table 2, a claimed fall of B and the chamber's shear. Our
-films judge its claims with the design's seals, none of them fitted to it. A verdict follows from
-the numbers of the design at hand.
+films judge its claims with the seals of the design, which are not fitted to the paper. A verdict
+follows from the numbers of the design at hand.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ from .papers import (
 AGREES, DISAGREES, IN_PART = "agrees", "disagrees", "agrees in part"
 
 OPEN = "no film"
-"""A verdict that no film lets us give."""
+"""Verdict where no film exists to judge a claim."""
 
 
 def mega(value: float, digits: int = 3) -> str:
@@ -77,26 +77,26 @@ def megas(values: Sequence[float] | Array, digits: int = 3) -> str:
 
 
 def verdict(share: float) -> str:
-    """By the share of a claim that holds; NaN says that there was no film to judge it by."""
+    """Verdict by the share of a claim that holds; NaN if no film exists to judge it."""
     if not math.isfinite(share):
         return OPEN
     return AGREES if share >= 1 else DISAGREES if share <= 0 else IN_PART
 
 
 def holds(fact: bool, *values: float) -> str:
-    """A claim that holds or not, by numbers that all have to be known."""
+    """Verdict on a claim; open unless all of its numbers are finite."""
     return verdict(float(fact) if all(map(math.isfinite, values)) else math.nan)
 
 
 def other_cylinder(design: Design) -> str:
-    """Whose cylinder was measured, if it is not this one."""
+    """Note that the paper measured another cylinder; empty if it is the same."""
     return of_another_cylinder(design, "paper", (PAPER.bore, PAPER.rod, PAPER.stroke))
 
 
 CLAIMS = ("claim of the paper", "paper", "ours", "verdict")
 
 NEAR = 1.3
-"""Factor within which a simulated damping agrees with the measured."""
+"""Factor within which a simulated damping agrees with the measured damping."""
 
 STILL = 1.2
 """Factor within which a damping no longer falls at twice the speed."""
@@ -155,7 +155,7 @@ def _ends(mapped: FilmMap, low: float, high: float, speed: float) -> tuple[float
 
 
 def simulated_table(_: Design, study: HuangStudy) -> list[Block]:
-    """Figures 15 and 16: what the paper says of its simulation, by ours."""
+    """Figures 15 and 16: claims on the paper's simulation, judged by ours."""
     rows = [*_trends(study), _asymptote(study), *_between_rows(study)]
     drawn = Drawing(
         "Huang 2017: plunger at 6, 8 and 10 MPa, as its figures 15 and 16",
@@ -202,7 +202,7 @@ def _trends(study: HuangStudy) -> list[tuple[str, ...]]:
 
 
 def _asymptote(study: HuangStudy) -> tuple[str, ...]:
-    """Whether B comes to a constant beyond the tested speeds."""
+    """Whether B becomes constant beyond the tested speeds."""
     fast, viscous = study.fast.damping[0], study.fast.viscous[0]
     known = np.flatnonzero(np.isfinite(fast))
     reached = min(map(huang_published.asymptote_speed, HUANG_TABLE_2))
@@ -222,7 +222,7 @@ def _asymptote(study: HuangStudy) -> tuple[str, ...]:
 
 
 def _between_rows(study: HuangStudy) -> list[tuple[str, ...]]:
-    """The pressure between two seals; nothing for one."""
+    """The claim on the pressure between two seals; empty for a single seal."""
     mapped = study.plunger
     share = mapped.between / mapped.pressures[:, None]
     beyond = study.fast.between[0] / PAPER.compared
@@ -422,7 +422,7 @@ def kinds_table(_: Design, study: HuangStudy) -> list[Block]:
 
 
 def relief_table(_: Design, study: HuangStudy) -> list[Block]:
-    """What the relief of the step ring does to the trend over pressure."""
+    """Trend over pressure by relief of the step ring."""
     both = list(zip(study.whole, study.drained, strict=True)) or [(math.nan, math.nan)] * len(
         study.reliefs
     )
@@ -485,23 +485,23 @@ def blocks(evaluation: Evaluation) -> list[Block]:
 
 
 NEGLIGIBLE = 0.05
-"""Share of the seals up to which a part can be neglected."""
+"""Share of the seals' damping up to which a part can be neglected."""
 
 EVEN = 0.02
 """Change below which a damping does not change with pressure."""
 
 
 def _dry(viscous: np.ndarray) -> str:
-    """Who holds the friction at the tested speeds."""
+    """Sentence on the share of oil shear in the friction at the tested speeds."""
     most = float(np.nanmax(np.abs(viscous))) if np.any(np.isfinite(viscous)) else math.nan
     if math.isnan(most):
         return "No point has a film."
     if most < 0.05:
         return (
-            f"Oil shears with at most {percent(most)} of the friction: at these speeds asperities "
-            "hold it, so it hardly changes with speed and B falls as 1/v."
+            f"Oil shear is at most {percent(most)} of the friction: at these speeds asperities "
+            "carry it, so it hardly changes with speed and B falls as 1/v."
         )
-    return f"Oil shears with up to {percent(most)} of the friction."
+    return f"Oil shear is up to {percent(most)} of the friction."
 
 
 def _reasons(why: tuple[Missing, ...]) -> str:
@@ -521,12 +521,12 @@ def cylinder_note(design: Design, study: HuangStudy) -> str:
     piston, rod = float(mapped.piston.friction[i, j]), float(mapped.rod.friction[0, j])
     return (
         f"{other_cylinder(design)}Seals, oil and their numbers are those of this "
-        "design; the paper gives kinds of seals only. Nothing is fitted to its curves. At "
+        "design; the paper names only the types of its seals. Nothing is fitted to its curves. At "
         f"7.15 MPa and 10 mm/s the piston seal takes {newtons(piston)}, the rod's at return "
         f"pressure {newtons(rod)}; wiper and guides are left out. "
         f"{_dry(mapped.piston.viscous)} The paper's R² of 1 (sums of squares "
-        f"{listed([text.number(x, 2) for x in PAPER.interpolation])}) is that of surfaces drawn "
-        "through every point: it says nothing of the errors."
+        f"{listed([text.number(x, 2) for x in PAPER.interpolation])}) belongs to surfaces drawn "
+        "through every point and does not show the errors."
         f"{_reasons(mapped.piston.why + mapped.rod.why)}"
     )
 
@@ -540,7 +540,7 @@ def plunger_note(design: Design, study: HuangStudy) -> str:
     table = [float(huang_published.secant_of(row, TYPICAL)) for row in HUANG_TABLE_2]
     theirs = table[-1] / table[0]
     if math.isnan(ours):
-        words = "Ours has no film at both pressures. "
+        words = "Ours has no film at one of the two pressures. "
     elif ours > 1 + EVEN:
         words = (
             f"Table 2 falls to {text.trimmed(theirs, 2)} of its value from 0.6 to 6 MPa at "
@@ -552,17 +552,17 @@ def plunger_note(design: Design, study: HuangStudy) -> str:
         words = f"Table 2 falls to {theirs:.2f}, ours does not change with pressure. "
     share = [huang_published.balance_error(float(v)) for v in huang_published.SPEEDS]
     return (
-        f"{words}{_dry(mapped.viscous)} {_between(study)}The measured fall deserves a doubt: "
+        f"{words}{_dry(mapped.viscous)} {_between(study)}The measured fall is doubtful: "
         "friction is the difference of two large forces (eq. 1), and an error of "
         f"{percent(min(share))} to {percent(max(share))} in the change of the pressure force, in "
         "sensor or area, is as large as the whole fall at the tested speeds. The paper states no "
-        "accuracy. We cannot tell which of the two is right."
+        "accuracy. We do not know which of the two is right."
         f"{_reasons(mapped.why)}"
     )
 
 
 def _between(study: HuangStudy) -> str:
-    """Who carries the pressure in the tandem."""
+    """Sentence on the share of the pressure that each seal of the tandem carries."""
     mapped = study.plunger
     share = mapped.between / mapped.pressures[:, None]
     if not np.any(np.isfinite(share)):
@@ -602,10 +602,10 @@ def fits_note(study: HuangStudy) -> str:
     if loose:
         doubt = f" At {listed(loose)} MPa of table 2 not every parameter is known to 30 %."
     return (
-        f"Bounds hold 95 % (Student's t of the linearised law), least squares of B. {words}A high "
-        f"R² sees the slow points: errors of table 2's fits still reach {percent(max(errors))} of "
-        f"B at the fast ones. Ours are power laws near v^−1: friction that does not depend on "
-        f"speed.{doubt}"
+        f"Bounds are for 95 % (Student's t of the linearised law), fits by least squares of B. "
+        f"{words}R² is governed by the slow points: errors of table 2's fits still reach "
+        f"{percent(max(errors))} of B at the fast points. Ours are power laws near v^−1: friction "
+        f"that does not depend on speed.{doubt}"
     )
 
 
@@ -634,8 +634,8 @@ def _stribeck(ours: np.ndarray, study: HuangStudy) -> str:
     i = study.plunger.at(PAPER.compared, 0.0)[0]
     share = float(np.max(np.abs(study.plunger.viscous[i])))
     return (
-        "The Stribeck fall of table 2 is not in our films: none is carried by speed below "
-        f"10 mm/s (oil shears with {percent(share)} at most). "
+        "Our films do not show the Stribeck fall of table 2: speed lifts none of them below "
+        f"10 mm/s (oil shear is {percent(share)} of the friction at most). "
     )
 
 
@@ -655,7 +655,7 @@ def ring_note(study: HuangStudy) -> str:
     words += (
         f"; pressure balance {text.trimmed(kind.balance, 3)}. The largest stress contains the "
         "sealed pressure itself, so it can fall only where the balance is below 0; the excess over "
-        "the oil pressure, which asperities carry, falls below 1/2. The paper's peak may be one of "
+        "the oil pressure, which asperities carry, falls below 1/2. The paper's peak may be at "
         "a tilting, unworn edge, which a run-in face does not have. "
     )
     thickness = study.plunger.thickness[:, :, 0]
@@ -678,7 +678,7 @@ def parts_note(study: HuangStudy, dry: float) -> str:
         verdict = "have no film at a point"
     return (
         f"Ring and chamber {verdict}: at most {percent(most)} of the seals, the chamber "
-        f"{percent(chamber, 1)}. This holds for a ring on a smooth film; its least film, "
+        f"{percent(chamber, 1)}. This is so for a ring on a smooth film; its least film, "
         f"{text.trimmed(1e6 * ring, 2)} µm, is thinner than the seals' roughness, and dry the ring "
         f"would rub with {newtons(dry)}, {percent(dry / seals)} of the least friction of the "
         f"seals. The chamber's printed {PAPER.chamber_shear} N·s/m comes without inputs: "
@@ -691,10 +691,10 @@ def parts_note(study: HuangStudy, dry: float) -> str:
 
 
 def kinds_note(study: HuangStudy) -> str:
-    """Why pressure may act both ways."""
+    """Reasons why pressure may act both ways."""
     words = (
         "The balance k is the rise of a face's load with pressure over its width. Oil that falls "
-        "evenly across the face carries half of the pressure; where asperities hold the friction, "
+        "evenly across the face carries half of the pressure; where asperities cause the friction, "
         "B rises with pressure above k = 1/2 and falls below it. "
     )
     compact = study.kinds[0]
@@ -713,7 +713,7 @@ def kinds_note(study: HuangStudy) -> str:
 
 
 def relief_note(study: HuangStudy) -> str:
-    """What relief turns the trend."""
+    """Note on the relief that turns the trend."""
     turn = study.turn
     if turn is None:
         return "This design's first rod seal is no step ring: nothing turns its trend."
@@ -728,7 +728,7 @@ def relief_note(study: HuangStudy) -> str:
 
 
 def _tandem(study: HuangStudy) -> str:
-    """What the second seal makes of it."""
+    """Sentences on the effect of the second seal."""
     if not study.whole:
         return ""
     least = float(np.nanmin(study.whole))
@@ -753,7 +753,7 @@ def _tandem(study: HuangStudy) -> str:
 
 
 def _proven(study: HuangStudy) -> str:
-    """What is shown, and what is only plausible."""
+    """Sentences on what is shown and what is only plausible."""
     measured = study.kinds[-1]
     drained = study.kinds[-2]
     return (
@@ -774,15 +774,16 @@ TRACES = equations("huang")
 def table(readings: Readings) -> list[Block]:
     """Every equation of the paper with its function."""
     note = (
-        "Functions stand in actuator_opt. Beside the numbered ones the paper fits B = a v^b and "
-        "B = a1 e^(b1 v) + a2 e^(b2 v), here fits.fit_power_law and fits.fit_double_exponential. "
+        "The functions are in actuator_opt. Beside its numbered equations the paper fits "
+        "B = a v^b and B = a1 e^(b1 v) + a2 e^(b2 v), here fits.fit_power_law and "
+        "fits.fit_double_exponential. "
     )
     if readings.shift == readings.shift:
         thinner = "thinner" if readings.shift > 0 else "thicker"
         note += (
-            f"What the letters would do to the first seal alone at 6 MPa and 5 mm/s: without the "
-            f"rigid shift its film of {text.trimmed(1e6 * readings.mean, 3)} µm would be "
-            f"{text.trimmed(1e6 * abs(readings.shift), 2)} µm {thinner} and carry "
+            "Effect of the equations as printed on the first seal alone at 6 MPa and 5 mm/s: "
+            f"without the rigid shift its film of {text.trimmed(1e6 * readings.mean, 3)} µm would "
+            f"be {text.trimmed(1e6 * abs(readings.shift), 2)} µm {thinner} and carry "
             f"{percent(abs(readings.excess))} {'more' if readings.excess > 0 else 'less'} than "
             "presses it down, so no film meets eq. 12; with the rough side on the rod it passes "
             f"{percent(readings.swapped / readings.flow - 1)} more."

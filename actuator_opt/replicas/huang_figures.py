@@ -16,11 +16,21 @@ import numpy as np
 from ..base.numeric import Array
 from ..models.friction import HUANG_TABLE_2
 from ..rendering.axes import Axes, ticks
-from ..rendering.ink import BLACK, BLUE, GREEN, GREY, OCHRE, PALE, WHITE, Ink, Point, spread_within
+from ..rendering.ink import BLACK, BLUE, GREEN, GREY, OCHRE, PALE, WHITE, Ink, Point
 from ..rendering.text import trimmed
 from ..studies.film_walk import FilmMap
 from . import huang_published
-from .aalto_figures import CHAIN, DASHED, DOTTED, FULL, THIN, LabelledCurve, Style
+from .aalto_figures import (
+    CHAIN,
+    DASHED,
+    DOTTED,
+    FULL,
+    THIN,
+    LabelledCurve,
+    Style,
+    curve,
+    draw_curves,
+)
 from .huang_models import TYPICAL, WIDTH, HuangStudy
 from .huang_published import PAPER, SPEEDS
 
@@ -38,22 +48,14 @@ STYLES: tuple[Style, ...] = (
 
 COLUMNS, PANEL, HEIGHT, ROW, TOP = (10.0, 101.0), 52.0, 36.0, 56.0, 9.0
 
-_LABEL = 3.2
-"""Height (mm) of a line of a label."""
-
 _LIFT = 0.4
-"""Depth axis of a surface: how far it leads up and right, of the panel's height and width."""
+"""Rise and run of a surface's depth axis, as a share of the panel's height and width."""
 
 
 def box(place: tuple[int, int]) -> tuple[float, float, float, float]:
     """Frame of a (row, column)."""
     row, column = place
     return COLUMNS[column], TOP + row * ROW, PANEL, HEIGHT
-
-
-def curve(xs: Array, ys: Array, style: Style, *label: str) -> LabelledCurve:
-    """A curve over arrays."""
-    return LabelledCurve([float(x) for x in xs], [float(y) for y in ys], style, label)
 
 
 def panel(
@@ -67,40 +69,14 @@ def panel(
     range_: tuple[float, float],
     level: float | None = None,
 ) -> None:
-    """Curves in a frame, each labelled where it ends; `level` is a line across."""
+    """Curves in a frame, each labelled at its end; `level` is a horizontal line."""
     left, top, width, height = box(place)
     axes = Axes(ink, (left, top, width, height), span, range_)
     right, bottom = left + width, top + height
     axes.frame(title, x_label)
     if level is not None:
         ink.line((left, axes.y(level)), (right, axes.y(level)), stroke=GREY, pen=0.2)
-    ends: list[tuple[Point, Style, tuple[str, ...]]] = []
-    for drawn in curves:
-        lines = [line for xs, ys in _unbroken(drawn.xs, drawn.ys) for line in axes.clipped(xs, ys)]
-        ink.path(lines, **drawn.style)
-        if lines:
-            ends.append((lines[-1][-1], drawn.style, drawn.label))
-    ends.sort(key=lambda end: end[0][1])
-    heights = [_LABEL * len(label) for *_, label in ends]
-    gaps = [(a + b) / 2 + 0.6 for a, b in itertools.pairwise(heights)]
-    places = spread_within([end[1] for end, *_ in ends], gaps, top, bottom + 3.0)
-    for (end, style, label), tall, y in zip(ends, heights, places, strict=True):
-        ink.line(end, (right + 1.0, end[1]), (right + 3.0, y), pen=0.13, stroke=GREY)
-        for k, words in enumerate(label):
-            at = y - tall / 2 + _LABEL * (k + 0.5)
-            ink.text(right + 3.6, at, words, size=6.5, color=style["stroke"])
-
-
-def _unbroken(xs: Sequence[float], ys: Sequence[float]) -> list[tuple[list[float], list[float]]]:
-    """Stretches of a curve without gaps."""
-    pairs = [
-        list(group)
-        for finite, group in itertools.groupby(
-            zip(xs, ys, strict=True), key=lambda pair: math.isfinite(pair[1])
-        )
-        if finite
-    ]
-    return [([x for x, _ in group], [y for _, y in group]) for group in pairs]
+    draw_curves(ink, axes, curves, (right, top, bottom))
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +91,7 @@ class DampingField:
 def contours(
     ink: Ink, place: tuple[int, int], title: str, field: DampingField, levels: Sequence[float]
 ) -> None:
-    """Lines of equal damping; the speed axis is logarithmic, where they lie evenly."""
+    """Lines of equal damping; on the logarithmic speed axis they are evenly spaced."""
     logs = np.log10(field.speeds)
     spans = [(float(axis[0]), float(axis[-1])) for axis in (logs, field.pressures)]
     axes = Axes(ink, box(place), spans[0], spans[1])
@@ -268,7 +244,7 @@ def plunger_figure(study: HuangStudy, *, width: float = 180.0) -> Ink:
 
 
 def _limits(values: Sequence[float]) -> tuple[float, float]:
-    """Least and largest of the values that are known; 0 and 1 where none is."""
+    """Least and largest of the finite values; 0 and 1 without any."""
     known = [value for value in values if math.isfinite(value)]
     return (min(known), max(known)) if known else (0.0, 1.0)
 
@@ -417,7 +393,7 @@ def back_up_figure(study: HuangStudy, *, width: float = 180.0) -> Ink:
 
 
 def relief_figure(study: HuangStudy, *, width: float = 180.0) -> Ink | None:
-    """What the step ring's relief does to the trend; None where there is no step ring."""
+    """Trend over pressure by relief of the step ring; None without a step ring."""
     if not study.reliefs:
         return None
     ink = Ink(width, ROW)

@@ -1,20 +1,20 @@
-"""The seals of [Huang2017] on their oil films, over speed and pressure: piston cylinder, plunger.
+"""The seals of [Huang2017] on their oil films over speed and pressure: piston cylinder and plunger.
 
-Test A is the design itself. Test B, the plunger, is the tandem of the design's rod on the plunger's
-diameter: the standard housings of both diameters are the same. SI; pressures are gauge unless
-absolute is said.
+Test A is the design itself. Test B, the plunger, has the tandem of the design's rod seals on the
+plunger's diameter: the standard housings of both diameters are equal. All values are in SI;
+pressures are gauge unless called absolute.
 
-Why the two cylinders may go opposite ways over pressure: the load of a face rises with the sealed
-pressure by its balance k = (df/dp)/b. Oil that falls evenly across it carries half of p b, so the
-asperities, which carry the friction at these speeds, carry more at a higher pressure above k = 1/2
-and less below.
+The trends of the two cylinders over pressure may be opposite. The load of a face rises with the
+sealed pressure by its balance k = (df/dp)/b. Oil pressure that falls evenly across the face carries
+half of p b. Asperities cause the friction at these speeds; at higher pressure they carry more if
+k > 1/2, and less if k < 1/2.
 
-Equation 26: the paper gives no number of the back-up ring but its material, PTFE with copper; what
-it is computed from here is assumed and stated.
+Equation 26: of the back-up ring the paper states only the material, PTFE with copper; the numbers
+used here are assumed and stated.
 
-Eq. 14 and 15 lack the rigid shift of the seal, though eq. 12 needs a balance of loads that only a
-shift can close. The text below eq. 4 calls "a" the seal and gives it the rod's speed. `readings`
-computes what both letters would do.
+Eq. 14 and 15 lack the rigid shift of the seal, though the balance of loads in eq. 12 requires a
+shift. The text below eq. 4 calls "a" the seal and gives it the rod's speed. `readings` computes the
+effect of both as printed.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ SPEEDS = (0.5e-3, 0.8e-3, 1.3e-3, 2.1e-3, 3.3e-3, 5e-3, 7e-3, 10e-3)
 """Speeds of the maps: the tested range, and 2.1 mm/s where the printed fall holds."""
 
 FAST = (10e-3, 20e-3, 40e-3, 80e-3, 0.16, 0.32)
-"""Speeds beyond the tests, where oil begins to carry the seals."""
+"""Speeds beyond the tests, at which oil begins to carry the seals."""
 
 TYPICAL = 2.1e-3
 """Speed at which pressures are compared."""
@@ -69,7 +69,7 @@ class Sealings:
 
     Parameters
     ----------
-    piston : between driven chamber and return, its bore drawn in
+    piston : between driven chamber and return
     rod : of test A, at return pressure
     plunger : the rod's rings on the plunger
     return_pressure : [Pa]
@@ -84,7 +84,7 @@ class Sealings:
 
 
 def sealings(design: Design) -> Sealings:
-    """The rings of both tests, each on its oil film whatever the design asks for."""
+    """The rings of both tests, each on its oil film, whatever friction law the design states."""
     subject = prepare(_on_films(design))
     v = subject.values()
     state = base(subject, v)
@@ -133,12 +133,12 @@ class CylinderMap:
 
     @property
     def damping(self) -> Array:
-        """Of both (p, v) [N s/m]."""
+        """Damping of both seals (p, v) [N s/m]."""
         return self.piston.damping + self.rod.damping
 
 
 def cylinder_map(seals: Sealings, speeds: Sequence[float] = SPEEDS) -> CylinderMap:
-    """Figure 3: piston and rod seals, driven out."""
+    """Figure 3: piston and rod seals on the outstroke."""
     across = [p - seals.return_pressure for p in PISTON_PRESSURES]
     return CylinderMap(
         piston=film_map(seals.piston, across, speeds),
@@ -180,7 +180,7 @@ class SealArrangement:
 
     Parameters
     ----------
-    name : what it is
+    name : name in the tables
     balance : at the mean of the pressures; NaN for several seals
     damping : at both pressures [N s/m]
     """
@@ -202,7 +202,7 @@ _NAMES = {u_cup.TYPE.name: "Yx", compact.TYPE.name: "compact (DAS)"}
 
 
 def kind_name(ring: Ring) -> str:
-    """What a ring is called here."""
+    """Name of a ring in the tables."""
     return _NAMES.get(ring.element.type, ring.element.seal_type.title)
 
 
@@ -216,22 +216,22 @@ def single(name: str, sealing: Sealing) -> SealArrangement:
 
 
 def kinds(seals: Sealings, mapped: FilmMap) -> tuple[SealArrangement, ...]:
-    """Every seal type of both cylinders, the tandem, and the tandem with its room drained."""
+    """Every seal type of both cylinders, the tandem, and the tandem with drained room between."""
     plunger = seals.plunger
-    every = [single(f"{kind_name(seals.piston.rings[0])}, piston", seals.piston.alone(0))]
-    every += [
+    arrangements = [single(f"{kind_name(seals.piston.rings[0])}, piston", seals.piston.alone(0))]
+    arrangements += [
         single(f"{kind_name(ring)}, plunger, alone", plunger.alone(k))
         for k, ring in enumerate(plunger.rings)
     ]
     j = mapped.at(ENDS[0], TYPICAL)[1]
     ends = [float(mapped.damping[mapped.at(p, TYPICAL)[0], j]) for p in ENDS]
     if len(plunger.rings) == 2:
-        every.append(SealArrangement(BOTH, nan, (ends[0], ends[1])))
+        arrangements.append(SealArrangement(BOTH, nan, (ends[0], ends[1])))
         low, high = (drained(seals, p) for p in ENDS)
-        every.append(SealArrangement(DRAINED, nan, (low, high)))
+        arrangements.append(SealArrangement(DRAINED, nan, (low, high)))
     low, high = (float(secant_of(row, TYPICAL)) for row in (HUANG_TABLE_2[0], HUANG_TABLE_2[-1]))
-    every.append(SealArrangement("plunger, measured (table 2)", nan, (low, high)))
-    return tuple(every)
+    arrangements.append(SealArrangement("plunger, measured (table 2)", nan, (low, high)))
+    return tuple(arrangements)
 
 
 def drained(seals: Sealings, pressure: float, speed: float = TYPICAL, **changes: float) -> float:
@@ -303,13 +303,13 @@ class Turn:
 
 
 def turn(seals: Sealings) -> Turn:
-    """From rising to falling between 0.6 and 6 MPa, the step ring alone."""
+    """Relief at which the step ring alone turns from rising to falling between 0.6 and 6 MPa."""
     ring = seals.plunger.rings[0]
 
     def excess(relief: float) -> float:
         return with_relief(seals, relief, ENDS).rise - 1
 
-    # above a relief of nine tenths no land is left to speak of
+    # above a relief of nine tenths almost no land is left
     relief = _root(excess, 0.05 * ring["width"], 0.9 * ring["width"])
     if not isfinite(relief):
         return Turn(nan, nan, nan, nan)
@@ -318,9 +318,9 @@ def turn(seals: Sealings) -> Turn:
 
 
 def _root(excess: Callable[[float], float], low: float, high: float) -> float:
-    """Where a falling function passes 0, to 1 um; NaN where it does not.
+    """Zero of a falling function, to 1 um; NaN without a zero.
 
-    Where it has no value the ring has lifted off: beyond the root.
+    A missing value means that the ring has lifted off, which is beyond the root.
     """
     if not excess(low) > 0:
         return nan
@@ -338,7 +338,7 @@ def tandem_rise(seals: Sealings, relief: float) -> float:
 
 
 def drained_rise(seals: Sealings, relief: float) -> float:
-    """The same with the room between the seals at the outer pressure."""
+    """Ratio as `tandem_rise`, with the room between the seals at the outer pressure."""
     changes = reshaped(seals.plunger.rings[0], relief)
     low, high = (drained(seals, p, **changes) for p in ENDS)
     return high / low
@@ -352,7 +352,7 @@ class Stress:
     ----------
     pressures : [Pa]
     peak : highest contact pressure over the outer side [Pa]
-    excess : of the contact over the oil pressure [Pa]
+    excess : contact pressure over the oil pressure [Pa]
     width : of the contact [m]
     """
 
@@ -363,7 +363,7 @@ class Stress:
 
 
 def stress(seals: Sealings) -> Stress:
-    """By the closed form of `models.step_seal`."""
+    """Contact of the step ring by the closed form of `models.step_seal`."""
     pressures = np.array(STRESS_PRESSURES)
     rows = [seal_contact(seals.plunger.rings[0].at(pressure=p)) for p in STRESS_PRESSURES]
     peak, excess, width = (
@@ -391,24 +391,24 @@ class StepRingFilm:
 
 
 def profiles(seals: Sealings) -> tuple[StepRingFilm, ...]:
-    """Figure 18; without those that have no film."""
-    every = []
+    """Figure 18, without the pressures that have no film."""
+    films = []
     for pressure in FILM_PRESSURES:
         solved = solve(seals.plunger.row(pressure, FILM_SPEED))
         if not solved.why:
             film = solved.films[0]
-            every.append(StepRingFilm(pressure, film.x, film.film, film.mean_film))
-    return tuple(every)
+            films.append(StepRingFilm(pressure, film.x, film.film, film.mean_film))
+    return tuple(films)
 
 
 CONTACT_PRESSURE = 0.1e6
 """Mean pressure of the back-up ring on the plunger: the "low contact stress" of section 3 (Pa)."""
 
 CONTACT_PRESSURES = (0.02e6, 0.2e6)
-"""Least and largest one that is tried beside it."""
+"""Least and largest contact pressure tried beside it."""
 
 WIDTH = 15e-3
-"""Of the ring: the ISO 10766 housing of the standards the paper names, GB/T 15242 (m)."""
+"""Width of the ring: the ISO 10766 housing of the standards the paper names, GB/T 15242 (m)."""
 
 EDGE = 5e-6
 """Rounding of the ring's edges (m): worn in, assumed."""
@@ -449,10 +449,10 @@ def back_up_ring(
     speed: float,
     contact_pressure: float = CONTACT_PRESSURE,
 ) -> BackupRingFilm:
-    """Equations 19 to 22 with density and viscosity in their places.
+    """Equations 19 to 22, with density and viscosity for the printed symbols.
 
-    The pressure around the ring is the same on both sides and bends nothing, so it counts as that
-    of the atmosphere; a higher one would only keep the film from rupturing.
+    The pressure around the ring is equal on both sides and bends nothing, so it is taken as that of
+    the atmosphere; a higher pressure would only keep the film from rupturing.
     """
     place = np.linspace(-1.0, 1.0, NODES)
     around = ATMOSPHERIC_PRESSURE
@@ -471,7 +471,7 @@ def back_up_ring(
 
 
 def ring_elastic(seals: Sealings) -> Elastic:
-    """The PTFE of the design's first rod seal: the ring is of the same stuff."""
+    """Elasticity of the PTFE of the design's first rod seal; the ring has the same material."""
     first = seals.plunger.rings[0]
     return Elastic(first["face_modulus"], first["face_poissons_ratio"])
 
@@ -509,12 +509,12 @@ class Total:
         return sum(value for name, value in self.parts.items() if name not in (BACK_UP, CHAMBER))
 
     def share(self, name: str) -> float:
-        """Of a part in the total."""
+        """Share of a part in the total."""
         return self.parts[name] / self.damping
 
     @property
     def beside_share(self) -> float:
-        """Of back-up ring, at its largest, and chamber, over the seals."""
+        """Damping of the back-up ring, at its largest, and the chamber over that of the seals."""
         return (max(self.ring_range) + self.parts[CHAMBER]) / self.seals
 
 
@@ -541,7 +541,7 @@ def dry_ring(seals: Sealings) -> float:
 
 
 def chamber_drag(speed: float) -> float:
-    """Equation 24 and 25 with the member of `huang_published.chamber` that has reasons."""
+    """Equations 24 and 25 with `huang_published.plausible_chamber`."""
     member = plausible_chamber()
     coefficient = flat_gap(
         dynamic_viscosity=member.viscosity,
@@ -553,7 +553,7 @@ def chamber_drag(speed: float) -> float:
 
 
 PRESSURE = 6e6
-"""Sealed pressure of both readings; the speed is that of the film profiles (Pa)."""
+"""Sealed pressure of `readings` (Pa); the speed is that of the film profiles."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -564,7 +564,8 @@ class Readings:
     ----------
     shift : rigid shift of the solved film [m]
     mean : its mean film [m]
-    excess : (carried - given load)/given load if the film were thinner by the shift
+    excess : relative excess of the carried over the given load if the film were thinner by the
+        shift
     flow, swapped : oil dragged outwards with the rough side the seal, or the rod [m^3/s]
     """
 
@@ -576,7 +577,7 @@ class Readings:
 
 
 def readings(seals: Sealings) -> Readings:
-    """What the missing shift and the swapped sides would do, of the plunger's first seal."""
+    """Effect of the missing shift and of the swapped sides on the plunger's first seal."""
     row = seals.plunger.alone(0).row(PRESSURE, FILM_SPEED)
     solved, other = solve(row), solve(_swapped(row))
     if solved.why or other.why:
@@ -618,10 +619,10 @@ def _swapped(row: FilmRow) -> FilmRow:
 
 
 RELIEFS = (3e-3, 3.7e-3)
-"""Reliefs that are drawn beside the design's, the one that turns the trend and a longer one (m)."""
+"""Reliefs drawn beside that of the design, the turning relief and longer reliefs (m)."""
 
 BEYOND = (1.08, 1.16)
-"""Reliefs beyond the turning one, over it."""
+"""Reliefs beyond the turning relief, over it."""
 
 TOTALS = tuple((p, v) for p in ENDS for v in (0.5e-3, 10e-3))
 """Pressures and speeds at which every part of eq. 26 is shown."""
@@ -629,7 +630,7 @@ TOTALS = tuple((p, v) for p in ENDS for v in (0.5e-3, 10e-3))
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HuangStudy:
-    """Both tests on films, and the paper's own curves.
+    """Both tests on films, and the curves of the paper.
 
     Parameters
     ----------
@@ -640,7 +641,7 @@ class HuangStudy:
     rings, totals : of the back-up ring, of eq. 26
     kinds, stress, profiles : of the seal types and of the step ring
     turn, reliefs : None and empty where the first rod seal is no step ring
-    readings : what the paper's letters would do
+    readings : effect of two equations as printed
     whole, drained : rise of the plunger's damping by relief, tandem and without pressure between
     """
 
@@ -703,7 +704,7 @@ def _fitted(mapped: FilmMap) -> tuple[tuple[float, CurveFits], ...]:
 def _reliefs(
     seals: Sealings,
 ) -> tuple[Turn | None, tuple[ReliefVariant, ...], tuple[float, ...], tuple[float, ...]]:
-    """What other reliefs of the step ring do to the trend over pressure."""
+    """Trend over pressure with other reliefs of the step ring."""
     ring = seals.plunger.rings[0]
     if "relief" not in ring.numbers:
         return None, (), (), ()

@@ -1,8 +1,9 @@
-"""What [Huang2017] prints of its seal damping, and what its own numbers make of it.
+"""Seal damping that [Huang2017] prints, checked with the numbers of the paper.
 
-Table 2 (in `models.friction`) replaces the measured curves, whose figures carry no numbers. SI
-throughout. The text copy that was read loses leading minus signs (eq. 2 and 31), so the printed
-conditions b > 0 of its two fits may be meant for exponents -b; as printed they cannot hold.
+Table 2 (in `models.friction`) replaces the measured curves, whose figures have no numbers. All
+values are in SI. The text copy that was read has lost leading minus signs (eq. 2 and 31). The
+printed conditions b > 0 of its two fits may therefore mean exponents -b; as printed they cannot
+hold.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from .papers import published_numbers
 
 @dataclass(frozen=True, slots=True)
 class HuangPaper:
-    """What the paper prints beside table 2, SI; ``notes/huang.yaml`` has the places."""
+    """Numbers the paper prints beside table 2, SI; ``notes/huang.yaml`` has the places."""
 
     bore: float
     rod: float
@@ -49,13 +50,13 @@ class HuangPaper:
 PAPER = published_numbers(HuangPaper, "huang")
 
 SPEEDS = np.linspace(*PAPER.speeds, 20)
-"""Speeds the curves of figures 7 and 15 are drawn and fitted at: the printed range, our places."""
+"""Speeds at which the curves of figures 7 and 15 are drawn and fitted: our points of its range."""
 
 TOLERANCE = 0.15
-"""How near a printed value counts as holding."""
+"""Relative error up to which a printed value counts as met."""
 
 SEAL_VISCOSITY = 0.043
-"""Of the published rod-seal studies the paper takes its friction from (Pa s); it prints none."""
+"""Viscosity in the rod-seal studies from which the paper takes its friction (Pa s)."""
 
 
 def friction_of(row: StribeckParameters, speed: Array) -> Array:
@@ -78,13 +79,13 @@ class DampingClaim(NamedTuple):
     high: float
     """B at 6 MPa."""
     errors: tuple[float, float]
-    """These over the claimed ones, less 1."""
+    """`low` and `high` over the claimed values, less 1."""
     bend: float
     """Largest distance of B at 2 and 4 MPa from the straight line, over its B."""
 
 
 def claim_at(speed: float) -> DampingClaim:
-    """What table 2 makes of the printed linear fall at a speed."""
+    """The printed linear fall against table 2 at a speed."""
     pressures = np.array([row.pressure for row in HUANG_TABLE_2])
     dampings = np.array([float(secant_of(row, speed)) for row in HUANG_TABLE_2])
     line = np.interp(pressures, pressures[[0, -1]], dampings[[0, -1]])
@@ -120,15 +121,15 @@ def asymptote_speed(row: StribeckParameters, excess: float = 0.1) -> float:
 
 
 def viscous_share(row: StribeckParameters, speed: float) -> float:
-    """Share of sigma2 v in the friction."""
+    """Share of the viscous part sigma2 v in the friction."""
     return float(row.viscous * speed / friction_of(row, speed))
 
 
 def balance_error(speed: float) -> float:
-    """Error of the force balance, over the change of pressure force, that looks like the fall.
+    """Share of the change of pressure force that is as large as the fall of friction.
 
-    Friction is the chamber's pressure force less the load's (eq. 1). This share of the change of
-    pressure force from 0.6 to 6 MPa is as large as the whole fall of friction.
+    Friction is the chamber's pressure force less the load's (eq. 1). An error of this share from
+    0.6 to 6 MPa would look like the whole fall.
     """
     first, last = HUANG_TABLE_2[0], HUANG_TABLE_2[-1]
     fall = float(friction_of(first, speed) - friction_of(last, speed))
@@ -159,11 +160,11 @@ class Chamber(NamedTuple):
 
     viscosity: float
     length: float
-    """Of plunger inside the chamber's oil."""
+    """Length of the plunger inside the chamber's oil."""
     gap: float
     """h_v of a thin gap."""
     gap_annular: float
-    """The same when the gap is curved, r_o - r_i."""
+    """The gap r_o - r_i if its curvature counts."""
 
 
 def chamber(*, length: float, viscosity: float = SEAL_VISCOSITY) -> Chamber:
@@ -183,9 +184,8 @@ def chamber_length(*, gap: float, viscosity: float = SEAL_VISCOSITY) -> float:
 
 
 def plausible_chamber() -> Chamber:
-    """One member with reasons: 560 mm, the one stroke the paper prints, at 0.043 Pa s.
+    """A plausible member: 560 mm, the only stroke the paper prints, at 0.043 Pa s.
 
-    The paper gives no length, viscosity or gap of the plunger's chamber; nothing is tuned but the
-    gap, which follows.
+    The paper gives no length, viscosity or gap of the plunger's chamber; only the gap is fitted.
     """
     return chamber(length=PAPER.stroke)

@@ -1,8 +1,8 @@
-"""What all papers share: the reader of their data in ``notes/PAPER.yaml``, and words of tables.
+"""Common to all papers: the reader of their data in ``notes/PAPER.yaml``, and words of tables.
 
-The data of a paper are its published numbers, each with its place in the paper, its numbered
-equations with the functions that compute them, and reasons in words. The reader is strict: each
-number needs its unit and its place, and each name has to be one that the code knows.
+The data of a paper are its published numbers with their places in the paper, its claims, its
+numbered equations with the functions that compute them, and reasons in words. The reader is strict:
+each number needs a unit and a place, and the code must know each name.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def percent(share: float, digits: int = 2) -> str:
 
 
 def listed(words: Sequence[str]) -> str:
-    """One, two and three."""
+    """Words as a list: ``one, two and three``."""
     *rest, last = words
     return f"{', '.join(rest)} and {last}" if rest else last
 
@@ -55,7 +55,7 @@ def _data(paper: str) -> Mapping[str, Any]:
 def _known(
     where: str, entry: Mapping[str, Any], required: Sequence[str], optional: Sequence[str] = ()
 ) -> None:
-    """Refuse an entry that lacks a name, or has one too many."""
+    """Refuse an entry with a missing or an unknown name."""
     missing = [name for name in required if name not in entry]
     strange = [name for name in entry if name not in (*required, *optional)]
     if missing or strange:
@@ -63,7 +63,7 @@ def _known(
 
 
 def published_numbers(numbers: type[Numbers], paper: str) -> Numbers:
-    """The published numbers of a paper in SI, as a dataclass that names every one of them."""
+    """The published numbers of a paper in SI, as a dataclass with a field for each number."""
     entries = _data(paper)["published"]
     _known(f"{paper}: published:", entries, [field.name for field in fields(numbers)])  # type: ignore[arg-type]
     values: dict[str, float | tuple[float, ...]] = {}
@@ -77,7 +77,7 @@ def published_numbers(numbers: type[Numbers], paper: str) -> Numbers:
 
 
 Reasons = Mapping[str, Mapping[str, str]]
-"""Why, by factor and verdict."""
+"""Reasons by factor and verdict."""
 
 
 def reasons(paper: str, model: str) -> Reasons:
@@ -87,21 +87,21 @@ def reasons(paper: str, model: str) -> Reasons:
 
 
 def claim(paper: str, name: str, **values: str) -> tuple[str, str]:
-    """What a paper claims, and where; `values` fill the fields of its place."""
+    """A claim of a paper and its place; `values` fill the fields of the place."""
     entry = _data(paper)["claims"][name]
     _known(f"{paper}: {name}:", entry, ("claim", "place"))
     return entry["claim"], entry["place"].format(**values)
 
 
 class Trace(NamedTuple):
-    """Equations first to last, what they say, and the functions that compute them."""
+    """Equations `first` to `last`, their subject, and the functions that compute them."""
 
     first: int
     last: int
     subject: str
     functions: tuple[str, ...] = ()
     remark: str = ""
-    """Beside the functions, or instead of them: out of scope, and why."""
+    """Remark on the functions, or the reason why an equation is out of scope."""
 
 
 def equations(paper: str) -> tuple[Trace, ...]:
@@ -146,12 +146,12 @@ def trace_rows(traces: Iterable[Trace]) -> tuple[tuple[str, ...], ...]:
 
 
 def close(a: float, b: float) -> bool:
-    """Whether two sizes are the same."""
+    """Whether two lengths or areas are equal to rounding."""
     return math.isclose(a, b, rel_tol=1e-6)
 
 
 def of_another_cylinder(design: Design, source: str, theirs: tuple[float, float, float]) -> str:
-    """Whose cylinder was measured (bore, rod, stroke), if it is not this one."""
+    """Note on another cylinder (bore, rod, stroke) in the source; empty if it is the same."""
     ours = design.cylinder.bore, design.rod.outer_diameter, design.cylinder.stroke
     if all(map(close, ours, theirs)):
         return ""
@@ -164,7 +164,7 @@ def of_another_cylinder(design: Design, source: str, theirs: tuple[float, float,
 
 
 def rounded(value: float) -> str:
-    """Three digits, the rest zeros.
+    """A number rounded to three digits.
 
     >>> rounded(252879.0)
     '253\u202f000'
@@ -178,15 +178,15 @@ def newtons(value: float) -> str:
 
 
 def speed_text(speed: float) -> str:
-    """In mm/s."""
+    """A speed in mm/s."""
     return f"{text.trimmed(1e3 * speed, 3)} mm/s"
 
 
 def pressure_text(pressure: float) -> str:
-    """In MPa."""
+    """A pressure in MPa."""
     return f"{text.trimmed(pressure / 1e6, 3)} MPa"
 
 
 def times(ratio: float) -> str:
-    """How many times one is the other."""
+    """A ratio as ``3 times``."""
     return f"{text.trimmed(ratio, 3)} times"

@@ -1,10 +1,10 @@
-"""[AaltoThesis] Table 1 on a design's O-rings: which way each of ten factors moves friction.
+"""[AaltoThesis] Table 1 on a design's O-rings: sign of the effect of ten factors on friction.
 
 Table 1 lists what raises the friction of an O-ring, from an O-ring handbook. Here every factor of a
 design moves by a little and the friction of its two rings is evaluated again: with coefficients of
 friction, and on the oil film. The elasticity, relative change of friction over that of the factor,
-gives the verdict. The film answers to the first order by its exact slopes, as in every evaluation;
-where a contact law has a kink, as at a squeeze of 15 %, the slope is of one side.
+gives the verdict. The film responds to first order by its exact slopes, as in every evaluation.
+Where a contact law has a kink, as at a squeeze of 15 %, the slope is that of one side.
 """
 
 from __future__ import annotations
@@ -40,11 +40,11 @@ STEP = 1e-3
 """Relative step of a factor, both ways (absolute temperature: 0.3 K)."""
 
 NEGLIGIBLE = 1e-3
-"""Elasticity below which a factor has no effect: doubled, it moves friction by 0.1 % (a choice,
-below what the film's own nodes leave uncertain)."""
+"""Elasticity below which a factor has no effect: doubling it moves friction by 0.1 % (a choice,
+below the uncertainty from the nodes of the film)."""
 
 ELASTOMER = "nbr_70"
-"""Compound of the O-rings put where the design has another seal: the thesis names none."""
+"""Compound of the O-rings that replace other seals of the design: the thesis names none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +55,7 @@ class Factor:
     ----------
     name : as printed
     direction : +1 where the column "to increase friction" prints Increase, -1 where Decrease
-    handbook : the same in the handbook's own table ([ORingFriction], table A6-1)
+    handbook : the same in the table of the handbook ([ORingFriction], table A6-1)
     paths : PATHs of a design that are moved together; {place}, {compound} and {case} filled in
     """
 
@@ -93,7 +93,7 @@ FACTORS = (
     Factor("diameter of rod or bore", 1, 1, ("cylinder.bore", "rod.outer_diameter")),
     Factor("O-ring surface finish", -1, -1, ("materials.{compound}.seal_roughness",)),
 )
-"""Table 1, in its order: that of significance, as the thesis says.
+"""Table 1 in its order, which the thesis calls the order of significance.
 
 Both surface finishes are read as RMS roughness, as the metal's is printed.
 """
@@ -110,7 +110,7 @@ class FrictionTrend:
     ----------
     running, breakaway : friction of both rings [N]; NaN without an answer
     elasticities : d ln running/d ln factor
-    why : why there is no answer
+    why : reason for a missing answer
     """
 
     running: float
@@ -129,9 +129,9 @@ class Trends:
 
     Parameters
     ----------
-    case : load case of the point: of those that move, the one of the highest friction
-    replaced : places where the design has no O-ring of an elastomer, and got one
-    rings : as evaluated, numbers of that case
+    case : the moving load case with the highest friction
+    replaced : places where the design has no elastomer O-ring, and an O-ring replaces its seal
+    rings : the evaluated rings, with numbers of that case
     coefficient, film : the two models
     """
 
@@ -148,7 +148,7 @@ class Trends:
 
     @property
     def contact_share(self) -> float:
-        """Contact over groove width, the larger of both rings; at 1 the groove's walls hold it."""
+        """Contact over groove width, the larger of both rings; 1 if the groove is full."""
         return max(float(seal_contact(ring).width / ring["groove_width"]) for ring in self.rings)
 
     @property
@@ -159,7 +159,7 @@ class Trends:
         )
 
     def order(self, model: FrictionTrend) -> tuple[str, ...]:
-        """The factors that act in a model, the strongest first."""
+        """The factors with an effect in a model, the strongest first."""
         sizes = {
             factor.name: abs(value)
             for factor, value in zip(FACTORS, model.elasticities, strict=True)
@@ -180,8 +180,8 @@ def verdict(elasticity: float, direction: int) -> Verdict:
 def trends(design: Design) -> Trends | None:
     """Table 1 on a design; None where no load case moves.
 
-    Everything else stays as the design has it: the barrel grows with bore and pressure, and the
-    gland is cut anew for every section and squeeze.
+    All other values are those of the design: the barrel grows with bore and pressure, and the gland
+    is cut anew for every section and squeeze.
     """
     numbers = prepare(design).numbers
     replaced = tuple(place for place in PLACES if not _elastomer_o_ring(design, place, numbers))
@@ -206,7 +206,7 @@ def trends(design: Design) -> Trends | None:
 
 
 def _elastomer_o_ring(design: Design, place: Place, numbers: Container[str]) -> bool:
-    """Whether a place runs on an O-ring whose modulus follows from its hardness."""
+    """Whether the seal of a place is an O-ring whose modulus follows from its hardness."""
     seal: Seal = getattr(design.seals, place)
     stated = f"materials.{seal.compound}.youngs_modulus" in numbers
     return seal.type == o_ring.TYPE.name and not seal.contact and not stated
@@ -220,11 +220,11 @@ _OF_ANOTHER = (
     "back_up_material",
     "back_up_thickness",
 )
-"""Fields of another type of seal that say nothing of the O-ring put in its place."""
+"""Fields of another type of seal that do not apply to the O-ring in its place."""
 
 
 def _fitted(design: Design, replaced: Sequence[Place], model: str) -> Design:
-    """The design with one O-ring at piston and rod and nothing beside them."""
+    """The design with a single O-ring at piston and at rod, without other sealing elements."""
     alone: dict[str, Any] = {"secondary": None, "wiper": None, "guide": None, "count": 1.0}
     other: dict[str, Any] = dict.fromkeys(_OF_ANOTHER)
     other |= {"type": o_ring.TYPE.name, "compound": ELASTOMER, "contact": (), "back_up": "none"}
@@ -294,17 +294,17 @@ TITLE = "Aalto thesis: what raises O-ring friction, its table 1"
 COLUMNS = ("to increase friction, as printed", "ours by coefficient", "ours on the oil film")
 
 PRINTED = {1: "increase", -1: "decrease"}
-"""What the column "to increase friction" prints."""
+"""Words of the column "to increase friction"."""
 
 COEFFICIENT, FILM = reasons("aalto", "coefficient"), reasons("aalto", "film")
-"""Why the friction by coefficients, and on the oil film, goes the way it does."""
+"""Reasons for the signs of friction by coefficients, and on the oil film."""
 
 OTHERWISE: Mapping[Verdict, str] = {
     "agrees": "as printed",
     "disagrees": "we do not know why",
     "no effect": "it does not enter",
 }
-"""Where the numbers go another way than any explained above."""
+"""Words for a verdict without a stated reason."""
 
 
 def trends_table(evaluation: Evaluation) -> Table:
@@ -369,21 +369,21 @@ def _rings(table_1: Trends) -> str:
     if not table_1.replaced:
         return ""
     return (
-        f"The table is of O-rings: the design's {listed(table_1.replaced)} got one of "
-        f"{ELASTOMER} with section and squeeze as they are. "
+        f"The table is on O-rings: the design's {listed(table_1.replaced)} got an O-ring of "
+        f"{ELASTOMER} with the same section and squeeze. "
     )
 
 
 def _pressure(table_1: Trends) -> str:
-    """The one row that the thesis prints against its own source."""
+    """Note on the row in which the thesis contradicts its source."""
     odd = [factor.name for factor in FACTORS if factor.direction != factor.handbook]
     said = table_1.coefficient.verdict(_index("hydraulic pressure"))
     ours = {
-        "agrees": "ours falls too here",
+        "agrees": "ours falls here too",
         "disagrees": "ours rises, as an energised ring must",
-    }.get(said, "ours has no pressure to answer to here")
+    }.get(said, "ours sees no pressure here")
     return (
-        f"One row is turned: less {listed(odd)} cannot press a ring on harder. In the "
+        f"One row is reversed: less {listed(odd)} cannot press a ring on harder. In the "
         "scanned text all ten rows print opposite words left and right: no column is swapped. But "
         "the O-ring handbook's own table (ORingFriction, A6-1), which prints nine rows alike, "
         f"prints Increase there; {ours}. A fall with pressure was measured on other seals: Huang "
@@ -392,7 +392,7 @@ def _pressure(table_1: Trends) -> str:
 
 
 def _rest(table_1: Trends) -> str:
-    """What is ambiguous in print, and the order of significance."""
+    """Note on ambiguous words in print, and on the order of significance."""
     model = table_1.coefficient if table_1.film.why else table_1.film
     order = table_1.order(model)
     significance = (

@@ -140,8 +140,8 @@ def shaped(
     excess = excess_law(line_load=load, width=width, **ends)
 
     def profile(position: Array) -> Array:
-        held = maximum(excess, WITHIN * pressure + TOUCHING)
-        return profile_law(position=position, excess=held, **ends)
+        limited = maximum(excess, WITHIN * pressure + TOUCHING)
+        return profile_law(position=position, excess=limited, **ends)
 
     return SealContact(load, width, peak, profile, excess, width)
 
@@ -162,8 +162,6 @@ def landed(load: Array, width: Array, pressure: Array) -> SealContact:
 
 
 Polygon: TypeAlias = tuple[tuple[float, float], ...]
-
-
 _CORNERS = 24
 
 

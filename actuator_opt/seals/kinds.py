@@ -16,5 +16,5 @@ TYPES: Kinds[SealType] = kinds_in(
     "compact",
 )
 
-SIZES = tuple(dict.fromkeys((*SHARED, *(x.size for one in TYPES.values() for x in one.fields))))
+SIZES = tuple(dict.fromkeys((*SHARED, *(x.size for kind in TYPES.values() for x in kind.fields))))
 """All sizes of a design file: shared sizes first, then those of single types."""

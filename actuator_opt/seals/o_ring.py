@@ -43,7 +43,7 @@ def contact(seal: SealSizes) -> SealContact:
     )
     touching = real(at_rest) > 0
     narrow = minimum(width, load / where(touching, at_rest, 1.0))  # soft rings: too wide
-    found = shaped(
+    ring_contact = shaped(
         load,
         narrow,
         peak,
@@ -51,7 +51,7 @@ def contact(seal: SealSizes) -> SealContact:
         excess_law=contact_profile.o_ring_excess,
         profile_law=contact_profile.o_ring_profile,
     )
-    return replace(found, width=width)
+    return replace(ring_contact, width=width)
 
 
 def round_piece(section: Array, depth: Array) -> SealPart:
@@ -75,21 +75,23 @@ def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
 def law_warnings(seal: SealSizes) -> Iterable[str]:
     """A law outside the hardness, squeeze or pressure of its test data."""
     law = seals.LAWS[seal.law]
-    by = elastomer.MODULUS_LAWS[seal.hardness_model]
+    modulus_law = elastomer.MODULUS_LAWS[seal.hardness_model]
     hardness = float(np.max(seal["hardness"]))
-    if not by.hardness_range[0] <= hardness <= by.hardness_range[1]:
+    if not modulus_law.hardness_range[0] <= hardness <= modulus_law.hardness_range[1]:
         yield (
-            f"{hardness:g} Shore A, the {by.name} law is valid from "
-            f"{by.hardness_range[0]:g} to {by.hardness_range[1]:g}"
+            f"{hardness:g} Shore A, the {modulus_law.name} law is valid from "
+            f"{modulus_law.hardness_range[0]:g} to {modulus_law.hardness_range[1]:g}"
         )
     ratio = float(np.max(np.abs(seal["pressure"] / seal["youngs_modulus"])))
     low, high = law.squeeze_range
-    left, nominal = (float(np.min(np.real(seal[name]))) for name in ("squeeze_left", "squeeze"))
-    if not (low - ON_LIMIT <= left and nominal <= high + ON_LIMIT):
-        squeeze = nominal if nominal > high else left
+    remaining, nominal = (
+        float(np.min(np.real(seal[name]))) for name in ("squeeze_left", "squeeze")
+    )
+    if not (low - ON_LIMIT <= remaining and nominal <= high + ON_LIMIT):
+        squeeze = nominal if nominal > high else remaining
         yield (
-            f"squeeze {100 * squeeze:.3g} % outside the "
-            f"{100 * low:.0f}-{100 * high:.0f} % the {law.name} law was compared with data on"
+            f"squeeze {100 * squeeze:.3g} %, the {law.name} law was compared with data from "
+            f"{100 * low:.0f} to {100 * high:.0f} %"
         )
     if ratio > law.pressure_range[1]:
         yield (

@@ -170,14 +170,14 @@ class SealType:
         stated : sizes by key, SI
         section, gland_depth : section of the seal, depth of its groove [m]
         """
-        known: dict[str, Array] = {"section": section, "gland_depth": gland_depth}
+        sizes: dict[str, Array] = {"section": section, "gland_depth": gland_depth}
         for field in self.fields:
-            own = stated.get(field.key)
-            if own is None and field.default is not None:
-                own = field.default(known)
-            known[field.key] = stated[field.key] if own is None else own
-        del known["section"], known["gland_depth"]
-        return known
+            value = stated.get(field.key)
+            if value is None and field.default is not None:
+                value = field.default(sizes)
+            sizes[field.key] = stated[field.key] if value is None else value
+        del sizes["section"], sizes["gland_depth"]
+        return sizes
 
 
 def no_faults(sizes: Mapping[str, float]) -> Iterable[SizeFault]:

@@ -36,10 +36,10 @@ def contact(tables: Sequence[PressureProfile], pressure: Array) -> SealContact:
     tables : profiles in order of sealed pressure
     pressure : sealed pressure [Pa]
     """
-    known = [table.pressure for table in tables]
-    shares = [_share(pressure, known, i) for i in range(len(tables))]
+    pressures = [table.pressure for table in tables]
+    shares = [_share(pressure, pressures, i) for i in range(len(tables))]
     widths = [table.positions[-1] for table in tables]
-    width = sum(share * own for share, own in zip(shares, widths, strict=True))
+    width = sum(share * table_width for share, table_width in zip(shares, widths, strict=True))
     places = [tuple(x / table.positions[-1] for x in table.positions) for table in tables]
 
     def profile(position: Array) -> Array:
@@ -69,14 +69,14 @@ def contact(tables: Sequence[PressureProfile], pressure: Array) -> SealContact:
     return SealContact(load, width, peak, profile, peak - pressure, width)
 
 
-def _share(pressure: Array, known: Sequence[float], index: int) -> Array:
+def _share(pressure: Array, pressures: Sequence[float], index: int) -> Array:
     """Weight of a table at a pressure: 1 at its own, falling to 0 at the neighbouring pressures."""
-    own = known[index]
+    table_pressure = pressures[index]
     rising: Array = 1.0
     falling: Array = 1.0
     if index > 0:
-        rising = (pressure - known[index - 1]) / (own - known[index - 1])
-    if index < len(known) - 1:
-        falling = (known[index + 1] - pressure) / (known[index + 1] - own)
-    within = where(real(pressure) <= own, rising, falling)
+        rising = (pressure - pressures[index - 1]) / (table_pressure - pressures[index - 1])
+    if index < len(pressures) - 1:
+        falling = (pressures[index + 1] - pressure) / (pressures[index + 1] - table_pressure)
+    within = where(real(pressure) <= table_pressure, rising, falling)
     return minimum(maximum(within, 0.0), 1.0)

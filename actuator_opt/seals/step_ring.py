@@ -86,13 +86,13 @@ def contact(seal: SealSizes) -> SealContact:
 def groove(sizes: Mapping[str, Array]) -> SealGroove:
     """Groove for the ring and the O-ring behind it."""
     section, width, thickness = sizes["section"], sizes["width"], sizes["thickness"]
-    behind = gland.gland_depth(squeeze=sizes["squeeze"], section=section)
-    ring = round_piece(section, behind)
+    energiser_depth = gland.gland_depth(squeeze=sizes["squeeze"], section=section)
+    ring = round_piece(section, energiser_depth)
     pieces = (
         SealPart(thickness * width, thickness / 2),
         ring._replace(depth=thickness + ring.depth),
     )
-    return SealGroove(behind + thickness, width, AXIAL_PLAY * width, pieces)
+    return SealGroove(energiser_depth + thickness, width, AXIAL_PLAY * width, pieces)
 
 
 def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
@@ -110,8 +110,8 @@ def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
         (left + width, thick),
         (left, thick),
     )
-    behind = round_ring(room.middle, thick, room.depth, sizes["section"])
-    return Shape("polymer", body), *behind
+    energiser = round_ring(room.middle, thick, room.depth, sizes["section"])
+    return Shape("polymer", body), *energiser
 
 
 def faults(sizes: Mapping[str, float]) -> Iterable[SizeFault]:

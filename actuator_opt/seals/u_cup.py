@@ -78,7 +78,9 @@ def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
     """Two lips open to the sealed side; the heel behind them fills the groove but for clearance."""
     start, end, depth = room
     length, thick = sizes["width"], min(sizes["thickness"], 0.42 * depth)
-    give = max(float(lip_seal.lip_interference(section=sizes["section"], gland_depth=depth)), 0.0)
+    interference = max(
+        float(lip_seal.lip_interference(section=sizes["section"], gland_depth=depth)), 0.0
+    )
     root_gap = max(sizes["root_clearance"], 0.0)
     heel = max((end - start - length) * 0.8, 0.15 * length)
     right = min(start + (end - start + length + heel) / 2, end)
@@ -97,7 +99,12 @@ def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
         (tip, depth),
         (right, depth),
     )
-    free = ((root, root_gap), (tip + land, -give), (tip, -give), (tip, thin - give))
+    free = (
+        (root, root_gap),
+        (tip + land, -interference),
+        (tip, -interference),
+        (tip, thin - interference),
+    )
     return Shape("elastomer", body), Shape("free", (*free, (root - 0.3 * thick, root_gap + thick)))
 
 

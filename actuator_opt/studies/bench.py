@@ -59,7 +59,7 @@ class Bench:
         return all(ring.name != "piston" for ring in self.rings)
 
     def areas(self, highest_pressure: Array) -> tuple[Array, Array]:
-        """Return cap and rod-end piston areas in the bore as grown at the higher chamber pressure.
+        """Return cap and rod-end piston areas, with the bore grown by the higher chamber pressure.
 
         A_1 = pi (D/2 + u)^2, A_2 = A_1 - pi d^2/4, u the growth at the piston seal: the pressure
         acts on the area that the seal closes. Without a piston seal the rod is a plunger: pi d^2/4
@@ -86,7 +86,7 @@ class Bench:
         self, pressure_1: Array, pressure_2: Array
     ) -> Iterator[tuple[Ring, SealContact, Array]]:
         """Yield every ring with its contact, and the normal force of its row [N]."""
-        for ring in self._held(pressure_1, pressure_2):
+        for ring in self._loaded(pressure_1, pressure_2):
             contact = seal_contact(ring)
             load = contact.line_load
             count = float(ring["count"])
@@ -105,7 +105,7 @@ class Bench:
     def coulomb(self, pressure_1: Array, pressure_2: Array) -> Array:
         """Return the design's Coulomb friction [N]: rings and wipers, no side load on guides."""
         wiped = sum(float(wiper.friction) for wiper in self.wipers)
-        return sum((own for _, own in self._coulomb(pressure_1, pressure_2)), wiped)
+        return sum((friction for _, friction in self._coulomb(pressure_1, pressure_2)), wiped)
 
     def _coulomb(self, pressure_1: Array, pressure_2: Array) -> Iterator[tuple[Ring, Array]]:
         """Yield every ring with the Coulomb friction of its row, by its friction law [N]."""
@@ -127,11 +127,10 @@ class Bench:
 
     def contact_pressure(self, pressure_1: float, pressure_2: float) -> float:
         """Return the normal force of the rings that seal the pressure, per contact area [Pa]."""
-        held = [ring for ring in self._held(pressure_1, pressure_2) if _leads(ring)]
-        touches = [seal_contact(ring) for ring in held]
-        around = [float(ring["diameter"]) for ring in held]
-        force = sum(d * float(touch.line_load) for d, touch in zip(around, touches, strict=True))
-        area = sum(d * float(touch.width) for d, touch in zip(around, touches, strict=True))
+        rings = [ring for ring in self._loaded(pressure_1, pressure_2) if _leads(ring)]
+        pairs = [(float(ring["diameter"]), seal_contact(ring)) for ring in rings]
+        force = sum(diameter * float(contact.line_load) for diameter, contact in pairs)
+        area = sum(diameter * float(contact.width) for diameter, contact in pairs)
         return force / area
 
     @property
@@ -149,25 +148,24 @@ class Bench:
             if _leads(ring)
         )
 
-    def _held(self, pressure_1: Array, pressure_2: Array) -> list[Ring]:
+    def _loaded(self, pressure_1: Array, pressure_2: Array) -> list[Ring]:
         """Return the rings at chamber pressures; the first of each row seals the pressure."""
         p1, p2 = (
-            np.maximum(broadcast_array, 0.0)
-            for broadcast_array in np.broadcast_arrays(pressure_1, pressure_2)
+            np.maximum(pressure, 0.0) for pressure in np.broadcast_arrays(pressure_1, pressure_2)
         )
-        seen = {"piston": np.abs(p1 - p2), "rod": p1 if self.plunger else p2}
+        sealed = {"piston": np.abs(p1 - p2), "rod": p1 if self.plunger else p2}
         outer = {"piston": np.minimum(p1, p2), "rod": 0.0 * p2}
-        found = []
+        rings = []
         for ring in self.rings:
             grown = self.growth * np.maximum(p1, p2) if ring.name == "piston" else 0.0
-            found.append(
+            rings.append(
                 ring.at(
-                    pressure=seen[ring.name] if _leads(ring) else 0.0 * p1,
+                    pressure=sealed[ring.name] if _leads(ring) else 0.0 * p1,
                     outer_pressure=outer[ring.name],
                     squeeze_left=ring["squeeze"] - grown / ring["section"],
                 )
             )
-        return found
+        return rings
 
     def stiffness(self, position: Array, pressure_1: Array, pressure_2: Array) -> Array:
         """Return the stiffness with closed ports over a record [N/m]; NaN for a plunger.
@@ -178,22 +176,23 @@ class Bench:
         place = np.clip(position, 0.0, self.stroke)[None, :]
         if self.plunger:
             return np.full(place.shape[1], np.nan)
-        state = self.oil_pressures
         soft_a, soft_b = (
-            self.bulk_modulus(held) / self.bulk_modulus(np.maximum(here, 0.0))[None, :]
-            for held, here in zip(state, (pressure_1, pressure_2), strict=True)
+            self.bulk_modulus(reference) / self.bulk_modulus(np.maximum(pressure, 0.0))[None, :]
+            for reference, pressure in zip(
+                self.oil_pressures, (pressure_1, pressure_2), strict=True
+            )
         )
         chambers = {
-            cause: give._replace(
+            name: give._replace(
                 a0=give.a0 * soft_a, a1=give.a1 * soft_a, b0=give.b0 * soft_b, b1=give.b1 * soft_b
             )
-            if cause in self.springs.oil
+            if name in self.springs.oil
             else give
-            for cause, give in self.springs.chambers.items()
+            for name, give in self.springs.chambers.items()
         }
         parts = replace(self.springs, chambers=chambers).compliances(place)
-        whole = np.sum([np.broadcast_to(one, (1, place.size)) for one in _first(parts)], axis=0)
-        return 1 / whole[0]
+        total = np.sum([np.broadcast_to(part, (1, place.size)) for part in _first(parts)], axis=0)
+        return 1 / total[0]
 
 
 def _leads(ring: Ring) -> bool:
@@ -212,17 +211,17 @@ def bench(subject: PreparedDesign) -> Bench:
     done = compute(subject, v)
     g = done.geometry
     stock = MaterialValues(v, subject.materials, subject.factors, subject.constants)
-    temperature = _first_of(done.state.temperature)
+    temperature = first_case(done.state.temperature)
 
     def bulk_modulus(pressure: Array) -> Array:
-        found = state.bulk_modulus(v, subject.design.fluid, stock, temperature, pressure)
-        return np.real(found) + 0.0 * pressure
+        modulus = state.bulk_modulus(v, subject.design.fluid, stock, temperature, pressure)
+        return np.real(modulus) + 0.0 * pressure
 
-    driven = np.broadcast_to(_cases(done.state.driven_pressure), (len(v.cases),))
-    grown = np.max(np.real(np.atleast_2d(SEAL_STEP * done.wall.case_growth)), axis=-1)
-    grown = np.broadcast_to(grown, driven.shape)
-    loaded = driven > 0
-    growth = float(np.max(grown[loaded] / driven[loaded])) if loaded.any() else 0.0
+    pressures = np.broadcast_to(_cases(done.state.driven_pressure), (len(v.cases),))
+    growths = np.max(np.real(np.atleast_2d(SEAL_STEP * done.wall.case_growth)), axis=-1)
+    growths = np.broadcast_to(growths, pressures.shape)
+    loaded = pressures > 0
+    growth = float(np.max(growths[loaded] / pressures[loaded])) if loaded.any() else 0.0
     return Bench(
         design=subject.design,
         bore=float(np.squeeze(g.bore)),
@@ -234,17 +233,17 @@ def bench(subject: PreparedDesign) -> Bench:
         supply_pressure=float(v["supply.pressure"]),
         rings=tuple(floats(ring, 0) for ring in done.rings),
         wipers=tuple(
-            WiperFriction(wiper.path, _first_of(wiper.coefficient), _first_of(wiper.friction))
+            WiperFriction(wiper.path, first_case(wiper.coefficient), first_case(wiper.friction))
             for wiper in wipers(v, subject.design, g, done.state)
         ),
         springs=done.springs,
-        oil_pressures=(_first_of(done.state.holding_a), _first_of(done.state.holding_b)),
+        oil_pressures=(first_case(done.state.holding_a), first_case(done.state.holding_b)),
         temperature=temperature,
         bulk_modulus=bulk_modulus,
     )
 
 
-def _first_of(value: Array) -> float:
+def first_case(value: Array) -> float:
     """Return the value of the first load case of a single design."""
     return float(np.ravel(np.real(np.asarray(value)))[0])
 

@@ -61,7 +61,7 @@ class Sealing:
         return FilmRow(tuple(rings), self.outward)
 
     def alone(self, index: int) -> Sealing:
-        """Return one of the rings without the others."""
+        """Return the row with one of its rings alone."""
         return Sealing((self.rings[index],), self.outward, self.growth)
 
 
@@ -71,8 +71,8 @@ def sealing(base: Base, place: Place, case: int) -> Sealing:
     pressure = float(of_case(base.state.driven_pressure, case))
     growth = 0.0
     if place == "piston" and pressure > 0:
-        grown = SEAL_STEP * of_case(base.wall.case_growth, case)
-        growth = float(np.max(np.real(grown))) / pressure
+        growths = SEAL_STEP * of_case(base.wall.case_growth, case)
+        growth = float(np.max(np.real(growths))) / pressure
     return Sealing(rings, drives(place) == "out", growth)
 
 
@@ -92,12 +92,12 @@ class FilmMap:
     ----------
     pressures, speeds : differences to the outer side (p,) [Pa], (v,) [m/s]
     parts : friction of every ring (p, v, rings) [N]
-    between : pressure between two rings over the outer side (p, v) [Pa]; NaN for one
+    between : pressure between two rings over the outer side (p, v) [Pa]; NaN for a single ring
     thickness : mean film of every ring (p, v, rings) [m]
     viscous : share of oil shear in the friction (p, v)
     breakaway : of all rings, dry (p,) [N]; two rings share the pressure as in the film at the
         lowest speed
-    why : the points without a film
+    why : points without a film, with the reason
     """
 
     pressures: Array
@@ -139,27 +139,27 @@ def film_map(
     why: list[Missing] = []
     last: Solved | None = None
     for i, pressure in enumerate(pressures):
-        held = sealing.row(pressure, speeds[0], **changes).rings
-        dry.append(breakaway(held[0]) if count == 1 else nan)
+        rings = sealing.row(pressure, speeds[0], **changes).rings
+        dry.append(breakaway(rings[0]) if count == 1 else nan)
         for k in range(len(speeds)):
             j = k if i % 2 == 0 else len(speeds) - 1 - k
-            found = solve(sealing.row(pressure, speeds[j], **changes), last)
-            if found.why:
-                why.append(Missing(pressure, speeds[j], found.why))
+            solved = solve(sealing.row(pressure, speeds[j], **changes), last)
+            if solved.why:
+                why.append(Missing(pressure, speeds[j], solved.why))
                 continue
-            last = found
-            films = ring_films(found.values)
-            parts[i, j] = ring_friction(found)
+            last = solved
+            films = ring_films(solved.values)
+            parts[i, j] = ring_friction(solved)
             thickness[i, j] = [film.thickness for film in films]
             sheared = [
                 pi * ring["diameter"] * film.drag
-                for ring, film in zip(found.row.rings, films, strict=True)
+                for ring, film in zip(solved.row.rings, films, strict=True)
             ]
-            viscous[i, j] = sum(sheared) / found.friction()
+            viscous[i, j] = sum(sheared) / solved.friction()
             if count == 2:
-                between[i, j] = found.between - found.row.inputs()["outer"]
+                between[i, j] = solved.between - solved.row.inputs()["outer"]
                 if j == 0:
-                    dry[i] = sum(map(breakaway, found.row.between(found.between)))
+                    dry[i] = sum(map(breakaway, solved.row.between(solved.between)))
     return FilmMap(
         np.array(pressures),
         np.array(speeds),
@@ -176,7 +176,7 @@ def ring_friction(solved: Solved) -> tuple[float, ...]:
     """Return the friction of every ring of a row [N]; NaN without a film."""
     if solved.why:
         return (nan,) * len(solved.row.rings)
-    return tuple(float(one) for one in solved.row.frictions(solved.values))
+    return tuple(float(friction) for friction in solved.row.frictions(solved.values))
 
 
 def breakaway(ring: Ring) -> float:

@@ -1,4 +1,4 @@
-"""The plant of a simulation: plain numbers of a design, SI, at its own oil temperature."""
+"""The plant of a simulation: numbers of a design, SI, at the oil temperature of its first case."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from ..evaluation.rings import Ring
 from ..evaluation.springs import OIL, Give
 from ..evaluation.values import Values
 from ..models import end_stop, lines, linkage
-from .bench import Bench, bench
+from .bench import Bench, bench, first_case
 
 LEAST_AIR = 1e-4
-"""Free air content above which the air itself limits a vacuum (a choice, 0.01 %)."""
+"""Free air content above which the air limits a vacuum (a choice: 0.01 %)."""
 
 CAVITY = 1e-6
-"""Volume share of the cavity that limits a vacuum in oil with less air, below atmospheric pressure
-only (a choice: at 0.05 bar absolute it takes 0.006 % of the volume)."""
+"""Volume share of a cavity that limits a vacuum in oil with less air; only below atmospheric
+pressure (a choice: at 0.05 bar absolute it takes 0.006 % of the volume)."""
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
 """Chamber pressures, relative to the supply pressure, for fitting the friction."""
 
@@ -37,7 +37,7 @@ class Oil:
     bulk_modulus: float
     """Tangent bulk modulus of the pure oil at zero gauge pressure."""
     slope: float
-    """Its increase with pressure; a Tait law becomes its secant up to the supply pressure."""
+    """Increase of the bulk modulus with pressure; of a Tait law the secant to supply pressure."""
     air_content: float
     polytropic_index: float
     density: float
@@ -169,10 +169,10 @@ class Plant:
             crank_radius=pivots.crank_radius,
             angle_offset=pivots.angle_offset,
         )
-        felt = linkage.reflected_inertia(
+        reflected = linkage.reflected_inertia(
             inertia=self.design.load.inertia, lever_arm=arm.lever_arm, lever_slope=arm.lever_slope
         )
-        return arm, felt
+        return arm, reflected
 
     def joint_angle(self, position: Array) -> Array:
         """Return the joint angle at a position [rad], for a design with a linkage."""
@@ -205,15 +205,15 @@ def plant(subject: PreparedDesign) -> Plant:
     supply = float(v["supply.pressure"])
     return Plant(
         design=design,
-        area_a=_one(g.area_a),
-        area_b=_one(g.area_b),
-        stroke=_one(g.stroke),
-        dead_a=_one(v["cylinder.dead_volume_a"]),
-        dead_b=_one(v["cylinder.dead_volume_b"]) + _one(g.area_b) * _extra(done),
-        walls=Give(*(_one(part) for part in give)),
-        flexibility=_one(across),
+        area_a=first_case(g.area_a),
+        area_b=first_case(g.area_b),
+        stroke=first_case(g.stroke),
+        dead_a=first_case(v["cylinder.dead_volume_a"]),
+        dead_b=first_case(v["cylinder.dead_volume_b"]) + first_case(g.area_b) * _extra(done),
+        walls=Give(*(first_case(part) for part in give)),
+        flexibility=first_case(across),
         mass=float(v["load.mass"]) + own.mass,
-        leakage=_one(done.motion.leakage),
+        leakage=first_case(done.motion.leakage),
         oil=_oil(subject, v, own, supply),
         supply_pressure=supply,
         return_pressure=float(v["supply.return_pressure"]),
@@ -224,33 +224,28 @@ def plant(subject: PreparedDesign) -> Plant:
         reducing_valve=_numbers(v, design.ports.reducing_valve, "ports.reducing_valve."),
         seals=_seals(v, own, supply),
         films={
-            one: getattr(design.seals, one).friction_law.film is not None
-            for one in ("piston", "rod")
+            place: getattr(design.seals, place).friction_law.film is not None
+            for place in ("piston", "rod")
         },
-        oil_damping=_one(
+        oil_damping=first_case(
             done.computed.metrics["damping_pipe"][""] + done.computed.metrics["damping_annular"][""]
         ),
         stop_stiffness=float(
             end_stop.stop_stiffness(
-                area=_one(g.area_a), pressure=supply, travel=v["cylinder.stop_travel"]
+                area=first_case(g.area_a), pressure=supply, travel=v["cylinder.stop_travel"]
             )
         ),
-        closed_length=_one(done.computed.metrics["closed_length"][""]),
+        closed_length=first_case(done.computed.metrics["closed_length"][""]),
     )
 
 
 _NOT_WALLS = (*OIL, "pipes", "hoses")
 
 
-def _one(value: Array) -> float:
-    """Return the value of the first load case of a single design."""
-    return float(np.ravel(np.real(np.asarray(value)))[0])
-
-
 def _extra(done: ModelRun) -> float:
     """Return the barrel length beyond the stroke and the parts."""
     g = done.geometry
-    return _one(g.barrel_length - g.piston_length - g.head_length - g.stroke)
+    return first_case(g.barrel_length - g.piston_length - g.head_length - g.stroke)
 
 
 def _oil(subject: PreparedDesign, v: Values, own: Bench, supply: float) -> Oil:
@@ -258,11 +253,11 @@ def _oil(subject: PreparedDesign, v: Values, own: Bench, supply: float) -> Oil:
     stock = MaterialValues(v, subject.materials, subject.factors, subject.constants)
 
     def modulus(pressure: float) -> float:
-        return _one(state.pure_bulk_modulus(v, section, stock, temperature, pressure))
+        return first_case(state.pure_bulk_modulus(v, section, stock, temperature, pressure))
 
     at_rest = modulus(0.0)
-    density = _one(state.oil_density(v, section, stock, temperature))
-    kinematic = _one(state.kinematic_viscosity(v, section, stock, temperature))
+    density = first_case(state.oil_density(v, section, stock, temperature))
+    kinematic = first_case(state.kinematic_viscosity(v, section, stock, temperature))
     vapour = state.vapour_pressure(stock, section.material, temperature)
     return Oil(
         temperature=temperature,
@@ -273,7 +268,7 @@ def _oil(subject: PreparedDesign, v: Values, own: Bench, supply: float) -> Oil:
         density=density,
         dynamic_viscosity=kinematic * density,
         kinematic_viscosity=kinematic,
-        vapour_pressure=0.0 if vapour is None else _one(vapour),
+        vapour_pressure=0.0 if vapour is None else first_case(vapour),
     )
 
 
@@ -282,9 +277,9 @@ def _valve(v: Values, design: Design, done: ModelRun) -> ValveData | None:
         return None
     edges = circuit.valve_edges(v, design, done.state)
     return ValveData(
-        rated=_one(edges.rated),
-        leakage_supply=_one(edges.supply),
-        leakage_tank=_one(edges.tank),
+        rated=first_case(edges.rated),
+        leakage_supply=first_case(edges.supply),
+        leakage_tank=first_case(edges.tank),
         signal=float(v["valve.signal"]),
         natural_frequency=float(v["valve.natural_frequency"]),
         damping_ratio=float(v["valve.damping_ratio"]),
@@ -304,29 +299,29 @@ def _lines(v: Values, design: Design, done: ModelRun, chamber: Chamber) -> LineD
         volume, wall = lines.line_volume(**size), circuit.wall_compliance(v, line, at)
         far = float(line.beyond_throttle) if throttled else 0.5
         for k, share in ((0, 1 - far), (1, far)):
-            volumes[k] += share * _one(volume)
-            walls[k] += share * _one(wall)
+            volumes[k] += share * first_case(volume)
+            walls[k] += share * first_case(wall)
     return LineData(
         near_volume=volumes[0],
         near_wall=walls[0],
         far_volume=volumes[1],
         far_wall=walls[1],
-        resistance=_one(branch.resistance),
-        inertance=_one(branch.inertance),
+        resistance=first_case(branch.resistance),
+        inertance=first_case(branch.inertance),
     )
 
 
 def _throttle(v: Values, design: Design, done: ModelRun) -> dict[str, float] | None:
-    found = _numbers(v, design.ports.throttle, "ports.throttle.")
-    if found is None:
+    numbers = _numbers(v, design.ports.throttle, "ports.throttle.")
+    if numbers is None:
         return None
     return {
-        "opening": found["opening"],
-        "needle_area": found["area"],
-        "check_area": found["check_area"],
-        "cracking_pressure": found["cracking_pressure"],
-        "density": _one(done.state.density),
-        "dynamic_viscosity": _one(done.state.dynamic_viscosity),
+        "opening": numbers["opening"],
+        "needle_area": numbers["area"],
+        "check_area": numbers["check_area"],
+        "cracking_pressure": numbers["cracking_pressure"],
+        "density": first_case(done.state.density),
+        "dynamic_viscosity": first_case(done.state.dynamic_viscosity),
     }
 
 
@@ -338,7 +333,7 @@ def _numbers(v: Values, section: Any, at: str) -> dict[str, float] | None:
 
 def _seals(v: Values, own: Bench, supply: float) -> SealData:
     """Return friction as a function of the pressures, fitted to the seals' own law."""
-    p_a, p_b = (one.ravel() for one in np.meshgrid(*2 * (supply * np.array(SHARES),)))
+    p_a, p_b = (pressure.ravel() for pressure in np.meshgrid(*2 * (supply * np.array(SHARES),)))
     loads = [(ring, force) for ring, force in own.normal_forces(p_a, p_b)]
     coulomb = own.coulomb(p_a, p_b)
     static, _ = own.sliding(0.0 * p_a, p_a, p_b)
@@ -362,8 +357,8 @@ def _falling(ring: Ring) -> Array:
 def _plane(p_a: Array, p_b: Array, force: Array) -> Plane:
     basis = np.stack([np.ones_like(p_a), abs(p_a - p_b), p_b, np.maximum(p_a, p_b)], axis=1)
     scale = np.array([1.0, *3 * (max(float(p_a.max()), 1.0),)])
-    fit = np.linalg.lstsq(basis / scale, force, rcond=None)[0] / scale
+    coefficients = np.linalg.lstsq(basis / scale, force, rcond=None)[0] / scale
     most = float(np.max(np.abs(force)))
-    error = float(np.max(np.abs(basis @ fit - force))) / most if most > 0 else 0.0
-    constant, difference, rod_side, higher = (float(one) for one in fit)
+    error = float(np.max(np.abs(basis @ coefficients - force))) / most if most > 0 else 0.0
+    constant, difference, rod_side, higher = (float(coefficient) for coefficient in coefficients)
     return Plane(constant, difference, rod_side, higher, error)

@@ -75,7 +75,7 @@ class SealPoint:
     speed, pressure, temperature : [m/s], sealed pressure over the outer side [Pa], [K]
     rings : from the sealed side outwards
     why : reason for a missing film, else empty
-    between : pressure between two rings, gauge [Pa]; NaN for one
+    between : pressure between two rings, gauge [Pa]; NaN for a single ring
     flow : towards the outer side [m^3/s]
     lower, upper : friction over the scatter of the modulus [N]
     """
@@ -234,21 +234,21 @@ class SealStudy(Displayed):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the JSON form, SI; null without a film."""
-        point = self.drive
+        drive = self.drive
         both = {"out": self.out, "in": self.back}
         oil = self.double_stroke
-        found = {
+        data = {
             "name": self.design.name,
             "version": VERSION,
             "seal": self.place,
-            "speed": point.speed,
-            "pressure": point.pressure,
+            "speed": drive.speed,
+            "pressure": drive.pressure,
             "outer_pressure": self.outer_pressure,
-            "drive": point.stroke,
-            "temperature": point.temperature,
-            "contact": [_contact_dict(ring) for ring in point.rings],
-            "friction": {stroke: _friction_dict(one) for stroke, one in both.items()},
-            "damping": {stroke: _known(one.damping) for stroke, one in both.items()},
+            "drive": drive.stroke,
+            "temperature": drive.temperature,
+            "contact": [_contact_dict(ring) for ring in drive.rings],
+            "friction": {stroke: _friction_dict(point) for stroke, point in both.items()},
+            "damping": {stroke: _known(point.damping) for stroke, point in both.items()},
             "leakage": {
                 "flow_out": _known(self.out.flow),
                 "flow_in": _known(self.back.flow),
@@ -258,15 +258,15 @@ class SealStudy(Displayed):
                 },
             },
             "lugre": None if self.lugre is None else self.lugre._asdict(),
-            "inter_seal_pressure": {k: _known(one.between) for k, one in both.items()},
+            "inter_seal_pressure": {name: _known(point.between) for name, point in both.items()},
             "converged": self.converged,
-            "reason": point.why or self.other.why,
+            "reason": drive.why or self.other.why,
             "load_residual": _worst(both.values(), "load_residual"),
             "mass_residual": _worst(both.values(), "mass_residual"),
         }
         if self.elements:
-            found["finite_elements"] = [_element_dict(element) for element in self.elements]
-        return found if self.map is None else found | {"map": _map_dict(self.map)}
+            data["finite_elements"] = [_element_dict(element) for element in self.elements]
+        return data if self.map is None else data | {"map": _map_dict(self.map)}
 
 
 def _known(value: float) -> float | None:
@@ -311,17 +311,17 @@ def _friction_dict(point: SealPoint) -> dict[str, Any]:
     }
 
 
-def _map_dict(found: FilmMap) -> dict[str, Any]:
+def _map_dict(film_map: FilmMap) -> dict[str, Any]:
     def rows(table: np.ndarray) -> list[list[float | None]]:
         return [[_known(value) for value in row] for row in table]
 
     return {
-        "speeds": found.speeds.tolist(),
-        "pressures": found.pressures.tolist(),
-        "friction": rows(found.friction),
-        "damping": rows(found.damping),
-        "breakaway": [_known(value) for value in found.breakaway],
-        "failed": [one._asdict() for one in found.why],
+        "speeds": film_map.speeds.tolist(),
+        "pressures": film_map.pressures.tolist(),
+        "friction": rows(film_map.friction),
+        "damping": rows(film_map.damping),
+        "breakaway": [_known(value) for value in film_map.breakaway],
+        "failed": [missing._asdict() for missing in film_map.why],
     }
 
 
@@ -346,7 +346,7 @@ HARDEST = 98.0
 
 CURVE_SPEEDS = tuple(float(v) for v in np.geomspace(1e-4, 1.0, 17))
 CURVE_SHARES = (0.02, 0.5, 1.0)
-"""Speeds [m/s] of the friction curves, and their shares of the supply pressure."""
+"""Speeds [m/s] and shares of the supply pressure of the friction curves."""
 
 MAP_SPEEDS = tuple(float(v) for v in np.geomspace(5e-4, 0.5, 13))
 MAP_SHARES = (0.02, 0.1, 0.25, 0.5, 0.75, 1.0)
@@ -380,46 +380,52 @@ def study(
         no speed, or a pressure or squeeze for which the contact has no solution
     """
     v = subject.values()
-    found = base(subject, v)
-    own = of_place(found.rings, place)
-    case = _case(own[0], speed)
-    held = float(of_case(own[0]["pressure"], case)) if pressure is None else pressure
-    run = float(of_case(own[0]["speed"], case)) if speed is None else speed
-    if not held >= 0:
+    evaluation = base(subject, v)
+    seal_row = of_place(evaluation.rings, place)
+    case = _case(seal_row[0], speed)
+    if pressure is None:
+        pressure = float(of_case(seal_row[0]["pressure"], case))
+    if speed is None:
+        speed = float(of_case(seal_row[0]["speed"], case))
+    if not pressure >= 0:
         raise InputError(
             Diagnostic(
-                f"pressure {held / 100000.0:g} bar is below the pressure on the outer side",
+                f"pressure {pressure / 100000.0:g} bar is below the pressure on the outer side",
                 "state the sealed pressure relative to the outer side, 0 bar or more",
                 path=f"seals.{place}",
             )
         )
-    if not run >= SLOWEST:
+    if not speed >= SLOWEST:
         raise InputError(
             Diagnostic(
-                f"speed {run:g} m/s: film and secant damping need a moving seal",
+                f"speed {speed:g} m/s: film and secant damping need a moving seal",
                 f'state {SLOWEST:g} m/s or more, e.g. --speed "0.1 m/s"',
                 path=f"seals.{place}",
             )
         )
-    _within(own, place, held)
+    _within(seal_row, place, pressure)
     supply = float(v["supply.pressure"])
-    driven = sealing(found, place, case)
-    temperature = float(of_case(found.state.temperature, case))
+    driven = sealing(evaluation, place, case)
+    temperature = float(of_case(evaluation.state.temperature, case))
     points: dict[Stroke, SealPoint] = {
-        stroke: _point(replace(driven, outward=stroke == "out").row(held, run), temperature)
+        stroke: _point(replace(driven, outward=stroke == "out").row(pressure, speed), temperature)
         for stroke in ("out", "in")
     }
-    largest = float(np.max(np.real(SEAL_STEP * found.wall.growth)))
+    largest = float(np.max(np.real(SEAL_STEP * evaluation.wall.growth)))
     return SealStudy(
         design=subject.design,
         place=place,
         out=points["out"],
         back=points["in"],
         outer_pressure=driven.rings[-1]["outer_pressure"],
-        stroke=float(np.squeeze(found.geometry.stroke)),
-        clearance=float(np.squeeze(rings.clearances(found.geometry, found.state, own[0])[0])),
-        growth=driven.grown(held),
-        squeezes=tuple(_squeezes(subject, found, own, largest if place == "piston" else 0.0)),
+        stroke=float(np.squeeze(evaluation.geometry.stroke)),
+        clearance=float(
+            np.squeeze(rings.clearances(evaluation.geometry, evaluation.state, seal_row[0])[0])
+        ),
+        growth=driven.grown(pressure),
+        squeezes=tuple(
+            _squeezes(subject, evaluation, seal_row, largest if place == "piston" else 0.0)
+        ),
         curves=film_map(driven, [x * supply for x in CURVE_SHARES], CURVE_SPEEDS)
         if curves
         else None,
@@ -437,16 +443,16 @@ def with_elements(
     """
     v = subject.values()
     ring = floats(of_place(base(subject, v).rings, place)[0], 0)
-    found = contacts_of_seals.contacts(ring, float(v["supply.pressure"]))
-    design, stated = subject.design, contacts_of_seals.profiles(found)
+    mounted = contacts_of_seals.contacts(ring, float(v["supply.pressure"]))
+    design, stated = subject.design, contacts_of_seals.profiles(mounted)
     seal = getattr(design.seals, place).model_copy(update={"contact": stated})
     seals = design.seals.model_copy(update={place: seal})
-    return replace(subject, design=design.model_copy(update={"seals": seals}), films={}), found
+    return replace(subject, design=design.model_copy(update={"seals": seals}), films={}), mounted
 
 
-def _within(own: Sequence[Ring], place: Place, pressure: float) -> None:
-    """Check that stated profiles cover the pressure."""
-    for ring in own:
+def _within(seal_row: Sequence[Ring], place: Place, pressure: float) -> None:
+    """Reject a pressure that stated profiles do not cover."""
+    for ring in seal_row:
         tables = ring.element.contact
         if tables and pressure > tables[-1].pressure * (1 + 1e-9):
             message = (
@@ -468,10 +474,10 @@ def _case(ring: Ring, speed: float | None) -> int:
         np.atleast_2d(np.asarray(ring[name], dtype=float))[:, 0] for name in ("pressure", "speed")
     )
     count = max(pressures.size, speeds.size)
-    held, run = np.broadcast_to(pressures, count), np.broadcast_to(speeds, count)
-    if speed is None and np.any(run > 0):
-        held = np.where(run > 0, held, -1.0)
-    return int(np.argmax(held))
+    case_pressures, case_speeds = np.broadcast_to(pressures, count), np.broadcast_to(speeds, count)
+    if speed is None and np.any(case_speeds > 0):
+        case_pressures = np.where(case_speeds > 0, case_pressures, -1.0)
+    return int(np.argmax(case_pressures))
 
 
 def _point(row: FilmRow, temperature: float) -> SealPoint:
@@ -514,7 +520,7 @@ def _bounds(solved: Solved) -> tuple[float, float]:
     """Return least and largest friction over the scatter of all moduli; NaN without a film."""
     if not solved.films:
         return nan, nan
-    found = [solved.friction()]
+    frictions = [solved.friction()]
     for end in (0, 2):
         scaled = tuple(
             ring.at(
@@ -526,15 +532,13 @@ def _bounds(solved: Solved) -> tuple[float, float]:
         other = solve(FilmRow(scaled, solved.row.outward), solved)
         if other.why:
             return nan, nan
-        found.append(other.friction())
-    return min(found), max(found)
+        frictions.append(other.friction())
+    return min(frictions), max(frictions)
 
 
 def _face_factor(ring: Ring) -> tuple[float, float, float]:
     """Return the lowest, assumed and highest modulus of the sliding face, over the assumed one."""
-    if (
-        ring.element.seal_type.modulus_by == "hardness"
-    ):  # the face is plastic, with a stated modulus
+    if ring.element.seal_type.modulus_by == "hardness":  # the face is plastic, its modulus stated
         return 1 / STATED_FACTOR, 1.0, STATED_FACTOR
     low, value, high = modulus_range(ring)
     return low / value, 1.0, high / value
@@ -567,22 +571,22 @@ def _ring_point(ring: Ring, solved: Solved, index: int) -> RingPoint:
 
 
 def _squeezes(
-    subject: PreparedDesign, found: Base, own: Sequence[Ring], growth: float
+    subject: PreparedDesign, evaluation: Base, seal_row: Sequence[Ring], growth: float
 ) -> Sequence[SqueezeRow]:
     """Return squeeze over tolerance at coldest, case and hottest, without and with pressure."""
     design, v = subject.design, subject.values()
-    temperatures = [float(np.max(found.state.temperature))]
+    temperatures = [float(np.max(evaluation.state.temperature))]
     if design.environment is not None:
         temperatures += [design.environment.temperature_min, design.environment.temperature_max]
     rows = []
-    for ring in own:
-        one = floats(ring, 0)
+    for ring in seal_row:
+        plain = floats(ring, 0)
         for temperature in sorted(set(temperatures)):
-            ratio = rings.volume_ratio(v, design, found.stock, ring, temperature)
+            ratio = rings.volume_ratio(v, design, evaluation.stock, ring, temperature)
             for pressure, grown in ((0.0, 0.0), (float(v["supply.pressure"]), growth)):
                 spread = {"growth": grown, "ratio": ratio}
-                loosest, tightest = rings.squeezes(one, aside=0.0, **spread)
-                exact = one.at(tolerance=0.0, section_tolerance=0.0)
+                loosest, tightest = rings.squeezes(plain, aside=0.0, **spread)
+                exact = plain.at(tolerance=0.0, section_tolerance=0.0)
                 nominal, _ = rings.squeezes(exact, aside=0.0, **spread)
                 rows.append(
                     SqueezeRow(
@@ -591,7 +595,7 @@ def _squeezes(
                         pressure,
                         float(loosest),
                         float(nominal),
-                        float(tightest - grown / one["section"]),
+                        float(tightest - grown / plain["section"]),
                     )
                 )
     return rows

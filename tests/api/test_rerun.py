@@ -162,9 +162,9 @@ def test_files_that_are_no_report(reports, tmp_path):
     at = data.index(b"application#2Fyaml")
     begin = data.index(b"stream", at) + 8
     cases = {
-        "is no PDF": SMALL.encode(),
-        "carries no input": b"%PDF-1.7\n1 0 obj\nendobj\n%%EOF\n",
-        "is cut off": data[: at // 2],
+        "is not a PDF": SMALL.encode(),
+        "has no input": b"%PDF-1.7\n1 0 obj\nendobj\n%%EOF\n",
+        "is truncated": data[: at // 2],
         "is damaged": data[:begin] + b"\0\0\0\0" + data[begin + 4 :],
         "several attachments": data + data.replace(b"load_cases", b"x", 0)
         + _pdf(tmp_path, "a: 1\n", FACTS).read_bytes(),

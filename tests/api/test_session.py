@@ -324,7 +324,7 @@ def test_solvers_in_a_batch_see_only_their_own_points():
     batch.drop(0)
     batch.step()
     assert batch.results == {1: 401.0}
-    assert not batch.wanted
+    assert not batch.requests
 
 
 def test_an_evaluator_asks_whether_to_stop(steel):

@@ -16,7 +16,7 @@ import actuator_opt as ao
 from actuator_opt import api as verbs, cli
 from actuator_opt.base.errors import InputError
 from actuator_opt.base.tables import encoded
-from actuator_opt.evaluation import compute, film as films, without_films
+from actuator_opt.evaluation import compute, film_tables as films, without_films
 
 LONG, DIGITS = "a" * 300, "9" * 5000
 """More letters than a file system takes in a name, more digits than Python reads as an integer."""

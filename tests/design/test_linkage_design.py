@@ -174,7 +174,7 @@ def test_the_joint_brings_its_own_energy_to_the_stop():
         case(TORQUE, "joint_speed: 3 rad/s", name="b", direction="pull"),
     ]
     state = done(text(WIDE, *cases, load=load)).state
-    stop = at_stop(state.asked, state.push)
+    stop = at_stop(state.demands, state.push)
     energy = np.ravel(stop.mass * stop.speed**2 / 2)
     assert energy == pytest.approx([0.3 * 2**2 / 2, 0.3 * 3**2 / 2], rel=1e-12)
     arms = [lever(0.245, 0.07, CLOSED + STROKE), lever(0.245, 0.07, CLOSED)]

@@ -11,7 +11,7 @@ from hypothesis import given, strategies as st
 from step_reader import StepFile, volume
 
 import actuator_opt as ao
-from actuator_opt.exports.step import SolidBody, bodies, joined, sound, step, tidy
+from actuator_opt.exports.step import SolidBody, bodies, bounds_solid, joined, step, tidy
 
 SHIPPED = sorted(DESIGNS.glob("*.yaml"))
 
@@ -177,7 +177,7 @@ def test_cones(name):
     """Frustums by h/3 (a^2 + ab + b^2), a ring by Pappus."""
     profile, by_hand = CONES[name]
     profile = tuple((float(x), float(r)) for x, r in profile)
-    assert sound(profile)
+    assert bounds_solid(profile)
     (faces,) = (
         StepFile(
             step([SolidBody("c", "c", "m", profile, ((0.0, 0.0, 0.0),))], name="c", program="p")
@@ -210,7 +210,7 @@ def test_any_turned_profile_is_a_solid_of_its_volume(steps, bored, sloped):
         by_hand += math.pi * (cone - length * bore**2)
         x += length
     profile = tidy([*inside, *reversed(outside)])
-    assert sound(profile)
+    assert bounds_solid(profile)
     (faces,) = (
         StepFile(
             step([SolidBody("c", "c", "m", profile, ((0.0, 0.0, 0.0),))], name="c", program="p")
@@ -230,7 +230,7 @@ def test_unsound_profiles_are_refused():
     void = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (2.0, 1.0), (2.0, 0.0), (3.0, 0.0), (3.0, 2.0),
             (0.0, 2.0))  # fmt: skip
     for profile in (flat, crossed, beyond, pinched, void, ()):
-        assert not sound(tidy(profile)), profile
+        assert not bounds_solid(tidy(profile)), profile
 
 
 def test_joined_leaves_apart_what_does_not_touch():

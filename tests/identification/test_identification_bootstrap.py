@@ -22,9 +22,9 @@ from actuator_opt.identification.bootstrap import (
     searched,
 )
 from actuator_opt.identification.identify import identify
-from actuator_opt.identification.lugre import windows
 from actuator_opt.identification.points import FrictionPoint
 from actuator_opt.identification.stribeck_fit import fit_stribeck
+from actuator_opt.identification.windows import windows
 from actuator_opt.studies.bench import bench
 
 KNEE = Path(__file__).parents[2] / "designs" / "knee.yaml"

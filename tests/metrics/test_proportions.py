@@ -67,7 +67,7 @@ def said(text, changes=None):
 
 def rows(path, word):
     """The proportions of a PATH whose words hold a word."""
-    return [row for row in proportions.TABLE if row.path == path and word in row.what]
+    return [row for row in proportions.TABLE if row.path == path and word in row.meaning]
 
 
 def test_every_proportion_has_a_number_that_fires():
@@ -81,7 +81,7 @@ def test_a_slip_is_told(key):
     """The PATH, the number, the range and its source are in the sentence; nothing is refused."""
     (row,) = rows(*key)
     (sentence,) = [
-        one for one in said(FREE, FIRES[key]) if one.startswith(row.path) and row.what in one
+        one for one in said(FREE, FIRES[key]) if one.startswith(row.path) and row.meaning in one
     ]
     assert row.source in sentence
     assert "check its unit" in sentence

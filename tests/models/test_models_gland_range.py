@@ -328,7 +328,7 @@ SOUND = {"squeeze_min": 0.095, "squeeze_max": 0.15, "width": 4.8 * MM, "fill": 0
 def test_a_gland_is_held_against_its_standard(changed, what, excess):
     """Each dimension of a 3.53 mm gland outside its limits is named with its distance."""
     found = housings.gland_deviations(standards.gland(3.531 * MM), **SOUND | changed)
-    assert [row.what for row in found] == ([what] if what else [])
+    assert [row.quantity for row in found] == ([what] if what else [])
     for row in found:
         assert row.excess == pytest.approx(excess)
         assert row.source

@@ -73,7 +73,7 @@ def around(layout: Layout, root: Box, ways, rng) -> Box:
 def test_designs_meet_the_relaxation(some):
     """Designs that meet every limit lie in the root box and meet every row, curve and link."""
     found, designs = some
-    relaxation, mixed = found.relaxed.relaxation, found.layout.mixed
+    relaxation, functions = found.relaxed.relaxation, found.layout.functions
     for x in designs:
         y = found.atoms(x)
         assert (found.root.lower - ROUNDING <= y).all()
@@ -81,7 +81,7 @@ def test_designs_meet_the_relaxation(some):
         assert all(row.low.at(y) <= row.high.at(y) + ROUNDING for row in relaxation.rows)
         argument = np.array([curve.argument.at(y) for curve in relaxation.curves])
         out = np.array([curve.out.at(y) for curve in relaxation.curves])
-        assert (np.abs(mixed.value(argument) - out) <= mixed.room + ROUNDING).all()
+        assert (np.abs(functions.value(argument) - out) <= functions.room + ROUNDING).all()
         for one in relaxation.products:
             product = math.exp(one.level) * y[one.first] * y[one.second]
             assert y[one.out] == pytest.approx(product, rel=ROUNDING)
@@ -95,11 +95,11 @@ def test_parts_keep_their_designs_above_their_bound(some):
     found, designs = some
     rng, layout = np.random.default_rng(2), found.layout
     bounding = Bounding(layout, found.relaxed.objective)
-    bounding.lay(found.root)
+    bounding.add_first_tangents(found.root)
     for x in designs:
         y = found.atoms(x)
         point = columns(bounding, layout, y)
-        box = around(layout, found.root, point[bounding.ways], rng)
+        box = around(layout, found.root, point[bounding.direction_columns], rng)
         bound = bounding.solve(box)
         lower, upper = bounding.enter(box)
         assert (lower - ROUNDING <= point).all()
@@ -132,7 +132,7 @@ def test_no_design_lies_below_the_bound(some):
     bounding = Bounding(found.layout, found.relaxed.objective)
     heard: list[float] = []
     best = math.log(HEAVIER * found.objective)
-    bound = BoxSearch(found.layout, bounding, best, most=5).run(heard.append).bound
+    bound = BoxSearch(found.layout, bounding, best, max_boxes=5).run(heard.append).bound
     masses = found.actuator.problem.rows(designs.T)[0]
     assert math.exp(bound) <= masses.min()
     assert heard == sorted(heard)
@@ -174,5 +174,5 @@ def test_nothing_is_left_below_what_is_proven():
     """A box without a design no worse than a tenth of the best is empty, or bound above it."""
     found = case(*CASES["steel"])
     bounding = Bounding(found.layout, found.relaxed.objective)
-    bound = BoxSearch(found.layout, bounding, math.log(0.1 * found.objective), most=3).run()
+    bound = BoxSearch(found.layout, bounding, math.log(0.1 * found.objective), max_boxes=3).run()
     assert bound.closed

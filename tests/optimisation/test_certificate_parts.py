@@ -11,14 +11,14 @@ import pytest
 from hypothesis import assume, given, strategies as st
 
 from actuator_opt.base.symbolic import Graph
-from actuator_opt.optimisation.certificate.bounding import Bounding, straighten
+from actuator_opt.optimisation.certificate.bounding import Bounding, add_plain_sums
 from actuator_opt.optimisation.certificate.builder import Builder
 from actuator_opt.optimisation.certificate.certify import BoxSearch
 from actuator_opt.optimisation.certificate.intervals import Box, Layout, narrow, tighten
 from actuator_opt.optimisation.certificate.relaxation import (
     SHAPES,
+    CurveFunctions,
     Form,
-    Mixed,
     Relaxation,
     SampledFunction,
     Signomial,
@@ -47,7 +47,7 @@ def published(best):
     builder = Builder()
     builder.at_least(1.0, limit)
     _, form = builder.form(objective)
-    straighten(builder.found)
+    add_plain_sums(builder.relaxation)
     return builder, form
 
 
@@ -55,14 +55,14 @@ def published(best):
 def problem():
     """The published problem as a relaxation."""
     builder, form = published(ABOVE + KNOWN + 1.0)
-    return Layout(builder.found), form
+    return Layout(builder.relaxation), form
 
 
 def test_published_optimum_is_proven(problem):
     """The bound of the published problem closes on its known optimum, and is not above it."""
     layout, form = problem
     best = math.log(ABOVE + KNOWN)
-    found = BoxSearch(layout, Bounding(layout, form), best, most=400).run()
+    found = BoxSearch(layout, Bounding(layout, form), best, max_boxes=400).run()
     assert found.closed
     assert math.exp(found.bound) == pytest.approx(ABOVE + KNOWN, rel=2e-4)
     assert math.exp(found.bound) <= ABOVE + KNOWN
@@ -72,7 +72,7 @@ def test_a_better_design_that_does_not_exist_is_not_found(problem):
     """Given a worse best known value, the bound still is not above the true optimum."""
     layout, form = problem
     best = math.log(ABOVE + KNOWN + 1.0)
-    found = BoxSearch(layout, Bounding(layout, form), best, most=60).run()
+    found = BoxSearch(layout, Bounding(layout, form), best, max_boxes=60).run()
     assert math.exp(found.bound) <= (ABOVE + KNOWN) * (1 + 1e-6)
 
 
@@ -86,11 +86,11 @@ def wide():
     builder.at_least(first, 3.0)
     builder.at_least(second, 4.0)
     _, form = builder.form(objective)
-    layout = Layout(builder.found)
+    layout = Layout(builder.relaxation)
     box = Box.whole(layout).tightened(layout)
-    builder.found.lower, builder.found.upper = box.lower.tolist(), box.upper.tolist()
-    straighten(builder.found)
-    return Layout(builder.found), form
+    builder.relaxation.lower, builder.relaxation.upper = box.lower.tolist(), box.upper.tolist()
+    add_plain_sums(builder.relaxation)
+    return Layout(builder.relaxation), form
 
 
 def relaxed_by_cvxpy(layout, box, objective):
@@ -132,7 +132,7 @@ def test_bound_is_never_above_that_of_another_solver():
     rng = np.random.default_rng(0)
     bounding = Bounding(layout, form)
     root = Box.whole(layout).tightened(layout)
-    bounding.lay(root)
+    bounding.add_first_tangents(root)
     for _ in range(6):
         box = root
         for _ in range(int(rng.integers(0, 6))):
@@ -169,7 +169,7 @@ def test_chord_and_tangent_enclose_a_curve(low, width, share, name):
         tangent = float(shape.value(np.array(at)) + shape.slope(np.array(at)) * (t - at))
         size = 1 + abs(value) + abs(tangent) + abs(last)
         assert shape.convex * (value - tangent) >= -ROUNDING * size
-    least, most = Mixed([name]).hull(np.array([low]), np.array([high]))
+    least, most = CurveFunctions([name]).hull(np.array([low]), np.array([high]))
     assert least[0] - ROUNDING * (1 + abs(least[0])) <= value
     assert value <= most[0] + ROUNDING * (1 + abs(most[0]))
 
@@ -196,11 +196,11 @@ def test_a_table_encloses_what_it_samples(rate, phase, first, second, share):
     assert (true <= most + ROUNDING).all()
     slope = 0.3
     start = tables.value(low * every)
-    below, above = tables.apart(low * every, high * every, slope * every, tables.rows)
+    below, above = tables.secant_errors(low * every, high * every, slope * every, tables.rows)
     line = start + slope * (x - low)
     assert (line + below - room <= true).all()
     assert (true <= line + above + room).all()
-    inner = tables.within(true, true)
+    inner = tables.inverse_hull(true, true)
     assert (inner[0] - 1e-6 <= x).all()
     assert (x <= inner[1] + 1e-6).all()
 
@@ -254,11 +254,11 @@ def test_atoms_follow_their_expression(a, b, c, power):
     names = {one.powers[0][0]: name for name, one in builder.variables.items()}
     at = dict(zip("xyz", (a, b, c), strict=True))
     logs: list[float] = []
-    for i, maker in enumerate(builder.found.makers):
+    for i, maker in enumerate(builder.relaxation.makers):
         logs.append(math.log(at[names[i]]) if i in names else maker(logs))
     assert sign == 1.0
     assert math.exp(form.at(logs)) == pytest.approx((a + b**power) * c + 1 / (a + 2 * c))
-    for curve in builder.found.curves:
+    for curve in builder.relaxation.curves:
         found = float(SHAPES[curve.kind].value(np.array(curve.argument.at(logs))))
         assert found == pytest.approx(curve.out.at(logs), abs=1e-9)
 

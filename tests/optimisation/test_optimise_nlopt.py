@@ -145,7 +145,7 @@ def test_best_feasible_iterate_is_kept():
     evaluator = Evaluator(impossible_from(0.3))
     start = evaluator.point(np.log(np.array([3.0, 3.0])))
     for most in range(2, 12):
-        found = nlopt_wrapper.run(evaluator, start, "LD_SLSQP", most=most)
+        found = nlopt_wrapper.run(evaluator, start, "LD_SLSQP", max_evaluations=most)
         assert found.point.violation <= 1e-6
         assert found.point.objective <= start.objective
 

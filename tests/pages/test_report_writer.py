@@ -98,7 +98,7 @@ def test_no_input_inside_is_said(tmp_path):
     """A foreign PDF gives one line with its name."""
     path = tmp_path / "x.pdf"
     path.write_bytes(b"%PDF-1.7\n%%EOF\n")
-    with pytest.raises(InputError, match=r"x\.pdf.*carries no input"):
+    with pytest.raises(InputError, match=r"x\.pdf.*has no input"):
         read_attachment(path)
     with pytest.raises(InputError, match="no such file"):
         read_attachment(tmp_path / "missing.pdf")

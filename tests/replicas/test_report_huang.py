@@ -128,7 +128,7 @@ def test_the_pages_say_what_is_proven_and_what_is_not(tables):
     plunger = plain(tables["plunger, test B"].note)
     assert "we do not meet the measured trend" in plunger
     assert re.search(r"error of 1\.\d % to 1\.8 % in the change of the pressure force", plunger)
-    assert "We cannot tell which of the two is right" in plunger
+    assert "We do not know which of the two is right" in plunger
     kinds = plain(tables["why pressure acts both ways"].note)
     assert "Not shown: that they did in this one" in kinds
     assert "Chosen by us: relief, land, squeeze" in kinds

@@ -429,7 +429,7 @@ def test_the_table_shows_numbers_and_reasons():
     pressure = table.rows[NAMES.index("hydraulic pressure")]
     assert pressure[0].startswith("decrease")
     assert all("disagrees: the pressure presses the ring on" in cell for cell in pressure[1:])
-    for words in ("prints Increase there", "piston and rod got one of nbr_70", "in the case down"):
+    for words in ("prints Increase there", "and rod got an O-ring of nbr_70", "in the case down"):
         assert words in table.note
 
 

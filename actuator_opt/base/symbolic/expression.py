@@ -23,8 +23,8 @@ ANY: Final[Bounds] = (-math.inf, math.inf)
 def bounds_of(value: Any) -> Bounds:
     """Bounds of a symbol or a number; NaN has no bounds."""
     if hasattr(value, "bounds"):
-        found: Bounds = value.bounds
-        return found
+        limits: Bounds = value.bounds
+        return limits
     return (float(value), float(value)) if value == value else ANY
 
 
@@ -184,9 +184,9 @@ class Graph:
 
     def variable(self, name: str, limits: Bounds = ANY) -> Symbol:
         """A free number, `name` in the code, with its limits."""
-        found = self.node("variable", (name,))
-        found.bounds = limits
-        return found
+        symbol = self.node("variable", (name,))
+        symbol.bounds = limits
+        return symbol
 
     def flag(self, name: str) -> Symbol:
         """A free truth value; it changes only at restarts of an integration."""
@@ -214,12 +214,12 @@ class Graph:
     def node(self, op: str, args: tuple[Any, ...]) -> Symbol:
         """Node of an operation; equal operands give the same node."""
         key = (op, *(("#", a.index) if isinstance(a, Symbol) else a for a in args))
-        found = self.known.get(key)
-        if found is None:
-            found = Symbol(self, op, args, len(self.nodes), bounds(op, args))
-            self.nodes.append(found)
-            self.known[key] = found
-        return found
+        symbol = self.known.get(key)
+        if symbol is None:
+            symbol = Symbol(self, op, args, len(self.nodes), bounds(op, args))
+            self.nodes.append(symbol)
+            self.known[key] = symbol
+        return symbol
 
 
 class Symbol:
@@ -535,7 +535,7 @@ def is_boolean(symbol: Symbol) -> bool:
 
 def needed(outputs: Sequence[Any], known: Iterable[Symbol] = ()) -> list[Symbol]:
     """Nodes that the outputs need, operands first; operands of `known` nodes are left out."""
-    seen: set[int] = {one.index for one in known}
+    seen: set[int] = {symbol.index for symbol in known}
     symbols: list[Symbol] = []
     stack = [out for out in outputs if isinstance(out, Symbol)]
     while stack:
@@ -578,12 +578,12 @@ def _slopes(node: Symbol, known: dict[int, Slopes]) -> Slopes:
     if not columns:
         return {}
     rule = _RULES[node.op](node, *node.args)
-    found = {}
+    result = {}
     for k in columns:
         slope = rule(*(slopes.get(k, 0.0) for slopes in inner))
         if isinstance(slope, Symbol) or slope != 0:
-            found[k] = slope
-    return found
+            result[k] = slope
+    return result
 
 
 def _scaled(factor: Any) -> Callable[..., Any]:
@@ -678,13 +678,13 @@ def _compiled(
     lines = [
         f" {names} = {code}"
         for names, code in unpack.items()
-        if any(one.strip() in used for one in names.split(","))
+        if any(variable.strip() in used for variable in names.split(","))
     ]
     lines += _lines(nodes, outputs, known, many)
     source = f"def {name}({arguments}):\n" + "\n".join(lines)
     exec(compile(source, f"<{name}>", "exec"), scope)  # generated text only: operations and numbers
-    found: Callable[..., Any] = scope[name]
-    return found
+    compiled: Callable[..., Any] = scope[name]
+    return compiled
 
 
 def _lines(
@@ -699,14 +699,14 @@ def _lines(
         if isinstance(out, Symbol):
             uses[out.index] = uses.get(out.index, 0) + 1
     lines: list[str] = []
-    text = {one.index: code for one, code in known.items()}
-    depth = {one.index: 0 for one in known}
+    text = {symbol.index: code for symbol, code in known.items()}
+    depth = {symbol.index: 0 for symbol in known}
 
-    def said(value: Any) -> str:
+    def code_of(value: Any) -> str:
         return text[value.index] if isinstance(value, Symbol) else _literal(value)
 
     for node in nodes:
-        code = _code(node, said, many)
+        code = _code(node, code_of, many)
         deep = 1 + max((depth[o.index] for o in node.operands), default=0)
         plain = node.op in ("variable", "flag")
         if plain or (uses[node.index] == 1 and deep < DEEPEST):
@@ -714,7 +714,7 @@ def _lines(
         else:
             lines.append(f" _{node.index} = {code}")  # no variable has such a name
             text[node.index], depth[node.index] = f"_{node.index}", 0
-    lines.append(f" return [{', '.join(said(out) for out in outputs)}]")
+    lines.append(f" return [{', '.join(code_of(out) for out in outputs)}]")
     return lines
 
 
@@ -729,13 +729,13 @@ def _literal(value: Any) -> str:
     return number if value >= 0 else f"({number})"
 
 
-def _code(node: Symbol, said: Callable[[Any], str], many: bool) -> str:
+def _code(node: Symbol, code_of: Callable[[Any], str], many: bool) -> str:
     op = node.op
     if op in ("variable", "flag"):
         return str(node.args[0])
     if op == "table":
-        return f"_table{node.args[0]}({said(node.args[1])})"
-    args = [said(a) for a in node.args]
+        return f"_table{node.args[0]}({code_of(node.args[1])})"
+    args = [code_of(a) for a in node.args]
     if op in _OPERATORS:
         return f"({args[0]} {_OPERATORS[op]} {args[1]})"
     if op in _LOGIC:

@@ -42,38 +42,38 @@ def part_lists(
     >>> [".".join(loc) for loc in part_lists()][:3]
     ['motor.torque', 'load.force', 'load.torque']
     """
-    found: dict[tuple[str, ...], type[Section]] = {}
+    lists: dict[tuple[str, ...], type[Section]] = {}
     for name, entry in entries(section).items():
         if entry.section is None:
             continue
         if entry.shape == "list" and issubclass(entry.section, SignalSegment):
-            found[*loc, name] = entry.section
+            lists[*loc, name] = entry.section
         elif entry.shape == "section":
-            found |= part_lists(entry.section, (*loc, name))
-    return found
+            lists |= part_lists(entry.section, (*loc, name))
+    return lists
 
 
 def _parts(view: FileView) -> Iterator[tuple[Loc, str, type[Section]]]:
     """Place, shape and section of every part with a known shape."""
-    for where, section in part_lists().items():
-        for index in range(len(view.items(*where))):
-            shape = view.text(*where, index, "shape")
+    for place, section in part_lists().items():
+        for index in range(len(view.items(*place))):
+            shape = view.text(*place, index, "shape")
             if shape is not None and shape in SHAPES:
-                yield (*where, index), shape, section
+                yield (*place, index), shape, section
 
 
 def shapes(view: FileView) -> Iterator[Fault]:
     """Each part has the keys that its shape needs, and no others."""
     for loc, shape, section in _parts(view):
-        own, known = SHAPES[shape], entries(section)
-        for key in own.needed:
+        shape_kind, keys = SHAPES[shape], entries(section)
+        for key in shape_kind.needed:
             if not view.has(*loc, key):
-                how = how_to_add(key, known[key])
-                yield Fault((*loc, key), f"missing: required by a {shape}", how)
-        for key in known:
-            if key == "shape" or key in own.needed or key in own.read:
+                advice = how_to_add(key, keys[key])
+                yield Fault((*loc, key), f"missing: required by a {shape}", advice)
+        for key in keys:
+            if key == "shape" or key in shape_kind.needed or key in shape_kind.read:
                 continue
-            other = own.instead.get(key)
+            other = shape_kind.instead.get(key)
             remedy = "remove the line" + (f', or write "shape: {other}"' if other else "")
             yield from without_effect(view, loc, [key], f"on a {shape}", remedy)
 
@@ -169,7 +169,7 @@ def stated(view: FileView, *loc: str) -> bool:
     return child_at(view.tree, loc) not in (None, [], ())
 
 
-def given(view: FileView) -> list[str]:
+def stated_references(view: FileView) -> list[str]:
     """References that the control states."""
     return [name for name in REFERENCES if stated(view, "control", name)]
 
@@ -196,54 +196,58 @@ def reference(view: FileView) -> Iterator[Fault]:
     """Exactly one reference, of an existing motion."""
     if not isinstance(child_at(view.tree, ("control",)), dict):
         return
-    found = given(view)
-    if not found:
+    references = stated_references(view)
+    if not references:
         remedy = f'add a list "position:" (or {", ".join(list(REFERENCES)[1:])})'
         yield Fault(("control", "position"), "missing: no reference", remedy)
-    for name in found[1:]:
-        message = f"a second reference, beside {found[0]}"
+    for name in references[1:]:
+        message = f"a second reference, beside {references[0]}"
         yield Fault(("control", name), message, "keep one of them", at_key=True)
-    if not found or found[0].startswith("shaft") == view.has("motor"):
+    if not references or references[0].startswith("shaft") == view.has("motor"):
         return
     if view.has("motor"):
         message = "a motor has no rod to move"
         remedy = "write shaft_speed or shaft_angle, or remove motor"
     else:
-        message, remedy = "there is no shaft", "add motor, or write position or speed"
-    yield Fault(("control", found[0]), message, remedy, at_key=True)
+        message, remedy = "no motor, so no shaft", "add motor, or write position or speed"
+    yield Fault(("control", references[0]), message, remedy, at_key=True)
 
 
 def tuning(view: FileView) -> Iterator[Fault]:
     """The gain and times that the tuning needs are stated, and no others."""
-    found, law, way = given(view), view.text("control", "law"), view.text("control", "tuning")
+    references, law, tuning_kind = (
+        stated_references(view),
+        view.text("control", "law"),
+        view.text("control", "tuning"),
+    )
     if not isinstance(child_at(view.tree, ("control",)), dict):
         return
-    known = entries(Controller)
-    own = LAWS.get(law or "")
-    if own is None or way not in known["tuning"].choices:
+    keys = entries(Controller)
+    control_law = LAWS.get(law or "")
+    if control_law is None or tuning_kind not in keys["tuning"].choices:
         return
-    loop = found[0] if found else None
+    loop = references[0] if references else None
     for name, gain in REFERENCES.items():
         if not view.has("control", gain):
             continue
         if loop is not None and name != loop:
             message = f"gain of a {name} loop, but the reference is a {loop}"
             yield Fault(("control", gain), message, f"write {REFERENCES[loop]}", at_key=True)
-        elif way != "stated":
-            message = f"stated, but determined by tuning ({way})"
+        elif tuning_kind != "stated":
+            message = f"stated, but determined by tuning ({tuning_kind})"
             remedy = 'remove it, or write "tuning: stated"'
             yield Fault(("control", gain), message, remedy, at_key=True)
-    times = [f"{part}_time" for part in own.parts]
+    times = [f"{part}_time" for part in control_law.parts]
     needed = ([] if loop is None else [REFERENCES[loop]]) + times
-    for key in needed if way == "stated" else ():
+    for key in needed if tuning_kind == "stated" else ():
         if not view.has("control", key):
-            what = "stated tuning" if key not in times else f"a stated {law} law"
-            how = how_to_add(key, known[key])
-            yield Fault(("control", key), f"missing: required by {what}", how)
-    yield from _unread(view, own, way)
+            owner = "stated tuning" if key not in times else f"a stated {law} law"
+            advice = how_to_add(key, keys[key])
+            yield Fault(("control", key), f"missing: required by {owner}", advice)
+    yield from _unread(view, control_law, tuning_kind)
 
 
-def _unread(view: FileView, law: ControlLaw, way: str) -> Iterator[Fault]:
+def _unread(view: FileView, law: ControlLaw, tuning_kind: str) -> Iterator[Fault]:
     """Keys without effect under this control law and tuning."""
     for part in ("integral", "derivative"):
         if part not in law.parts:
@@ -251,8 +255,8 @@ def _unread(view: FileView, law: ControlLaw, way: str) -> Iterator[Fault]:
             yield from without_effect(view, ("control",), keys, f"on a {law.name} law")
     if not law.derivative:
         yield from without_effect(view, ("control",), ["filter_time"], f"on a {law.name} law")
-    if way != "margins":
-        yield from without_effect(view, ("control",), ["margin"], f"where tuning is {way}")
+    if tuning_kind != "margins":
+        yield from without_effect(view, ("control",), ["margin"], f"where tuning is {tuning_kind}")
     if not view.number("control", "pressure_feedback"):
         keys = ["pressure_time"] if not view.has("control", "pressure_feedback") else []
         yield from without_effect(view, ("control",), keys, "without pressure_feedback")
@@ -260,23 +264,23 @@ def _unread(view: FileView, law: ControlLaw, way: str) -> Iterator[Fault]:
 
 def step_results(view: FileView) -> Iterator[Fault]:
     """Results of a step response need a stepping reference."""
-    asked = [name for name in STEP_RESULTS if view.has("requirements", name)]
-    found = given(view)
-    if not asked or len(found) > 1:
+    step_requirements = [name for name in STEP_RESULTS if view.has("requirements", name)]
+    references = stated_references(view)
+    if not step_requirements or len(references) > 1:
         return
     shapes = []
-    for name in found:
+    for name in references:
         for index in range(len(view.items("control", name))):
             shapes.append(view.text("control", name, index, "shape"))
-    known = [SHAPES[shape] for shape in shapes if shape is not None and shape in SHAPES]
-    if len(known) < len(shapes) or (found and not shapes):
+    known_shapes = [SHAPES[shape] for shape in shapes if shape is not None and shape in SHAPES]
+    if len(known_shapes) < len(shapes) or (references and not shapes):
         return
-    if "step" in shapes and all(shape.settles for shape in known):
+    if "step" in shapes and all(shape.settles for shape in known_shapes):
         return
-    where = f"control.{found[0]}" if found else "control with a reference"
-    for name in asked:
-        message = "no reference that steps"
-        remedy = f'give {where} a part of "shape: step" and no sine or record, or remove this'
+    where = f"control.{references[0]}" if references else "control with a reference"
+    for name in step_requirements:
+        message = "the reference has no step"
+        remedy = f'add a part "shape: step" to {where}, without sine or record, or remove the line'
         yield Fault(("requirements", name), message, remedy, at_key=True)
 
 
@@ -294,28 +298,37 @@ _area = quantities.INPUTS["orifice_area"].text
 def supply(view: FileView) -> Iterator[Fault]:
     """A supply has the keys that its type needs, and no others."""
     kind = view.text("supply", "type")
-    own = SUPPLIES.get(kind or "")
-    if own is None:  # a separate fault, reported at its place
+    supply_kind = SUPPLIES.get(kind or "")
+    if supply_kind is None:  # a separate fault, reported at its place
         return
-    known = entries(ValveSupply)
-    for key in own.needed:
+    keys = entries(ValveSupply)
+    for key in supply_kind.needed:
         if not view.has("supply", key):
             message = f"missing: required by a {kind}"
-            yield Fault(("supply", key), message, how_to_add(key, known[key]))
+            yield Fault(("supply", key), message, how_to_add(key, keys[key]))
     flow, pump = view.has("supply", "flow"), view.has("supply", "pump")
     if kind == "fixed_pump" and not flow and not pump:
-        remedy = f'{how_to_add("flow", known["flow"])}, or a block "pump:"'
+        remedy = f'{how_to_add("flow", keys["flow"])}, or a block "pump:"'
         yield Fault(("supply", "flow"), f"missing: a {kind} needs this or pump", remedy)
     if kind == "fixed_pump" and flow and pump:
         message = "pump beside flow: both define the delivery"
         yield Fault(("supply", "pump"), message, "keep one of them", at_key=True)
-    given, passed = (view.number("supply", *one) for one in (("flow",), ("relief", "rated_flow")))
-    if kind == "fixed_pump" and given is not None and passed is not None and passed < given:
-        message = f"{_flow(passed)}: less than the pump delivers ({_flow(given)})"
-        yield Fault(("supply", "relief", "rated_flow"), message, f"write {_flow(given)} or more")
+    delivered, relief_flow = (
+        view.number("supply", *loc) for loc in (("flow",), ("relief", "rated_flow"))
+    )
+    if (
+        kind == "fixed_pump"
+        and delivered is not None
+        and relief_flow is not None
+        and relief_flow < delivered
+    ):
+        message = f"{_flow(relief_flow)}: less than the pump delivers ({_flow(delivered)})"
+        yield Fault(
+            ("supply", "relief", "rated_flow"), message, f"write {_flow(delivered)} or more"
+        )
     where = "on a constant supply" if kind == "constant" else f"on a {kind}"
     remedy = "remove it, or write another type" if kind == "constant" else "remove the line"
-    yield from without_effect(view, ("supply",), own.unread, where, remedy)
+    yield from without_effect(view, ("supply",), supply_kind.unread, where, remedy)
 
 
 def cushion(view: FileView) -> Iterator[Fault]:
@@ -347,18 +360,20 @@ def load_cylinder(view: FileView) -> Iterator[Fault]:
 def friction(view: FileView) -> Iterator[Fault]:
     """A friction curve starts with Coulomb friction; breakaway is not below it."""
     model = view.text("friction", "model")
-    own = FRICTIONS.get(model or "")
-    if own is not None:
-        yield from without_effect(view, ("friction",), own.unread, f"where model is {model}")
+    friction_model = FRICTIONS.get(model or "")
+    if friction_model is not None:
+        yield from without_effect(
+            view, ("friction",), friction_model.unread, f"where model is {model}"
+        )
     if model == "none":
         return
-    known = entries(ScenarioFriction)
+    keys = entries(ScenarioFriction)
     if not view.has("friction", "coulomb"):
         for key in ("static", "stribeck_speed", "viscous"):
             if view.has("friction", key):
                 message = f"missing: required with {key}"
-                how = how_to_add("coulomb", known["coulomb"])
-                yield Fault(("friction", "coulomb"), message, how)
+                advice = how_to_add("coulomb", keys["coulomb"])
+                yield Fault(("friction", "coulomb"), message, advice)
                 break
     if view.has("friction", "static") and not view.has("friction", "stribeck_speed"):
         remedy = 'add e.g. "stribeck_speed: 5 mm/s"'
@@ -380,7 +395,7 @@ def motor(view: FileView) -> Iterator[Fault]:
     yield from without_effect(view, (), ("stops", "friction"), where)
     yield from without_effect(view, ("initial",), ("position", "speed"), where)
     yield from without_effect(
-        view, ("load",), entries(ScenarioLoad), where, "the load of the motor is under motor"
+        view, ("load",), entries(ScenarioLoad), where, "state the load of the motor under motor"
     )
     yield from without_effect(view, ("control",), ["speed_feedback"], where)
 
@@ -419,7 +434,7 @@ def cross_field(tree: Any) -> Iterator[Fault]:
 
 def design_faults(scenario: Scenario, design: Design) -> Iterator[Fault]:
     """All contradictions between scenario and design, at the scenario's places."""
-    yield from _parts_there_are(scenario, design)
+    yield from _missing_components(scenario, design)
     stroke = design.cylinder.stroke
     begin = scenario.initial.position
     place = None if begin is None else position_at(begin, stroke)
@@ -427,13 +442,13 @@ def design_faults(scenario: Scenario, design: Design) -> Iterator[Fault]:
         message = f"{length_text(place)}: beyond cylinder.stroke ({length_text(stroke)})"
         remedy = f'write at most {length_text(stroke)}, or a share such as "50 %"'
         yield Fault(("initial", "position"), message, remedy)
-    spear = scenario.stops.cushion
-    if spear is not None and spear.length > stroke:
-        message = f"{length_text(spear.length)}: beyond cylinder.stroke ({length_text(stroke)})"
+    cushion = scenario.stops.cushion
+    if cushion is not None and cushion.length > stroke:
+        message = f"{length_text(cushion.length)}: beyond cylinder.stroke ({length_text(stroke)})"
         yield Fault(("stops", "cushion", "length"), message, f"write at most {length_text(stroke)}")
 
 
-def _parts_there_are(scenario: Scenario, design: Design) -> Iterator[Fault]:
+def _missing_components(scenario: Scenario, design: Design) -> Iterator[Fault]:
     """Components that the scenario uses exist in the design."""
     needs_valve = {
         ("signal",): bool(scenario.signal),

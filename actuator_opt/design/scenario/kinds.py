@@ -286,12 +286,12 @@ def height(part: SignalPart) -> float:
 
 def sampled(part: SignalPart, records: Records) -> tuple[Array, Array] | None:
     """Time [s] and values of a recorded part without missing samples; None without a record."""
-    known = records.get((part.file or "", part.column or ""))
-    if known is None:
+    column = records.get((part.file or "", part.column or ""))
+    if column is None:
         return None
-    time, values = known
-    seen = np.isfinite(values)
-    return time[seen] + part.start, part.scale * values[seen]
+    time, values = column
+    finite = np.isfinite(values)
+    return time[finite] + part.start, part.scale * values[finite]
 
 
 def _from_start(part: SignalPart, records: Records) -> float:
@@ -323,9 +323,9 @@ def _step(clock: Clock, part: SignalPart, records: Records) -> Any:
 def _ramp(clock: Clock, part: SignalPart, records: Records) -> Any:
     value, start, end = height(part), part.start, part.end
     assert end is not None
-    on, done = clock.after(start), clock.after(end)
+    on, ended = clock.after(start), clock.after(end)
     rise = value * (clock.time - start) / (end - start)
-    return where(done, value, where(on, rise, 0.0))
+    return where(ended, value, where(on, rise, 0.0))
 
 
 def _ramps_after(part: SignalPart, moment: float, records: Records) -> bool:
@@ -356,22 +356,22 @@ def _sine_at_start(part: SignalPart, records: Records) -> float:
 
 
 def _record(clock: Clock, part: SignalPart, records: Records) -> Any:
-    known = sampled(part, records)
-    assert known is not None
-    return clock.samples(*known)
+    samples = sampled(part, records)
+    assert samples is not None
+    return clock.samples(*samples)
 
 
 def _record_at_start(part: SignalPart, records: Records) -> float:
-    known = sampled(part, records)
-    return 0.0 if known is None else float(np.interp(0.0, *known))
+    samples = sampled(part, records)
+    return 0.0 if samples is None else float(np.interp(0.0, *samples))
 
 
 def _record_after(part: SignalPart, moment: float, records: Records) -> bool:
-    known = sampled(part, records)
-    if known is None:
+    samples = sampled(part, records)
+    if samples is None:
         return _until_end(part, moment, records)
-    still = float(np.interp(moment, *known))
-    return bool(np.any(known[1][known[0] > moment] != still))
+    present = float(np.interp(moment, *samples))
+    return bool(np.any(samples[1][samples[0] > moment] != present))
 
 
 SHAPES = kinds(
@@ -501,14 +501,14 @@ class StartPosition(PositionKind):
         """A length in m, or a `Fraction`."""
         remedy = 'write "50 %" or "55 mm"'
         try:
-            found = super().validate(value)
+            position = super().validate(value)
         except ValueFault as fault:
             if "worst" in fault.remedy:
                 raise ValueFault(fault.message, remedy) from None
             raise
-        if found == "worst":
+        if position == "worst":
             raise ValueFault('"worst": not an initial position', remedy)
-        return found
+        return position
 
 
 Shape: TypeAlias = Annotated[str, choice_of("shape of this part of the signal", SHAPES)]

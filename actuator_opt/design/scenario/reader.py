@@ -69,22 +69,24 @@ def read_scenario(
     """
     text, file = opened(source, "scenario")
     document = parse(text, file, "scenario")
-    own: list[tuple[str, str]] = []
-    others: list[tuple[str, str]] = []
+    scenario_overrides: list[tuple[str, str]] = []
+    design_overrides: list[tuple[str, str]] = []
     for path, value in overrides:
-        (others if _of_design(path, document.data) else own).append((path, value))
-    scenario, place = load(document, Scenario, _made, own, RESULTS)
+        (design_overrides if _of_design(path, document.data) else scenario_overrides).append(
+            (path, value)
+        )
+    scenario, place = load(document, Scenario, _build_scenario, scenario_overrides, RESULTS)
     changes = []
     for path, value in scenario.set.items():
         loc = ("set", path)
-        said = None if loc in place.overrides else document
-        changes.append(Override(path, value, said, () if said is None else loc))
-    changes += [Override(path, value) for path, value in others]
+        origin = None if loc in place.overrides else document
+        changes.append(Override(path, value, origin, () if origin is None else loc))
+    changes += [Override(path, value) for path, value in design_overrides]
     folder = Path() if file in (TEXT, STDIN) else Path(source).parent
     return LoadedScenario(scenario, place, folder, tuple(changes))
 
 
-def _made(tree: dict[str, Any]) -> tuple[Scenario | None, Sequence[Fault]]:
+def _build_scenario(tree: dict[str, Any]) -> tuple[Scenario | None, Sequence[Fault]]:
     checked = check(tree, Scenario, RESULTS, cross_field)
     return checked.section, checked.faults
 
@@ -130,9 +132,9 @@ def read_design_of(
         design = read_design(path, overrides=loaded.changes, materials=materials, metrics=metrics)
     except InputError as error:
         raise InputError([_at_its_name(fault, loaded) for fault in error.diagnostics]) from None
-    found = sorted(design_faults(loaded.scenario, design.design), key=loaded.source.place)
-    if found:
-        raise InputError([loaded.source.at(fault) for fault in found])
+    faults = sorted(design_faults(loaded.scenario, design.design), key=loaded.source.place)
+    if faults:
+        raise InputError([loaded.source.at(fault) for fault in faults])
     return design
 
 
@@ -176,11 +178,11 @@ def recorded_notes(scenario: Scenario, records: Records) -> Iterator[str]:
     """Times at which a recorded signal has no data: before, after and between its samples."""
     least = ROUNDED * scenario.duration
     for path, part, _ in recorded_parts(scenario):
-        found = sampled(part, records)
-        if found is None:
+        samples = sampled(part, records)
+        if samples is None:
             continue
         name = f'column "{part.column}" of {part.file} ({path.removesuffix(".column")})'
-        first, last = float(found[0][0]), float(found[0][-1])
+        first, last = float(samples[0][0]), float(samples[0][-1])
         if first > least:
             yield f"{name} begins at {first:.4g} s: its first value holds until then"
         if last < scenario.duration - least:
@@ -189,20 +191,20 @@ def recorded_notes(scenario: Scenario, records: Records) -> Iterator[str]:
                 "last value is kept"
             )
         time, values = records[part.file or "", part.column or ""]
-        absent = [
+        missing = [
             gap
             for gap in gaps(time + part.start, values)
             if first < gap.first < min(last, scenario.duration) and gap.last > 0
         ]
-        if absent:
-            yield f"{name}: {gap_words(absent)}, interpolated linearly"
+        if missing:
+            yield f"{name}: {gap_words(missing)}, interpolated linearly"
 
 
 def gaps(time: Array, values: Array) -> list[SampleGap]:
     """Intervals of a channel without samples: NaN, and missing steps of an even time base."""
     absent = np.concatenate(([False], ~np.isfinite(values), [False])).astype(np.int8)
     turns = np.flatnonzero(np.diff(absent))
-    found = [
+    sample_gaps = [
         SampleGap(float(time[a]), float(time[b - 1]), int(b - a))
         for a, b in zip(turns[::2], turns[1::2], strict=True)
     ]
@@ -210,13 +212,13 @@ def gaps(time: Array, values: Array) -> list[SampleGap]:
     if steps.size > 1:
         usual = float(np.median(steps))
         if float(np.mean(np.abs(steps - usual) < 0.5 * usual)) >= REGULAR:
-            found += [
+            sample_gaps += [
                 SampleGap(
                     float(time[k]) + usual, float(time[k + 1]) - usual, round(steps[k] / usual) - 1
                 )
                 for k in np.flatnonzero(steps > WIDE * usual)
             ]
-    return sorted(found)
+    return sorted(sample_gaps)
 
 
 def gap_words(sample_gaps: list[SampleGap]) -> str:
@@ -227,15 +229,15 @@ def gap_words(sample_gaps: list[SampleGap]) -> str:
     >>> gap_words([SampleGap(0.2, 0.3, 11), SampleGap(0.5, 0.5, 1), SampleGap(1.0, 2.0, 9)])
     '21 samples are missing in 3 places, first from 0.2 to 0.3 s, last from 1 to 2 s'
     """
-    said = [
-        f"from {one.first:.4g} to {one.last:.4g} s" if one.size > 1 else f"at {one.first:.4g} s"
-        for one in (sample_gaps[0], sample_gaps[-1])
+    intervals = [
+        f"from {gap.first:.4g} to {gap.last:.4g} s" if gap.size > 1 else f"at {gap.first:.4g} s"
+        for gap in (sample_gaps[0], sample_gaps[-1])
     ]
     count = sum(sample_gap.size for sample_gap in sample_gaps)
     head = "1 sample is missing" if count == 1 else f"{count} samples are missing"
     if len(sample_gaps) == 1:
-        return f"{head} {said[0]}"
-    return f"{head} in {len(sample_gaps)} places, first {said[0]}, last {said[1]}"
+        return f"{head} {intervals[0]}"
+    return f"{head} in {len(sample_gaps)} places, first {intervals[0]}, last {intervals[1]}"
 
 
 STEP = 0.1
@@ -319,17 +321,17 @@ def scenario_text(design: Design, path: str, name: str = "step under load") -> s
         an invalid name
     """
     title = Text().validate(name)
-    asked = [abs(case.force) for case in design.load_cases if case.force]
-    force = LOAD * min(asked, default=0.0)
+    forces = [abs(case.force) for case in design.load_cases if case.force]
+    force = LOAD * min(forces, default=0.0)
     text = _HEAD + (_SHAKEN if design.valve is None else _DRIVEN)
-    for mark, said in (
+    for mark, value in (
         ("@NAME@", scalar(title)),
         ("@DESIGN@", scalar(path)),
         ("@FORCE@", f"{_round(force)} N"),
         ("@SWING@", f"{_round(0.5 * force)} N"),
         ("@STEP@", f"{_round(STEP * design.cylinder.stroke * 1e3)} mm"),
     ):
-        text = text.replace(mark, said)
+        text = text.replace(mark, value)
     return text
 
 

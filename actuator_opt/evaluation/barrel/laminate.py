@@ -3,8 +3,8 @@
 Stresses of unit pressure, unit axial force and unit temperature change are superposed for every
 load path; cure stresses and tie-rod preload are residual stresses, independent of the load.
 
-A gradient needs a copy of the design for every variable, but most variables do not affect the wall:
-for it, their copies are equal. So the wall is evaluated for the distinct designs of a batch only.
+A gradient varies each variable in a copy of the design. Most variables do not affect the wall, so
+most copies have equal walls: only the distinct walls of a batch are computed.
 """
 
 from __future__ import annotations
@@ -36,16 +36,16 @@ from .wall import (
     Swelling,
     Wall,
     WallSolution,
-    exact_answer,
+    exact_solution,
     load_path,
-    thin_answer,
+    thin_solution,
 )
 
 FEW = 32
 """Batch size below which a model costs about as much for all designs as for a few."""
 
 
-def distinct(given: Mapping[str, Any]) -> tuple[dict[str, Any], Callable[[Array], Array]]:
+def distinct(arguments: Mapping[str, Any]) -> tuple[dict[str, Any], Callable[[Array], Array]]:
     """Arguments of a model for distinct designs only, and the mapping back to all designs.
 
     Designs are the last axis of every array, of length 1 for a shared value; their number follows
@@ -53,35 +53,37 @@ def distinct(given: Mapping[str, Any]) -> tuple[dict[str, Any], Callable[[Array]
 
     Parameters
     ----------
-    given : arguments: arrays, numbers, words, and lists and data classes of them
+    arguments : arrays, numbers, words, and lists and data classes of them
     """
-    count = max((np.shape(value)[-1:] for value in given.values() if _is_array(value)), default=())
+    count = max(
+        (np.shape(value)[-1:] for value in arguments.values() if _is_array(value)), default=()
+    )
     if count <= (FEW,):
-        return dict(given), lambda result: result
-    return _distinct(given, *count)
+        return dict(arguments), lambda result: result
+    return _distinct(arguments, *count)
 
 
 def _distinct(
-    given: Mapping[str, Any], count: int
+    arguments: Mapping[str, Any], count: int
 ) -> tuple[dict[str, Any], Callable[[Array], Array]]:
-    arrays = _arrays(tuple(given.values()))
+    arrays = _arrays(tuple(arguments.values()))
     rows = [array.reshape(-1, count) for array in arrays if array.shape[-1] == count]
     if any(array.dtype.hasobject for array in rows):
-        return dict(given), lambda result: result
+        return dict(arguments), lambda result: result
     designs = np.ascontiguousarray(np.concatenate(rows).T)
-    known: dict[bytes, int] = {}
-    back = np.array([known.setdefault(design.tobytes(), len(known)) for design in designs])
-    if len(known) == count:
-        return dict(given), lambda result: result
-    first = np.unique(back, return_index=True)[1]
+    index_of: dict[bytes, int] = {}
+    indices = np.array([index_of.setdefault(design.tobytes(), len(index_of)) for design in designs])
+    if len(index_of) == count:
+        return dict(arguments), lambda result: result
+    first = np.unique(indices, return_index=True)[1]
 
-    def some(array: Array) -> Array:
+    def of_distinct(array: Array) -> Array:
         return array[..., first] if array.shape[-1] == count else array
 
-    def every(result: Array) -> Array:
-        return result if np.shape(result)[-1] == 1 else result[..., back]
+    def of_all(result: Array) -> Array:
+        return result if np.shape(result)[-1] == 1 else result[..., indices]
 
-    return {name: _changed(value, some) for name, value in given.items()}, every
+    return {name: _changed(value, of_distinct) for name, value in arguments.items()}, of_all
 
 
 def _is_array(value: Any) -> bool:
@@ -107,8 +109,8 @@ def _changed(value: Any, change: Callable[[Array], Array]) -> Any:
     if isinstance(value, (list, tuple)):
         return type(value)(_changed(part, change) for part in value)
     if is_dataclass(value) and not isinstance(value, type):
-        own = {part.name: _changed(getattr(value, part.name), change) for part in fields(value)}
-        return replace(value, **own)
+        changes = {part.name: _changed(getattr(value, part.name), change) for part in fields(value)}
+        return replace(value, **changes)
     return value
 
 
@@ -119,19 +121,22 @@ def compute(
     missing: list[str] = []
     states = plies.climates(v, design)
     layers = plies.layers(v, stock, design.barrel.layup, "barrel.layup", states, missing)
-    answer = exact_answer(layers, g) if exact else thin_answer(layers, g)
-    shortening = answer.axial[PRESSURE]
+    solution = exact_solution(layers, g) if exact else thin_solution(layers, g)
+    shortening = solution.axial[PRESSURE]
     swelling = Swelling(
-        growth=answer.growth[PRESSURE],
+        growth=solution.growth[PRESSURE],
         shortening=shortening,
-        stretch=answer.axial[FORCE],
-        growth_by_force=answer.growth[FORCE],
+        stretch=solution.axial[FORCE],
+        growth_by_force=solution.growth[FORCE],
     )
     path = load_path(v, design, stock, g, state, swelling)
     free = v["supply.pressure"] * swelling.growth
-    own, pulled = state.driven_pressure * swelling.growth, swelling.growth_by_force * path.cases
+    driven_growth, force_growth = (
+        state.driven_pressure * swelling.growth,
+        swelling.growth_by_force * path.cases,
+    )
     bending, shear = rod.layered_section(
-        walls=answer.walls,
+        walls=solution.walls,
         thicknesses=[layer.thickness for layer in layers],
         inner_diameter=2 * g.inner_radius,
     )
@@ -140,8 +145,8 @@ def compute(
     wall = Wall(
         swelling=swelling,
         path=path,
-        growth=maximum(free + pulled, free),
-        case_growth=maximum(own + pulled, own),
+        growth=maximum(free + force_growth, free),
+        case_growth=maximum(driven_growth + force_growth, driven_growth),
         bending_stiffness=bending,
         shear_stiffness=shear * column.cowper_tube(poissons_ratio=contraction, radius_ratio=ratio),
         thin_ratio=(g.outer_radius - g.inner_radius) / g.inner_radius,
@@ -154,21 +159,21 @@ def compute(
         wall.why_no_mismatch = f"{unknown[0]} has no thermal expansion"
         states = tuple(Climate(state.name, 0.0, cold=state.cold) for state in states)
     else:
-        wall.expansion = (answer.axial[WARMTH], answer.warm_hoop)
+        wall.expansion = (solution.axial[WARMTH], solution.warm_hoop)
     if exact:
         wall.autofrettage = _autofrettage(v, design, layers, g)
-    rest = _Rest(answer, states, path, wall.autofrettage)
-    _cooling(layers, rest.alone(), wall, exact=exact)
-    _strengths(design, layers, rest, v["supply.pressure"], wall)
+    residual = _ResidualStress(solution, states, path, wall.autofrettage)
+    _cooling(layers, residual.from_cure(), wall, exact=exact)
+    _strengths(design, layers, residual, v["supply.pressure"], wall)
     _ladder(layers, states, g, path, wall, exact=exact)
     return wall
 
 
 @dataclass(frozen=True, slots=True)
-class _Rest:
+class _ResidualStress:
     """Residual stresses without pressure: cure cool-down, tie rods, autofrettage."""
 
-    answer: WallSolution
+    solution: WallSolution
     states: Sequence[Climate]
     path: LoadPath
     autofrettage: Autofrettage | None
@@ -177,7 +182,7 @@ class _Rest:
         """Whether any state differs from the stress-free temperature."""
         return any(bool(np.any(real(state.change))) for state in self.states)
 
-    def alone(self) -> _Rest:
+    def from_cure(self) -> _ResidualStress:
         """Residual stress from cooling after cure only, before machining and assembly."""
         return replace(self, path=replace(self.path, clamp=None), autofrettage=None)
 
@@ -188,15 +193,15 @@ class _Rest:
             return None
         change = np.stack([np.atleast_1d(state.change) for state in self.states])
         parts = []
-        for k, part in enumerate(self.answer.stress):
-            some = part[:, rows]  # in two steps: a list and an integer together would move the axes
-            own = some[:, :, WARMTH, None] * change
+        for k, part in enumerate(self.solution.stress):
+            unit = part[:, rows]  # in two steps: a list and an integer together would move the axes
+            stress = unit[:, :, WARMTH, None] * change
             if clamped:
-                own = own + some[:, :, FORCE, None] * self.path.held
+                stress = stress + unit[:, :, FORCE, None] * self.path.held
             if self.autofrettage is not None:
-                own = own + self.autofrettage.stresses[k][:, rows][:, :, None]
-            parts.append(own[:, :, :, None])
-        return (parts[0], parts[1], parts[2], parts[3])
+                stress = stress + self.autofrettage.stresses[k][:, rows][:, :, None]
+            parts.append(stress[:, :, :, None])
+        return plies.stress_of(parts)
 
 
 def _autofrettage(
@@ -221,16 +226,16 @@ def _autofrettage(
     )
 
 
-def _load(answer: WallSolution, rows: list[int], axial: Array) -> Stress:
+def _load(solution: WallSolution, rows: list[int], axial: Array) -> Stress:
     """Stress per pressure of these layers for every load path, (faces, layers, 1, paths, designs).
 
     `axial` is the axial force per pressure, (paths, designs).
     """
     parts = []
-    for part in answer.stress:
-        some = part[:, rows]
-        parts.append((some[:, :, PRESSURE, None] + some[:, :, FORCE, None] * axial)[:, :, None])
-    return (parts[0], parts[1], parts[2], parts[3])
+    for part in solution.stress:
+        unit = part[:, rows]
+        parts.append((unit[:, :, PRESSURE, None] + unit[:, :, FORCE, None] * axial)[:, :, None])
+    return plies.stress_of(parts)
 
 
 def _by_climate(values: Sequence[Array]) -> Array:
@@ -240,21 +245,21 @@ def _by_climate(values: Sequence[Array]) -> Array:
 
 
 def _strengths(
-    design: Design, layers: Sequence[Layer], rest: _Rest, supply: Array, wall: Wall
+    design: Design, layers: Sequence[Layer], residual: _ResidualStress, supply: Array, wall: Wall
 ) -> None:
     """First-ply and yield pressures of every layer, mode and load path."""
     paths, axial = tuple(wall.path.per_pressure), np.stack(list(wall.path.per_pressure.values()))
     brittle = [i for i, layer in enumerate(layers) if layer.strengths]
     if brittle:
-        load = _load(rest.answer, brittle, axial)
+        load = _load(residual.solution, brittle, axial)
         modes = plies.utilisations(
-            design.barrel.criterion, [layers[i] for i in brittle], load, rest.of(brittle)
+            design.barrel.criterion, [layers[i] for i in brittle], load, residual.of(brittle)
         )
         amplitude = plies.worst(load[0], (0, 2)) * supply / 2
-        for group, used in plies.grouped(modes).items():
-            pressures = load_multiplier(plies.worst(used, (0,)))
+        for group, utilisation in plies.grouped(modes).items():
+            pressures = load_multiplier(plies.worst(utilisation, (0,)))
             for k, i in enumerate(brittle):
-                for place, pressure in _rows(rest.states, paths, pressures[k]):
+                for place, pressure in _rows(residual.states, paths, pressures[k]):
                     wall.first_ply_pressure[f"{layers[i].label} {group}, {place}"] = pressure
         for k, i in enumerate(brittle):
             if layers[i].fatigue is not None:
@@ -263,8 +268,8 @@ def _strengths(
                     wall.ply_fatigue[f"{layers[i].label}, {place}"] = factors[p]
     for i, layer in enumerate(layers):
         if layer.yields:
-            load = _load(rest.answer, [i], axial)
-            _metal(layer, load, rest.of([i]), rest.states, supply, paths, wall)
+            load = _load(residual.solution, [i], axial)
+            _metal(layer, load, residual.of([i]), residual.states, supply, paths, wall)
 
 
 def _rows(
@@ -294,8 +299,8 @@ def _metal(
     equivalent stress at its ends minus half the range, and not below zero (no credit).
     """
     limit = _by_climate(layer.yields)
-    used = strength.yield_utilisation(stress=load, yield_strength=limit, residual=residual)
-    for place, pressure in _rows(states, paths, 1 / plies.worst(used, (0, 1))):
+    utilisation = strength.yield_utilisation(stress=load, yield_strength=limit, residual=residual)
+    for place, pressure in _rows(states, paths, 1 / plies.worst(utilisation, (0, 1))):
         wall.yield_pressure[f"{layer.label}, {place}"] = pressure
     pulse = liner.liner_cycle(
         stress=(supply * load[0], supply * load[1], supply * load[2], supply * load[3]),
@@ -310,32 +315,40 @@ def _metal(
         wall.cycles[f"{layer.label}, {place}"] = Cycle(layer.name, span[p], mean[p])
 
 
-def _cooling(layers: Sequence[Layer], rest: _Rest, wall: Wall, *, exact: bool) -> None:
+def _cooling(
+    layers: Sequence[Layer], residual: _ResidualStress, wall: Wall, *, exact: bool
+) -> None:
     """Liner yield over stress after cool-down from cure, and tension of the liner on the plies."""
     liners = [i for i, layer in enumerate(layers) if layer.yields]
     if not liners or len(liners) == len(layers):
         wall.why_no_mismatch = "the wall has no liner under plies"
         return
-    residual = rest.of(liners)
-    if residual is None:
+    stresses = residual.of(liners)
+    if stresses is None:
         if wall.expansion is not None:
             wall.why_no_mismatch = "no cure temperature stated: add environment.cure_temperature"
         return
     wall.why_no_mismatch = "the thin laminate has no radial stress at the liner"
     for k, i in enumerate(liners):
-        own = tuple(part[:, [k]] for part in residual)
+        stress = tuple(part[:, [k]] for part in stresses)
         used = strength.yield_utilisation(
-            stress=(own[0], own[1], own[2], own[3]), yield_strength=_by_climate(layers[i].yields)
+            stress=(stress[0], stress[1], stress[2], stress[3]),
+            yield_strength=_by_climate(layers[i].yields),
         )
         wall.mismatch[layers[i].label] = 1 / plies.worst(used, (0, 1, 2, 3))
-        for near, face in ((i - 1, 0), (i + 1, -1)):
-            if not exact or not 0 <= near < len(layers) or not layers[near].strengths:
+        for neighbour, face in ((i - 1, 0), (i + 1, -1)):
+            if not exact or not 0 <= neighbour < len(layers) or not layers[neighbour].strengths:
                 continue
-            pull = own[2][face, 0, :, 0]
-            allowed = np.stack([np.atleast_1d(one.tension_2) for one in layers[near].strengths])
-            pulled = real(pull) > 0
-            used = where(pulled, pull, 0.0) / allowed
-            wall.bond[f"{layers[i].label} to {layers[near].label}"] = load_multiplier(
+            pull = stress[2][face, 0, :, 0]
+            allowed = np.stack(
+                [
+                    np.atleast_1d(ply_strength.tension_2)
+                    for ply_strength in layers[neighbour].strengths
+                ]
+            )
+            tension = real(pull) > 0
+            used = where(tension, pull, 0.0) / allowed
+            wall.bond[f"{layers[i].label} to {layers[neighbour].label}"] = load_multiplier(
                 plies.worst(used, (0,))
             )
 
@@ -358,23 +371,23 @@ def _ladder(
     if not all(layer.balanced for layer in layers):
         wall.missing.append("burst of a wall with single plies is not modelled: use balanced pairs")
         return
-    given = {
+    arguments = {
         "layers": [layer.as_wall() for layer in layers],
         "axial_force_per_pressure": np.stack(list(path.per_pressure.values()))[None],
     }
     if exact:
         change = np.stack([np.atleast_1d(state.change) for state in states])[:, None]
-        given["inner_radius"] = g.inner_radius
-        given["temperature_change"] = change if np.any(real(change)) else 0.0
-        given["held_force"] = path.held
+        arguments["inner_radius"] = g.inner_radius
+        arguments["temperature_change"] = change if np.any(real(change)) else 0.0
+        arguments["held_force"] = path.held
     else:
-        given["radius"] = (g.inner_radius + g.outer_radius) / 2
-    some, every = distinct(given)
+        arguments["radius"] = (g.inner_radius + g.outer_radius) / 2
+    distinct_arguments, of_all = distinct(arguments)
     model = tube_burst.burst_of_tube if exact else burst_ladder.burst_by_ply_discount
-    ladder = model(**some)
+    ladder = model(**distinct_arguments)
     paths = tuple(path.per_pressure)
-    for place, pressure in _rows(states, paths, every(ladder.burst_pressure)):
+    for place, pressure in _rows(states, paths, of_all(ladder.burst_pressure)):
         wall.burst_pressure[place] = pressure
     if any(layer.isotropic for layer in layers):
-        for place, pressure in _rows(states, paths, every(ladder.first_ply_pressure)):
+        for place, pressure in _rows(states, paths, of_all(ladder.first_ply_pressure)):
             wall.first_ply_pressure[f"first ply with yielding liner, {place}"] = pressure

@@ -26,16 +26,12 @@ from ...models.strength import yield_utilisation
 from ...models.strength_modes import Stress
 from ..geometry import Geometry, Numbers, clamped, end_at, joint_of
 from ..limits import MaterialValues
-from ..plies import Layer
+from ..plies import Layer, stress_of
 from ..state import LoadState
 from ..values import Values
 
 NONE = "no axial load"
-
-
 STOP = "piston at the end stop"
-
-
 LARGEST = "largest axial load"
 
 
@@ -94,11 +90,11 @@ def load_path(
         cases = barrel_ends.axial_force_head_mounted(
             cap_side_pressure=state.moving_a, cap_side_area=g.area_a
         )
-    none = 0.0 * np.atleast_1d(np.asarray(g.area_a))
+    zero = 0.0 * np.atleast_1d(np.asarray(g.area_a))
     name = STOP if design.cylinder.end_stop == "internal" else LARGEST
-    worst = {name: none + largest_area(design, g)}
+    worst = {name: zero + largest_area(design, g)}
     if not clamped(design):
-        return LoadPath({NONE: none, **worst}, 0.0, cases)
+        return LoadPath({NONE: zero, **worst}, 0.0, cases)
     return _clamped(v, design, stock, g, state, swelling, worst, cases)
 
 
@@ -132,19 +128,19 @@ def _clamped(
     proof = v["supply.proof_ratio"] * supply
     slack = -swelling.shortening * g.barrel_length
 
-    def shared(force: Array, pressure: Array) -> tuple[Array, Array]:
+    def forces_of(force: Array, pressure: Array) -> tuple[Array, Array]:
         return barrel_ends.tie_rod_forces(
             axial_force=force, preload=0.0, free_shortening=slack * pressure, **springs
         )
 
     ((name, area),) = worst.items()
-    unit, _ = shared(area, 1.0)
-    relaxed, _ = shared(0.0 * area, 1.0)
+    unit, _ = forces_of(area, 1.0)
+    relaxed, _ = forces_of(0.0 * area, 1.0)
     preload = v.get("retention.preload", None)
     if preload is None:
         preload = proof * unit
     pressure = maximum(state.moving_a, state.moving_b)
-    barrel, _ = shared(cases, pressure)
+    barrel, _ = forces_of(cases, pressure)
     return LoadPath(
         {NONE: relaxed, name: unit},
         -preload,
@@ -233,7 +229,7 @@ def metal_swelling(
     else:
         growth = maximum(free + swelling.growth_by_force * path.cases, free)
     driven = state.driven_pressure
-    own = swelling.growth * driven
+    driven_growth = swelling.growth * driven
     outer, inner = 2 * g.outer_radius, 2 * g.inner_radius
     shear = modulus / (2 * (1 + ratio)) * area
     wall = Wall(
@@ -242,7 +238,7 @@ def metal_swelling(
         growth=growth,
         case_growth=growth * (driven / supply)
         if as_published
-        else maximum(own + swelling.growth_by_force * path.cases, own),
+        else maximum(driven_growth + swelling.growth_by_force * path.cases, driven_growth),
         bending_stiffness=modulus * rod.second_moment(outer_diameter=outer, inner_diameter=inner),
         shear_stiffness=shear
         * column.cowper_tube(poissons_ratio=ratio, radius_ratio=inner / outer),
@@ -268,9 +264,9 @@ def _strengths(
         wall.missing.append(f"{name} has no yield or fibre strength")
         return
     for place, axial in path.per_pressure.items():
-        used = _used(axial, path, size, strength)
-        wall.yield_pressure[f"barrel, {place}"] = 1 / used
-        span = supply * strength * _used(axial, path, size, strength, clamped=False)
+        utilisation = _utilisation(axial, path, size, strength)
+        wall.yield_pressure[f"barrel, {place}"] = 1 / utilisation
+        span = supply * strength * _utilisation(axial, path, size, strength, clamped=False)
         wall.cycles[f"barrel, {place}"] = Cycle(name, span, span / 2)
         if ultimate is not None:
             wall.burst_pressure[place] = barrel.burst_pressure_thick(
@@ -281,7 +277,7 @@ def _strengths(
             )
 
 
-def _used(
+def _utilisation(
     axial: Array,
     path: LoadPath,
     size: dict[str, Array],
@@ -291,12 +287,12 @@ def _used(
 ) -> Array:
     """1/yield pressure at the bore; with preload the stress at zero pressure is not zero."""
     hoop, radial, along = barrel.bore_stresses(pressure=1.0, axial_force=axial, **size)
-    none = 0.0 * hoop
+    zero = 0.0 * hoop
     residual = None
     if clamped and path.clamp is not None:
         _, _, clamp = barrel.bore_stresses(pressure=0.0, axial_force=path.held, **size)
-        residual = (none, none, clamp, none)
-    stress = (hoop, radial, along, none)
+        residual = (zero, zero, clamp, zero)
+    stress = (hoop, radial, along, zero)
     return yield_utilisation(stress=stress, yield_strength=strength, residual=residual)
 
 
@@ -318,7 +314,7 @@ class WallSolution:
     walls: Sequence[Sequence[Array]]
 
 
-def exact_answer(layers: Sequence[Layer], g: Geometry) -> WallSolution:
+def exact_solution(layers: Sequence[Layer], g: Geometry) -> WallSolution:
     """The layered tube under its three unit loads."""
     tube = layered_tube(layers=[layer.as_tube() for layer in layers], inner_radius=g.inner_radius)
     unit = np.eye(3)
@@ -331,8 +327,7 @@ def exact_answer(layers: Sequence[Layer], g: Geometry) -> WallSolution:
     stress = ply_stresses_at_faces(tube=tube, state=state)
     if tube.twisting:  # the plies of a pair then differ
         other = ply_stresses_at_faces(tube=tube, state=state, opposite=True)
-        one, two, three, slip = (np.concatenate([a, b]) for a, b in zip(stress, other, strict=True))
-        stress = (one, two, three, slip)
+        stress = stress_of([np.concatenate(pair) for pair in zip(stress, other, strict=True)])
     return WallSolution(
         stress=stress,
         growth=state.bore_displacement,
@@ -342,9 +337,9 @@ def exact_answer(layers: Sequence[Layer], g: Geometry) -> WallSolution:
     )
 
 
-def thin_answer(layers: Sequence[Layer], g: Geometry) -> WallSolution:
+def thin_solution(layers: Sequence[Layer], g: Geometry) -> WallSolution:
     """The membrane: stresses at mid-radius, growth at the bore."""
-    reduced, turned, loads = [], [], []
+    reduced, rotated, loads = [], [], []
     for layer in layers:
         c = layer.constants
         stiffness = ply.ply_stiffness(
@@ -355,24 +350,24 @@ def thin_answer(layers: Sequence[Layer], g: Geometry) -> WallSolution:
         )
         first, second = layer.expansions or (0.0, 0.0)
         reduced.append(stiffness)
-        turned.append(ply.rotated(stiffness=stiffness, angle=layer.angle))
+        rotated.append(ply.rotated(stiffness=stiffness, angle=layer.angle))
         loads.append(
             ply.thermal_ply_load(
                 stiffness=stiffness, angle=layer.angle, expansion_1=first, expansion_2=second
             )
         )
     thicknesses = [layer.thickness for layer in layers]
-    sheet = laminate.membrane(plies=turned, thicknesses=thicknesses)
+    sheet = laminate.membrane(plies=rotated, thicknesses=thicknesses)
     warm = laminate.thermal_line_forces(
         loads=loads, thicknesses=thicknesses, temperature_change=1.0
     )
-    middle, none = (g.inner_radius + g.outer_radius) / 2, 0.0 * np.atleast_1d(g.inner_radius)
+    middle, zero = (g.inner_radius + g.outer_radius) / 2, 0.0 * np.atleast_1d(g.inner_radius)
 
     def strains(radius: Array) -> tuple[Array, Array]:
         return laminate.strains(
             membrane=sheet,
-            axial_line_force=np.stack([none, none + 1 / (2 * pi * radius), none + warm[0]]),
-            hoop_line_force=np.stack([none + radius, none, none + warm[1]]),
+            axial_line_force=np.stack([zero, zero + 1 / (2 * pi * radius), zero + warm[0]]),
+            hoop_line_force=np.stack([zero + radius, zero, zero + warm[1]]),
         )
 
     axial, hoop = strains(middle)
@@ -380,7 +375,7 @@ def thin_answer(layers: Sequence[Layer], g: Geometry) -> WallSolution:
     rows = []
     for layer, stiffness in zip(layers, reduced, strict=True):
         first, second = layer.expansions or (0.0, 0.0)
-        one, two, slip = ply.ply_stresses(
+        along, across, shear = ply.ply_stresses(
             stiffness=stiffness,
             angle=layer.angle,
             axial_strain=axial,
@@ -388,16 +383,16 @@ def thin_answer(layers: Sequence[Layer], g: Geometry) -> WallSolution:
             free_strain_1=first * unit,
             free_strain_2=second * unit,
         )
-        pressed = 0.0 * one
+        radial = 0.0 * along
         if layer.isotropic:  # the pressure itself is exact at the liner's bore
-            pressed = pressed - np.array([1.0, 0.0, 0.0])[:, None]
-        rows.append(np.stack(np.broadcast_arrays(one, two, pressed, slip)))
-    stress = np.stack(rows, axis=1)[:, None]
+            radial = radial - np.array([1.0, 0.0, 0.0])[:, None]
+        rows.append(np.stack(np.broadcast_arrays(along, across, radial, shear)))
+
     near_axial, near_hoop = strains(g.inner_radius)
     return WallSolution(
-        stress=(stress[0], stress[1], stress[2], stress[3]),
+        stress=stress_of(np.stack(rows, axis=1)[:, None]),
         growth=g.inner_radius * near_hoop,
         axial=near_axial,
         warm_hoop=hoop[WARMTH],
-        walls=[(q[0], q[1], 0.0, q[2], 0.0, 1.0, q[5]) for q in turned],
+        walls=[(q[0], q[1], 0.0, q[2], 0.0, 1.0, q[5]) for q in rotated],
     )

@@ -1,15 +1,13 @@
-"""The convex problem of one box: the least objective of its relaxation.
+"""Lower bound of one box: a linear programme for the least objective of its relaxation.
 
-A linear programme. The convex side of every curve is a set of tangents, valid in every box and
-added where the solution misses the curve [Kelley1960]. The other side is the chord over the box.
-The bound is computed from the multipliers alone, so it holds whatever the solver's tolerances
+Tangents bound every curve on its convex side. They are valid in every box and added where the
+solution misses the curve [Kelley1960]. On the other side, the chord over the box bounds the curve.
+The bound is computed from the multipliers alone, so it is valid for any tolerance of the solver
 [Neumaier2004].
 
-Sums in plain numbers beside their logarithms, so that linear relations stay linear.
-
-A lower bound on a sum is loose in logarithms where its terms range widely, but exact in plain
-numbers. There a monomial is tied to its widest factor and the rest by the planes of their product
-[McCormick1976]: mass and stiffness of a layer both follow its thickness.
+Wide sums are also stated in plain numbers: their bounds are loose in logarithms, but exact in plain
+numbers. There the planes of a product [McCormick1976] relate a monomial to its widest factor and
+its cofactor: mass and stiffness of a layer both follow its thickness.
 """
 
 from __future__ import annotations
@@ -39,9 +37,10 @@ from .relaxation import (
 
 
 class Products:
-    """Rows -inf or low <= w + a x + b y <= high or inf of products w = k x y, from row `first` on.
+    """Rows of products w = k x y, starting at row `first`.
 
-    Two planes lie below and two above, through the corners of both factors' ranges.
+    Each row is low <= w + a x + b y or w + a x + b y <= high. Two planes lie below the product and
+    two above, through the corners of both factors' ranges.
     """
 
     def __init__(self, products: Sequence[Product], first: int, columns: int) -> None:
@@ -63,7 +62,7 @@ class Products:
         """
         x, y, _ = self.atoms.T
         sides = (lower, lower), (upper, upper), (upper, lower), (lower, upper)
-        corners = np.stack([(one[x], two[y]) for one, two in sides])  # (4, 2, products)
+        corners = np.stack([(x_ends[x], y_ends[y]) for x_ends, y_ends in sides])  # (4, 2, products)
         scaled = -self.level * corners
         planes = np.ones((len(self.atoms), 4, 3))
         planes[:, :, 0], planes[:, :, 1] = scaled[:, 1].T, scaled[:, 0].T
@@ -72,12 +71,12 @@ class Products:
         low[:, 2:], high[:, :2] = -np.inf, np.inf
         return planes.reshape(-1, 3), low.ravel(), high.ravel()
 
-    def torn(self, x: Vector, dual: Vector) -> Vector:
-        """Error of every product at a point, times its multipliers."""
+    def product_errors(self, x: Vector, dual: Vector) -> Vector:
+        """Error of every product at a point, weighted with its multipliers."""
         first, second, out = self.atoms.T
         price = np.abs(dual[self.first : self.first + self.rows]).reshape(-1, 4).sum(axis=1)
-        found: Vector = np.abs(x[out] - self.level * x[first] * x[second]) * price
-        return found
+        errors: Vector = np.abs(x[out] - self.level * x[first] * x[second]) * price
+        return errors
 
 
 class Lines(NamedTuple):
@@ -89,12 +88,12 @@ class Lines(NamedTuple):
     low: Vector
     high: Vector
 
-    def joined(self, more: Lines) -> Lines:
-        """These lines followed by others."""
-        return Lines(*(np.concatenate(pair) for pair in zip(self, more, strict=True)))
+    def joined(self, others: Lines) -> Lines:
+        """These lines, followed by others."""
+        return Lines(*(np.concatenate(pair) for pair in zip(self, others, strict=True)))
 
-    def put(self, solver: Any) -> None:
-        """Add the lines to a programme as rows."""
+    def add_to(self, solver: Any) -> None:
+        """Add the lines as rows to the linear programme."""
         count = len(self.low)
         indices = np.stack([self.ratio, self.out], axis=1).ravel().astype(np.int32)
         data = np.stack([self.coefficient, np.ones(count)], axis=1).ravel()
@@ -102,7 +101,7 @@ class Lines(NamedTuple):
         solver.addRows(count, self.low, self.high, 2 * count, starts, indices, data)
 
 
-class Seen:
+class KnownExtents:
     """Least and largest value of every direction over known points of the relaxation."""
 
     def __init__(self, directions: Vector) -> None:
@@ -115,35 +114,32 @@ class Seen:
 
 
 WIDEST = 40.0
-"""Widest argument range that gets a chord; a wider chord carries no information."""
+"""Widest range of an argument with a chord; wider chords carry no information."""
 
 ROUNDS = 3
-"""Maximum rounds of tangents in one box; the following boxes reuse the tangents."""
+"""Maximum rounds of tangents per box; later boxes reuse them."""
 
-FIRST = (0.0,)
-"""Places of the first tangents, as shares of half the range."""
+TANGENT_GAIN = 2e-5
+"""Gain of the bound below which the rounds of tangents end."""
 
-ENOUGH = 2e-5
-"""Gain of the bound below which no further round of tangents follows."""
-
-MISSED = (1e-5, 1e-3)
-"""Limits of the distance from a curve at which a tangent is added."""
+TANGENT_DISTANCES = (1e-5, 1e-3)
+"""Smallest and largest distance from a curve at which a tangent is added."""
 
 FINE = 0.01
-"""The same distance, relative to the remaining gap."""
+"""Distance from a curve at which a tangent is added, relative to the remaining gap."""
 
 PROVEN = 1e-6
-"""Least value of a ray that proves a box empty, above rounding."""
+"""Least value of a dual ray that proves a box empty; above rounding."""
 
-NEAR = 0.05
-"""A point this close to an end of a range, as a share of it, shows that the end cannot be cut."""
+NEAR_END = 0.05
+"""Share of a range: a known point this close to an end shows that the end cannot be cut."""
 
-MOST = 3
-"""Lines per curve above which those that do not touch are deleted."""
+LINES_PER_CURVE = 3
+"""Lines per curve above which inactive tangents are deleted."""
 
 
 class Bound(NamedTuple):
-    """Least objective of a box (its logarithm), and where the relaxation is loose there."""
+    """Logarithm of a box's least objective, and where the relaxation of the box is loose."""
 
     value: float
     atoms: Vector
@@ -152,29 +148,29 @@ class Bound(NamedTuple):
     """Distance of every curve from the solution, on the side of its chord."""
     price: Vector
     """Multiplier of every chord."""
-    torn: Vector
-    """Error of every product times its price."""
+    product_errors: Vector
+    """Error of every product, weighted with its multipliers."""
     slopes: Vector
-    """For every column, the least rise of the objective as the column leaves its better end."""
+    """Reduced cost of every column: slope of the objective away from the column's better end."""
 
 
 class Bounding:
-    """The relaxation as one linear programme, solved again for every box.
+    """The relaxation as one linear programme that is solved again for every box.
 
-    Columns: atoms, directions, curves. Rows: definitions of directions and curves, limits; then
-    lines, each between a direction and a curve: one chord per curve, and the tangents.
+    Columns: atoms, directions, curves. Rows: definitions of directions and curves, limits, and
+    lines between a direction and a curve (one chord per curve, and the tangents).
     """
 
     def __init__(self, layout: Layout, objective: Form) -> None:
         self.layout = layout
         curves = layout.curves
-        own = layout.plain < 0
-        self.columns = layout.atoms + int(own.sum())
-        self.column = np.where(own, layout.atoms + np.cumsum(own) - 1, layout.plain)
-        """Column of every output and direction: that of its atom, or its own."""
+        composite = layout.plain < 0
+        self.columns = layout.atoms + int(composite.sum())
+        self.column = np.where(composite, layout.atoms + np.cumsum(composite) - 1, layout.plain)
+        """Column of every output and direction; a plain atom shares the column of the atom."""
         self.out = self.column[:curves].astype(np.int32)
-        self.ways = self.column[curves:]
-        self.ratio = self.ways[layout.direction].astype(np.int32)
+        self.direction_columns = self.column[curves:]
+        self.ratio = self.direction_columns[layout.direction].astype(np.int32)
         self.cost = np.zeros(self.columns)
         for i, power in objective.powers:
             self.cost[i] = power
@@ -196,31 +192,31 @@ class Bounding:
             none + np.inf,
         )
         self.solver = self._solver()
-        self.missed = MISSED[1]
+        self.missed = TANGENT_DISTANCES[1]
 
     def refine(self, gap: float) -> None:
-        """Refine the tangents to the accuracy that a gap of the objective's logarithm needs."""
-        self.missed = float(np.clip(FINE * gap, *MISSED))
+        """Set the accuracy of the tangents for a gap of the objective's logarithm."""
+        self.missed = float(np.clip(FINE * gap, *TANGENT_DISTANCES))
 
     def _definitions(self) -> tuple[Any, Vector, Vector]:
-        """Outputs and directions in terms of their atoms; rows at least zero."""
+        """Rows that define outputs and directions by their atoms, and the rows >= 0."""
         layout = self.layout
         new = np.flatnonzero(layout.plain < 0)
-        kept = np.concatenate([new, np.arange(len(layout.plain), len(layout.levels))])
+        defined = np.concatenate([new, np.arange(len(layout.plain), len(layout.levels))])
         place = np.full(len(layout.levels), -1)
-        place[kept] = np.arange(len(kept))
-        some = place[layout.form] >= 0
-        rows = np.concatenate([place[layout.form[some]], np.arange(len(new))])
-        columns = np.concatenate([layout.atom[some], self.column[new]])
-        values = np.concatenate([layout.power[some], np.full(len(new), -1.0)])
-        matrix = sp.csr_matrix((values, (rows, columns)), shape=(len(kept), self.columns))
-        level = -layout.levels[kept]
+        place[defined] = np.arange(len(defined))
+        entries = place[layout.form] >= 0
+        rows = np.concatenate([place[layout.form[entries]], np.arange(len(new))])
+        columns = np.concatenate([layout.atom[entries], self.column[new]])
+        values = np.concatenate([layout.power[entries], np.full(len(new), -1.0)])
+        matrix = sp.csr_matrix((values, (rows, columns)), shape=(len(defined), self.columns))
+        level = -layout.levels[defined]
         high = level.copy()
         high[len(new) :] = np.inf
         return matrix, level, high
 
     def _solver(self) -> Any:
-        """The programme without bounds and chords, which depend on the box."""
+        """The linear programme without bounds and chords, which depend on the box."""
         solver: Any = highspy.Highs()  # type: ignore[no-untyped-call]
         m = self.matrix
         for name, value in _OPTIONS.items():
@@ -230,57 +226,57 @@ class Bounding:
         solver.addCols(self.columns, self.cost, -ends, ends, 0, index, index, none)
         rows = m.indptr[:-1].astype(np.int32), m.indices.astype(np.int32), m.data
         solver.addRows(len(self.low), self.low, self.high, m.nnz, *rows)
-        self.lines.put(solver)
+        self.lines.add_to(solver)
         return solver
 
     def solve(self, box: Box) -> Bound | None:
         """The bound of a box; None if the relaxation has no solution."""
         lower, upper = self.enter(box)
-        found = self._least(self.cost, lower, upper, rounds=ROUNDS)
-        if found is None:
+        solution = self._minimum(self.cost, lower, upper, rounds=ROUNDS)
+        if solution is None:
             return None
-        value, slopes, x, dual = found
-        first = len(self.low)
+        value, slopes, x, dual = solution
+        row = len(self.low)
         return Bound(
             value + self.constant,
             x[: self.layout.atoms],
-            x[self.ways],
+            x[self.direction_columns],
             np.maximum(-self._missed(x), 0.0),
-            np.abs(dual[first : first + self.layout.curves]),
-            self.products.torn(x, dual),
+            np.abs(dual[row : row + self.layout.curves]),
+            self.products.product_errors(x, dual),
             slopes,
         )
 
     def trimmed(self, box: Box, bound: Bound, best: float) -> Box:
-        """The part of a box that may hold a design as good as the best known one.
+        """The part of a box that may contain a design as good as the best known design.
 
-        A range with multiplier d is at most as long as the remaining gap divided by d.
+        The length of a range with reduced cost d is at most the remaining gap divided by d.
         """
         lower, upper = self._ends(box)
-        left = max(best - bound.value, 0.0) + ROOM
+        gap = max(best - bound.value, 0.0) + ROOM
         with np.errstate(divide="ignore"):
-            most = lower + left / np.maximum(bound.slopes, 0.0)
-            least = upper + left / np.minimum(bound.slopes, -0.0)
-        lower, upper = np.maximum(lower, least - ROOM), np.minimum(upper, most + ROOM)
+            highest = lower + gap / np.maximum(bound.slopes, 0.0)
+            lowest = upper + gap / np.minimum(bound.slopes, -0.0)
+        lower, upper = np.maximum(lower, lowest - ROOM), np.minimum(upper, highest + ROOM)
         atoms = slice(0, self.layout.atoms)
         return Box(
             np.maximum(box.lower, lower[atoms]),
             np.minimum(box.upper, upper[atoms]),
-            np.maximum(box.low, lower[self.ways]),
-            np.minimum(box.high, upper[self.ways]),
+            np.maximum(box.low, lower[self.direction_columns]),
+            np.minimum(box.high, upper[self.direction_columns]),
         )
 
     def enter(self, box: Box) -> tuple[Vector, Vector]:
-        """Load a box into the programme; returns the ranges of its columns."""
+        """Load a box into the linear programme; returns the ranges of its columns."""
         self._purge()
         ends = self._columns(box)
         self._chords(box)
         return ends
 
     def _purge(self) -> None:
-        """Delete tangents that no longer touch, once there are too many."""
+        """Delete inactive tangents once there are too many lines."""
         first, count = len(self.low) + self.moving, len(self.lines.low)
-        if count < MOST * self.moving:
+        if count < LINES_PER_CURVE * self.moving:
             return
         status = self.solver.getBasis().row_status
         idle = [
@@ -289,40 +285,39 @@ class Bounding:
         if not idle:
             return
         self.solver.deleteRows(len(idle), np.array(idle, dtype=np.int32))
-        kept = np.ones(count, dtype=bool)
-        kept[np.array(idle) - len(self.low)] = False
-        self.lines = Lines(*(part[kept] for part in self.lines))
+        active = np.ones(count, dtype=bool)
+        active[np.array(idle) - len(self.low)] = False
+        self.lines = Lines(*(part[active] for part in self.lines))
 
     def extent(
-        self, direction: int, ends: tuple[Vector, Vector], seen: Seen
+        self, direction: int, ends: tuple[Vector, Vector], known: KnownExtents
     ) -> tuple[float, float] | None:
         """Least and largest value of a direction in the loaded box; None if the box is empty.
 
-        An end of the range that a known point nearly reaches is not recomputed; new points are
-        stored.
+        Skips an end of the range that a known point nearly reaches. Adds new points to `known`.
         """
-        way = self.ways[direction]
-        reach = [float(end[way]) for end in ends]
-        near = NEAR * (reach[1] - reach[0])
+        column = self.direction_columns[direction]
+        extent = [float(end[column]) for end in ends]
+        tolerance = NEAR_END * (extent[1] - extent[0])
         cost = np.zeros(self.columns)
         for side, sign in enumerate((1.0, -1.0)):
-            if 0 <= sign * (seen.ends[side][direction] - reach[side]) <= near:
+            if 0 <= sign * (known.ends[side][direction] - extent[side]) <= tolerance:
                 continue
-            cost[way] = sign
-            found = self._least(cost, *ends, rounds=1)
-            if found is None:
+            cost[column] = sign
+            solution = self._minimum(cost, *ends, rounds=1)
+            if solution is None:
                 return None
-            reach[side] = sign * found[0]
-            seen.add(found[2][self.ways])
-        return reach[0], reach[1]
+            extent[side] = sign * solution[0]
+            known.add(solution[2][self.direction_columns])
+        return extent[0], extent[1]
 
-    def _least(
+    def _minimum(
         self, cost: Vector, lower: Vector, upper: Vector, *, rounds: int
     ) -> tuple[float, Vector, Vector, Vector] | None:
-        """Minimise a linear function: proven value, slopes, point, multipliers."""
+        """Minimise a linear function: proven value, reduced costs, point, multipliers."""
         index = np.arange(self.columns, dtype=np.int32)
         self.solver.changeColsCost(self.columns, index, cost)
-        last = -np.inf
+        previous = -np.inf
         for _ in range(rounds):
             self.solver.run()
             if self._empty(lower, upper):
@@ -330,18 +325,18 @@ class Bounding:
             solution = self.solver.getSolution()
             x, dual = np.array(solution.col_value), np.array(solution.row_dual)
             value = float(cost @ x)
-            if rounds == 1 or value - last < ENOUGH or not self._tangents(x):
+            if rounds == 1 or value - previous < TANGENT_GAIN or not self._tangents(x):
                 break
-            last = value
-        return *self._safe(cost, dual, lower, upper), x, dual
+            previous = value
+        return *self._proven_minimum(cost, dual, lower, upper), x, dual
 
     def _empty(self, lower: Vector, upper: Vector) -> bool:
         """Whether multipliers prove that no point satisfies all lines."""
         if self.solver.getModelStatus() != highspy.HighsModelStatus.kInfeasible:
             return False
-        _, known, ray = self.solver.getDualRay()
+        _, has_ray, ray = self.solver.getDualRay()
         none = np.zeros(self.columns)
-        return known and self._safe(none, np.array(ray), lower, upper)[0] > PROVEN
+        return has_ray and self._proven_minimum(none, np.array(ray), lower, upper)[0] > PROVEN
 
     def _ends(self, box: Box) -> tuple[Vector, Vector]:
         """Ranges of the columns in a box."""
@@ -355,7 +350,7 @@ class Bounding:
         return lower, upper
 
     def _columns(self, box: Box) -> tuple[Vector, Vector]:
-        """Load the ranges of a box."""
+        """Load the ranges of the columns and the planes of the products."""
         lower, upper = self._ends(box)
         index = np.arange(self.columns, dtype=np.int32)
         self.solver.changeColsBounds(self.columns, index, lower, upper)
@@ -367,14 +362,14 @@ class Bounding:
         products, first = self.products, self.products.first
         planes, low, high = products.planes(lower, upper)
         self.matrix.data[len(self.matrix.data) - planes.size :] = planes.ravel()
-        some = slice(first, first + products.rows)
-        self.low[some], self.high[some] = low, high
+        rows = slice(first, first + products.rows)
+        self.low[rows], self.high[rows] = low, high
         columns, values = products.columns.tolist(), planes.tolist()
-        for row, (one, two, _), (left, right, _) in zip(
+        for row, (x, y, _), (x_factor, y_factor, _) in zip(
             range(first, first + products.rows), columns, values, strict=True
         ):
-            self.solver.changeCoeff(row, one, left)
-            self.solver.changeCoeff(row, two, right)
+            self.solver.changeCoeff(row, x, x_factor)
+            self.solver.changeCoeff(row, y, y_factor)
         index = np.arange(first, first + products.rows, dtype=np.int32)
         self.solver.changeRowsBounds(products.rows, index, low, high)
 
@@ -383,24 +378,28 @@ class Bounding:
         layout, lines = self.layout, self.lines
         first, count = len(self.low), layout.curves
         low, high = layout.arguments(box.low, box.high)
-        mixed, width = layout.mixed, high - low
-        first_value, last_value = mixed.value(low), mixed.value(high)
+        functions, width = layout.functions, high - low
+        first_value, last_value = functions.value(low), functions.value(high)
         flat = width < 1e-9
         slope = np.where(flat, 0.0, (last_value - first_value) / np.where(flat, 1.0, width))
         level = first_value + slope * (layout.constant - low)
-        off = mixed.room + np.where(flat, np.abs(last_value - first_value), 0.0)
-        below, above = mixed.apart(low, high, slope)
-        over = width <= WIDEST
-        lines.coefficient[:count] = np.where(over, -slope * layout.factor, 0.0)
-        lines.low[:count] = np.where(over & (mixed.convex <= 0), level + below - off, -np.inf)
-        lines.high[:count] = np.where(over & (mixed.convex >= 0), level + above + off, np.inf)
+        tolerance = functions.room + np.where(flat, np.abs(last_value - first_value), 0.0)
+        below, above = functions.secant_errors(low, high, slope)
+        narrow = width <= WIDEST
+        lines.coefficient[:count] = np.where(narrow, -slope * layout.factor, 0.0)
+        lines.low[:count] = np.where(
+            narrow & (functions.convex <= 0), level + below - tolerance, -np.inf
+        )
+        lines.high[:count] = np.where(
+            narrow & (functions.convex >= 0), level + above + tolerance, np.inf
+        )
         ratios = layout.ratios(box)
-        least, most = (
+        link_lows, link_highs = (
             slice(count, count + len(ratios[0])),
             slice(count + len(ratios[0]), self.moving),
         )
-        lines.coefficient[least], lines.low[least] = -ratios[0], 0.0
-        lines.coefficient[most], lines.high[most] = -ratios[1], 0.0
+        lines.coefficient[link_lows], lines.low[link_lows] = -ratios[0], 0.0
+        lines.coefficient[link_highs], lines.high[link_highs] = -ratios[1], 0.0
         count = self.moving
         index = first + np.arange(count, dtype=np.int32)
         columns, values = lines.ratio[:count].tolist(), lines.coefficient[:count].tolist()
@@ -409,68 +408,67 @@ class Bounding:
         self.solver.changeRowsBounds(count, index, lines.low[:count], lines.high[:count])
 
     def _argument(self, x: Vector) -> Vector:
-        found: Vector = self.layout.factor * x[self.ratio] + self.layout.constant
-        return found
+        argument: Vector = self.layout.factor * x[self.ratio] + self.layout.constant
+        return argument
 
     def _missed(self, x: Vector) -> Vector:
-        """Distance of every curve from a point, positive on the side of its tangents."""
-        mixed = self.layout.mixed
-        off = mixed.value(self._argument(x)) - x[self.out]
-        return np.where(mixed.convex == 0, -np.abs(off), mixed.convex * off)
+        """Distance of a point from every curve, positive on the side of the tangents."""
+        functions = self.layout.functions
+        off = functions.value(self._argument(x)) - x[self.out]
+        return np.where(functions.convex == 0, -np.abs(off), functions.convex * off)
 
-    def lay(self, box: Box) -> None:
-        """Place the first tangents of every curve over a box."""
+    def add_first_tangents(self, box: Box) -> None:
+        """Add a tangent at the middle of every convex or concave curve."""
         low, high = self.layout.arguments(box.low, box.high)
-        middle, reach = (low + high) / 2, np.minimum((high - low) / 2, 0.5 * WIDEST)
-        some = np.flatnonzero(self.layout.mixed.convex)
-        for share in FIRST:
-            self._append(self._touching(middle + share * reach, some))
+        curves = np.flatnonzero(self.layout.functions.convex)
+        self._append(self._touching((low + high) / 2, curves))
 
-    def _append(self, more: Lines) -> None:
-        more.put(self.solver)
-        self.lines = self.lines.joined(more)
+    def _append(self, lines: Lines) -> None:
+        lines.add_to(self.solver)
+        self.lines = self.lines.joined(lines)
 
     def _tangents(self, x: Vector) -> bool:
-        """Add tangents where the point violates a curve; whether any were added."""
-        some = np.flatnonzero(self._missed(x) > self.missed)
-        if len(some):
-            self._append(self._touching(self._argument(x), some))
-        return len(some) > 0
+        """Add tangents to the curves that the point violates; returns whether any were added."""
+        curves = np.flatnonzero(self._missed(x) > self.missed)
+        if len(curves):
+            self._append(self._touching(self._argument(x), curves))
+        return len(curves) > 0
 
-    def _touching(self, t: Vector, some: Any) -> Lines:
-        """Tangents of some curves, from the arguments of all."""
-        layout = self.layout
-        slope = layout.mixed.slope(t)
-        mixed = layout.mixed
-        level = mixed.value(t) - mixed.convex * mixed.room + slope * (layout.constant - t)
-        level, convex = level[some], mixed.convex[some] > 0
+    def _touching(self, t: Vector, curves: Any) -> Lines:
+        """Tangents of `curves` at arguments t of all curves."""
+        layout, functions = self.layout, self.layout.functions
+        slope = functions.slope(t)
+        level = (
+            functions.value(t) - functions.convex * functions.room + slope * (layout.constant - t)
+        )
+        level, convex = level[curves], functions.convex[curves] > 0
         return Lines(
-            self.ratio[some],
-            (-slope * layout.factor)[some],
-            self.out[some],
+            self.ratio[curves],
+            (-slope * layout.factor)[curves],
+            self.out[curves],
             np.where(convex, level, -np.inf),
             np.where(convex, np.inf, level),
         )
 
-    def _safe(
+    def _proven_minimum(
         self, cost: Vector, dual: Vector, lower: Vector, upper: Vector
     ) -> tuple[float, Vector]:
-        """Least value that the multipliers prove from rows and bounds, and its slopes."""
+        """Lower bound of the cost, proven by the multipliers, and the reduced costs."""
         count, lines = len(self.low), self.lines
         dual = dual[: count + len(lines.low)]
         low, high = (
-            np.concatenate([one, two])[: len(dual)]
-            for one, two in ((self.low, lines.low), (self.high, lines.high))
+            np.concatenate([fixed, movable])[: len(dual)]
+            for fixed, movable in ((self.low, lines.low), (self.high, lines.high))
         )
         ends = np.where(dual > 0, low, high)
         dual = np.where(np.isfinite(ends), dual, 0.0)
         ends = np.where(np.isfinite(ends), ends, 0.0)
-        own = dual[count:]
-        some = slice(0, len(own))
-        rest = cost - self.matrix.T @ dual[:count]
-        np.add.at(rest, lines.ratio[some], -own * lines.coefficient[some])
-        np.add.at(rest, lines.out[some], -own)
-        return float(dual @ ends + np.minimum(rest * lower, rest * upper).sum()), rest
+        line_dual = dual[count:]
+        rows = slice(0, len(line_dual))
+        slopes = cost - self.matrix.T @ dual[:count]
+        np.add.at(slopes, lines.ratio[rows], -line_dual * lines.coefficient[rows])
+        np.add.at(slopes, lines.out[rows], -line_dual)
+        return float(dual @ ends + np.minimum(slopes * lower, slopes * upper).sum()), slopes
 
 
 _OPTIONS = {
@@ -484,14 +482,14 @@ _OPTIONS = {
     "simplex_scale_strategy": 0,
 }
 SAMPLES = 1001
-"""Number of samples over the range of the argument."""
+"""Number of samples over the range of an argument."""
 CAUTION = 1.5
 """Safety factor on the second derivative of the samples."""
 _LOGIC = ("lt", "le", "and", "or", "not")
 
 
 class Leads:
-    """The lead of each value: the one value through which it depends on all variables."""
+    """Finds the lead of a value: the single value through which it depends on all variables."""
 
     def __init__(self) -> None:
         self._known: dict[int, Symbol] = {}
@@ -499,13 +497,13 @@ class Leads:
     def of(self, node: Symbol) -> Symbol:
         """The lead of a value."""
         if node.index not in self._known:
-            under = {self.of(operand) for operand in node.operands}
-            self._known[node.index] = under.pop() if len(under) == 1 else node
+            operand_leads = {self.of(operand) for operand in node.operands}
+            self._known[node.index] = operand_leads.pop() if len(operand_leads) == 1 else node
         return self._known[node.index]
 
 
 def function(nodes: Sequence[Symbol], lead: Symbol) -> Callable[[Vector], Vector]:
-    """A function for values (nodes, n) of nodes with one lead, from its logarithms (n,)."""
+    """Function that maps logarithms (n,) of a lead to values (nodes, n) of nodes with that lead."""
     code = vectorised("lone", "value", {}, nodes, known={lead: "value"})
 
     def values(t: Vector) -> Vector:
@@ -517,13 +515,13 @@ def function(nodes: Sequence[Symbol], lead: Symbol) -> Callable[[Vector], Vector
 
 
 def samples(lead: Symbol) -> Vector:
-    """Sampled logarithms over the range of a positive value."""
+    """Equally spaced logarithms over the range of a positive value."""
     low, high = np.log(lead.bounds)
     return np.linspace(low, high, SAMPLES)
 
 
 def ranges(nodes: Sequence[Symbol]) -> dict[Symbol, tuple[float, float]]:
-    """Ranges of all values with a positive lead, if finite."""
+    """Sampled ranges of values with a positive lead, where finite."""
     leads = Leads()
     groups: dict[Symbol, list[Symbol]] = {}
     for node in nodes:
@@ -532,24 +530,24 @@ def ranges(nodes: Sequence[Symbol]) -> dict[Symbol, tuple[float, float]]:
             continue
         if 0 < lead.bounds[0] < lead.bounds[1] < np.inf:
             groups.setdefault(lead, []).append(node)
-    found = {}
-    for lead, some in groups.items():
-        for node, row in zip(some, function(some, lead)(samples(lead)), strict=True):
+    result = {}
+    for lead, group in groups.items():
+        for node, row in zip(group, function(group, lead)(samples(lead)), strict=True):
             if np.isfinite(row).all():
                 room = CAUTION * float(np.abs(np.diff(row, 2)).max()) / 8
-                found[node] = (float(row.min()) - room, float(row.max()) + room)
-    return found
+                result[node] = (float(row.min()) - room, float(row.max()) + room)
+    return result
 
 
 WIDE = 0.3
-"""Least range of the ratio of a sum's parts for which plain numbers are added."""
+"""Least range of the log ratio of a sum's parts that justifies plain numbers."""
 
 
-class _Plain:
-    """Plain atoms of a relaxation with known ranges."""
+class _PlainAtoms:
+    """Adds plain numbers of monomials to a relaxation with known ranges."""
 
     def __init__(self, relaxation: Relaxation) -> None:
-        self.found = relaxation
+        self.relaxation = relaxation
         self.known: dict[Powers, int] = {}
         self.tops: dict[int, float] = {}
         self.tables = {
@@ -560,21 +558,21 @@ class _Plain:
 
     def width(self, form: Form) -> float:
         """Range of a monomial's logarithm."""
-        low, high = self.found.reach(form)
+        low, high = self.relaxation.reach(form)
         return high - low
 
     def atom(self, powers: Powers) -> int:
-        """The plain atom of a monomial, relative to its largest value."""
+        """Number of the plain atom of a monomial, relative to its largest value."""
         if powers not in self.known:
-            found, form = self.found, Form(0.0, powers)
-            low, high = found.reach(form)
+            relaxation, form = self.relaxation, Form(0.0, powers)
+            low, high = relaxation.reach(form)
             argument = Form(-high, powers)
-            found.lower.append(math.exp(low - high))
-            found.upper.append(1.0)
-            found.makers.append(lambda y: math.exp(argument.at(y)))
-            self.known[powers] = number = len(found.lower) - 1
+            relaxation.lower.append(math.exp(low - high))
+            relaxation.upper.append(1.0)
+            relaxation.makers.append(lambda y: math.exp(argument.at(y)))
+            self.known[powers] = number = len(relaxation.lower) - 1
             self.tops[number] = high
-            found.curves.append(AtomFunction("exp", argument, Form(0.0, ((number, 1.0),))))
+            relaxation.curves.append(AtomFunction("exp", argument, Form(0.0, ((number, 1.0),))))
             self._tie(form, number)
         return self.known[powers]
 
@@ -586,31 +584,31 @@ class _Plain:
         return Form(0.0, ((number, math.exp(form.constant + self.tops[number] - scale)),))
 
     def _tie(self, form: Form, number: int) -> None:
-        """Tie a plain atom to those of its factors, or to its argument."""
+        """Relate a plain atom to the plain atoms of its factors or of its argument."""
         lone = [i for i, power in form.powers if power == 1.0]
         if not lone:
             return
         widest = max(lone, key=lambda i: self.width(Form(0.0, ((i, 1.0),))))
         base = Form(0.0, ((widest, 1.0),))
-        rest = form - base
-        if rest.powers:
-            first, second = self.atom(base.powers), self.atom(rest.powers)
-            level = self.tops[first] + self.tops[second] - self.tops[number]
-            self.found.products.append(Product(number, first, second, level))
+        cofactor = form - base
+        if cofactor.powers:
+            base_atom, cofactor_atom = self.atom(base.powers), self.atom(cofactor.powers)
+            level = self.tops[base_atom] + self.tops[cofactor_atom] - self.tops[number]
+            self.relaxation.products.append(Product(number, base_atom, cofactor_atom, level))
         elif widest in self.tables:
             curve = self.tables[widest]
-            under = self.atom(curve.argument.powers)
-            level = curve.argument.constant + self.tops[under] - self.tops[number]
-            self.found.links.append(Link(number, under, level, curve))
+            argument_atom = self.atom(curve.argument.powers)
+            level = curve.argument.constant + self.tops[argument_atom] - self.tops[number]
+            self.relaxation.links.append(Link(number, argument_atom, level, curve))
 
 
-def straighten(relaxation: Relaxation) -> None:
-    """Add plain numbers for the wide sums of a relaxation."""
-    plain = _Plain(relaxation)
-    for whole, part, rest in list(relaxation.splits):
-        if plain.width(part - rest) < WIDE:
+def add_plain_sums(relaxation: Relaxation) -> None:
+    """State the wide sums of a relaxation in plain numbers, too."""
+    plain = _PlainAtoms(relaxation)
+    for whole, part, remainder in list(relaxation.splits):
+        if plain.width(part - remainder) < WIDE:
             continue
         scale = relaxation.reach(whole)[1]
-        own = plain.term(whole, scale)
-        sums = plain.term(part, scale) + plain.term(rest, scale)
-        relaxation.rows += [ConstraintRow(own, sums), ConstraintRow(sums, own)]
+        total = plain.term(whole, scale)
+        sums = plain.term(part, scale) + plain.term(remainder, scale)
+        relaxation.rows += [ConstraintRow(total, sums), ConstraintRow(sums, total)]

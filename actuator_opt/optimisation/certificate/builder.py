@@ -1,6 +1,6 @@
-"""Traced values as monomials of atoms, with curves that relate the atoms.
+"""Builds the relaxation: traced values as monomials of atoms, and curves that relate the atoms.
 
-A model without a closed expression becomes an unknown within envelopes that contain its values.
+A model without a closed expression becomes an unknown between envelopes.
 """
 
 from __future__ import annotations
@@ -45,9 +45,9 @@ from .relaxation import (
     FAR,
     AtomFunction,
     ConstraintRow,
+    CurveFunctions,
     Form,
     Kind,
-    Mixed,
     Relaxation,
     SampledFunction,
     Signomial,
@@ -55,20 +55,20 @@ from .relaxation import (
 )
 
 WIDEST = 20.0
-"""Widest logarithmic range that is sampled."""
+"""Widest logarithmic range for sampling."""
 
 LARGEST = 8
-"""Maximum terms of a sum that stays expanded, so that terms can cancel."""
+"""Maximum number of terms of an expanded sum, in which terms can cancel."""
 
 _MONOMIAL = ("variable", "mul", "div", "neg", "sqrt", "pow")
-"""Operations that keep a monomial a monomial."""
+"""Operations whose results are monomials if their operands are."""
 
 
 class Builder:
-    """Relaxes traced values one by one; equal values share an atom."""
+    """Adds traced values to a relaxation; equal values share an atom."""
 
     def __init__(self) -> None:
-        self.found = Relaxation()
+        self.relaxation = Relaxation()
         self._forms: dict[int, tuple[float, Form] | Unknown] = {}
         self._sums: dict[int, Signomial | None] = {}
         self._leads = Leads()
@@ -89,30 +89,30 @@ class Builder:
             return math.copysign(1.0, number), Form(math.log(abs(number)))
         if value.index not in self._forms:
             try:
-                self._forms[value.index] = self._either(value)
+                self._forms[value.index] = self._tightest(value)
             except Unknown as reason:
                 self._forms[value.index] = reason
-        known = self._forms[value.index]
-        if isinstance(known, Unknown):
-            raise known
-        return known
+        entry = self._forms[value.index]
+        if isinstance(entry, Unknown):
+            raise entry
+        return entry
 
-    def _either(self, node: Symbol) -> tuple[float, Form]:
-        """The sampled form if it is tighter than the parts, else the parts."""
+    def _tightest(self, node: Symbol) -> tuple[float, Form]:
+        """The sampled form where it is tighter than that composed of the operands."""
         if node.op not in _MONOMIAL or self._repeats(node):
             with suppress(Unknown):
                 return self._sampled(node)
-        return self._made(node)
+        return self._composed(node)
 
     def _repeats(self, node: Symbol) -> bool:
-        """Whether both factors of a product depend on one value, other than as powers of it."""
+        """Whether both factors of a product depend on one value, and not only as its powers."""
         if node.op not in ("mul", "div"):
             return False
         lead, (first, second) = self._leads.of(node), node.args
         single = first is second or _power(first, lead) or _power(second, lead)
         return lead is not node and not single
 
-    def _made(self, node: Symbol) -> tuple[float, Form]:
+    def _composed(self, node: Symbol) -> tuple[float, Form]:
         op, args = node.op, node.args
         if op == "variable":
             return self._variable(node)
@@ -130,26 +130,26 @@ class Builder:
                 raise Unknown("a root of a negative number")
             return 1.0, form.scaled(0.5 if op == "sqrt" else args[1])
         if op == "where":
-            return self._chosen(node)
+            return self._of_choice(node)
         return self._of_function(node)
 
     def _variable(self, node: Symbol) -> tuple[float, Form]:
         low, high = node.bounds
         if not low > 0:
             raise Unknown(f"{node.args[0]} may be zero or negative")
-        form = self.found.atom(low, high, lambda y: math.nan)  # an atom of the design itself
+        form = self.relaxation.atom(low, high, lambda y: math.nan)  # an atom of the design itself
         self.variables[node.args[0]] = form
         return 1.0, form
 
     def _sampled(self, node: Symbol) -> tuple[float, Form]:
-        """The sampled form of a function of one other value."""
+        """The sampled form of a function of one value."""
         lead = self._leads.of(node)
         if lead is node:
             raise Unknown("it depends on several values")
         sign, argument = self.form(lead)
         if sign < 0:
             raise Unknown("its argument is negative")
-        t = np.linspace(*self.found.reach(argument), SAMPLES)
+        t = np.linspace(*self.relaxation.reach(argument), SAMPLES)
         if not 0 < t[-1] - t[0] < WIDEST:
             raise Unknown("its argument is fixed or unbounded")
         values = function([node], lead)(t)[0]
@@ -169,8 +169,8 @@ class Builder:
             return Signomial.number(value) if math.isfinite(value) else None
         if value.index not in self._sums:
             signomial = self._expand(value)
-            kept = signomial is not None and len(signomial.terms) <= LARGEST
-            self._sums[value.index] = signomial if kept else None
+            is_short = signomial is not None and len(signomial.terms) <= LARGEST
+            self._sums[value.index] = signomial if is_short else None
         return self._sums[value.index]
 
     def _expand(self, node: Symbol) -> Signomial | None:
@@ -195,54 +195,57 @@ class Builder:
                 return None
             return None if a is None else a.times(Signomial.monomial(sign, Form(0.0) - form))
         if op == "where":
-            taken = branch(node)
-            if taken is not None:
-                return self.expanded(taken)
+            choice = branch(node)
+            if choice is not None:
+                return self.expanded(choice)
         try:
             return Signomial.monomial(*self.form(node))
         except Unknown:
             return None
 
     def _of_sum(self, node: Symbol) -> tuple[float, Form]:
-        """A sum as its terms, expanded where some cancel or signs differ."""
+        """A sum, expanded where terms cancel or where the sign of an operand is unknown."""
         low, high = node.bounds
         parts = self._cancelled(node) or self._terms(node)
-        known = parts.single
-        if known is not None:
-            return known
+        single = parts.single
+        if single is not None:
+            return single
         if not parts.terms:
             raise Unknown("it is zero")
         plus, minus = parts.sides()
-        low, high = max(low, self._least(plus, minus)), min(high, -self._least(minus, plus))
+        low, high = (
+            max(low, self._lower_bound(plus, minus)),
+            min(high, -self._lower_bound(minus, plus)),
+        )
         if not minus or not plus:
             sign = -1.0 if minus else 1.0
             ends = (low, high) if sign > 0 else (-high, -low)
-            return sign, self.found.total(plus or minus, *ends)
+            return sign, self.relaxation.total(plus or minus, *ends)
         if low > 0:
             return 1.0, self._difference(plus, minus, low, high)
         if high < 0:
             return -1.0, self._difference(minus, plus, -high, -low)
         raise Unknown("the sign of a difference is not known")
 
-    def _least(self, plus: Sequence[Form], minus: Sequence[Form]) -> float:
-        """Lower bound of a difference of sums, by its expanded terms."""
-        least = sum(math.exp(self.found.reach(one)[0]) for one in plus)
-        return least - sum(math.exp(min(self.found.reach(one)[1], 700.0)) for one in minus)
+    def _lower_bound(self, plus: Sequence[Form], minus: Sequence[Form]) -> float:
+        """Lower bound of a difference of two sums of monomials."""
+        least = sum(math.exp(self.relaxation.reach(term)[0]) for term in plus)
+        return least - sum(math.exp(min(self.relaxation.reach(term)[1], 700.0)) for term in minus)
 
     def _cancelled(self, node: Symbol) -> Signomial | None:
         """An expanded sum, if terms of its operands cancel."""
-        parts = [self.expanded(one) for one in (node, *node.args)]
+        parts = [self.expanded(value) for value in (node, *node.args)]
         if None in parts:
             return None
-        whole, *sizes = (part.size for part in parts if part is not None)
-        return parts[0] if whole < (1 - 1e-9) * sum(sizes) else None
+        size, *sizes = (part.size for part in parts if part is not None)
+        return parts[0] if size < (1 - 1e-9) * sum(sizes) else None
 
     def _terms(self, node: Symbol) -> Signomial:
-        """A sum by its operands, each an atom; operands of unknown sign are expanded."""
-        first, second = (self.opened(arg) for arg in node.args)
+        """A sum of its operands as monomials; operands of unknown sign are expanded."""
+        first, second = (self.signomial(arg) for arg in node.args)
         return first.plus(second, -1.0 if node.op == "sub" else 1.0)
 
-    def opened(self, value: Any) -> Signomial:
+    def signomial(self, value: Any) -> Signomial:
         """A value of any sign as a sum of as few monomials as possible.
 
         Raises
@@ -263,13 +266,13 @@ class Builder:
             if value.op in ("add", "sub"):
                 return self._terms(value)
             if value.op == "neg":
-                return Signomial({}).plus(self.opened(value.args[0]), -1.0)
+                return Signomial({}).plus(self.signomial(value.args[0]), -1.0)
             if value.op == "mul":
-                return self.opened(value.args[0]).times(self.opened(value.args[1]))
+                return self.signomial(value.args[0]).times(self.signomial(value.args[1]))
             if value.op == "div":
                 sign, form = self.form(value.args[1])
                 inverse = Signomial.monomial(sign, Form(0.0) - form)
-                return self.opened(value.args[0]).times(inverse)
+                return self.signomial(value.args[0]).times(inverse)
             raise
 
     def at_least(self, value: Any, bound: Any) -> None:
@@ -280,33 +283,34 @@ class Builder:
         Unknown
             one of their models has no relaxation
         """
-        plus, minus = self.opened(value).plus(self.opened(bound), -1.0).sides()
+        plus, minus = self.signomial(value).plus(self.signomial(bound), -1.0).sides()
         if minus and not plus:
             raise Unknown("it is below its limit")
         if minus:
-            most = math.inf
-            whole, rest = (self.found.total(side, 0.0, most) for side in (plus, minus))
-            self.found.rows.append(ConstraintRow(rest, whole))
+            plus_total, minus_total = (
+                self.relaxation.total(side, 0.0, math.inf) for side in (plus, minus)
+            )
+            self.relaxation.rows.append(ConstraintRow(minus_total, plus_total))
 
     def _difference(
         self, plus: Sequence[Form], minus: Sequence[Form], low: float, high: float
     ) -> Form:
-        """Plus - minus > 0."""
-        whole = self.found.total(plus, 0.0, math.inf)
-        rest = self.found.total(minus, 0.0, math.inf)
+        """Logarithm of the difference plus - minus > 0."""
+        minuend = self.relaxation.total(plus, 0.0, math.inf)
+        subtrahend = self.relaxation.total(minus, 0.0, math.inf)
 
-        def apart(y: Sequence[float]) -> float:
-            ratio = whole.at(y) - rest.at(y)
-            return rest.at(y) + math.log(math.expm1(ratio)) if ratio > 0 else -math.inf
+        def logarithm(y: Sequence[float]) -> float:
+            ratio = minuend.at(y) - subtrahend.at(y)
+            return subtrahend.at(y) + math.log(math.expm1(ratio)) if ratio > 0 else -math.inf
 
-        out = self.found.atom(low, high, apart)
-        self.found.split(whole, out, rest)
+        out = self.relaxation.atom(low, high, logarithm)
+        self.relaxation.split(minuend, out, subtrahend)
         return out
 
-    def _chosen(self, node: Symbol) -> tuple[float, Form]:
-        taken = branch(node)
-        if taken is not None:
-            return self.form(taken)
+    def _of_choice(self, node: Symbol) -> tuple[float, Form]:
+        choice = branch(node)
+        if choice is not None:
+            return self.form(choice)
         kind = extreme(node)
         if kind is None:
             raise Unknown("it depends on a condition that is not decided")
@@ -315,11 +319,13 @@ class Builder:
         if s != t:
             raise Unknown("the sign of a choice is not known")
         ends = (low, high) if s > 0 else (-high, -low)
-        larger = (kind == "max") == (s > 0)
-        pick = max if larger else min
-        out = self.found.atom(*ends, lambda y: pick(a.at(y), b.at(y)))
-        for one in (a, b):
-            self.found.rows.append(ConstraintRow(one, out) if larger else ConstraintRow(out, one))
+        is_larger = (kind == "max") == (s > 0)
+        pick = max if is_larger else min
+        out = self.relaxation.atom(*ends, lambda y: pick(a.at(y), b.at(y)))
+        for option in (a, b):
+            self.relaxation.rows.append(
+                ConstraintRow(option, out) if is_larger else ConstraintRow(out, option)
+            )
         return s, out
 
     def _of_function(self, node: Symbol) -> tuple[float, Form]:
@@ -339,11 +345,11 @@ class Builder:
     def _logarithm(
         self, graph: object, argument: Any, low: float, high: float
     ) -> tuple[float, Form]:
-        """The form of ln x > 0: affine in the atoms; its own logarithm is a curve of it."""
+        """The form of |ln x|: ln x is affine in the atoms, and its logarithm is a curve of it."""
         parts = self.expanded(argument)
-        if parts is not None:  # a ratio such as 1.2 + t/r exceeds one for all t and r
+        if parts is not None:  # the terms of 1.2 + t/r show that it exceeds 1
             plus, minus = parts.sides()
-            least = self._least(plus, minus)
+            least = self._lower_bound(plus, minus)
             low = max(low, math.log(least)) if least > 0 else low
         _, form = self.form(argument)
         if low <= 0 <= high:
@@ -354,47 +360,47 @@ class Builder:
         return sign, self._curve("log", inner, math.log(ends[0]), math.log(ends[1]))
 
     def _exponential(self, argument: Any, low: float, high: float) -> Form:
-        """The form of e^x: its logarithm is x, a curve of the logarithm of x."""
+        """The form of e^x: its logarithm x is a curve of the logarithm of x."""
         sign, form = self.form(argument)
         if sign > 0:
             return self._curve("exp", form, math.log(low) if low > 0 else -FAR, math.log(high))
-        out = self.found.atom(low, high, lambda y: -math.exp(form.at(y)))
-        self.found.curves.append(AtomFunction("exp", form, Form(0.0) - out))
+        out = self.relaxation.atom(low, high, lambda y: -math.exp(form.at(y)))
+        self.relaxation.curves.append(AtomFunction("exp", form, Form(0.0) - out))
         return out
 
     def _curve(self, kind: Kind, argument: Form, low: float, high: float) -> Form:
-        """A new atom as a function of a monomial's logarithm; ends are logarithms."""
-        mixed = Mixed([kind])
-        out = self.found.atom(
+        """A new atom as a function of a monomial's logarithm, with logarithmic bounds."""
+        functions = CurveFunctions([kind])
+        out = self.relaxation.atom(
             math.exp(low),
             math.exp(high),
-            lambda y: float(mixed.value(np.array([argument.at(y)]))[0]),
+            lambda y: float(functions.value(np.array([argument.at(y)]))[0]),
         )
-        self.found.curves.append(AtomFunction(kind, argument, out))
+        self.relaxation.curves.append(AtomFunction(kind, argument, out))
         return out
 
 
 def _power(value: Any, lead: Symbol) -> bool:
-    """Whether a value is a number times a power of another."""
+    """Whether a value is a number times a power of `lead`."""
     if value is lead or not isinstance(value, Symbol):
         return True
     return value.op in _MONOMIAL and all(_power(arg, lead) for arg in value.args)
 
 
 LEAST_DECAY = 1e-3
-"""Least decay of the displacement through part of a layer, so that no power is zero."""
+"""Least exponent of decay of the displacement through part of a layer; avoids the exponent 0."""
 
 
 PARTS = 4
-"""Parts of a layer of known stiffness in the bound on its growth; any number is valid."""
+"""Parts per layer of known stiffness in the bound on its growth; the bound holds for any."""
 
 
 CONTRACTION = 0.2
-"""Contraction of a wall over its axial strain in the bound on its stiffness; any value is valid."""
+"""Contraction per axial strain in the bound on a wall's stiffness; the bound holds for any."""
 
 
 class EnvelopeProblem(Protocol):
-    """Collects the unknowns of envelopes and their known relations."""
+    """Collects the unknowns of envelopes and the relations between them."""
 
     facts: list[tuple[Any, Any]]
 
@@ -403,59 +409,61 @@ class EnvelopeProblem(Protocol):
 
 
 class Envelopes:
-    """Envelopes of one load case, tight at an evaluated design of one column."""
+    """Envelopes of one load case, tight at the `reference` design."""
 
     def __init__(
         self,
         problem: EnvelopeProblem,
         subject: PreparedDesign,
-        there: ModelRun,
+        reference: ModelRun,
         decays: Sequence[Sequence[float]],
         case: int,
     ) -> None:
-        self.problem, self.subject, self.there = problem, subject, there
+        self.problem, self.subject, self.reference = problem, subject, reference
         self.decays, self.case = decays, case
         self.bearable: Array | None = None
-        """Upper bound on the pressure of any laminated wall before first damage; None if
-        unknown."""
+        """Upper bound on the pressure of a laminated wall before first damage; None if unknown."""
 
     def implicit(self) -> Implicit:
-        """The models for the evaluation."""
+        """The models that the evaluation uses instead of its own."""
         return Implicit(
             wall=self.laminate if layered(self.subject) else compute,
             critical_load=self.column(self._mode()),
         )
 
     def number(self, value: Array) -> float:
-        """The value of an evaluated design in this load case."""
+        """Value of an evaluated design in this load case."""
         rows = np.atleast_2d(np.asarray(value, dtype=float))
         return float(rows[min(self.case, len(rows) - 1), 0])
 
     def unknown(self, name: str, exact: Callable[[ModelRun], Array]) -> Symbol:
         """Add an unknown of this load case."""
-        return self.problem.unknown(f"{name}_{self.case}", lambda done: self.number(exact(done)))
+        return self.problem.unknown(f"{name}_{self.case}", lambda run: self.number(exact(run)))
 
     def _mode(self) -> TrialMode | None:
         """The buckling shape of the evaluated design between its pins."""
         if self.subject.design.cylinder.mount != "cap_clevis":
             return None
-        lengths = rod_strength.lengths(self.there.geometry, self.there.state)
+        lengths = rod_strength.lengths(self.reference.geometry, self.reference.state)
         load = stepped.stepped_column_load(
-            bending_stiffness_1=self.number(self.there.wall.bending_stiffness),
+            bending_stiffness_1=self.number(self.reference.wall.bending_stiffness),
             length_1=self.number(lengths[0]),
-            bending_stiffness_2=self.number(self.there.rod.bending_stiffness),
+            bending_stiffness_2=self.number(self.reference.rod.bending_stiffness),
             length_2=self.number(lengths[1]),
         )
         return buckled_mode(
             critical_load=float(load),
-            bending_stiffness_1=self.number(self.there.wall.bending_stiffness),
+            bending_stiffness_1=self.number(self.reference.wall.bending_stiffness),
             length_1=self.number(lengths[0]),
-            bending_stiffness_2=self.number(self.there.rod.bending_stiffness),
+            bending_stiffness_2=self.number(self.reference.rod.bending_stiffness),
             length_2=self.number(lengths[1]),
         )
 
     def column(self, mode: TrialMode | None) -> Callable[..., Array]:
-        """Critical load: an unknown, at most that of one shape with the stiffer segment's shear."""
+        """Model of the critical load: an unknown, bounded above by the load of a trial shape.
+
+        The bound uses the shear stiffness of the stiffer segment.
+        """
 
         def critical(
             design: Design, wall: Wall, rod: RodSection, lengths: tuple[Array, Array]
@@ -470,9 +478,9 @@ class Envelopes:
                 length_2=lengths[1],
             )
             stiffer = maximum(wall.shear_stiffness, rod.shear_stiffness)
-            symbol = self.unknown("critical_load", lambda done: done.beam.critical)
-            most = column.engesser_load(critical_load=load, shear_stiffness=stiffer)
-            self.problem.facts.append((most, symbol))
+            symbol = self.unknown("critical_load", lambda run: run.beam.critical)
+            upper_bound = column.engesser_load(critical_load=load, shear_stiffness=stiffer)
+            self.problem.facts.append((upper_bound, symbol))
             return symbol
 
         return critical
@@ -480,10 +488,10 @@ class Envelopes:
     def laminate(
         self, v: Values, design: Design, stock: MaterialValues, g: Geometry, state: LoadState
     ) -> Wall:
-        """A laminated wall: growth and axial stiffness unknown between their bounds.
+        """A laminated wall with growth and axial stiffness as unknowns between bounds.
 
-        Its swelling is that of a held wall: growth without axial strain, stretch without radial
-        motion. Its strength is only `bearable`.
+        Its swelling is uncoupled: growth without axial strain, stretch without radial motion. Its
+        strength enters only through `bearable`.
 
         Raises
         ------
@@ -498,27 +506,29 @@ class Envelopes:
         walls = [solid_rotated(stiffness=layer.solid, angle=layer.angle) for layer in layers]
         thicknesses = [layer.thickness for layer in layers]
         self.bearable = _bearable(v, design, stock, g)
-        growth, held, stiffness = self._elastic(walls, thicknesses, g.inner_radius)
-        supply = self.unknown("grown", lambda done: done.wall.growth)
-        own = supply
+        growth, held_growth, stiffness = self._elastic(walls, thicknesses, g.inner_radius)
+        supply_growth = self.unknown("grown", lambda run: run.wall.growth)
+        case_growth = supply_growth
         if not np.array_equal(np.ravel(state.driven_pressure), np.ravel(v["supply.pressure"])):
-            own = self.unknown("grown_own", lambda done: done.wall.case_growth)
+            case_growth = self.unknown("grown_own", lambda run: run.wall.case_growth)
         self.problem.facts += [
-            (supply, v["supply.pressure"] * growth),
-            (own, state.driven_pressure * growth),
+            (supply_growth, v["supply.pressure"] * growth),
+            (case_growth, state.driven_pressure * growth),
         ]
         bending, shear = rod_models.layered_section(
             walls=walls, thicknesses=thicknesses, inner_diameter=2 * g.inner_radius
         )
-        along = tube_bounds.axial_stiffness(
+        axial_stiffness = tube_bounds.axial_stiffness(
             moduli=[one[0] for one in walls], thicknesses=thicknesses, inner_radius=g.inner_radius
         )
-        rigid = Swelling(growth=held, shortening=0.0, stretch=1 / along, growth_by_force=0.0)
+        rigid = Swelling(
+            growth=held_growth, shortening=0.0, stretch=1 / axial_stiffness, growth_by_force=0.0
+        )
         return Wall(
             swelling=rigid,
             path=self._path(v, design, stock, g, state, rigid),
-            growth=supply,
-            case_growth=own,
+            growth=supply_growth,
+            case_growth=case_growth,
             bending_stiffness=bending,
             shear_stiffness=shear,
             thin_ratio=(g.outer_radius - g.inner_radius) / g.inner_radius,
@@ -531,50 +541,50 @@ class Envelopes:
     def _elastic(
         self, walls: Sequence[Sequence[Array]], thicknesses: Sequence[Array], radius: Array
     ) -> tuple[Symbol, Symbol, Symbol]:
-        """Growth per pressure of a laminated wall, free and held axially; axial stiffness."""
-        growth = self.problem.unknown("growth", lambda done: self.number(done.wall.swelling.growth))
-        held = self.problem.unknown(
-            "held_growth", lambda done: self.number(_held_growth(done.wall.swelling))
+        """Growth per pressure of a laminated wall, axially free and fixed; axial stiffness."""
+        growth = self.problem.unknown("growth", lambda run: self.number(run.wall.swelling.growth))
+        held_growth = self.problem.unknown(
+            "held_growth", lambda run: self.number(_held_growth(run.wall.swelling))
         )
         stiffness = self.problem.unknown(
-            "axial_stiffness", lambda done: self.number(1 / done.wall.swelling.stretch)
+            "axial_stiffness", lambda run: self.number(1 / run.wall.swelling.stretch)
         )
         size = {"thicknesses": thicknesses, "inner_radius": radius}
-        least = tube_bounds.least_growth(
-            hoop=[one[3] for one in walls],
-            cross=[one[4] for one in walls],
-            radial=[one[5] for one in walls],
+        least_growth = tube_bounds.least_growth(
+            hoop=[wall[3] for wall in walls],
+            cross=[wall[4] for wall in walls],
+            radial=[wall[5] for wall in walls],
             decays=self.decays,
             **size,
         )
-        free = [rod_models.free_modulus(wall=one) for one in walls]
-        alike = [_contracting(one, CONTRACTION) for one in walls]
+        free_moduli = [rod_models.free_modulus(wall=wall) for wall in walls]
+        contracting_moduli = [_contracting(wall, CONTRACTION) for wall in walls]
         self.problem.facts += [
-            (held, least),
-            (growth, held),
-            (stiffness, tube_bounds.axial_stiffness(moduli=free, **size)),
-            (tube_bounds.axial_stiffness(moduli=alike, **size), stiffness),
+            (held_growth, least_growth),
+            (growth, held_growth),
+            (stiffness, tube_bounds.axial_stiffness(moduli=free_moduli, **size)),
+            (tube_bounds.axial_stiffness(moduli=contracting_moduli, **size), stiffness),
         ]
-        return growth, held, stiffness
+        return growth, held_growth, stiffness
 
     def stiffness(self, springs: Springs, share: float) -> Array:
         """Upper bound on the stiffness of both chambers at a share of the stroke."""
         cap = self.subject.design.cylinder.mount.startswith("cap")
         pulling: Chamber = "b" if cap else "a"
-        there = self._gives(self.there.springs, share, pulling)
+        reference = self._compliances(self.reference.springs, share, pulling)
         motion = least_energy_motion(
-            **{name: self.number(value) for name, value in there.items()}, pulling=pulling
+            **{name: self.number(value) for name, value in reference.items()}, pulling=pulling
         )
-        gives = self._gives(springs, share, pulling)
-        return trial_motion_stiffness(motion=motion, **gives, pulling=pulling)
+        compliances = self._compliances(springs, share, pulling)
+        return trial_motion_stiffness(motion=motion, **compliances, pulling=pulling)
 
     @staticmethod
-    def _gives(springs: Springs, share: float, pulling: Chamber) -> dict[str, Array]:
+    def _compliances(springs: Springs, share: float, pulling: Chamber) -> dict[str, Array]:
         """Compliances of both chambers at a share of the stroke."""
         g = springs.geometry
-        kept = [cause for cause in springs.chambers if cause not in ("barrel", "stretch")]
+        causes = [cause for cause in springs.chambers if cause not in ("barrel", "stretch")]
         x = share * g.stroke
-        oil, wall = springs.total(kept).at(x, g.stroke), springs.total(["barrel"]).at(x, g.stroke)
+        oil, wall = springs.total(causes).at(x, g.stroke), springs.total(["barrel"]).at(x, g.stroke)
         pulled = springs.chambers["stretch"]
         return {
             "area_a": g.area_a,
@@ -587,15 +597,15 @@ class Envelopes:
         }
 
     @staticmethod
-    def joint(done: Statics, out: MetricArrays) -> None:
-        """Treat the joint of caps and head where its factor is not convex."""
-        held = done.held
-        if held is None or held.joint.envelope is None:
+    def joint(statics: Statics, out: MetricArrays) -> None:
+        """Replace the retention factor of a joint by its envelope, if it has one."""
+        retention = statics.joint
+        if retention is None or retention.joint.envelope is None:
             return
         burst = out.metrics.get("retention_burst_factor", {})
-        found = held.joint.envelope(held.loaded, burst)
-        if found:
-            out.metrics["retention_factor"] = dict(found)
+        factors = retention.joint.envelope(retention.loaded, burst)
+        if factors:
+            out.metrics["retention_factor"] = dict(factors)
 
     def _path(
         self,
@@ -606,12 +616,12 @@ class Envelopes:
         state: LoadState,
         swelling: Swelling,
     ) -> LoadPath:
-        """Axial force in a laminated wall; between tie rods its share is unknown."""
+        """Axial force in a laminated wall; with tie rods, the share of the wall is an unknown."""
         if not clamped(design):
             return wall.load_path(v, design, stock, g, state, swelling)
         name = wall.STOP if design.cylinder.end_stop == "internal" else wall.LARGEST
         share = self.problem.unknown(
-            "barrel_share", lambda done: self.number(done.wall.path.per_pressure[name])
+            "barrel_share", lambda run: self.number(run.wall.path.per_pressure[name])
         )
         supply = v["supply.pressure"]
         proof = v["supply.proof_ratio"] * supply
@@ -619,8 +629,8 @@ class Envelopes:
         largest = supply * (wall.largest_area(design, g) - share) + preload
         rods = Clamp(preload, largest, preload / (proof * share))
         barrel = 1 / (swelling.stretch * g.barrel_length)
-        whole = barrel + wall.clamp_stiffness(v, design, stock, g)
-        return wall.LoadPath({name: share}, 0.0, 0.0, rods, barrel / whole)
+        total = barrel + wall.clamp_stiffness(v, design, stock, g)
+        return wall.LoadPath({name: share}, 0.0, 0.0, rods, barrel / total)
 
 
 def refuse(design: Design) -> None:
@@ -629,16 +639,16 @@ def refuse(design: Design) -> None:
     Raises
     ------
     Unknown
-        names the model
+        a model has no envelope
     """
     elements = [*design.seals.piston.elements().values(), *design.seals.rod.elements().values()]
-    for there, what in (
+    for present, model in (
         (bool(design.rod.layup), "a rod of layers"),
         (design.linkage is not None, "a linkage"),
         (any(element.friction_law.film for element in elements), "a seal with an oil film"),
     ):
-        if there:
-            raise Unknown(f"{what} has no envelope yet")
+        if present:
+            raise Unknown(f"{model} has no envelope yet")
 
 
 def layered(subject: PreparedDesign) -> bool:
@@ -647,49 +657,49 @@ def layered(subject: PreparedDesign) -> bool:
 
 
 def decays(
-    subject: PreparedDesign, v: Values, there: ModelRun, free: Container[str]
+    subject: PreparedDesign, v: Values, run: ModelRun, variables: Container[str]
 ) -> list[list[float]]:
-    """Decay of the displacement through the parts of each layer of an evaluated design.
+    """Exponents of decay of the displacement through the parts of each layer at a design.
 
-    A layer whose angle is one of the PATHs `free` is one part.
+    A layer whose angle is among the PATHs `variables` is one part.
     """
     if not layered(subject):
         return []
     stock = MaterialValues(v, subject.materials, subject.factors, subject.constants)
     plain = plies.layers(v, stock, subject.design.barrel.layup, "barrel.layup", (), [])
-    counts = [1 if f"barrel.layup[{k}].angle" in free else PARTS for k in range(len(plain))]
+    counts = [1 if f"barrel.layup[{k}].angle" in variables else PARTS for k in range(len(plain))]
     parts = [
         replace(layer.as_tube(), thickness=layer.thickness / count)
         for layer, count in zip(plain, counts, strict=True)
         for _ in range(count)
     ]
-    tube = layered_tube(layers=parts, inner_radius=there.geometry.inner_radius)
+    tube = layered_tube(layers=parts, inner_radius=run.geometry.inner_radius)
     state = tube_state(tube=tube, inner_pressure=1.0)
     radius = np.asarray(state.radius).reshape(2, -1)
-    moved = np.asarray(state.hoop_strain).reshape(2, -1) * radius
-    falls = -np.log(moved[1] / moved[0]) / np.log(radius[1] / radius[0])
-    falls = np.where(np.abs(falls) > LEAST_DECAY, falls, LEAST_DECAY)
+    displacement = np.asarray(state.hoop_strain).reshape(2, -1) * radius
+    rates = -np.log(displacement[1] / displacement[0]) / np.log(radius[1] / radius[0])
+    rates = np.where(np.abs(rates) > LEAST_DECAY, rates, LEAST_DECAY)
     ends = np.cumsum(counts)[:-1]
-    return [part.tolist() for part in np.split(falls, ends)]
+    return [part.tolist() for part in np.split(rates, ends)]
 
 
 def _held_growth(swelling: Swelling) -> Array:
-    """Bore growth per pressure of an axially held wall."""
+    """Bore growth per pressure of an axially fixed wall."""
     pulled = swelling.growth_by_force / swelling.stretch
     return swelling.growth - pulled * swelling.shortening
 
 
 def _contracting(wall: Sequence[Array], contraction: float) -> Array:
-    """Axial modulus of a layer that contracts by a given share of its strain."""
+    """Axial modulus of a layer that contracts by a given share of its axial strain."""
     zz, zt, zr, tt, tr, rr = wall[:6]
     return zz - 2 * contraction * (zt + zr) + contraction**2 * (tt + 2 * tr + rr)
 
 
 def _bearable(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> Array | None:
-    """Upper bound on the pressure of any laminated wall before first damage.
+    """Upper bound on the pressure of a laminated wall before first damage.
 
-    None if not proven: another criterion, autofrettage, strengths not stated, or a ply stiffer
-    through the wall than around it.
+    None without a proof: for another criterion, with autofrettage, without strengths, or for a ply
+    that is stiffer through the wall than around it.
     """
     if design.barrel.criterion != "max_stress" or design.barrel.autofrettage_pressure is not None:
         return None
@@ -706,25 +716,25 @@ def _bearable(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> 
 
 
 def _hoop(layer: plies.Layer) -> Array:
-    """Largest hoop stress of a ply in its best climate, at least that along its fibres.
+    """Largest hoop strength of a ply over its climates, at least the strength along its fibres.
 
-    Axial strain and temperature alone stress a ply in the hoop direction far less, by the
-    equilibrium of the wall (`tube_bounds.greatest_pressure`).
+    Axial strain and temperature alone cause far less hoop stress, by the equilibrium of the wall
+    (`tube_bounds.greatest_pressure`).
     """
     strengths = layer.strengths
-    along = _largest([strength.tension_1 for strength in strengths])
+    fibre_tension = _largest([strength.tension_1 for strength in strengths])
     around = tube_bounds.ply_hoop_strength(
-        tension_1=along,
+        tension_1=fibre_tension,
         tension_2=_largest([strength.tension_2 for strength in strengths]),
         shear_12=_largest([strength.shear_12 for strength in strengths]),
         angle=layer.angle,
     )
-    return maximum(around, along)
+    return maximum(around, fibre_tension)
 
 
 def _largest(values: Sequence[Array]) -> float:
-    """The largest of some numbers; a variable one counts with its upper bound."""
-    return max(bounds_of(one)[1] for value in values for one in np.ravel(value))
+    """The largest value; a variable counts with its upper bound."""
+    return max(bounds_of(number)[1] for value in values for number in np.ravel(value))
 
 
 def _wraps(layer: plies.Layer) -> bool:

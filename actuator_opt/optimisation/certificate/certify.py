@@ -1,10 +1,9 @@
-"""Distance of a design from the best possible: a lower bound on the objective, and the gap.
+"""Proof of quality: a lower bound on the objective of all designs, and the gap of a design to it.
 
-The problem as expressions of its variables, from the models that evaluate a design.
-
-One load case is traced at a time. A model without a closed expression becomes an unknown with an
-envelope around its exact value, so that limits on either side stay valid. Limits that cannot be
-traced are dropped and listed by name.
+The models that evaluate a design are traced as expressions of its variables, one load case at a
+time. A model without a closed expression becomes an unknown with an envelope around its exact
+value, so that limits on either side stay valid. Limits that cannot be traced are dropped and listed
+by name.
 """
 
 from __future__ import annotations
@@ -27,13 +26,13 @@ from ...evaluation.limits import MetricArrays, MetricLimit
 from ...evaluation.values import Values
 from ..actuator import MET, ActuatorProblem
 from ..problem import Vector
-from .bounding import Bound, Bounding, Seen, ranges, straighten
+from .bounding import Bound, Bounding, KnownExtents, add_plain_sums, ranges
 from .builder import Builder, Envelopes, decays, layered, refuse
-from .intervals import ROOM, Box, Empty, Gone, Layout, narrow, tighten
+from .intervals import ROOM, Box, Empty, Layout, narrow, tighten
 from .relaxation import ConstraintRow, Form, Relaxation, Unknown
 
 SOFTER = 1e-5
-"""Relative tolerance of the stiffness: the closed-form softest position is exact to some 1e-7."""
+"""Relative tolerance of the stiffness; the closed-form softest position is exact to about 1e-7."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,9 +54,9 @@ class Traced:
 
     graph: Graph
     variables: dict[str, Symbol]
-    """Variables of the design, by PATH."""
+    """Variables of the design by PATH."""
     unknowns: dict[str, tuple[Symbol, Callable[[ModelRun], float]]] = field(default_factory=dict)
-    """Further unknowns of envelopes by name, with their values in an evaluated design."""
+    """Unknowns of the envelopes by name, with functions for their values in an evaluated design."""
     objectives: list[Any] = field(default_factory=list)
     """The objective is at least each of these values."""
     claims: list[TracedLimit] = field(default_factory=list)
@@ -103,51 +102,53 @@ def trace(actuator: ActuatorProblem, x: Vector) -> Traced:
         },
     )
     point = {path: np.array([value]) for path, value in zip(actuator.paths, x, strict=True)}
-    there = compute(subject, subject.values(point))
-    falls = decays(subject, subject.values(point), there, actuator.paths)
-    positions = _positions(there)
+    reference = compute(subject, subject.values(point))
+    rates = decays(subject, subject.values(point), reference, actuator.paths)
+    positions = _positions(reference)
     limits = dict.fromkeys(row.limit_of for row in actuator.rows)
     for i, case in enumerate(subject.design.load_cases):
         design = subject.design.model_copy(update={"load_cases": [case]})
-        one = replace(subject, design=design)
-        values = Values(subject.numbers, one.cases, traced.variables)
-        envelopes = Envelopes(traced, subject, there, falls, i)
+        case_subject = replace(subject, design=design)
+        values = Values(subject.numbers, case_subject.cases, traced.variables)
+        envelopes = Envelopes(traced, subject, reference, rates, i)
         out = MetricArrays()
         try:
             with np.errstate(all="ignore"):
-                done = statics(one, values, out, envelopes.implicit())
+                case_statics = statics(case_subject, values, out, envelopes.implicit())
         except (TypeError, AttributeError):  # symbols raise this for operations they do not support
             raise Unknown("one of its models is not a closed expression of the variables") from None
-        traced.facts += [(part, 0.0) for part in done.mass_parts.values()]
-        traced.facts += _along_the_stroke(envelopes, done, out, positions)
-        envelopes.joint(done, out)
+        traced.facts += [(part, 0.0) for part in case_statics.mass_parts.values()]
+        traced.facts += _along_the_stroke(envelopes, case_statics, out, positions)
+        envelopes.joint(case_statics, out)
         if envelopes.bearable is not None:
             proof = values["supply.proof_ratio"] * values["supply.pressure"]
-            least = traced.unknown("proof_factor", _least_proof)
-            traced.facts.append((envelopes.bearable / proof, least))
-            out.put("proof_factor", least)
-        _collect(actuator, traced, list(limits), out, values, first=i == 0)
+            proof_factor = traced.unknown("proof_factor", _least_proof)
+            traced.facts.append((envelopes.bearable / proof, proof_factor))
+            out.put("proof_factor", proof_factor)
+        _collect(actuator, traced, list(limits), out, values, is_first=i == 0)
     return traced
 
 
-def _least_proof(done: ModelRun) -> float:
+def _least_proof(run: ModelRun) -> float:
     """The least proof factor of all places."""
-    return min(float(np.min(value)) for value in done.computed.metrics["proof_factor"].values())
+    return min(float(np.min(value)) for value in run.computed.metrics["proof_factor"].values())
 
 
 def _along_the_stroke(
-    envelopes: Envelopes, done: Statics, out: MetricArrays, positions: tuple[float, ...]
+    envelopes: Envelopes, case_statics: Statics, out: MetricArrays, positions: tuple[float, ...]
 ) -> Iterator[tuple[Any, Any]]:
     """Bound the stiffness from above by its values at some positions.
 
     Walls only add to the compliance of the oil, a matrix of the two chambers. Its determinant and
     diagonal are therefore at least those of the oil.
     """
-    springs, stroke = done.springs, done.base.geometry.stroke
+    springs, stroke = case_statics.springs, case_statics.base.geometry.stroke
     if springs.topology != "per_chamber" or springs.seals is not None:
         return
     series = springs.series_compliance()
-    least = envelopes.unknown("stiffness", lambda one: one.computed.metrics["stiffness_min"][""])
+    stiffness = envelopes.unknown(
+        "stiffness", lambda run: run.computed.metrics["stiffness_min"][""]
+    )
     for share in positions:
         x = share * stroke
         if layered(envelopes.subject):
@@ -159,8 +160,8 @@ def _along_the_stroke(
             yield a, oil_a
             yield b, oil_b
             yield a * b - ab * ab, oil_a * oil_b
-        yield (1 + SOFTER) / (1 / chambers + series), least
-    out.put("stiffness_min", least)
+        yield (1 + SOFTER) / (1 / chambers + series), stiffness
+    out.put("stiffness_min", stiffness)
     out.put("stiffness_rod", springs.chain["rod"])
 
 
@@ -171,7 +172,7 @@ def _collect(
     out: MetricArrays,
     values: Values,
     *,
-    first: bool,
+    is_first: bool,
 ) -> None:
     """Collect claims and objectives of one load case."""
     goal = actuator.goal
@@ -183,22 +184,23 @@ def _collect(
         if limit.case is not None and limit.case != case:
             continue
         rows = list(_applying(out, limit.metric, case))
-        limited = limit.value(values)
-        varies = isinstance(limited, Symbol)
-        if varies and not limited.bounds[0] > 0:
+        limit_value = limit.value(values)
+        varies = isinstance(limit_value, Symbol)
+        if varies and not limit_value.bounds[0] > 0:
             traced.dropped[limit.name] = "its limit varies and may be zero"
             continue
-        bound = 1.0 if varies else float(np.squeeze(limited))
+        bound = 1.0 if varies else float(np.squeeze(limit_value))
         for place, value in rows:
             if limit.places is not None and place not in limit.places:
                 continue
             if isinstance(value, Symbol) or varies:
-                where = ", ".join(x for x in (case, place) if x)
-                claimed = value / limited if varies else value
-                traced.claims.append(TracedLimit(limit, f"{limit.name} ({where})", claimed, bound))
+                location = ", ".join(x for x in (case, place) if x)
+                limited = value / limit_value if varies else value
+                label = f"{limit.name} ({location})"
+                traced.claims.append(TracedLimit(limit, label, limited, bound))
             else:
                 traced.dropped.setdefault(limit.name, "no variable affects its traced value")
-        if not rows and (first or limit.case is not None):
+        if not rows and (is_first or limit.case is not None):
             traced.dropped[limit.name] = "its model is not a closed expression"
 
 
@@ -210,30 +212,30 @@ def _applying(out: MetricArrays, metric: str, case: str) -> Iterator[tuple[str, 
             yield place, value.item() if isinstance(value, np.ndarray) else value
 
 
-def _positions(there: ModelRun) -> tuple[float, ...]:
-    """Positions of least stiffness over the load cases, as shares of the stroke."""
-    shares = np.ravel(there.weakest / there.geometry.stroke)
+def _positions(reference: ModelRun) -> tuple[float, ...]:
+    """Softest positions of the load cases, as shares of the stroke."""
+    shares = np.ravel(reference.weakest / reference.geometry.stroke)
     return tuple(sorted({round(float(share), 6) for share in shares if np.isfinite(share)}))
 
 
 GUARD = 1e-6
-"""Relative deduction from the bound, far above rounding in the traced values."""
+"""Relative deduction from the bound: a margin far above the rounding of traced values."""
 CLOSE = 1e-4
-"""Gap at which the search ends."""
+"""Relative gap at which the search ends."""
 MIDDLE = 0.2
-"""Least share of a range in the smaller part of a split."""
+"""Smallest share of a range that a split cuts off."""
 WORTH = 1e-9
 """Least excess times price that justifies a split."""
 FAR_OFF = 0.2
-"""Excess above which further splits of a curve gain little; the first split gains most."""
+"""Cap on the excess of a curve in the choice of a split, since the first split gains most."""
 FLOOR = 0.003
-"""Least price of a curve when choosing a direction; consecutive loose curves show none."""
+"""Minimum price of a curve in the choice of a split; loose curves in series show no price."""
 SQUEEZES = 2
-"""Maximum rounds of cutting the first box."""
-WAYS = 16
-"""Directions cut per round, beside the variables."""
+"""Maximum rounds that cut the first box."""
+DIRECTIONS = 16
+"""Number of directions cut per round, in addition to the variables."""
 GAIN = 0.1
-"""Share of their ranges that a round must cut to justify another."""
+"""Share of the ranges that a round must remove to justify another round."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -246,15 +248,15 @@ class ProvenBound:
 
 
 class BoxSearch:
-    """A search that splits the box with the least bound where its relaxation is loosest.
+    """Branch and bound: splits the box of the lowest bound where its relaxation is loosest.
 
     Parameters
     ----------
     layout, bounding : the relaxation
     best : logarithm of the largest objective a design may have
     variables : atoms whose directions are always cut in the first box
-    until : time of `time.perf_counter` to stop at
-    most : maximum number of boxes to solve
+    deadline : time of `time.perf_counter` at which the search stops
+    max_boxes : maximum number of boxes to solve
     """
 
     def __init__(
@@ -264,32 +266,30 @@ class BoxSearch:
         best: float,
         *,
         variables: Sequence[int] = (),
-        until: float = math.inf,
-        most: float = math.inf,
+        deadline: float = math.inf,
+        max_boxes: float = math.inf,
     ) -> None:
         self.layout, self.bounding, self.best = layout, bounding, best
-        self.until, self.most = until, most
+        self.deadline, self.max_boxes = deadline, max_boxes
         self.goal = best + math.log1p(-CLOSE)
         self.least, self.boxes = math.inf, 0
-        """Least bound of the finished boxes; number of boxes solved."""
-        ways = layout.plain[layout.curves :]
-        self.variables = np.flatnonzero(np.isin(ways, variables))
+        """Lowest bound of the finished boxes; number of boxes solved."""
+        directions = layout.plain[layout.curves :]
+        self.variables = np.flatnonzero(np.isin(directions, variables))
         self._order = itertools.count()
         self._open: list[tuple[float, int, Box, Bound]] = []
 
     def run(self, report: Callable[[float], None] | None = None) -> ProvenBound:
-        """Search until time or boxes run out or the gap closes; returns the bound.
+        """Search until the gap closes or a limit is reached; returns the bound.
 
-        Parameters
-        ----------
-        report : called with every better bound
+        `report` is called with every better bound.
         """
-        with suppress(Gone):
+        with suppress(Empty):
             self._add(self._squeezed(Box.whole(self.layout)), -math.inf)
         while self._open:
             if report is not None:
                 report(min(self._open[0][0], self.least))
-            if self.boxes >= self.most or time.perf_counter() > self.until:
+            if self.boxes >= self.max_boxes or time.perf_counter() > self.deadline:
                 break
             value, _, box, bound = heapq.heappop(self._open)
             self.bounding.refine(self.best - value)
@@ -298,23 +298,23 @@ class BoxSearch:
                 self.least = min(self.least, value)
                 break
             for part in box.split(*choice):
-                with suppress(Gone):
+                with suppress(Empty):
                     self._add(part.tightened(self.layout), value)
         bottom = min(self.least, self._open[0][0] if self._open else math.inf, self.goal)
         return ProvenBound(bottom + math.log1p(-GUARD), self.boxes, bottom >= self.goal)
 
-    def first(self) -> float:
+    def root_bound(self) -> float:
         """The bound of the first box; infinite if it is empty."""
         try:
             box = Box.whole(self.layout).tightened(self.layout)
-        except Gone:
+        except Empty:
             return math.inf
-        self.bounding.lay(box)
+        self.bounding.add_first_tangents(box)
         bound = self.bounding.solve(box)
         return math.inf if bound is None else bound.value
 
     def _add(self, box: Box, parent: float) -> None:
-        """Add a box that may hold a better design."""
+        """Solve a box and store it if it may contain a better design."""
         bound = self.bounding.solve(box)
         self.boxes += 1
         if bound is None:
@@ -327,47 +327,49 @@ class BoxSearch:
         heapq.heappush(self._open, (value, next(self._order), trimmed, bound))
 
     def _squeezed(self, box: Box) -> Box:
-        """The first box, cut to the designs no worse than the best known one.
+        """The first box, cut to the designs no worse than the best known design.
 
-        Repeatedly bounds the directions in which the relaxation is loosest, by optimisation.
+        Each round minimises and maximises the directions in which the relaxation is loosest.
 
         Raises
         ------
-        Gone
+        Empty
             the box is empty
         """
         box = box.tightened(self.layout)
-        self.bounding.lay(box)
+        self.bounding.add_first_tangents(box)
         for _ in range(SQUEEZES):
             bound = self.bounding.solve(box)
             if bound is None:
-                raise Gone
-            loose = np.argsort(-self._gains(box, bound), kind="stable")[:WAYS]
-            some = np.concatenate([loose, np.setdiff1d(self.variables, loose)])
-            size, seen = float((box.high - box.low)[some].sum()), Seen(bound.directions)
-            for number in map(int, some):
-                if time.perf_counter() > self.until:
+                raise Empty
+            loosest = np.argsort(-self._gains(box, bound), kind="stable")[:DIRECTIONS]
+            directions = np.concatenate([loosest, np.setdiff1d(self.variables, loosest)])
+            known = KnownExtents(bound.directions)
+            size = float((box.high - box.low)[directions].sum())
+            for number in map(int, directions):
+                if time.perf_counter() > self.deadline:
                     return box
-                reach = self.bounding.extent(number, self.bounding.enter(box), seen)
-                if reach is None:
-                    raise Gone
-                box = box.cut(number, low=reach[0] - ROOM, high=reach[1] + ROOM)
+                extent = self.bounding.extent(number, self.bounding.enter(box), known)
+                if extent is None:
+                    raise Empty
+                box = box.cut(number, low=extent[0] - ROOM, high=extent[1] + ROOM)
                 box = box.tightened(self.layout)
-            if float((box.high - box.low)[some].sum()) > (1 - GAIN) * size:
+            if float((box.high - box.low)[directions].sum()) > (1 - GAIN) * size:
                 break
         return box
 
     def _gains(self, box: Box, bound: Bound) -> Vector:
-        """Possible gain of a split along every direction."""
+        """Estimated gain of a split along each direction."""
         gains = np.minimum(bound.excess, FAR_OFF) * (bound.price + FLOOR)
-        found = np.bincount(self.layout.direction, gains, self.layout.directions).astype(float)
-        width = box.high - box.low
-        first, second = self.layout.factors
-        np.add.at(found, np.where(width[first] > width[second], first, second), bound.torn)
-        return found
+        layout, width = self.layout, box.high - box.low
+        by_direction = np.bincount(layout.direction, gains, layout.directions).astype(float)
+        first, second = layout.factors
+        wider = np.where(width[first] > width[second], first, second)
+        np.add.at(by_direction, wider, bound.product_errors)
+        return by_direction
 
     def _choice(self, box: Box, bound: Bound) -> tuple[int, float] | None:
-        """Direction and place of the split with the largest possible gain, or None."""
+        """Direction and position of the split with the largest estimated gain, or None."""
         gains = self._gains(box, bound)
         number = int(np.argmax(gains))
         if gains[number] <= WORTH:
@@ -380,19 +382,19 @@ class BoxSearch:
 Report: TypeAlias = Callable[[float], None] | None
 
 BOXES = 200
-"""Boxes to solve: about three seconds, and the same bound on every machine."""
+"""Default number of boxes: about three seconds, and the same bound on every machine."""
 
 AIM = 0.049
-"""Gap at which a search with a wide first gap stops; it only looks for lighter designs."""
+"""Target gap of a coarse search, which only excludes much lighter designs."""
 
 WIDE = 0.1
-"""First gap above which a search stops there."""
+"""Gap of the first box above which the search is coarse."""
 
 EASY = 20
-"""Boxes such a search solves to show that the gap can be closed further."""
+"""A coarse search that ends within this number of boxes is followed by a full search."""
 
 SECONDS = 30.0
-"""Time limit of the search, for very slow machines."""
+"""Time limit of the search; reached only on very slow machines."""
 
 
 @dataclass(frozen=True)
@@ -405,28 +407,28 @@ class Relaxed:
     covered: tuple[TracedLimit, ...]
     dropped: dict[str, str]
     unknowns: dict[str, Callable[[ModelRun], float]]
-    """Values of the further unknowns in an evaluated design, by name."""
+    """Functions for the values of the unknowns in an evaluated design, by name."""
 
     def atoms(self, actuator: ActuatorProblem, x: Vector) -> Vector:
-        """The value of every atom at a design."""
+        """Logarithm of every atom at a design."""
         point = {path: np.array([value]) for path, value in zip(actuator.paths, x, strict=True)}
         with np.errstate(all="ignore"):
-            there = compute(actuator.subject, actuator.subject.values(point))
-        known = {variable(k): float(value) for k, value in enumerate(x)}
-        known |= {name: exact(there) for name, exact in self.unknowns.items()}
-        own = {form.powers[0][0]: name for name, form in self.variables.items()}
-        found: list[float] = []
+            run = compute(actuator.subject, actuator.subject.values(point))
+        values = {variable(k): float(value) for k, value in enumerate(x)}
+        values |= {name: exact(run) for name, exact in self.unknowns.items()}
+        names = {form.powers[0][0]: name for name, form in self.variables.items()}
+        logarithms: list[float] = []
         for i, maker in enumerate(self.relaxation.makers):
-            found.append(_log(known[own[i]]) if i in own else maker(found))
-        return np.array(found)
+            logarithms.append(_log(values[names[i]]) if i in names else maker(logarithms))
+        return np.array(logarithms)
 
 
 def relax(traced: Traced, best: float) -> Relaxed:
-    """The relaxation of all designs that meet the limits and are no worse than `best`.
+    """Relax the problem for all designs that meet the limits and are no worse than `best`.
 
     Raises
     ------
-    Empty, Gone
+    Empty
         no such design exists
     """
     for claim in traced.claims:
@@ -442,36 +444,36 @@ def relax(traced: Traced, best: float) -> Relaxed:
     builder = Builder()
     covered, dropped = [], dict(traced.dropped)
     for claim in traced.claims:
-        least, most = _ends(claim)
+        low, high = _ends(claim)
         try:
-            if math.isfinite(least):
-                builder.at_least(claim.value, least)
+            if math.isfinite(low):
+                builder.at_least(claim.value, low)
             else:
-                builder.at_least(-claim.value, -most)
+                builder.at_least(-claim.value, -high)
         except Unknown as reason:
             dropped[claim.label] = str(reason)
             continue
         covered.append(claim)
-    for more, less in traced.facts:
+    for larger, smaller in traced.facts:
         with suppress(Unknown):
-            builder.at_least(more, less)
+            builder.at_least(larger, smaller)
     objective = _largest(builder, traced.objectives)
-    box = Box.whole(Layout(builder.found)).tightened(Layout(builder.found))
-    builder.found.lower, builder.found.upper = box.lower.tolist(), box.upper.tolist()
-    straighten(builder.found)
-    exact = {name: one for name, (_, one) in traced.unknowns.items()}
-    return Relaxed(builder.found, objective, builder.variables, tuple(covered), dropped, exact)
+    box = Box.whole(Layout(builder.relaxation)).tightened(Layout(builder.relaxation))
+    builder.relaxation.lower, builder.relaxation.upper = box.lower.tolist(), box.upper.tolist()
+    add_plain_sums(builder.relaxation)
+    exact = {name: function for name, (_, function) in traced.unknowns.items()}
+    return Relaxed(builder.relaxation, objective, builder.variables, tuple(covered), dropped, exact)
 
 
 def _largest(builder: Builder, values: Sequence[Any]) -> Form:
-    """Logarithm of the largest of some values, bounded from below by each of them."""
+    """Logarithm of the largest value: one form, or an atom at least as large as each value."""
     forms = list(dict.fromkeys(builder.form(value)[1] for value in values))
     if len(forms) == 1:
         return forms[0]
     low, high = (max(ends) for ends in zip(*map(bounds_of, values), strict=True))
-    found = builder.found.atom(low, high, lambda y: max(form.at(y) for form in forms))
-    builder.found.rows += [ConstraintRow(form, found) for form in forms]
-    return found
+    largest = builder.relaxation.atom(low, high, lambda y: max(form.at(y) for form in forms))
+    builder.relaxation.rows += [ConstraintRow(form, largest) for form in forms]
+    return largest
 
 
 def _ends(claim: TracedLimit) -> tuple[float, float]:
@@ -487,16 +489,16 @@ def certify(
     objective: float,
     *,
     seconds: float = SECONDS,
-    most: float = BOXES,
+    max_boxes: float = BOXES,
     report: Report = None,
 ) -> tuple[Relaxed, ProvenBound]:
-    """Lower bound on the objective of every design that meets the limits.
+    """Compute a lower bound on the objective of every design that meets the limits.
 
     Parameters
     ----------
     actuator : the problem
     x, objective : the best known design
-    seconds, most : time and boxes to spend
+    seconds, max_boxes : limits of the search
     report : called with the logarithm of every better bound
 
     Raises
@@ -504,39 +506,48 @@ def certify(
     Unknown
         the design misses a limit, or an essential model has no relaxation
     """
-    until = time.perf_counter() + seconds
+    deadline = time.perf_counter() + seconds
     try:
-        relaxed, search = _search(trace(actuator, x), objective, until, most)
-    except (Empty, Gone):
+        relaxed, search = _search(trace(actuator, x), objective, deadline, max_boxes)
+    except Empty:
         raise Unknown("the design misses a limit") from None
     if not _meets(search.layout, relaxed.atoms(actuator, x)):
         raise Unknown("the design misses a limit")
-    if search.first() < math.log(objective) + math.log1p(-WIDE):
-        coarse, bound = _coarse(actuator, x, objective * (1 - AIM), until, most, report)
+    if search.root_bound() < math.log(objective) + math.log1p(-WIDE):
+        coarse, bound = _coarse(actuator, x, objective * (1 - AIM), deadline, max_boxes, report)
         if bound.boxes > EASY:
             return coarse or relaxed, bound
     return relaxed, search.run(report)
 
 
 def _coarse(
-    actuator: ActuatorProblem, x: Vector, aim: float, until: float, most: float, report: Report
+    actuator: ActuatorProblem,
+    x: Vector,
+    aim: float,
+    deadline: float,
+    max_boxes: float,
+    report: Report,
 ) -> tuple[Relaxed | None, ProvenBound]:
-    """Search for designs no heavier than an aim; no relaxation if that is ruled out at once."""
+    """Search for designs no worse than `aim`; no relaxation if the first box is already empty."""
     try:
-        relaxed, search = _search(trace(actuator, x), aim, until, most)
-    except (Empty, Gone):
+        relaxed, search = _search(trace(actuator, x), aim, deadline, max_boxes)
+    except Empty:
         return None, ProvenBound(math.log(aim) + math.log1p(-GUARD), 0, True)
     return relaxed, search.run(report)
 
 
-def _search(traced: Traced, most: float, until: float, boxes: float) -> tuple[Relaxed, BoxSearch]:
-    """A search for designs whose objective is at most `most`."""
-    relaxed = relax(traced, most)
+def _search(
+    traced: Traced, objective: float, deadline: float, max_boxes: float
+) -> tuple[Relaxed, BoxSearch]:
+    """A search for designs whose objective is at most `objective`."""
+    relaxed = relax(traced, objective)
     layout = Layout(relaxed.relaxation)
     bounding = Bounding(layout, relaxed.objective)
     atoms = [form.powers[0][0] for form in relaxed.variables.values()]
-    goal = math.log(most)
-    return relaxed, BoxSearch(layout, bounding, goal, variables=atoms, until=until, most=boxes)
+    goal = math.log(objective)
+    return relaxed, BoxSearch(
+        layout, bounding, goal, variables=atoms, deadline=deadline, max_boxes=max_boxes
+    )
 
 
 def _meets(layout: Layout, y: Vector) -> bool:

@@ -1,9 +1,8 @@
-"""Bounds of every traced value that hold for all designs of a box that meet the limits.
+"""Interval constraint propagation: bounds of traced values over all designs that meet the limits.
 
-A box is a part of the design space: ranges of atoms and of log ratios, and their implications.
-Interval constraint propagation goes forwards from operands to results and backwards from limits to
-variables [Benhamou1999]. A choice between a value and no value (NaN) takes the value, because a
-design without a value meets no requirement.
+The propagation runs forwards from operands to results and backwards from limits to variables
+[Benhamou1999]. A choice between a value and NaN takes the value, because a design without a value
+meets no requirement. A box is a part of the design space: ranges of atoms and of log ratios.
 """
 
 from __future__ import annotations
@@ -22,8 +21,8 @@ from ..problem import Vector
 from .relaxation import (
     FAR,
     ROUNDING,
+    CurveFunctions,
     Form,
-    Mixed,
     Powers,
     Relaxation,
     SampledFunction,
@@ -38,14 +37,14 @@ WORTH = 1e-3
 """Relative gain of a bound below which another pass does not pay."""
 
 LARGEST = 80
-"""Maximum terms of a sum that is expanded."""
+"""Maximum number of terms of an expanded sum."""
 
 SLACK = 1e-9
 """Relative tolerance on every bound for rounding."""
 
 
 class Empty(Exception):
-    """No design meets the limits: the range of some value is empty."""
+    """No design of the box meets the limits: some range is empty."""
 
 
 def tighten(nodes: Sequence[Symbol], facts: Sequence[tuple[Any, Any]] = ()) -> None:
@@ -69,9 +68,9 @@ def tighten(nodes: Sequence[Symbol], facts: Sequence[tuple[Any, Any]] = ()) -> N
                 gained |= narrow(node, _forward(node))
             if node in sums:
                 gained |= narrow(node, _of_terms(sums[node], node.graph.nodes))
-        for more, less in facts:
-            gained |= narrow(more, (bounds_of(less)[0], math.inf))
-            gained |= narrow(less, (-math.inf, bounds_of(more)[1]))
+        for larger, smaller in facts:
+            gained |= narrow(larger, (bounds_of(smaller)[0], math.inf))
+            gained |= narrow(smaller, (-math.inf, bounds_of(larger)[1]))
         for node in reversed(nodes):
             gained |= _backward(node)
         if not gained:
@@ -80,32 +79,32 @@ def tighten(nodes: Sequence[Symbol], facts: Sequence[tuple[Any, Any]] = ()) -> N
 
 def cancelling(nodes: Sequence[Symbol]) -> dict[Symbol, Signomial]:
     """Sums whose terms partly cancel when expanded, which plain bounds miss."""
-    known: dict[int, Signomial | None] = {}
+    signomials: dict[int, Signomial | None] = {}
 
     def expanded(value: Any) -> Signomial | None:
         if isinstance(value, Symbol):
-            return known[value.index]
+            return signomials[value.index]
         return Signomial.number(value) if math.isfinite(value) else None
 
-    found = {}
+    sums = {}
     for node in nodes:
         parts = [expanded(arg) for arg in node.args] if node.op in _ALGEBRA else [None]
-        whole = None if None in parts else _ALGEBRA[node.op](*parts)
-        if whole is not None and len(whole.terms) <= LARGEST:
+        signomial = None if None in parts else _ALGEBRA[node.op](*parts)
+        if signomial is not None and len(signomial.terms) <= LARGEST:
             sizes = sum(part.size for part in parts if part is not None)
-            if node.op in ("add", "sub") and whole.size < (1 - 1e-9) * sizes:
-                found[node] = whole
-            known[node.index] = whole
+            if node.op in ("add", "sub") and signomial.size < (1 - 1e-9) * sizes:
+                sums[node] = signomial
+            signomials[node.index] = signomial
         else:
-            known[node.index] = Signomial({((node.index, 1.0),): 1.0})
-    return found
+            signomials[node.index] = Signomial({((node.index, 1.0),): 1.0})
+    return sums
 
 
 def _quotient(first: Signomial, second: Signomial) -> Signomial | None:
-    known = second.single
-    if known is None:
+    divisor = second.single
+    if divisor is None:
         return None
-    sign, form = known
+    sign, form = divisor
     return first.times(Signomial.monomial(sign, Form(0.0) - form))
 
 
@@ -128,29 +127,29 @@ def _of_terms(parts: Signomial, nodes: Sequence[Symbol]) -> Bounds:
     """Bounds of a sum of products of values."""
     low = high = 0.0
     for powers, factor in parts.terms.items():
-        least = most = 1.0
+        term_low = term_high = 1.0
         for index, power in powers:
             a, b = nodes[index].bounds
             if a < 0 or (power < 0 and a <= 0):
                 return -math.inf, math.inf
             ends = (a**power, b**power) if b < math.inf else (0.0, math.inf)
-            least, most = least * min(ends), most * max(ends)
-        ends = (factor * least, factor * most)
+            term_low, term_high = term_low * min(ends), term_high * max(ends)
+        ends = (factor * term_low, factor * term_high)
         low, high = low + min(ends), high + max(ends)
     if low != low or high != high:
         return -math.inf, math.inf
     return low, high
 
 
-def narrow(value: Any, found: Bounds) -> bool:
-    """Narrow a value's bounds; whether the gain was large.
+def narrow(value: Any, ends: Bounds) -> bool:
+    """Narrow the bounds of a value; returns whether the gain justifies another pass.
 
     Raises
     ------
     Empty
         the range is empty
     """
-    low, high = found
+    low, high = ends
     if not isinstance(value, Symbol):
         return False
     old_low, old_high = value.bounds
@@ -167,7 +166,7 @@ def _much(old: float, new: float) -> bool:
 
 
 def decided(condition: Any) -> bool | None:
-    """Whether a condition is true for all designs, for none, or (None) undecided."""
+    """True if a condition is true for all designs, False if for none, None if undecided."""
     if not isinstance(condition, Symbol):
         return bool(condition)
     args = condition.args
@@ -189,12 +188,12 @@ def decided(condition: Any) -> bool | None:
 def branch(node: Symbol) -> Any:
     """The branch that a choice takes for all designs with a value; None if undecided."""
     condition, yes, no = node.args
-    if _nothing(yes):
+    if _is_nan(yes):
         return no
-    if _nothing(no):
+    if _is_nan(no):
         return yes
-    known = decided(condition)
-    return None if known is None else (yes if known else no)
+    decision = decided(condition)
+    return None if decision is None else (yes if decision else no)
 
 
 def extreme(node: Symbol) -> str | None:
@@ -202,10 +201,10 @@ def extreme(node: Symbol) -> str | None:
     condition, yes, no = node.args
     if getattr(condition, "op", None) not in ("lt", "le"):
         return None
-    less, more = condition.args
-    if same(less, no) and same(more, yes):
+    smaller, larger = condition.args
+    if same(smaller, no) and same(larger, yes):
         return "max"
-    return "min" if same(less, yes) and same(more, no) else None
+    return "min" if same(smaller, yes) and same(larger, no) else None
 
 
 def same(first: Any, second: Any) -> bool:
@@ -215,15 +214,15 @@ def same(first: Any, second: Any) -> bool:
     return isinstance(first, float) and isinstance(second, float) and first == second
 
 
-def _nothing(value: Any) -> bool:
+def _is_nan(value: Any) -> bool:
     return isinstance(value, float) and math.isnan(value)
 
 
 def _forward(node: Symbol) -> Bounds:
     if node.op == "where":
-        taken = branch(node)
-        if taken is not None:
-            return bounds_of(taken)
+        choice = branch(node)
+        if choice is not None:
+            return bounds_of(choice)
     if node.op in ("lt", "le", "and", "or", "not", "variable", "flag"):
         return node.bounds
     if node.op == "sub":
@@ -232,14 +231,14 @@ def _forward(node: Symbol) -> Bounds:
 
 
 def _difference(node: Symbol) -> Bounds:
-    """Bounds of a difference; for squares also as (a - b)(a + b), if a - b is traced."""
+    """Bounds of a difference; a difference of squares is also (a - b)(a + b) if a - b is traced."""
     low, high = bounds("sub", node.args)
     first, second = (_root_of(arg) for arg in node.args)
     if first is not None and second is not None:
-        apart = node.graph.known.get(("sub", ("#", first.index), ("#", second.index)))
-        if apart is not None:
+        difference = node.graph.known.get(("sub", ("#", first.index), ("#", second.index)))
+        if difference is not None:
             total = first.bounds[0] + second.bounds[0], first.bounds[1] + second.bounds[1]
-            ends = [a * b for a in apart.bounds for b in total]
+            ends = [a * b for a in difference.bounds for b in total]
             return max(low, min(ends)), min(high, max(ends))
     return low, high
 
@@ -269,7 +268,7 @@ def _sub(node: Symbol) -> bool:
 
 
 def _rounded(op: str, first: Any, second: Any) -> Bounds:
-    """Bounds of a sum or difference, with a tolerance for the rounding of its operands."""
+    """Bounds of a sum or difference, widened by the rounding of its operands."""
     low, high = bounds(op, (first, second))
     sizes = [abs(end) for end in (*bounds_of(first), *bounds_of(second)) if math.isfinite(end)]
     room = ROUNDING * max(sizes, default=0.0)
@@ -283,18 +282,20 @@ def _mul(node: Symbol) -> bool:
         low = math.sqrt(max(node.bounds[0], 0.0)) if a.bounds[0] >= 0 else -high
         return narrow(a, (low, high))
     gained = False
-    for one, other in ((a, b), (b, a)):
-        if bounds_of(other)[0] > 0:
-            gained |= narrow(one, bounds("div", (node, other)))
+    for factor, divisor in ((a, b), (b, a)):
+        if bounds_of(divisor)[0] > 0:
+            gained |= narrow(factor, bounds("div", (node, divisor)))
     return gained
 
 
 def _div(node: Symbol) -> bool:
     a, b = node.args
     gained = narrow(a, bounds("mul", (node, b)))
-    (low, high), (least, most) = bounds_of(a), node.bounds
-    if low > 0 and least > 0:
-        gained |= narrow(b, (low / most if most < math.inf else 0.0, high / least))
+    (low, high), (quotient_low, quotient_high) = bounds_of(a), node.bounds
+    if low > 0 and quotient_low > 0:
+        gained |= narrow(
+            b, (low / quotient_high if quotient_high < math.inf else 0.0, high / quotient_low)
+        )
     return gained
 
 
@@ -329,9 +330,9 @@ def _neg(node: Symbol) -> bool:
 
 def _where(node: Symbol) -> bool:
     condition, yes, no = node.args
-    taken = branch(node)
-    if taken is not None:
-        return narrow(taken, node.bounds) | _holds(condition, held=taken is yes)
+    choice = branch(node)
+    if choice is not None:
+        return narrow(choice, node.bounds) | _impose(condition, truth=choice is yes)
     low, high = node.bounds
     kind = extreme(node)
     if kind == "max":
@@ -341,20 +342,20 @@ def _where(node: Symbol) -> bool:
     return False
 
 
-def _holds(condition: Any, *, held: bool) -> bool:
-    """Narrow both sides of a comparison that is known to be true or false."""
+def _impose(condition: Any, *, truth: bool) -> bool:
+    """Narrow the operands of a condition that is known to be true or false."""
     if not isinstance(condition, Symbol):
         return False
     if condition.op == "not":
-        return _holds(condition.args[0], held=not held)
+        return _impose(condition.args[0], truth=not truth)
     if condition.op in ("and", "or"):
-        if held != (condition.op == "and"):
+        if truth != (condition.op == "and"):
             return False
-        gains = [_holds(arg, held=held) for arg in condition.args]
+        gains = [_impose(arg, truth=truth) for arg in condition.args]
         return any(gains)
-    less, more = condition.args if held else reversed(condition.args)
-    gained = narrow(less, (-math.inf, bounds_of(more)[1]))
-    return narrow(more, (bounds_of(less)[0], math.inf)) | gained
+    smaller, larger = condition.args if truth else reversed(condition.args)
+    gained = narrow(smaller, (-math.inf, bounds_of(larger)[1]))
+    return narrow(larger, (bounds_of(smaller)[0], math.inf)) | gained
 
 
 _BACKWARDS: dict[str, Callable[[Symbol], bool]] = {
@@ -378,55 +379,51 @@ BOX_ROUNDS = 20
 
 
 GAIN = 0.01
-"""Share of the summed ranges that a pass must cut to justify another."""
+"""Share of the summed ranges that a pass must remove to justify another pass."""
 
 
 ROOM = 1e-9
-"""Tolerance on every range for rounding (of logarithms, so relative)."""
+"""Tolerance for rounding at both ends of a range of logarithms."""
 
 
 CROSSED = 1e-8
-"""Overlap of crossed range ends that proves a box empty."""
+"""Distance by which the ends of a range must cross to prove a box empty."""
 
 
 def _lone(form: Form) -> int:
-    """The atom that a form consists of; -1 for other forms."""
+    """Number of the atom if a form is a single plain atom, else -1."""
     lone = form.constant == 0 and len(form.powers) == 1 and form.powers[0][1] == 1.0
     return form.powers[0][0] if lone else -1
 
 
-class Gone(Exception):
-    """A part of the design space is empty."""
-
-
 class Layout:
-    """A relaxation as arrays; each distinct direction in logarithmic space appears once.
+    """A relaxation as arrays.
 
-    A direction is a log ratio, such as log(t/r), shared by all curves of powers of that ratio. Its
-    largest power is 1, so its range is no longer than those of its atoms together. Forms come in
-    this order: outputs of curves, directions, rows (each >= 0).
+    A direction is a log ratio, such as log(t/r). All curves of powers of one ratio share it. Its
+    largest power is 1, so its range is at most the sum of the ranges of its atoms. The order of
+    the forms: outputs of curves, directions, rows (each >= 0).
     """
 
     def __init__(self, relaxation: Relaxation) -> None:
         self.relaxation = relaxation
         self.curves, self.atoms = len(relaxation.curves), len(relaxation.lower)
-        self.mixed = Mixed([curve.kind for curve in relaxation.curves])
-        known: dict[Powers, int] = {}
+        self.functions = CurveFunctions([curve.kind for curve in relaxation.curves])
+        numbers: dict[Powers, int] = {}
         places = []
         for curve in relaxation.curves:
             powers = curve.argument.powers
             factor = max((p for _, p in powers), key=abs)
             key = tuple((i, round(p / factor, 12)) for i, p in powers)
-            number = known.setdefault(key, len(known))
+            number = numbers.setdefault(key, len(numbers))
             places.append((number, factor, curve.argument.constant))
         self.links = relaxation.links
         self._of_curve = {id(curve): k for k, curve in enumerate(relaxation.curves)}
-        self.directions = len(known)
+        self.directions = len(numbers)
         self.direction = np.array([place[0] for place in places], dtype=np.intp)
         self.factor = np.array([place[1] for place in places])
         self.constant = np.array([place[2] for place in places])
         forms = [curve.out for curve in relaxation.curves]
-        forms += [Form(0.0, key) for key in known]
+        forms += [Form(0.0, key) for key in numbers]
         self.plain = np.array([_lone(form) for form in forms], dtype=np.intp)
         forms += [row.high - row.low for row in relaxation.rows]
         self.levels = np.array([form.constant for form in forms])
@@ -438,18 +435,21 @@ class Layout:
     @cached_property
     def factors(self) -> tuple[np.ndarray, np.ndarray]:
         """Directions of both factors of every product."""
-        way = {
+        direction_of = {
             curve.out.powers[0][0]: int(number)
             for curve, number in zip(self.relaxation.curves, self.direction, strict=True)
             if curve.kind == "exp" and len(curve.out.powers) == 1
         }
-        found = [(way[product.first], way[product.second]) for product in self.relaxation.products]
-        first, second = np.array(found, dtype=np.intp).reshape(-1, 2).T
+        pairs = [
+            (direction_of[product.first], direction_of[product.second])
+            for product in self.relaxation.products
+        ]
+        first, second = np.array(pairs, dtype=np.intp).reshape(-1, 2).T
         return first, second
 
     @cached_property
     def _linked(self) -> tuple[Tables, np.ndarray, Vector]:
-        """Tables of the links, the numbers of their curves, and the levels of the ratios."""
+        """Tables of the links, numbers of their curves, and levels of their ratios."""
         number = np.array([self._of_curve[id(link.curve)] for link in self.links])
         kinds = [link.curve.kind for link in self.links]
         tables = Tables([kind for kind in kinds if isinstance(kind, SampledFunction)])
@@ -460,19 +460,25 @@ class Layout:
         if not self.links:
             return np.empty(0), np.empty(0)
         tables, number, constant = self._linked
-        first, last = (ends[number] for ends in self.arguments(box.low, box.high))
-        off = tables.apart(first, last, np.ones(len(number)), tables.rows)
-        start = constant + tables.value(first) - first
-        return np.exp(start + off[0] - tables.room), np.exp(start + off[1] + tables.room)
+        lows, highs = (ends[number] for ends in self.arguments(box.low, box.high))
+        deviation = tables.secant_errors(lows, highs, np.ones(len(number)), tables.rows)
+        start = constant + tables.value(lows) - lows
+        return np.exp(start + deviation[0] - tables.room), np.exp(
+            start + deviation[1] + tables.room
+        )
 
     @cached_property
     def parts(self) -> tuple[slice, slice, slice]:
-        """Forms of outputs, of directions and of rows."""
-        first, second = self.curves, self.curves + self.directions
-        return slice(0, first), slice(first, second), slice(second, len(self.levels))
+        """Slices of the forms: outputs, directions, rows."""
+        outputs_end, directions_end = self.curves, self.curves + self.directions
+        return (
+            slice(0, outputs_end),
+            slice(outputs_end, directions_end),
+            slice(directions_end, len(self.levels)),
+        )
 
     def arguments(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
-        """Ranges of the curves' arguments from those of the directions."""
+        """Ranges of the curves' arguments, from the ranges of the directions."""
         ends = (
             self.factor * low[self.direction] + self.constant,
             self.factor * high[self.direction] + self.constant,
@@ -482,11 +488,11 @@ class Layout:
     def reach(self, lower: Vector, upper: Vector) -> tuple[Vector, Vector, Vector, Vector]:
         """Ranges of all forms, and of their terms."""
         ends = self.power * lower[self.atom], self.power * upper[self.atom]
-        least, most = np.minimum(*ends), np.maximum(*ends)
+        term_low, term_high = np.minimum(*ends), np.maximum(*ends)
         count = len(self.levels)
-        low: Vector = self.levels + np.bincount(self.form, least, count)
-        high: Vector = self.levels + np.bincount(self.form, most, count)
-        return low, high, least, most
+        low: Vector = self.levels + np.bincount(self.form, term_low, count)
+        high: Vector = self.levels + np.bincount(self.form, term_high, count)
+        return low, high, term_low, term_high
 
 
 @dataclass(frozen=True)
@@ -500,52 +506,44 @@ class Box:
 
     @classmethod
     def whole(cls, layout: Layout) -> Box:
-        """The box given by the bounds of the traced values."""
+        """The whole design space: the bounds of the traced values."""
         relaxation = layout.relaxation
         none = np.zeros(layout.directions)
         lower, upper = (np.clip(ends, -FAR, FAR) for ends in (relaxation.lower, relaxation.upper))
         return cls(lower, upper, none - FAR, none + FAR)
 
-    def range(self, form: Form) -> tuple[float, float]:
-        """Range of a monomial's logarithm."""
-        low = high = form.constant
-        for i, power in form.powers:
-            ends = power * self.lower[i], power * self.upper[i]
-            low, high = low + min(ends), high + max(ends)
-        return low, high
-
     def split(self, direction: int, at: float) -> tuple[Box, Box]:
-        """The part below and the part above a value of a direction."""
+        """The parts of the box below and above a value of a direction."""
         return self.cut(direction, high=at), self.cut(direction, low=at)
 
     def cut(self, direction: int, *, low: float = -FAR, high: float = FAR) -> Box:
-        """The part between two values of a direction."""
+        """The part of the box between two values of a direction."""
         lows, highs = self.low.copy(), self.high.copy()
         lows[direction] = max(lows[direction], low)
         highs[direction] = min(highs[direction], high)
         return replace(self, low=lows, high=highs)
 
     def tightened(self, layout: Layout) -> Box:
-        """The box cut by all rows and curves.
+        """The box after propagation through all rows and curves.
 
         Raises
         ------
-        Gone
+        Empty
             the box is empty
         """
-        work = _Work(layout, self)
-        size = work.size()
+        propagation = _Propagation(layout, self)
+        size = propagation.size()
         for _ in range(BOX_ROUNDS):
-            work.round()
-            left = work.size()
-            if left > (1 - GAIN) * size:
+            propagation.propagate()
+            new_size = propagation.size()
+            if new_size > (1 - GAIN) * size:
                 break
-            size = left
-        return Box(work.lower, work.upper, work.low, work.high)
+            size = new_size
+        return Box(propagation.lower, propagation.upper, propagation.low, propagation.high)
 
 
-class _Work:
-    """Ranges while they are being cut."""
+class _Propagation:
+    """Ranges of a box during the propagation."""
 
     def __init__(self, layout: Layout, box: Box) -> None:
         self.layout = layout
@@ -553,26 +551,26 @@ class _Work:
         self.low, self.high = box.low.copy(), box.high.copy()
 
     def size(self) -> float:
-        """Sum of all ranges."""
+        """Sum of the lengths of all ranges."""
         return float((self.upper - self.lower).sum() + (self.high - self.low).sum())
 
-    def round(self) -> None:
-        """One pass over all forms and curves."""
+    def propagate(self) -> None:
+        """Cut all ranges in one pass over the forms and curves."""
         layout = self.layout
-        outs, ways, rows = layout.parts
-        low, high, least, most = layout.reach(self.lower, self.upper)
-        self._raise(self.low, self.high, low[ways], high[ways])
-        values = layout.mixed.hull(*layout.arguments(self.low, self.high))
+        outs, directions, rows = layout.parts
+        low, high, term_low, term_high = layout.reach(self.lower, self.upper)
+        self._raise(self.low, self.high, low[directions], high[directions])
+        values = layout.functions.hull(*layout.arguments(self.low, self.high))
         goal_low, goal_high = low.copy(), high.copy()
         goal_low[outs] = np.maximum(low[outs], values[0])
         goal_high[outs] = np.minimum(high[outs], values[1])
         self._back(goal_low[outs], goal_high[outs])
-        goal_low[ways], goal_high[ways] = self.low, self.high
+        goal_low[directions], goal_high[directions] = self.low, self.high
         goal_low[rows] = np.maximum(low[rows], 0.0)
         if (goal_low > goal_high + CROSSED).any():
-            raise Gone
-        rest_low = low[layout.form] - least
-        rest_high = high[layout.form] - most
+            raise Empty
+        rest_low = low[layout.form] - term_low
+        rest_high = high[layout.form] - term_high
         ends = (
             (goal_low[layout.form] - rest_high) / layout.power,
             (goal_high[layout.form] - rest_low) / layout.power,
@@ -583,9 +581,9 @@ class _Work:
         self._raise(self.lower, self.upper, lower, upper)
 
     def _back(self, low: Vector, high: Vector) -> None:
-        """Cut the directions through the outputs of curves."""
+        """Cut the directions by the ranges of the curves' outputs."""
         layout = self.layout
-        inner = layout.mixed.within(low, high)
+        inner = layout.functions.inverse_hull(low, high)
         ends = [(end - layout.constant) / layout.factor for end in inner]
         lows, highs = self.low.copy(), self.high.copy()
         np.maximum.at(lows, layout.direction, np.minimum(*ends) - ROOM)
@@ -600,6 +598,6 @@ class _Work:
         crossed = low > high
         if crossed.any():
             if (low[crossed] > high[crossed] + CROSSED).any():
-                raise Gone
+                raise Empty
             middle = (low[crossed] + high[crossed]) / 2
             low[crossed] = high[crossed] = middle

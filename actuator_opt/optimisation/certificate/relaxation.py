@@ -1,14 +1,13 @@
-"""A problem in logarithms: linear rows, and curves with one argument.
+"""Convex relaxation in logarithms: linear rows, and curves with one argument.
 
-Every traced value of known sign is a monomial of atoms. A sum s = p + q makes a new atom with log s
-- log q = softplus(log p - log q), a curve of the log ratio of its terms. The curve is convex on one
-side and is relaxed by its chord on the other; a shorter range of the ratio gives a tighter chord.
-This is the log-log convex relaxation of a signomial programme [Maranas1997], applied to every sum.
+A monomial is a positive number times powers of atoms (positive unknowns). Its logarithm is affine
+in the logarithms of the atoms. Products, quotients and powers of monomials are monomials. A
+signomial is a sum of signed monomials.
 
-Signomials: sums of signed monomials, and the logarithms of monomials.
-
-A monomial is a positive number times powers of atoms (positive unknowns); its logarithm is affine
-in the atoms' logarithms. Products, quotients and powers of monomials are monomials.
+Every traced value of known sign is a monomial. A sum s = p + q is a new atom with log s - log q =
+softplus(log p - log q), a convex curve of the log ratio of its terms. The chord of the curve bounds
+it from above; a shorter range of the ratio gives a tighter chord. This is the log-log convex
+relaxation of a signomial programme [Maranas1997], applied to every sum.
 """
 
 from __future__ import annotations
@@ -25,24 +24,32 @@ from ..problem import Vector
 Name: TypeAlias = Literal["softplus", "exp", "log", "tanh"]
 Function: TypeAlias = Callable[[Vector], Vector]
 LEAST = 1e-300
-"""Substitute for zero under a logarithm."""
+"""Substitute for zero in a logarithm."""
 FAR = 200.0
 """Largest logarithm of an atom or a ratio; e^200 is beyond any quantity."""
 
 
 class MonotoneFunction(NamedTuple):
-    """An increasing function with its slope and its inverse; convex (1) or concave (-1)."""
+    """An increasing function with slope and inverse; convex (1) or concave (-1)."""
 
     value: Function
     slope: Function
     inverse: Function
     convex: int
 
+    def hull(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
+        """Ranges of the values over ranges of the arguments."""
+        return self.value(low), self.value(high)
+
+    def inverse_hull(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
+        """Ranges of the arguments whose values lie in ranges."""
+        return self.inverse(low), self.inverse(high)
+
 
 def _softplus_inverse(y: Vector) -> Vector:
     """log(e^y - 1)."""
-    held = np.maximum(y, LEAST)
-    return held + np.log(-np.expm1(-held))
+    positive = np.maximum(y, LEAST)
+    return positive + np.log(-np.expm1(-positive))
 
 
 def _exp(x: Vector) -> Vector:
@@ -69,14 +76,20 @@ SHAPES: dict[Name, MonotoneFunction] = {
         -1,
     ),
 }
-"""The functions of curves; the hyperbolic tangent in logarithms of argument and value."""
+"""Functions of curves; tanh maps the logarithm of the argument to that of the value."""
 
 
 @dataclass(frozen=True, eq=False)
 class SampledFunction:
-    """A smooth function as equally spaced samples; `room` bounds the error between samples.
+    """A smooth function as equally spaced samples.
 
-    `convex` is 1, -1 or 0 for neither.
+    Parameters
+    ----------
+    low, step : first argument and spacing
+    values : the samples
+    room : bound on the error of linear interpolation
+    convex : 1 convex, -1 concave, 0 neither
+    rising : 1 rising, -1 falling, 0 neither
     """
 
     low: float
@@ -85,11 +98,10 @@ class SampledFunction:
     room: float
     convex: int
     rising: int
-    """1, -1 or 0 for neither."""
 
     @classmethod
     def of(cls, t: Vector, values: Vector, caution: float) -> SampledFunction:
-        """The table of samples at t; `caution` scales their second derivative."""
+        """The function with samples at t; `caution` scales their second derivative."""
         step = float(t[1] - t[0])
         second = np.diff(values, 2)
         noise = 1e-12 * (1 + float(np.abs(values).max()))
@@ -101,7 +113,7 @@ class SampledFunction:
 
 
 class Tables:
-    """Several tables with equally many samples, one argument each."""
+    """Several sampled functions with equally many samples, one argument each."""
 
     def __init__(self, tables: Sequence[SampledFunction]) -> None:
         self.low = np.array([table.low for table in tables])
@@ -112,7 +124,7 @@ class Tables:
         self.rising = np.array([table.rising for table in tables])
         self.last = self.values.shape[1] - 1
         self.rows = np.arange(len(tables))
-        self.turning, self.waving = (
+        self.non_monotonic, self.non_convex = (
             np.flatnonzero(self.rising == 0),
             np.flatnonzero(self.convex == 0),
         )
@@ -127,138 +139,145 @@ class Tables:
         """Linear interpolation between two samples."""
         index, share = self._place(x)
         first, second = self.values[self.rows, index], self.values[self.rows, index + 1]
-        found: Vector = first * (1 - share) + second * share
-        return found
+        values: Vector = first * (1 - share) + second * share
+        return values
 
     def slope(self, x: Vector) -> Vector:
         """Slope of the interpolation."""
         index, _ = self._place(x)
         rise = self.values[self.rows, index + 1] - self.values[self.rows, index]
-        found: Vector = rise / self.step
-        return found
+        slopes: Vector = rise / self.step
+        return slopes
 
-    def _inside(self, low: Vector, high: Vector, some: np.ndarray) -> tuple[Vector, np.ndarray]:
-        """Samples of some tables, and whether they lie within the ranges."""
-        t = self.low[some, None] + self.step[some, None] * np.arange(self.last + 1)
+    def _inside(self, low: Vector, high: Vector, indices: np.ndarray) -> tuple[Vector, np.ndarray]:
+        """Arguments of the samples of some tables, and whether they lie within the ranges."""
+        t = self.low[indices, None] + self.step[indices, None] * np.arange(self.last + 1)
         return t, (t > low[:, None]) & (t < high[:, None])
 
     def hull(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
         """Least and largest values over ranges."""
         ends = self.value(low), self.value(high)
-        least, most = np.minimum(*ends), np.maximum(*ends)
-        some = self.turning
-        if len(some):
-            _, inside = self._inside(low[some], high[some], some)
-            values = self.values[some]
-            least[some] = np.minimum(least[some], np.where(inside, values, np.inf).min(axis=1))
-            most[some] = np.maximum(most[some], np.where(inside, values, -np.inf).max(axis=1))
-        return least - self.room, most + self.room
+        lowest, highest = np.minimum(*ends), np.maximum(*ends)
+        indices = self.non_monotonic
+        if len(indices):
+            _, inside = self._inside(low[indices], high[indices], indices)
+            values = self.values[indices]
+            inner = np.where(inside, values, np.inf).min(axis=1)
+            lowest[indices] = np.minimum(lowest[indices], inner)
+            inner = np.where(inside, values, -np.inf).max(axis=1)
+            highest[indices] = np.maximum(highest[indices], inner)
+        return lowest - self.room, highest + self.room
 
-    def apart(self, low: Vector, high: Vector, slope: Vector, some: Any) -> tuple[Vector, Vector]:
-        """Least and largest distance of some tables from lines through their first values."""
-        first, last = self.value(low)[some], self.value(high)[some]
-        low, high, slope = low[some], high[some], slope[some]
+    def secant_errors(
+        self, low: Vector, high: Vector, slope: Vector, indices: Any
+    ) -> tuple[Vector, Vector]:
+        """Least and largest distance of some tables from lines through their first values.
+
+        Parameters
+        ----------
+        low, high : ranges of the arguments of all tables
+        slope : of the lines
+        indices : the tables
+        """
+        first, last = self.value(low)[indices], self.value(high)[indices]
+        low, high, slope = low[indices], high[indices], slope[indices]
         last = last - slope * (high - low) - first
-        t, inside = self._inside(low, high, some)
-        off = self.values[some] - slope[:, None] * (t - low[:, None]) - first[:, None]
+        t, inside = self._inside(low, high, indices)
+        off = self.values[indices] - slope[:, None] * (t - low[:, None]) - first[:, None]
         off = np.where(inside, off, 0.0)
         return (
             np.minimum(np.minimum(off.min(axis=1), last), 0.0),
             np.maximum(np.maximum(off.max(axis=1), last), 0.0),
         )
 
-    def within(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
-        """Ranges of arguments for ranges of values; the whole range if not monotonic."""
+    def inverse_hull(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
+        """Ranges of arguments for ranges of values; the whole range of a table if not monotonic."""
         falls = self.rising < 0
-        first = np.where(falls, -high, low) - self.room
-        second = np.where(falls, -low, high) + self.room
+        low_ends = np.where(falls, -high, low) - self.room
+        high_ends = np.where(falls, -low, high) + self.room
         ordered = self._ordered
-        least = self._inverse(first, (ordered < first[:, None]).sum(axis=1), 0.0)
-        most = self._inverse(second, (ordered <= second[:, None]).sum(axis=1), 1.0)
-        least[self.turning] = self.low[self.turning]
-        most[self.turning] = (self.low + self.step * self.last)[self.turning]
-        return least, most
+        lowest = self._inverse(low_ends, (ordered < low_ends[:, None]).sum(axis=1), 0.0)
+        highest = self._inverse(high_ends, (ordered <= high_ends[:, None]).sum(axis=1), 1.0)
+        lowest[self.non_monotonic] = self.low[self.non_monotonic]
+        highest[self.non_monotonic] = (self.low + self.step * self.last)[self.non_monotonic]
+        return lowest, highest
 
-    def _inverse(self, wanted: Vector, below: np.ndarray, flat: float) -> Vector:
-        """Arguments of values, from the number of samples below; at flat parts one of the ends."""
+    def _inverse(self, values: Vector, counts_below: np.ndarray, flat: float) -> Vector:
+        """Arguments of values, from the number of samples below each.
+
+        A flat segment gives its lower (`flat` = 0) or upper end (1).
+        """
         ordered, rows = self._ordered, self.rows
-        index = np.clip(below - 1, 0, self.last - 1)
+        index = np.clip(counts_below - 1, 0, self.last - 1)
         first, second = ordered[rows, index], ordered[rows, index + 1]
         rises = second > first
-        share = np.where(rises, (wanted - first) / np.where(rises, second - first, 1.0), flat)
-        found: Vector = self.low + self.step * (index + np.clip(share, 0.0, 1.0))
-        return found
+        share = np.where(rises, (values - first) / np.where(rises, second - first, 1.0), flat)
+        arguments: Vector = self.low + self.step * (index + np.clip(share, 0.0, 1.0))
+        return arguments
 
 
 Kind: TypeAlias = Name | SampledFunction
 
 
-class Mixed:
-    """Many curves of several kinds, one argument each."""
+class CurveFunctions:
+    """Functions of all curves, grouped by kind, one argument each."""
 
     def __init__(self, kinds: Sequence[Kind]) -> None:
-        tables = [kind for kind in kinds if isinstance(kind, SampledFunction)]
-        self.tabled = np.array(
-            [k for k, kind in enumerate(kinds) if isinstance(kind, SampledFunction)], dtype=np.intp
-        )
-        self.tables = Tables(tables) if tables else None
         names = np.array([kind if isinstance(kind, str) else "" for kind in kinds], dtype=object)
-        self.parts = [(shape, np.flatnonzero(names == name)) for name, shape in SHAPES.items()]
-        self.convex = np.zeros(len(kinds), dtype=int)
+        self.groups: list[tuple[MonotoneFunction | Tables, np.ndarray]] = [
+            (shape, np.flatnonzero(names == name)) for name, shape in SHAPES.items()
+        ]
+        tables = [kind for kind in kinds if isinstance(kind, SampledFunction)]
+        self.table_curves = np.flatnonzero(names == "")
+        self.tables = Tables(tables) if tables else None
         self.room = np.zeros(len(kinds))
-        for shape, some in self.parts:
-            self.convex[some] = shape.convex
         if self.tables is not None:
-            self.convex[self.tabled], self.room[self.tabled] = self.tables.convex, self.tables.room
+            self.groups.append((self.tables, self.table_curves))
+            self.room[self.table_curves] = self.tables.room
+        self.convex = np.zeros(len(kinds), dtype=int)
+        for functions, indices in self.groups:
+            self.convex[indices] = functions.convex
 
     def value(self, x: Vector) -> Vector:
         """The functions' values."""
-        found = np.empty_like(x)
-        for shape, some in self.parts:
-            found[some] = shape.value(x[some])
-        if self.tables is not None:
-            found[self.tabled] = self.tables.value(x[self.tabled])
-        return found
+        values = np.empty_like(x)
+        for functions, indices in self.groups:
+            values[indices] = functions.value(x[indices])
+        return values
 
     def slope(self, x: Vector) -> Vector:
-        """Their slopes."""
-        found = np.empty_like(x)
-        for shape, some in self.parts:
-            found[some] = shape.slope(x[some])
-        if self.tables is not None:
-            found[self.tabled] = self.tables.slope(x[self.tabled])
-        return found
+        """The functions' slopes."""
+        slopes = np.empty_like(x)
+        for functions, indices in self.groups:
+            slopes[indices] = functions.slope(x[indices])
+        return slopes
 
     def hull(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
         """Ranges of the values over ranges of the arguments."""
-        least, most = np.empty_like(low), np.empty_like(high)
-        for shape, some in self.parts:
-            least[some], most[some] = shape.value(low[some]), shape.value(high[some])
-        if self.tables is not None:
-            some = self.tabled
-            least[some], most[some] = self.tables.hull(low[some], high[some])
-        return least, most
+        lowest, highest = np.empty_like(low), np.empty_like(high)
+        for functions, indices in self.groups:
+            ends = functions.hull(low[indices], high[indices])
+            lowest[indices], highest[indices] = ends
+        return lowest, highest
 
-    def apart(self, low: Vector, high: Vector, slope: Vector) -> tuple[Vector, Vector]:
-        """Distance of functions with both curvatures from their secants, below and above."""
-        least, most = np.zeros_like(low), np.zeros_like(low)
-        if self.tables is not None:
-            some, own = self.tables.waving, self.tabled
-            if len(some):
-                least[own[some]], most[own[some]] = self.tables.apart(
-                    low[own], high[own], slope[own], some
-                )
-        return least, most
-
-    def within(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
+    def inverse_hull(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
         """Ranges of the arguments whose values lie in ranges."""
-        least, most = np.empty_like(low), np.empty_like(high)
-        for shape, some in self.parts:
-            least[some], most[some] = shape.inverse(low[some]), shape.inverse(high[some])
+        lowest, highest = np.empty_like(low), np.empty_like(high)
+        for functions, indices in self.groups:
+            ends = functions.inverse_hull(low[indices], high[indices])
+            lowest[indices], highest[indices] = ends
+        return lowest, highest
+
+    def secant_errors(self, low: Vector, high: Vector, slope: Vector) -> tuple[Vector, Vector]:
+        """Distance of functions from their secants, below and above; 0 for one-sided curvature."""
+        lowest, highest = np.zeros_like(low), np.zeros_like(low)
         if self.tables is not None:
-            some = self.tabled
-            least[some], most[some] = self.tables.within(low[some], high[some])
-        return least, most
+            indices, curves = self.tables.non_convex, self.table_curves
+            if len(indices):
+                lowest[curves[indices]], highest[curves[indices]] = self.tables.secant_errors(
+                    low[curves], high[curves], slope[curves], indices
+                )
+        return lowest, highest
 
 
 Powers: TypeAlias = tuple[tuple[int, float], ...]
@@ -328,13 +347,13 @@ class Signomial(NamedTuple):
         """Sum or difference; terms that cancel to rounding are dropped."""
         total = dict(self.terms)
         for powers, factor in other.terms.items():
-            known = total.get(powers)
-            if known is None:
+            earlier = total.get(powers)
+            if earlier is None:
                 total[powers] = sign * factor
-            elif abs(known + sign * factor) <= ROUNDING * (abs(known) + abs(factor)):
+            elif abs(earlier + sign * factor) <= ROUNDING * (abs(earlier) + abs(factor)):
                 del total[powers]
             else:
-                total[powers] = known + sign * factor
+                total[powers] = earlier + sign * factor
         return Signomial(total)
 
     def times(self, other: Signomial) -> Signomial:
@@ -347,10 +366,10 @@ class Signomial(NamedTuple):
 
     def sides(self) -> tuple[list[Form], list[Form]]:
         """Logarithms of the positive and of the negative terms."""
-        found: tuple[list[Form], list[Form]] = ([], [])
+        logarithms: tuple[list[Form], list[Form]] = ([], [])
         for powers, factor in sorted(self.terms.items()):
-            found[factor < 0].append(Form(math.log(abs(factor)), powers))
-        return found
+            logarithms[factor < 0].append(Form(math.log(abs(factor)), powers))
+        return logarithms
 
 
 ROUNDING = 1e-12
@@ -358,11 +377,11 @@ ROUNDING = 1e-12
 
 
 class Unknown(Exception):
-    """A value of unknown sign, or without a relaxation of its model; carries the reason."""
+    """A value has an unknown sign, or its model has no relaxation; the message gives the reason."""
 
 
 class AtomFunction(NamedTuple):
-    """out = function(argument), both affine in the atoms' logarithms."""
+    """A curve out = function(argument), both affine in the logarithms of atoms."""
 
     kind: Kind
     argument: Form
@@ -370,9 +389,9 @@ class AtomFunction(NamedTuple):
 
 
 class Link(NamedTuple):
-    """Two plain atoms of one argument: out = e^level f(argument), base is the argument itself.
+    """A plain atom as a sampled function of another: out = e^level f(base).
 
-    `curve` is the table of log f by the logarithm of the argument.
+    `curve` is the table of log f by the logarithm of its argument.
     """
 
     out: int
@@ -391,7 +410,7 @@ class Product(NamedTuple):
 
 
 Maker: TypeAlias = Callable[[Sequence[float]], float]
-"""Logarithm of an atom from earlier atoms."""
+"""Logarithm of an atom from those of earlier atoms."""
 
 
 class ConstraintRow(NamedTuple):
@@ -405,7 +424,7 @@ class ConstraintRow(NamedTuple):
 class Relaxation:
     """Atoms with their bounds (logarithms), linear rows and curves.
 
-    `makers` compute the logarithm of every atom at a design, from earlier ones.
+    `makers` compute the logarithm of every atom from those of earlier atoms.
     """
 
     makers: list[Maker] = field(default_factory=list)
@@ -414,13 +433,13 @@ class Relaxation:
     rows: list[ConstraintRow] = field(default_factory=list)
     curves: list[AtomFunction] = field(default_factory=list)
     splits: list[tuple[Form, Form, Form]] = field(default_factory=list)
-    """Every sum: the whole, and its two parts."""
+    """Every sum and its two terms."""
     links: list[Link] = field(default_factory=list)
     products: list[Product] = field(default_factory=list)
     sums: dict[tuple[Form, Form], Form] = field(default_factory=dict)
 
     def atom(self, low: float, high: float, maker: Maker) -> Form:
-        """Add a positive unknown between two numbers."""
+        """Add a positive unknown between two values."""
         self.makers.append(maker)
         self.lower.append(math.log(low) if low > 0 else -math.inf)
         self.upper.append(math.log(high) if high < math.inf else math.inf)
@@ -435,19 +454,19 @@ class Relaxation:
         return low, high
 
     def total(self, terms: Sequence[Form], low: float, high: float) -> Form:
-        """Logarithm of a sum of monomials, with bounds of its value."""
+        """Logarithm of a sum of monomials whose value is between `low` and `high`."""
         common = _common(terms)
-        least, most = self.reach(common)
-        low = low * math.exp(-min(most, 700.0)) if low > 0 else low
-        high = high * math.exp(-least) if least > -700 else math.inf
-        first, *others = (term - common for term in terms)
-        for i, term in enumerate(others):
-            last = i == len(others) - 1
-            first = self._sum(first, term, low if last else 0.0, high)
-        return first + common
+        common_low, common_high = self.reach(common)
+        low = low * math.exp(-min(common_high, 700.0)) if low > 0 else low
+        high = high * math.exp(-common_low) if common_low > -700 else math.inf
+        result, *terms_left = (term - common for term in terms)
+        for i, term in enumerate(terms_left):
+            last = i == len(terms_left) - 1
+            result = self._sum(result, term, low if last else 0.0, high)
+        return result + common
 
     def _sum(self, first: Form, second: Form, low: float, high: float) -> Form:
-        if first.powers == second.powers:  # a known ratio
+        if first.powers == second.powers:  # constant ratio
             return Form(log_of_sum(first.constant, second.constant), first.powers)
         key = (first, second) if first <= second else (second, first)
         if key not in self.sums:
@@ -455,10 +474,10 @@ class Relaxation:
             self.split(self.sums[key], *key)
         return self.sums[key]
 
-    def split(self, whole: Form, part: Form, rest: Form) -> None:
+    def split(self, whole: Form, part: Form, remainder: Form) -> None:
         """Add the constraint whole = part + rest."""
-        self.curves.append(AtomFunction("softplus", part - rest, whole - rest))
-        self.splits.append((whole, part, rest))
+        self.curves.append(AtomFunction("softplus", part - remainder, whole - remainder))
+        self.splits.append((whole, part, remainder))
 
 
 def log_of_sum(first: float, second: float) -> float:
@@ -471,11 +490,11 @@ def _common(terms: Sequence[Form]) -> Form:
     """The greatest monomial that divides all terms."""
     if len(terms) < 2:
         return Form(0.0)
-    first, *others = (dict(term.powers) for term in terms)
-    found = []
+    first, *other_terms = (dict(term.powers) for term in terms)
+    common = []
     for i, power in first.items():
-        powers = [power, *(other.get(i, 0.0) for other in others)]
-        least = min(powers) if min(powers) > 0 else max(powers) if max(powers) < 0 else 0.0
-        if least:
-            found.append((i, least))
-    return Form(0.0, tuple(sorted(found)))
+        powers = [power, *(other.get(i, 0.0) for other in other_terms)]
+        power_in_all = min(powers) if min(powers) > 0 else max(powers) if max(powers) < 0 else 0.0
+        if power_in_all:
+            common.append((i, power_in_all))
+    return Form(0.0, tuple(sorted(common)))

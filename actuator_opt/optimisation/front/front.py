@@ -1,19 +1,13 @@
-"""The Pareto front from its anchors, evenly spread and checked for merely local designs.
+"""The Pareto front, evenly spread and checked for merely local designs.
 
-The best design of each objective alone is searched for like any optimum. Designs at levels between
-these anchors are found from their neighbours, in shared steps. Each is compared with all others at
-its own levels, which reveals and replaces merely local designs. Independent full searches at some
-levels then check whether a better one was overlooked.
-
-The final designs of a front: evenly spread, with wide gaps closed or explained.
+The anchors are the best designs of each objective alone. They share one sweep of the box and one
+model call per step; ties are resolved in favour of the other objectives. Designs at levels between
+the anchors are computed from their neighbours, in shared steps. Each is compared with all others at
+its own levels, which replaces merely local designs. Independent full searches at some levels then
+check whether a better design was overlooked.
 
 The levels limit the length of a continuous front between two designs. If close levels lead to
 distant designs, the front jumps and no design lies between.
-
-The ends of a front: the best design of each objective alone.
-
-All objectives are searched together: one sweep of the box, and one model call per step of all runs.
-Ties are resolved in favour of the other objectives.
 """
 
 from __future__ import annotations
@@ -26,30 +20,38 @@ import numpy as np
 
 from ...base.numeric import Array
 from ...base.progress import tell
-from ..actuator import Solution
+from ..actuator import MET, Solution
 from ..evaluator import Evaluator, Point
 from ..problem import PointValues, Vector
 from ..resolve.parallel_descents import (
-    FEASIBLE,
-    RESIDUAL,
     converged_from,
     descents_from,
     distinct_ends,
 )
+from ..resolve.steps import RESIDUAL
 from ..solver import KEEP, Halton, Sweep, distinct, solve, sweep
 from . import tracer
 from .objectives import Conditions, Objectives
-from .plane import FrontGap, chosen, close, fill_line, fill_plane, lost, middles, wide
+from .plane import (
+    FrontGap,
+    close_gaps,
+    fill_line,
+    fill_plane,
+    final_designs,
+    lost_levels,
+    middle_designs,
+    wide_gaps,
+)
 from .tracer import FrontDesign, FrontSearch, FrontStart, Tracer, knee, nondominated
 
 HOLD = 1e-10
 """Share of its range by which an anchor's objective may worsen while the others improve."""
 GAINED = 1e-3
-"""Normalised gain of the others that justifies this."""
+"""Normalised gain of the others that justifies this loss."""
 CONFLICT = 1e-6
-"""Range below this share of the magnitude means that the objective does not vary."""
+"""Share of the magnitude; an objective with a smaller range does not vary."""
 ROUGH = 16
-"""Points of an SLSQP run after which steps with the Hessian take over."""
+"""Number of points of an SLSQP run after which steps with the Hessian take over."""
 
 
 @dataclass(frozen=True)
@@ -62,111 +64,116 @@ class FrontEffort:
 
 
 @dataclass(frozen=True)
-class Ends:
+class Anchors:
     """The anchors (n, objectives), and all feasible local optima (n, k)."""
 
     x: Vector
     others: Vector
 
 
-class NoEnd(NamedTuple):
-    """A failed search for the best of one objective, and the objective's number."""
+class NoAnchor(NamedTuple):
+    """The number of an objective without a best design, and its failed search."""
 
     objective: int
     solution: Solution
 
 
-def ends(objectives: Objectives, checked: Evaluator, effort: FrontEffort) -> Ends | NoEnd:
-    """The best design of each objective; the failed search if there is none."""
-    optima = [[] for _ in range(objectives.count)] if not checked.exact else _together(
+def find_anchors(
+    objectives: Objectives, checked: Evaluator, effort: FrontEffort
+) -> Anchors | NoAnchor:
+    """Find the best design of each objective; returns the failed search if there is none."""
+    optima = [[] for _ in range(objectives.count)] if not checked.exact else _joint_search(
         objectives, checked, effort
     )  # fmt: skip
-    known = [x for found in optima for x in found]
-    values = objectives.values(np.stack(known, axis=1)) if known else np.empty((len(optima), 0))
+    known_x = [x for optima_of_one in optima for x in optima_of_one]
+    values = objectives.values(np.stack(known_x, axis=1)) if known_x else np.empty((len(optima), 0))
     best: list[Vector] = []
-    for index, found in enumerate(optima):
-        own, first = values[index], sum(len(some) for some in optima[:index])
-        size = CONFLICT * np.abs(own).max(initial=0.0)
-        if found and own[first] <= own.min() + size:
-            best.append(found[0])
+    for index, optima_of_one in enumerate(optima):
+        objective_values = values[index]
+        first_column = sum(len(points) for points in optima[:index])
+        size = CONFLICT * np.abs(objective_values).max(initial=0.0)
+        if optima_of_one and objective_values[first_column] <= objective_values.min() + size:
+            best.append(optima_of_one[0])
             continue
-        alone = solve(
-            objectives.alone(index),
-            starts=effort.starts, samples=effort.samples, seed=effort.seed, more_starts=known,
+        solution = solve(
+            objectives.single_problem(index),
+            starts=effort.starts, samples=effort.samples, seed=effort.seed, more_starts=known_x,
         )  # fmt: skip
-        if alone.violation > FEASIBLE or alone.kkt is None or alone.kkt.residual > RESIDUAL:
-            return NoEnd(index, alone)
-        best.append(alone.x)
-        known += [one.x for one in alone.optima if one.violation <= FEASIBLE]
-    return Ends(np.stack(best, axis=1), np.stack(known, axis=1))
+        if solution.violation > MET or solution.kkt is None or solution.kkt.residual > RESIDUAL:
+            return NoAnchor(index, solution)
+        best.append(solution.x)
+        known_x += [optimum.x for optimum in solution.optima if optimum.violation <= MET]
+    return Anchors(np.stack(best, axis=1), np.stack(known_x, axis=1))
 
 
-def _together(
+def _joint_search(
     objectives: Objectives, checked: Evaluator, effort: FrontEffort
 ) -> list[list[Vector]]:
-    """Local optima of each objective, best first, from simultaneous runs."""
-    objectives = replace(objectives, evaluate=_remembering(objectives.evaluate))
-    evaluators = [objectives.like(checked, k) for k in range(objectives.count)]
+    """Local optima of each objective, best first, from runs with shared model calls."""
+    objectives = replace(objectives, evaluate=_with_cache(objectives.evaluate))
+    evaluators = [objectives.evaluator_of(checked, k) for k in range(objectives.count)]
     swept = [sweep(evaluator, effort.samples, effort.seed) for evaluator in evaluators]
     starts = [_starts(*pair, effort.starts) for pair in zip(evaluators, swept, strict=True)]
-    which = np.arange(objectives.count, dtype=float)[None]
-    picked = objectives.picked()
-    ended = descents_from(picked, evaluators, which, starts, effort.seed, rounds=ROUGH)
-    ended = [distinct_ends(points) for points in ended]
-    settled = converged_from(picked, evaluators, which, ended)
-    return [_optima(*pair) for pair in zip(ended, settled, strict=True)]
+    indices = np.arange(objectives.count, dtype=float)[None]
+    single = objectives.selection()
+    run_ends = descents_from(single, evaluators, indices, starts, effort.seed, rounds=ROUGH)
+    run_ends = [distinct_ends(points) for points in run_ends]
+    converged = converged_from(single, evaluators, indices, run_ends)
+    return [_optima(*pair) for pair in zip(run_ends, converged, strict=True)]
 
 
-def _remembering(evaluate: Callable[[Array], PointValues]) -> Callable[[Array], PointValues]:
-    """The same function with the last real points cached, as all objectives sweep the same ones."""
-    last: dict[bytes, PointValues] = {}
+def _with_cache(evaluate: Callable[[Array], PointValues]) -> Callable[[Array], PointValues]:
+    """The function with a cache of its last real points: all objectives sweep the same points."""
+    cache: dict[bytes, PointValues] = {}
 
     def remembered(points: Array) -> PointValues:
         if np.iscomplexobj(points):
             return evaluate(points)
         key = np.asarray(points).tobytes()
-        if key not in last:
+        if key not in cache:
             values = evaluate(points)
-            last.clear()
-            last[key] = values
-        return last[key]
+            cache.clear()
+            cache[key] = values
+        return cache[key]
 
     return remembered
 
 
-def _starts(evaluator: Evaluator, swept: Sweep, wanted: int) -> list[Vector]:
-    """Coordinates of the problem's own start and of the best distinct points of the sweep."""
-    own = evaluator.problem.start
-    given = [] if own is None else [evaluator.space.to_z(own)]
-    return given + distinct(evaluator, swept.z, max(wanted - len(given), 1))
+def _starts(evaluator: Evaluator, swept: Sweep, count: int) -> list[Vector]:
+    """Coordinates of the problem's start and of the best distinct points of the sweep."""
+    start = evaluator.problem.start
+    starts = [] if start is None else [evaluator.space.to_z(start)]
+    return starts + distinct(evaluator, swept.z, max(count - len(starts), 1))
 
 
-def _optima(ended: Sequence[Point], settled: Sequence[Point | None]) -> list[Vector]:
+def _optima(run_ends: Sequence[Point], converged: Sequence[Point | None]) -> list[Vector]:
     """Distinct optima, best first; empty if an unfinished run may be better."""
-    good = sorted((one for one in settled if one is not None), key=lambda one: one.objective)
-    open_ = [
-        p.objective for p, one in zip(ended, settled, strict=True)
-        if one is None and p.violation <= FEASIBLE
+    optima = sorted((p for p in converged if p is not None), key=lambda point: point.objective)
+    unfinished = [
+        p.objective for p, point in zip(run_ends, converged, strict=True)
+        if point is None and p.violation <= MET
     ]  # fmt: skip
-    if not good or min(open_, default=np.inf) < good[0].objective:
+    if not optima or min(unfinished, default=np.inf) < optima[0].objective:
         return []
-    return [distinct_end.x for distinct_end in distinct_ends(good)]
+    return [distinct_end.x for distinct_end in distinct_ends(optima)]
 
 
-def normalised(objectives: Objectives, checked: Evaluator, found: Ends) -> tuple[Tracer, Vector]:
-    """The anchors (n, k) with their normalisation; a single one without a conflict."""
-    x = found.x
-    every = objectives.values(np.concatenate([found.others, x], axis=1))
-    values, magnitude = every[:, -x.shape[1] :], np.abs(every).max(axis=1)
+def normalised(
+    objectives: Objectives, checked: Evaluator, anchors: Anchors
+) -> tuple[Tracer, Vector]:
+    """The normalisation and the anchors (n, k); a single anchor without a conflict."""
+    x = anchors.x
+    all_values = objectives.values(np.concatenate([anchors.others, x], axis=1))
+    values, magnitude = all_values[:, -x.shape[1] :], np.abs(all_values).max(axis=1)
     magnitude = np.where(magnitude > 0, magnitude, 1.0)
     tracer: Tracer | None = None
     while True:
         ideal, width = values.min(axis=1), np.ptp(values, axis=1)
-        best = (values - ideal[:, None] <= (CONFLICT * magnitude)[:, None]).all(axis=0)
-        if best.any():
-            x, width = x[:, [int(np.argmax(best))]], magnitude
+        best_of_all = (values - ideal[:, None] <= (CONFLICT * magnitude)[:, None]).all(axis=0)
+        if best_of_all.any():
+            x, width = x[:, [int(np.argmax(best_of_all))]], magnitude
         width = np.where(width <= CONFLICT * magnitude, magnitude, width)
-        if tracer is not None or best.any():
+        if tracer is not None or best_of_all.any():
             break
         tracer = Tracer(objectives, ideal, width, checked)
         x = _sharpened(tracer, x, tracer.normal(values))
@@ -179,20 +186,20 @@ def normalised(objectives: Objectives, checked: Evaluator, found: Ends) -> tuple
 
 
 def _sharpened(tracer: Tracer, x: Vector, units: Vector) -> Vector:
-    """The anchors (n, k), moved where others improve without a loss of their own objective."""
+    """The anchors (n, k), moved where other objectives improve at no loss of the anchor's own."""
     count = len(x.T)
     starts = []
     for k in range(count):
-        level, way = np.zeros(count), np.ones(count)
-        level[k], way[k] = units[k, k] + HOLD, 0.0
+        level, direction = np.zeros(count), np.ones(count)
+        level[k], direction[k] = units[k, k] + HOLD, 0.0
         z = tracer.from_x(x[:, k], float(np.delete(units[:, k], k).max()))
-        starts.append(FrontStart(level, way, z, np.eye(len(z))))
-    moved = x.copy()
-    for k, (one, start) in enumerate(zip(tracer.solve(starts), starts, strict=True)):
-        before = start.z[-1] * tracer.scale
-        if one is not None and one.point.objective < before - GAINED:
-            moved[:, k] = one.point.x[:-1]
-    return moved
+        starts.append(FrontStart(level, direction, z, np.eye(len(z))))
+    sharpened = x.copy()
+    for k, (design, start) in enumerate(zip(tracer.solve(starts), starts, strict=True)):
+        previous = start.z[-1] * tracer.scale
+        if design is not None and design.point.objective < previous - GAINED:
+            sharpened[:, k] = design.point.x[:-1]
+    return sharpened
 
 
 OVERLOOKED = 1e-6
@@ -200,75 +207,80 @@ OVERLOOKED = 1e-6
 TOLERANCE = 1e-7
 """Relative change of level and variables that ends a run."""
 ROUNDS = 24
-"""Maximum points of a run; if no design is feasible by then, other steps take over."""
+"""Maximum points of a run; without a feasible design by then, other steps take over."""
 
 
-def better(tracer: Tracer, designs: Sequence[FrontDesign], effort: FrontEffort) -> list[Vector]:
-    """Variables (n,) of better designs at the levels of some designs on the front."""
-    reached: list[list[Point]] = [[] for _ in designs]
+def overlooked(tracer: Tracer, designs: Sequence[FrontDesign], effort: FrontEffort) -> list[Vector]:
+    """Variables (n,) of better designs at the levels of some designs of the front."""
+    run_ends: list[list[Point]] = [[] for _ in designs]
     if tracer.exact and designs:
-        reached = _reached(tracer, designs, effort)
-    found = []
-    for number, (design, points) in enumerate(zip(designs, reached, strict=True)):
+        run_ends = _feasible_ends(tracer, designs, effort)
+    result = []
+    for number, (design, points) in enumerate(zip(designs, run_ends, strict=True)):
         ends = [(point.objective, point.x) for point in points]
         if not ends:
-            best = solve(
-                tracer.at(design.level, design.way),
+            solution = solve(
+                tracer.at(design.level, design.direction),
                 starts=effort.starts, samples=effort.samples, seed=effort.seed + number,
             )  # fmt: skip
-            ends = [(best.objective, best.x)] if best.violation <= FEASIBLE else []
-        level, x = min(ends, key=lambda pair: pair[0], default=(np.inf, design.point.x))
+            ends = [(solution.objective, solution.x)] if solution.violation <= MET else []
+        level, x = min(ends, key=lambda end: end[0], default=(np.inf, design.point.x))
         if level < design.point.objective - OVERLOOKED:
-            found.append(x[:-1])
-    return found
+            result.append(x[:-1])
+    return result
 
 
-def _reached(
+def _feasible_ends(
     tracer: Tracer, designs: Sequence[FrontDesign], effort: FrontEffort
 ) -> list[list[Point]]:
-    """Feasible points reached by runs, separately for each level."""
-    evaluators = [tracer.like(tracer.at(design.level, design.way)) for design in designs]
+    """Feasible end points of runs, by level."""
+    evaluators = [tracer.evaluator_of(tracer.at(d.level, d.direction)) for d in designs]
     parameters = np.stack(
-        [np.concatenate([design.level, design.way]) for design in designs], axis=1
+        [np.concatenate([design.level, design.direction]) for design in designs], axis=1
     )
-    given = tracer.parametric, evaluators, parameters
+    problems = tracer.parametric, evaluators, parameters
     starts = _overlooked_starts(tracer, designs, effort)
-    ended = descents_from(*given, starts, effort.seed, tolerance=TOLERANCE, rounds=ROUNDS)
-    met = [[point for point in points if point.violation <= FEASIBLE] for points in ended]
-    rest = [[] if good else distinct_ends(points) for good, points in zip(met, ended, strict=True)]
-    settled = converged_from(*given, rest)
+    run_ends = descents_from(*problems, starts, effort.seed, tolerance=TOLERANCE, rounds=ROUNDS)
+    feasible = [[point for point in points if point.violation <= MET] for points in run_ends]
+    unfinished = [
+        [] if feasible_points else distinct_ends(points)
+        for feasible_points, points in zip(feasible, run_ends, strict=True)
+    ]
+    converged = converged_from(*problems, unfinished)
     return [
-        [*good, *(point for point in more if point is not None)]
-        for good, more in zip(met, settled, strict=True)
+        [*feasible_points, *(point for point in more if point is not None)]
+        for feasible_points, more in zip(feasible, converged, strict=True)
     ]
 
 
 def _overlooked_starts(
     tracer: Tracer, designs: Sequence[FrontDesign], effort: FrontEffort
 ) -> list[list[Vector]]:
-    """Coordinates for each level: the problem's own start, and the best of one shared sweep."""
-    inner = Evaluator(tracer.objectives.alone(0))
-    space, own = inner.space, tracer.objectives.problem.start
-    cube = Halton(space.size, effort.seed, most=max(2, effort.samples)).points(0, effort.samples)
+    """Starts for each level: the problem's start, and the best points of one shared sweep."""
+    inner = Evaluator(tracer.objectives.single_problem(0))
+    space, start = inner.space, tracer.objectives.problem.start
+    cube = Halton(space.size, effort.seed, max_points=max(2, effort.samples)).points(
+        0, effort.samples
+    )
     z = space.lower[:, None] + (space.upper - space.lower)[:, None] * cube
-    if own is not None:
-        z = np.concatenate([space.to_z(own)[:, None], z], axis=1)
+    if start is not None:
+        z = np.concatenate([space.to_z(start)[:, None], z], axis=1)
     rows = tracer.evaluator.batch(np.concatenate([z, np.zeros((1, z.shape[1]))]))
-    first = 1 + len(tracer.objectives.problem.constraint_names)
-    units = -rows[first : first + tracer.objectives.count]
-    margins = np.delete(rows, range(first, first + tracer.objectives.count), axis=0)
+    first_row = 1 + len(tracer.objectives.problem.constraint_names)
+    units = -rows[first_row : first_row + tracer.objectives.count]
+    margins = np.delete(rows, range(first_row, first_row + tracer.objectives.count), axis=0)
     missed = inner.violations(margins, "sum")
     missed = np.where(np.isfinite(units).all(axis=0), missed, np.inf)
     result = []
     for design in designs:
-        t = ((units - design.level[:, None]) / design.way[:, None]).max(axis=0)
+        t = ((units - design.level[:, None]) / design.direction[:, None]).max(axis=0)
         order = np.lexsort((t, missed))
-        order = order[np.isfinite(missed[order]) & (order >= (own is not None))][:KEEP]
-        begun = [] if own is None else [tracer.to_t(np.append(z[:, 0], 0.0), float(t[0]))]
+        order = order[np.isfinite(missed[order]) & (order >= (start is not None))][:KEEP]
+        starts = [] if start is None else [tracer.to_t(np.append(z[:, 0], 0.0), float(t[0]))]
         places = {z[:, k].tobytes(): float(t[k]) for k in order}
-        for at in distinct(inner, z[:, order], max(effort.starts - len(begun), 1)):
-            begun.append(tracer.to_t(np.append(at, 0.0), places[at.tobytes()]))
-        result.append(begun)
+        for candidate in distinct(inner, z[:, order], max(effort.starts - len(starts), 1)):
+            starts.append(tracer.to_t(np.append(candidate, 0.0), places[candidate.tobytes()]))
+        result.append(starts)
     return result
 
 
@@ -278,9 +290,9 @@ class FrontSettings:
 
     Parameters
     ----------
-    count : designs requested
+    count : requested number of designs
     starts, samples : of the search for each anchor
-    checks : full searches at levels in between
+    checks : number of full searches at levels in between
     seed : of the searches
     """
 
@@ -299,13 +311,13 @@ class Front:
     ----------
     x : variables (n, k)
     values : objectives (objectives, k), to be minimised
-    units : the same between 0 (ideal) and 1 (worst of the anchors)
+    units : normalised objectives: 0 ideal, 1 worst of the anchors
     residuals : of the optimality conditions (k,)
     knee : index and depth of the design where the front bends most, or None
-    passed : values (objectives, p) of dominated designs met during the search
-    checked, improved : full searches at levels in between, and how many found something better
+    passed : values (objectives, p) of dominated designs of the search
+    checked, improved : full searches at levels in between, and how many improved a design
     failed : number of levels without a design at or near them
-    wide : gaps of two objectives wider than `even.WIDEST`, and the reason
+    wide : gaps of two objectives wider than `plane.WIDEST`, and the reason
     """
 
     x: Vector
@@ -330,88 +342,89 @@ class Front:
         return np.asarray(np.sqrt((np.diff(self.units, axis=1) ** 2).sum(axis=0)))
 
 
-def front(objectives: Objectives, settings: FrontSettings) -> Front | NoEnd:
-    """Trace the front of some objectives; returns the failed search if an anchor has no optimum."""
+def front(objectives: Objectives, settings: FrontSettings) -> Front | NoAnchor:
+    """Compute the front; returns the failed search if an objective has no best design."""
     effort = FrontEffort(settings.starts, settings.samples, settings.seed)
     tell("searching for the ends of the front")
     checked, warnings = objectives.checked()
-    found = ends(objectives, checked, effort)
-    if isinstance(found, NoEnd):
-        return found
-    tracer, x = normalised(objectives, checked, found)
+    anchors = find_anchors(objectives, checked, effort)
+    if isinstance(anchors, NoAnchor):
+        return anchors
+    tracer, x = normalised(objectives, checked, anchors)
     if x.shape[1] == 1:
         return _single(tracer, x, warnings)
-    search = FrontSearch(tracer, tracer.begun(x), found.others)
+    search = FrontSearch(tracer, tracer.initial_designs(x), anchors.others)
     _fill(search, settings.count)
     searched = improved = 0
-    for again in range(2 if settings.checks else 0):
+    for attempt in range(2 if settings.checks else 0):
         places = _places(search, settings)
-        before = [search.designs[k] for k in places]
+        previous = [search.designs[k] for k in places]
         tell("searching for overlooked designs")
-        more = better(tracer, before, replace(effort, seed=settings.seed + 1 + again))
+        reseeded = replace(effort, seed=settings.seed + 1 + attempt)
+        improvements = overlooked(tracer, previous, reseeded)
         searched += len(places)
-        if not more:
+        if not improvements:
             break
-        search.consider(np.stack(more, axis=1))
+        search.consider(np.stack(improvements, axis=1))
         gained = sum(
-            search.designs[k].point.objective < one.point.objective - OVERLOOKED
-            for k, one in zip(places, before, strict=True)
+            search.designs[k].point.objective < design.point.objective - OVERLOOKED
+            for k, design in zip(places, previous, strict=True)
         )
         improved += gained
         if not gained:
             break
         _fill(search, settings.count)
-    return _finished(search, settings.count, warnings, searched, improved)
+    return _assembled(search, settings.count, warnings, searched, improved)
 
 
 def _fill(search: FrontSearch, count: int) -> None:
-    """Find the requested number of designs, evenly spread."""
+    """Add the requested number of designs, evenly spread."""
     if len(search.tracer.ideal) == 2:
         fill_line(search, count)
-        close(search, count)
+        close_gaps(search, count)
     else:
         fill_plane(search, count)
 
 
 def _places(search: FrontSearch, settings: FrontSettings) -> list[int]:
-    """Indices of designs for independent searches: evenly spaced, and one in each wide gap."""
-    inner = [k for k in search.chosen() if search.designs[k].held][1:-1]
-    picked = np.linspace(0, len(inner) - 1, settings.checks + 2)[1:-1].round().astype(int)
-    places = {inner[k] for k in picked.tolist()} if inner else set()
+    """Indices of designs for independent searches: evenly spaced, and in the wide gaps."""
+    inner = [k for k in search.front_indices() if search.designs[k].at_level][1:-1]
+    positions = np.linspace(0, len(inner) - 1, settings.checks + 2)[1:-1].round().astype(int)
+    places = {inner[k] for k in positions.tolist()} if inner else set()
     if len(search.tracer.ideal) == 2:
-        places |= set(middles(search, settings.count)[: settings.checks])
+        places |= set(middle_designs(search, settings.count)[: settings.checks])
     return sorted(places)
 
 
-def _finished(
+def _assembled(
     search: FrontSearch, count: int, warnings: tuple[str, ...], checked: int, improved: int
 ) -> Front:
-    """The final designs, with the designs they dominate and their spacing."""
-    tracer, kept = search.tracer, chosen(search, count)
-    units = search.units[:, kept]
-    replaced = np.stack(search.passed, axis=1) if search.passed else np.empty((len(units), 0))
-    everything = np.concatenate([search.units, search.rest, tracer.normal(replaced)], axis=1)
-    dominated = ~nondominated(np.concatenate([units, everything], axis=1))[len(kept) :]
+    """The front of the final designs, with the dominated designs and the gaps."""
+    tracer, indices = search.tracer, final_designs(search, count)
+    units = search.units[:, indices]
+    replaced = np.stack(search.replaced, axis=1) if search.replaced else np.empty((len(units), 0))
+    everything = np.concatenate([search.units, search.other_units, tracer.normal(replaced)], axis=1)
+    dominated = ~nondominated(np.concatenate([units, everything], axis=1))[len(indices) :]
     return Front(
-        x=np.stack([search.designs[k].point.x[:-1] for k in kept], axis=1),
+        x=np.stack([search.designs[k].point.x[:-1] for k in indices], axis=1),
         values=tracer.values(units),
         units=units,
-        residuals=np.array([search.residual(k) for k in kept]),
+        residuals=np.array([search.residual(k) for k in indices]),
         knee=knee(units),
         passed=tracer.values(everything[:, dominated]),
         checked=checked,
         improved=improved,
-        failed=lost(search, kept),
-        wide=tuple(wide(search, kept)) if len(units) == 2 else (),
+        failed=lost_levels(search, indices),
+        wide=tuple(wide_gaps(search, indices)) if len(units) == 2 else (),
         warnings=warnings,
     )
 
 
 def _single(tracer: Tracer, x: Vector, warnings: tuple[str, ...]) -> Front:
     """A front of one design, which is best in every objective."""
-    one = tracer.begun(x)[0]
-    unit = one.unit[:, None]
-    residual = Conditions(tracer.objectives).residual(one.point)
+    design = tracer.initial_designs(x)[0]
+    unit = design.unit[:, None]
+    residual = Conditions(tracer.objectives).residual(design.point)
     return Front(
         x, tracer.objectives.values(x), unit, np.array([residual]), None,
         np.empty((len(unit), 0)), warnings=warnings,

@@ -1,8 +1,8 @@
-"""Several objectives over one box and one set of margins, and their scalar problems.
+"""Several objectives of one problem, and the scalar problems for the designs of their front.
 
-A point of the front solves: minimise t subject to f_i <= a_i + r_i t for every objective i, in
-normalised objectives, within the requirements [PascolettiSerafini1984]. With every r_i = 1 the
-design is the nearest to the ideal along the line through `a` that trades all objectives equally
+A design of the front solves: minimise t subject to f_i <= a_i + r_i t for every normalised
+objective i, within the requirements [PascolettiSerafini1984]. With r_i = 1 for all objectives, the
+design is nearest to the ideal along the line through `a` that trades all objectives equally
 [DasDennis1998]. An objective with r_i = 0 is only bounded.
 """
 
@@ -18,13 +18,13 @@ from ...base.numeric import Array
 from ..evaluator import Evaluator, Point
 from ..kkt import residual
 from ..problem import BoxProblem, ParametricProblem, PointValues, Vector
-from ..resolve.parallel_descents import RESIDUAL
+from ..resolve.steps import RESIDUAL
 
 LEVEL = "level of the objectives"
 """Name of the variable t."""
 
 LOWEST, HIGHEST = -1.0, 2.0
-"""Bounds of t: between anchors it is within -1 and 1."""
+"""Bounds of t, which is between -1 and 1 within the anchors."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Objectives:
     Parameters
     ----------
     names : of the objectives
-    problem : variables and constraints; its own objective is ignored
+    problem : variables and constraints; its objective is ignored
     evaluate : maps points (n, k) to `PointValues` with objectives (objectives, k), to be minimised
     """
 
@@ -47,32 +47,32 @@ class Objectives:
         """Number of objectives."""
         return len(self.names)
 
-    def picked(self) -> ParametricProblem:
-        """The problem of a single objective; the parameter is its index."""
+    def selection(self) -> ParametricProblem:
+        """The problem of one objective; the parameter is the index of the objective."""
 
         def evaluate(points: Array, parameters: Array) -> PointValues:
-            found = self.evaluate(points)
-            which = np.broadcast_to(np.asarray(parameters[0], dtype=np.intp), points.shape[1:])
-            stacked = self._stacked(found, points)
-            return replace(found, objective=stacked[which, np.arange(len(which))])
+            values = self.evaluate(points)
+            index = np.broadcast_to(np.asarray(parameters[0], dtype=np.intp), points.shape[1:])
+            stacked = self._stacked(values, points)
+            return replace(values, objective=stacked[index, np.arange(len(index))])
 
         return ParametricProblem(self.problem, ["objective"], np.zeros(1), evaluate)
 
-    def alone(self, index: int) -> BoxProblem:
-        """The problem of one objective alone."""
-        return self.picked().at(np.array([index]))
+    def single_problem(self, index: int) -> BoxProblem:
+        """The problem of one objective."""
+        return self.selection().at(np.array([index]))
 
-    def like(self, checked: Evaluator, index: int) -> Evaluator:
-        """An evaluator of one objective, reusing the gradient check of `scaled`."""
-        own, m = Evaluator(self.alone(index)), len(self.problem.constraint_names)
+    def evaluator_of(self, checked: Evaluator, index: int) -> Evaluator:
+        """An evaluator of one objective that reuses the gradient check of `scaled`."""
+        evaluator, m = Evaluator(self.single_problem(index)), len(self.problem.constraint_names)
         rows = [
             1 + m + index,
             *range(1, 1 + m),
             *range(1 + m + self.count, checked.problem.row_count),
         ]
-        own.complex_works = checked.complex_works
-        own.difference_rows = checked.difference_rows[rows]
-        return own
+        evaluator.complex_works = checked.complex_works
+        evaluator.difference_rows = checked.difference_rows[rows]
+        return evaluator
 
     def checked(self) -> tuple[Evaluator, tuple[str, ...]]:
         """An evaluator of `scaled` with checked gradients, and the warnings of the check."""
@@ -102,11 +102,11 @@ class Objectives:
 
         def evaluate(points: Array, parameters: Array) -> PointValues:
             x, level = points[:-1], points[-1]
-            found = self.evaluate(x)
-            unit = (self._stacked(found, x) - ideal[:, None]) / width[:, None]
+            values = self.evaluate(x)
+            unit = (self._stacked(values, x) - ideal[:, None]) / width[:, None]
             front = parameters[:count] + parameters[count:] * level - unit
-            margins = front if found.constraints is None else _joined(found.constraints, front)
-            return PointValues(level, margins, found.equalities)
+            margins = front if values.constraints is None else _joined(values.constraints, front)
+            return PointValues(level, margins, values.equalities)
 
         neutral = np.concatenate([np.zeros(count), np.ones(count)])
         start = problem.start
@@ -122,7 +122,7 @@ class Objectives:
             relaxable=None,
             groups=None if grouped is None else (*grouped, *range(-count, 0)),
         )
-        names = [f"{what} {name}" for what in ("level of", "way of") for name in self.names]
+        names = [f"{prefix} {name}" for prefix in ("level of", "way of") for name in self.names]
         return ParametricProblem(plain, names, neutral, evaluate)
 
 
@@ -136,14 +136,14 @@ def _joined(constraints: Array, front: Array) -> Array:
 class Conditions:
     """The optimality conditions of a design of the front.
 
-    A design of the front minimises at least one objective with the others bounded at their values
-    here. Its residual is that of the first such problem it solves, else the least.
+    A design of the front minimises at least one objective with the others bounded at their values.
+    Its residual is the first below the tolerance of such a problem, else the smallest.
     """
 
     objectives: Objectives
 
     @cached_property
-    def _held(self) -> list[Evaluator]:
+    def _evaluators(self) -> list[Evaluator]:
         """Evaluators of the problems that minimise one objective with the others bounded."""
         problem, names = self.objectives.problem, self.objectives.names
         return [
@@ -160,24 +160,25 @@ class Conditions:
 
     def residual(self, point: Point) -> float:
         """The residual at a point (variables and t) whose gradients are known."""
-        least = np.inf
+        smallest = np.inf
         for index in range(self.objectives.count):
-            least = min(least, self._one(point, index))
-            if least <= RESIDUAL:
+            smallest = min(smallest, self._residual_of(point, index))
+            if smallest <= RESIDUAL:
                 break
-        return float(least)
+        return float(smallest)
 
-    def _one(self, point: Point, index: int) -> float:
+    def _residual_of(self, point: Point, index: int) -> float:
         """The residual of minimising one objective with the others bounded."""
         assert point.jacobian is not None
         count, problem = self.objectives.count, self.objectives.problem
         inner, size = len(problem.constraint_names), len(point.z) - 1
         front = slice(1 + inner, 1 + inner + count)
-        others = [1 + inner + i for i in range(count) if i != index]
+        bounded = [1 + inner + i for i in range(count) if i != index]
         slopes = point.jacobian[:, :size]
-        order = [*range(1, 1 + inner), *others, *range(front.stop, len(point.rows))]
-        rows = np.concatenate([[1.0], point.rows[order]])  # a vanishing gradient counts as 1e-3
+        order = [*range(1, 1 + inner), *bounded, *range(front.stop, len(point.rows))]
+        # an objective of 1 makes a vanishing gradient count as 1e-3
+        rows = np.concatenate([[1.0], point.rows[order]])
         rows[1 + inner : inner + count] = 0.0
         jacobian = np.concatenate([-slopes[front][index][None], slopes[order]])
         at = Point(point.z[:-1], point.x[:-1], rows, point.valid, point.violation, jacobian)
-        return residual(self._held[index], at)
+        return residual(self._evaluators[index], at)

@@ -1,13 +1,13 @@
-"""Designs of three or more objectives over the front, and an even spread of the final designs.
-
-The front may bulge beyond its anchors. So the neighbours of every level with a design are tried,
-until the front ends. There the level leads to its edge: the objectives that can still improve are
-improved. Wide holes where the front is steep are filled; gaps that remain are explained.
+"""Levels along the front, and an even selection of its designs.
 
 Levels lie on the plane of the anchors. Two objectives use the line u -> (u, 1 - u). Along it a
 front is never steeper than 45 degrees, so its length between two places is at most twice their
-difference in u. More objectives use a lattice of the plane sum = 1, where its lines meet the box of
-ideal and nadir.
+difference in u. Three or more objectives use the points of a lattice on the plane sum = 1 whose
+lines meet the box of ideal and nadir.
+
+A front may extend beyond its anchors. The search therefore tries the neighbours of every level with
+a design, up to the edge of the front. There it improves the objectives that still can improve. Then
+it fills wide holes and explains the gaps that remain.
 """
 
 from __future__ import annotations
@@ -21,12 +21,22 @@ import numpy.typing as npt
 
 from ...base.progress import tell
 from ..problem import Vector
-from ..resolve.parallel_descents import RESIDUAL
-from . import plane, tracer
-from .tracer import BETTER, HELD, JUMP, FrontDesign, FrontSearch, FrontStart, Indices, distances
+from ..resolve.steps import RESIDUAL
+from .tracer import (
+    BETTER,
+    HELD,
+    JUMP,
+    FrontDesign,
+    FrontSearch,
+    FrontStart,
+    Indices,
+    distances,
+    nearest,
+    thinned,
+)
 
 STEEPEST = 2.0
-"""Maximum length of a two-objective front per unit of u."""
+"""Maximum length of a front of two objectives per unit of u."""
 
 
 def on_line(places: Vector) -> Vector:
@@ -42,36 +52,37 @@ def lengths(places: Vector, units: Vector) -> Vector:
     places : u (k,), ascending
     units : normalised objectives (2, k) there
     """
-    way = np.sqrt((np.diff(units, axis=1) ** 2).sum(axis=0))
-    return np.asarray(np.minimum(way, STEEPEST * np.diff(places)))
+    chords = np.sqrt((np.diff(units, axis=1) ** 2).sum(axis=0))
+    return np.asarray(np.minimum(chords, STEEPEST * np.diff(places)))
 
 
 def between(places: Vector, units: Vector, count: int) -> Vector:
-    """The requested number of new places u, where the front is longest between neighbours."""
-    way = lengths(places, units)
-    pieces = np.ones(len(way), dtype=int)
+    """`count` new places u, where the front between neighbours is longest."""
+    sections = lengths(places, units)
+    parts_of = np.ones(len(sections), dtype=int)
     for _ in range(count):
-        longest = int(np.argmax(way / pieces))
-        if not way[longest] > 0:
+        longest = int(np.argmax(sections / parts_of))
+        if not sections[longest] > 0:
             break
-        pieces[longest] += 1
-    parts = [
-        places[k] + (places[k + 1] - places[k]) * np.arange(1, n) / n for k, n in enumerate(pieces)
+        parts_of[longest] += 1
+    new_places = [
+        places[k] + (places[k + 1] - places[k]) * np.arange(1, n) / n
+        for k, n in enumerate(parts_of)
     ]
-    return np.concatenate(parts) if parts else np.empty(0)
+    return np.concatenate(new_places) if new_places else np.empty(0)
 
 
 def places(objectives: int, steps: int) -> list[tuple[int, ...]]:
-    """Places of a lattice, in steps from the middle, whose lines meet the unit box.
+    """Lattice points, in steps from the middle, whose lines meet the unit box.
 
     >>> len(places(3, 1)), len(places(3, 2))
     (1, 7)
     """
     axis = range(-steps, steps + 1)
     return [
-        (*most, last)
-        for most in product(axis, repeat=objectives - 1)
-        if (last := -sum(most)) in axis and max(*most, last) - min(*most, last) <= steps
+        (*head, last)
+        for head in product(axis, repeat=objectives - 1)
+        if (last := -sum(head)) in axis and max(*head, last) - min(*head, last) <= steps
     ]
 
 
@@ -81,13 +92,13 @@ def around(place: tuple[int, ...]) -> list[tuple[int, ...]]:
     >>> around((0, 0))
     [(-1, 1), (1, -1)]
     """
-    found = []
+    neighbours = []
     for up, down in permutations(range(len(place)), 2):
-        near = list(place)
-        near[up] += 1
-        near[down] -= 1
-        found.append(tuple(near))
-    return sorted(found)
+        neighbour = list(place)
+        neighbour[up] += 1
+        neighbour[down] -= 1
+        neighbours.append(tuple(neighbour))
+    return sorted(neighbours)
 
 
 def level(place: Sequence[int], steps: int) -> Vector:
@@ -99,13 +110,13 @@ Place = tuple[int, ...]
 """Lattice steps from the middle, one number per objective, of sum 0."""
 
 SURPLUS = 2.0
-"""Designs computed per design requested, so that the farthest apart can be selected."""
+"""Designs computed per requested design; the most distant of these are selected."""
 
 COARSE = 4
 """Steps of the first lattice from the middle to the level of an anchor."""
 
 RESERVE = 12
-"""Maximum levels of a lattice per design requested."""
+"""Maximum levels of a lattice per requested design."""
 
 GROWN = 0.05
 """Relative change of an objective's range that triggers a new normalisation."""
@@ -114,7 +125,7 @@ RESCALES = 3
 """Maximum number of new normalisations."""
 
 PRICED = 1e-6
-"""Price of an objective, of 1 in total, above which its level is active."""
+"""Price of an objective (1 in total) above which its level is active."""
 
 HOLD = 1e-9
 """Normalised slack of a bounded objective while others improve."""
@@ -123,167 +134,175 @@ ROUNDS = 12
 """Maximum rounds of filling holes."""
 
 ELSEWHERE = 1e-3
-"""Difference of a variable above which two designs at one level are different."""
+"""Difference of a variable above which two designs at one level differ."""
 
 CLOSE = 2.0
-"""Largest shortfall of a design worth trying, relative to the distance of neighbours."""
+"""Largest shortfall of a design from another valley, relative to the distance of neighbours."""
 
 CROSSINGS = 4
-"""Maximum rounds of trying designs from their neighbours."""
+"""Maximum rounds of retrying designs from another valley."""
 
 NEIGHBOURS = 14
-"""Neighbours of a design that are checked for a hole between."""
+"""Number of neighbours of a design that are checked for a hole between."""
 
 
 def fill_plane(search: FrontSearch, count: int) -> None:
-    """Cover the front with more designs than requested, evenly spread."""
-    objectives, most = search.tracer.objectives.count, RESERVE * count + 60
+    """Cover a front of three or more objectives with more designs than requested."""
+    objectives, max_levels = search.tracer.objectives.count, RESERVE * count + 60
     if len(search.designs) == objectives:
         steps = COARSE if objectives == 3 else COARSE // 2
         lattice = places(objectives, steps)
         for _ in range(1 + RESCALES):
-            _flooded(search, lattice, steps, most)
+            _flood(search, lattice, steps, max_levels)
             if not _renormalised(search):
                 break
-            lattice = _nearest(search, steps)
+            lattice = _nearest_places(search, steps)
         while len(places(objectives, steps + 1)) <= SURPLUS * count:
             steps += 1
-        held = _flooded(search, places(objectives, steps), steps, most)
-        missing = SURPLUS * count / max(held, 1)
-        if len(search.chosen()) < count:
+        successes = _flood(search, places(objectives, steps), steps, max_levels)
+        missing = SURPLUS * count / max(successes, 1)
+        if len(search.front_indices()) < count:
             finer = round(steps * missing ** (1 / (objectives - 1)))
-            _flooded(search, _nearest(search, finer), finer, most)
+            _flood(search, _nearest_places(search, finer), finer, max_levels)
     _fill_holes(search, count)
     for _ in range(CROSSINGS):
-        if not _crossed(search):
+        if not _retry_crosswise(search):
             break
 
 
-def _nearest(search: FrontSearch, steps: int) -> list[Place]:
-    """The lattice places nearest to the known designs."""
-    found: set[Place] = set()
+def _nearest_places(search: FrontSearch, steps: int) -> list[Place]:
+    """Lattice points nearest to the known designs."""
+    nearest: set[Place] = set()
     for design in search.designs:
         exact = (design.unit - design.unit.mean()) * steps
-        whole = np.rint(exact).astype(int)
-        whole[int(np.argmax(np.abs(exact - whole)))] -= whole.sum()
-        found.add(tuple(whole.tolist()))
-    return sorted(found)
+        place = np.rint(exact).astype(int)
+        place[int(np.argmax(np.abs(exact - place)))] -= place.sum()
+        nearest.add(tuple(place.tolist()))
+    return sorted(nearest)
 
 
-def _flooded(search: FrontSearch, begun: Iterable[Place], steps: int, most: int) -> int:
-    """Try lattice places and the neighbours of every success; returns the number of successes."""
-    tried: set[Place] = set()
-    waiting, held = list(begun), 0
-    while waiting and len(tried) < most:
-        tell("covering the front", min(len(tried) / most, 1.0))
-        tried |= set(waiting)
-        starts = [_beside(search, level(place, steps)) for place in waiting]
-        found = search.compared(starts)
-        there = [p for p, one in zip(waiting, found, strict=True) if one is not None and one.held]
-        held += len(there)
-        search.take(_all_bettered(search, found))
-        following = {near for place in there for near in around(place)}
-        waiting = sorted(following - tried)
-    return held
+def _flood(search: FrontSearch, first_places: Iterable[Place], steps: int, max_levels: int) -> int:
+    """Try lattice points and the neighbours of every success; returns the number of successes."""
+    visited: set[Place] = set()
+    queue, successes = list(first_places), 0
+    while queue and len(visited) < max_levels:
+        tell("covering the front", min(len(visited) / max_levels, 1.0))
+        visited |= set(queue)
+        starts = [_start_beside(search, level(place, steps)) for place in queue]
+        designs = search.improved_designs(starts)
+        pairs = zip(queue, designs, strict=True)
+        reached_places = [p for p, design in pairs if design is not None and design.at_level]
+        successes += len(reached_places)
+        search.add(_fully_improved(search, designs))
+        neighbours = {neighbour for place in reached_places for neighbour in around(place)}
+        queue = sorted(neighbours - visited)
+    return successes
 
 
-def _beside(search: FrontSearch, level: Vector) -> FrontStart:
-    """A start from the designs next to a level, weighted by proximity."""
-    away = distances(search.plane, level - level.mean())
-    near = np.argsort(away, kind="stable")[: len(level)]
-    shares = 1 / np.maximum(away[near], 1e-9) ** 2
-    some = [search.designs[k] for k in near]
-    z = np.stack([one.point.z for one in some], axis=1) @ (shares / shares.sum())
-    t = max(float((one.unit - level).max()) for one in some)
-    return FrontStart(level, np.ones(len(level)), search.tracer.to_t(z, t), some[0].hessian)
+def _start_beside(search: FrontSearch, level: Vector) -> FrontStart:
+    """A start from the designs nearest to a level, weighted by proximity."""
+    distance = distances(search.plane, level - level.mean())
+    nearest = np.argsort(distance, kind="stable")[: len(level)]
+    shares = 1 / np.maximum(distance[nearest], 1e-9) ** 2
+    designs = [search.designs[k] for k in nearest]
+    z = np.stack([design.point.z for design in designs], axis=1) @ (shares / shares.sum())
+    t = max(float((design.unit - level).max()) for design in designs)
+    return FrontStart(level, np.ones(len(level)), search.tracer.to_t(z, t), designs[0].hessian)
 
 
-def _all_bettered(search: FrontSearch, found: Sequence[FrontDesign | None]) -> list[FrontDesign]:
-    """Improve the objectives of each design that cost the others nothing, at its own level.
+def _fully_improved(
+    search: FrontSearch, designs: Sequence[FrontDesign | None]
+) -> list[FrontDesign]:
+    """Improve the objectives of each design that can improve without a loss of the others.
 
-    An objective whose level is not active has no price. With the others bounded at their values it
-    is improved, until every objective has a price [Marler2004].
+    An objective whose level is not active has no price. It is improved, with the others bounded at
+    their values, until every objective has a price [Marler2004].
     """
-    done: list[FrontDesign] = []
-    left = [(one, search.tracer.prices(one) > PRICED) for one in found if one is not None]
-    for again in range(search.tracer.objectives.count):
-        done += [one for one, firm in left if firm.all()]
-        left = [(one, firm) for one, firm in left if not firm.all()]
-        if not left:
+    finished: list[FrontDesign] = []
+    prices = search.tracer.prices
+    pending = [(design, prices(design) > PRICED) for design in designs if design is not None]
+    for stage in range(search.tracer.objectives.count):
+        finished += [design for design, active in pending if active.all()]
+        pending = [(design, active) for design, active in pending if not active.all()]
+        if not pending:
             break
-        starts = [_freed(search, one, firm) for one, firm in left]
-        bettered = search.tracer.solve(starts, [one for one, _ in left])
-        both = list(zip(bettered, left, strict=True))
-        if again:  # without any slack, the last stage is the end
-            done += [one for new, (one, _) in both if new is None]
-        left = [
-            (new, firm | (search.tracer.prices(new) > PRICED))
-            for new, (_, firm) in both
+        starts = [_improving_start(search, design, active) for design, active in pending]
+        improved = search.tracer.solve(starts, [design for design, _ in pending])
+        outcomes = list(zip(improved, pending, strict=True))
+        if stage:  # no slack left: keep the design of the last stage
+            finished += [design for new, (design, _) in outcomes if new is None]
+        pending = [
+            (new, active | (prices(new) > PRICED))
+            for new, (_, active) in outcomes
             if new is not None
         ]
-    return search.tracer.placed(done)
+    return search.tracer.at_own_levels(finished)
 
 
-def _freed(
-    search: FrontSearch, front_design: FrontDesign, firm: npt.NDArray[np.bool_]
+def _improving_start(
+    search: FrontSearch, front_design: FrontDesign, active: npt.NDArray[np.bool_]
 ) -> FrontStart:
-    """A start that improves the other objectives, with the firm ones bounded."""
-    level, way = np.where(firm, front_design.unit + HOLD, front_design.level), (~firm).astype(float)
-    t = float((front_design.unit - front_design.level)[~firm].max())
-    return FrontStart(level, way, search.tracer.to_t(front_design.point.z, t), front_design.hessian)
+    """A start that improves the inactive objectives, with the active objectives bounded."""
+    level = np.where(active, front_design.unit + HOLD, front_design.level)
+    direction = (~active).astype(float)
+    t = float((front_design.unit - front_design.level)[~active].max())
+    z = search.tracer.to_t(front_design.point.z, t)
+    return FrontStart(level, direction, z, front_design.hessian)
 
 
 def _renormalised(search: FrontSearch) -> bool:
-    """Normalise again if the range of the front has changed; whether it has."""
-    units = search.units[:, search.chosen()]
-    low, wide = units.min(axis=1), np.ptp(units, axis=1)
-    if (np.abs(low) < GROWN).all() and (np.abs(wide - 1) < GROWN).all():
+    """Normalise again if the range of the front has changed; returns whether it has."""
+    units = search.units[:, search.front_indices()]
+    low, width = units.min(axis=1), np.ptp(units, axis=1)
+    if (np.abs(low) < GROWN).all() and (np.abs(width - 1) < GROWN).all():
         return False
-    search.rescale(low, np.where(wide > HELD, wide, 1.0))
+    search.rescale(low, np.where(width > HELD, width, 1.0))
     return True
 
 
 def _fill_holes(search: FrontSearch, count: int) -> None:
-    """Add levels between the neighbours farthest apart, until there are enough designs."""
-    tried: set[tuple[int, int]] = set()
-    seen: list[FrontDesign] = []  # kept alive, as an id may be reused
+    """Add levels between the most distant neighbours until there are enough designs."""
+    tried_pairs: set[tuple[int, int]] = set()
+    references: list[FrontDesign] = []  # keeps the ids unique
     for number in range(ROUNDS):
-        chosen = search.chosen()
-        missing = int(np.ceil(SURPLUS * count)) - len(chosen)
+        indices = search.front_indices()
+        missing = int(np.ceil(SURPLUS * count)) - len(indices)
         if missing <= 0:
             return
         tell("filling holes of the front", number / ROUNDS)
-        designs = [search.designs[k] for k in chosen]
-        seen += designs
-        pairs = [pair for pair in _apart(search, chosen) if _key(designs, pair) not in tried]
-        pairs = pairs[: max(min(missing, len(chosen) // 3), 1)]
+        designs = [search.designs[k] for k in indices]
+        references += designs
+        pairs = _neighbour_pairs(search, indices)
+        pairs = [pair for pair in pairs if _key(designs, pair) not in tried_pairs]
+        pairs = pairs[: max(min(missing, len(indices) // 3), 1)]
         if not pairs:
             return
-        tried |= {_key(designs, pair) for pair in pairs}
-        starts = [_middle(search, designs[i], designs[j]) for i, j in pairs]
-        search.take(_all_bettered(search, search.compared(starts)))
+        tried_pairs |= {_key(designs, pair) for pair in pairs}
+        starts = [_middle_start(search, designs[i], designs[j]) for i, j in pairs]
+        search.add(_fully_improved(search, search.improved_designs(starts)))
 
 
 def _key(designs: Sequence[FrontDesign], pair: tuple[int, int]) -> tuple[int, int]:
     return id(designs[pair[0]]), id(designs[pair[1]])
 
 
-def _apart(search: FrontSearch, chosen: Indices) -> list[tuple[int, int]]:
-    """Neighbours without another design between them, farthest apart first."""
-    units, plane = search.units[:, chosen], search.plane[:, chosen]
-    found: dict[tuple[int, int], float] = {}
-    for i in range(len(chosen)):
-        near = np.argsort(distances(plane, plane[:, i]), kind="stable")[1 : 1 + NEIGHBOURS]
-        for j in near.tolist():
-            middle = (plane[:, i] + plane[:, j]) / 2
-            radius = distances(plane[:, [i]], middle)[0] * (1 - 1e-9)
-            others = near[near != j]
-            if not (distances(plane[:, others], middle) < radius).any():
-                found[min(i, j), max(i, j)] = float(distances(units[:, [i]], units[:, j])[0])
-    return sorted(found, key=lambda pair: -found[pair])
+def _neighbour_pairs(search: FrontSearch, indices: Indices) -> list[tuple[int, int]]:
+    """Neighbours without another design between them, most distant first."""
+    units, projected = search.units[:, indices], search.plane[:, indices]
+    gaps: dict[tuple[int, int], float] = {}
+    for i in range(len(indices)):
+        order = np.argsort(distances(projected, projected[:, i]), kind="stable")
+        candidates = order[1 : 1 + NEIGHBOURS]
+        for j in candidates.tolist():
+            middle = (projected[:, i] + projected[:, j]) / 2
+            radius = distances(projected[:, [i]], middle)[0] * (1 - 1e-9)
+            others = candidates[candidates != j]
+            if not (distances(projected[:, others], middle) < radius).any():
+                gaps[min(i, j), max(i, j)] = float(distances(units[:, [i]], units[:, j])[0])
+    return sorted(gaps, key=lambda pair: -gaps[pair])
 
 
-def _middle(search: FrontSearch, front_design: FrontDesign, other: FrontDesign) -> FrontStart:
+def _middle_start(search: FrontSearch, front_design: FrontDesign, other: FrontDesign) -> FrontStart:
     """A start at the level midway between two designs."""
     level = (front_design.unit + other.unit) / 2
     level = level - level.mean() + 1 / len(level)
@@ -292,114 +311,118 @@ def _middle(search: FrontSearch, front_design: FrontDesign, other: FrontDesign) 
     return FrontStart(level, np.ones(len(level)), search.tracer.to_t(z, t), front_design.hessian)
 
 
-def _crossed(search: FrontSearch) -> bool:
-    """Retry designs from nearly equal ones with different variables.
+def _retry_crosswise(search: FrontSearch) -> bool:
+    """Retry designs from nearly equal designs with different variables.
 
-    Whether any was merely local.
+    Returns whether any design was merely local.
     """
-    chosen = search.chosen()
-    both = [(int(chosen[i]), int(chosen[j])) for i, j in _doubtful(search, chosen)]
+    indices = search.front_indices()
+    pairs = [(int(indices[i]), int(indices[j])) for i, j in _competitors(search, indices)]
     starts = []
-    for to, way in both:
-        one, other = search.designs[to], search.designs[way]
-        t = float((other.unit - one.unit).max())
-        at = search.tracer.to_t(other.point.z, t)
-        starts.append(FrontStart(one.level, one.way, at, other.hessian))
-    others = [
-        new
-        for (to, _), new in zip(both, search.tracer.solve(starts), strict=True)
-        if new is not None and _elsewhere(search.designs[to], new)
+    for target, source in pairs:
+        design, other = search.designs[target], search.designs[source]
+        t = float((other.unit - design.unit).max())
+        z = search.tracer.to_t(other.point.z, t)
+        starts.append(FrontStart(design.level, design.direction, z, other.hessian))
+    alternatives = [
+        alternative
+        for (target, _), alternative in zip(pairs, search.tracer.solve(starts), strict=True)
+        if alternative is not None and _is_alternative(search.designs[target], alternative)
     ]
-    before = {id(search.designs[k]) for k in chosen}
-    search.take(_all_bettered(search, others))
-    return bool(others) and not before <= {id(search.designs[k]) for k in search.chosen()}
+    previous = {id(search.designs[k]) for k in indices}
+    search.add(_fully_improved(search, alternatives))
+    remaining = {id(search.designs[k]) for k in search.front_indices()}
+    return bool(alternatives) and not previous <= remaining
 
 
-def _elsewhere(front_design: FrontDesign, new: FrontDesign) -> bool:
-    """Whether an equally good design at the same level differs."""
-    far = np.abs(new.point.z[:-1] - front_design.point.z[:-1]).max() > ELSEWHERE
-    return bool(far and new.point.objective < front_design.point.objective + BETTER)
+def _is_alternative(front_design: FrontDesign, alternative: FrontDesign) -> bool:
+    """Whether a design at the same level is equally good but different."""
+    differs = np.abs(alternative.point.z[:-1] - front_design.point.z[:-1]).max() > ELSEWHERE
+    return bool(differs and alternative.point.objective < front_design.point.objective + BETTER)
 
 
-def _doubtful(search: FrontSearch, chosen: Indices) -> list[tuple[int, int]]:
+def _competitors(search: FrontSearch, indices: Indices) -> list[tuple[int, int]]:
     """Pairs of a design and its closest competitor from another valley."""
-    units = search.units[:, chosen]
-    z = np.stack([search.designs[k].point.z[:-1] for k in chosen], axis=1)
-    neighbours = np.array(_apart(search, chosen), dtype=np.intp).reshape(-1, 2)
+    units = search.units[:, indices]
+    z = np.stack([search.designs[k].point.z[:-1] for k in indices], axis=1)
+    neighbours = np.array(_neighbour_pairs(search, indices), dtype=np.intp).reshape(-1, 2)
     if not len(neighbours):
         return []
-    far = JUMP * np.median(np.abs(z[:, neighbours[:, 0]] - z[:, neighbours[:, 1]]).max(axis=0))
-    near = CLOSE * np.median(tracer.nearest(units))
+    jump = JUMP * np.median(np.abs(z[:, neighbours[:, 0]] - z[:, neighbours[:, 1]]).max(axis=0))
+    tolerance = CLOSE * np.median(nearest(units))
     pairs = []
-    for i in range(len(chosen)):
+    for i in range(len(indices)):
         behind = (units - units[:, [i]]).max(axis=0)
-        behind[np.abs(z - z[:, [i]]).max(axis=0) <= far] = np.inf
-        if behind.min() <= near:
+        behind[np.abs(z - z[:, [i]]).max(axis=0) <= jump] = np.inf
+        if behind.min() <= tolerance:
             pairs.append((i, int(np.argmin(behind))))
     return pairs
 
 
 GROWTH = 10
-"""Maximum new designs per round, relative to the known ones."""
+"""Maximum new designs per round, relative to the number of known designs."""
 MOST_ROUNDS = 12
 """Maximum rounds: a continuous front takes two or three."""
 
 
 def fill_line(search: FrontSearch, count: int) -> None:
-    """Add designs between two anchors, wherever the front is longest."""
+    """Add designs between two anchors where the front is longest."""
     for number in range(MOST_ROUNDS):
-        missing = count - len(search.chosen())
+        missing = count - len(search.front_indices())
         if missing <= 0:
             break
         tell("following the front", 1 - missing / count)
         search.sort()
         places = np.array([design.level[0] for design in search.designs])
-        more = plane.between(places, search.units, min(missing, GROWTH * (len(places) - 1) - 1))
-        if not len(more):
+        new_places = between(places, search.units, min(missing, GROWTH * (len(places) - 1) - 1))
+        if not len(new_places):
             break
-        search.solve(between_on_line(search, more), firmly=number > 0)
-    search.cross()
+        search.solve(between_on_line(search, new_places), firmly=number > 0)
+    search.retry_jumps()
 
 
 def between_on_line(search: FrontSearch, places: Sequence[float] | Vector) -> list[FrontStart]:
     """Starts at places u between the known designs, from their neighbours."""
     search.sort()
-    known = [design.level[0] for design in search.designs]
+    levels = [design.level[0] for design in search.designs]
     return [
-        _between(search.designs, int(np.searchsorted(known, u)), float(u), np.ones(2))
+        _start_between(search.designs, int(np.searchsorted(levels, u)), float(u), np.ones(2))
         for u in places
     ]
 
 
-def _between(designs: Sequence[FrontDesign], k: int, u: float, way: Vector) -> FrontStart:
-    """A start before design k by interpolation; from the nearer neighbour if the front jumps."""
+def _start_between(
+    designs: Sequence[FrontDesign], k: int, u: float, direction: Vector
+) -> FrontStart:
+    """An interpolated start before design k, or the nearer neighbour if the front jumps."""
     left, right = designs[k - 1], designs[k]
     low, high = left.level[0], right.level[0]
-    near = left if u - low < high - u else right
-    z = near.point.z
+    nearer = left if u - low < high - u else right
+    z = nearer.point.z
     if not _jumps(left, right):
-        some = [left, right]
+        support = [left, right]
         if k > 1 and not _jumps(designs[k - 2], left):
-            some.insert(0, designs[k - 2])
+            support.insert(0, designs[k - 2])
         if k + 1 < len(designs) and not _jumps(right, designs[k + 1]):
-            some.append(designs[k + 1])
-        places = np.array([one.level[0] for one in some])
-        z = np.stack([one.point.z for one in some], axis=1) @ _weights(places, u)
-    return FrontStart(plane.on_line(np.array([u]))[:, 0], way, z, near.hessian)
+            support.append(designs[k + 1])
+        places = np.array([design.level[0] for design in support])
+        z = np.stack([design.point.z for design in support], axis=1) @ _weights(places, u)
+    return FrontStart(on_line(np.array([u]))[:, 0], direction, z, nearer.hessian)
 
 
 def _jumps(left: FrontDesign, right: FrontDesign) -> bool:
     """Whether two designs are farther apart than on a continuous front."""
-    wide = right.level[0] - left.level[0]
-    return bool(np.linalg.norm(right.unit - left.unit) >= plane.STEEPEST * wide)
+    width = right.level[0] - left.level[0]
+    return bool(np.linalg.norm(right.unit - left.unit) >= STEEPEST * width)
 
 
 def _weights(places: Vector, u: float) -> Vector:
-    """Weights for interpolating values at places (k,) at u, by the polynomial through all."""
-    apart = places[:, None] - places + np.eye(len(places))
-    to = u - places + np.zeros((len(places), 1))
-    np.fill_diagonal(to, 1.0)
-    return np.asarray((to / apart - np.eye(len(places)) * (1 / np.diag(apart) - 1)).prod(axis=1))
+    """Weights of values at places (k,) for polynomial interpolation at u."""
+    differences = places[:, None] - places + np.eye(len(places))
+    offsets = u - places + np.zeros((len(places), 1))
+    np.fill_diagonal(offsets, 1.0)
+    correction = np.eye(len(places)) * (1 / np.diag(differences) - 1)
+    return np.asarray((offsets / differences - correction).prod(axis=1))
 
 
 WIDEST = 3.0
@@ -420,10 +443,10 @@ class FrontGap:
 
     Parameters
     ----------
-    after : index of the design before it
-    size : distance of its two designs
+    after : index of the design before the gap
+    size : distance between the two designs
     reach : upper limit of the front's length between them, from the levels tried
-    jump : whether that is at most a median gap, so that the front is discontinuous here
+    jump : whether the reach is at most a median gap, so that the front is discontinuous here
     """
 
     after: int
@@ -432,27 +455,28 @@ class FrontGap:
     jump: bool
 
 
-def chosen(search: FrontSearch, count: int) -> tracer.Indices:
-    """The requested number of designs, farthest apart, along the first objective."""
-    kept = np.array([k for k in search.chosen() if search.residual(k) <= RESIDUAL], dtype=np.intp)
-    units = search.units[:, kept]
+def final_designs(search: FrontSearch, count: int) -> Indices:
+    """`count` designs, as distant as possible, in order of the first objective."""
+    optimal = [k for k in search.front_indices() if search.residual(k) <= RESIDUAL]
+    indices = np.array(optimal, dtype=np.intp)
+    units = search.units[:, indices]
     order = np.lexsort(units[::-1])
-    kept, units = kept[order], units[:, order]
-    if len(kept) <= count:
-        return kept
-    firm = [*np.argmin(units, axis=1).tolist(), *np.argmax(units, axis=1).tolist()]
+    indices, units = indices[order], units[:, order]
+    if len(indices) <= count:
+        return indices
+    fixed_list = [*np.argmin(units, axis=1).tolist(), *np.argmax(units, axis=1).tolist()]
     if len(units) == 2:
-        jumps = [gap.after for gap in wide(search, kept) if gap.jump]
-        firm += [k + side for k in jumps for side in (0, 1)]
-    first = np.array(list(dict.fromkeys(firm))[:count], dtype=np.intp)
-    return kept[tracer.thinned(units, first, count)]
+        jumps = [gap.after for gap in wide_gaps(search, indices) if gap.jump]
+        fixed_list += [k + side for k in jumps for side in (0, 1)]
+    fixed = np.array(list(dict.fromkeys(fixed_list))[:count], dtype=np.intp)
+    return indices[thinned(units, fixed, count)]
 
 
-def wide(search: FrontSearch, kept: tracer.Indices) -> list[FrontGap]:
-    """The wide gaps between designs of two objectives, in order."""
-    units = search.units[:, kept]
+def wide_gaps(search: FrontSearch, indices: Indices) -> list[FrontGap]:
+    """Wide gaps between designs of two objectives, in order."""
+    units = search.units[:, indices]
     sizes = np.sqrt((np.diff(units, axis=1) ** 2).sum(axis=0))
-    reaches = np.array([float(_pieces(search, *two).sum()) for two in _pairs(kept)])
+    reaches = np.array([float(_section_lengths(search, *pair).sum()) for pair in _pairs(indices)])
     middle = float(np.median(np.minimum(sizes, reaches))) if len(sizes) else 0.0
     return [
         FrontGap(k, float(sizes[k]), float(reaches[k]), bool(reaches[k] <= middle))
@@ -460,66 +484,66 @@ def wide(search: FrontSearch, kept: tracer.Indices) -> list[FrontGap]:
     ]
 
 
-def close(search: FrontSearch, count: int) -> None:
-    """Add designs of two objectives in wide gaps until only jumps remain."""
+def close_gaps(search: FrontSearch, count: int) -> None:
+    """Add designs of two objectives in wide gaps until all remaining gaps are jumps."""
     for number in range(SPACING_ROUNDS):
-        kept = chosen(search, count)
-        open_ = [gap for gap in wide(search, kept) if not gap.jump]
-        if not open_:
+        indices = final_designs(search, count)
+        open_gaps = [gap for gap in wide_gaps(search, indices) if not gap.jump]
+        if not open_gaps:
             return
         tell("closing gaps of the front", number / SPACING_ROUNDS)
         places = []
-        for gap in open_:
-            among = _among(search, kept[gap.after], kept[gap.after + 1])
-            levels = np.array([search.designs[k].level[0] for k in among])
-            more = plane.between(levels, search.units[:, among], PIECES - 1)
-            places += more.tolist()
+        for gap in open_gaps:
+            section = _section(search, indices[gap.after], indices[gap.after + 1])
+            levels = np.array([search.designs[k].level[0] for k in section])
+            new_places = between(levels, search.units[:, section], PIECES - 1)
+            places += new_places.tolist()
         if not search.solve(between_on_line(search, places)):
             return
 
 
-def middles(search: FrontSearch, count: int) -> list[int]:
-    """Add a design at the middle level of each wide gap, widest first."""
-    kept, found = chosen(search, count), []
-    for gap in sorted(wide(search, kept), key=lambda one: -one.size):
-        among = _among(search, kept[gap.after], kept[gap.after + 1])
-        levels = [search.designs[k].level[0] for k in among]
+def middle_designs(search: FrontSearch, count: int) -> list[int]:
+    """Indices of the designs nearest to the middle level of each wide gap, widest gap first."""
+    indices, result = final_designs(search, count), []
+    for gap in sorted(wide_gaps(search, indices), key=lambda g: -g.size):
+        section = _section(search, indices[gap.after], indices[gap.after + 1])
+        levels = [search.designs[k].level[0] for k in section]
         middle = (levels[0] + levels[-1]) / 2
-        found.append(int(among[int(np.argmin(np.abs(np.subtract(levels, middle))))]))
-    return found
+        result.append(int(section[int(np.argmin(np.abs(np.subtract(levels, middle))))]))
+    return result
 
 
-def lost(search: FrontSearch, kept: tracer.Indices) -> int:
-    """Number of levels without a design in or near them, in gaps that are not jumps."""
-    units = search.units[:, kept]
+def lost_levels(search: FrontSearch, indices: Indices) -> int:
+    """Number of levels without a design nearby; two objectives count only gaps without a jump."""
+    units = search.units[:, indices]
     if len(units) > 2:
-        widest = tracer.nearest(units).max(initial=0.0)
-        plane = search.plane[:, kept]
-        levels = [level - level.mean() for level in search.lost]
-        return sum(bool(tracer.distances(plane, one).min() > widest) for one in levels)
+        widest = nearest(units).max(initial=0.0)
+        projected = search.plane[:, indices]
+        levels = [level - level.mean() for level in search.empty_levels]
+        return sum(bool(distances(projected, x).min() > widest) for x in levels)
     ranges = [
-        sorted(search.designs[kept[gap.after + side]].level[0] for side in (0, 1))
-        for gap in wide(search, kept)
+        sorted(search.designs[indices[gap.after + side]].level[0] for side in (0, 1))
+        for gap in wide_gaps(search, indices)
         if not gap.jump
     ]
-    return sum(any(low < a[0] < high for low, high in ranges) for a in search.lost)
+    return sum(any(low < a[0] < high for low, high in ranges) for a in search.empty_levels)
 
 
-def _pairs(kept: tracer.Indices) -> Iterator[tuple[int, int]]:
-    return zip(kept[:-1].tolist(), kept[1:].tolist(), strict=True)
+def _pairs(indices: Indices) -> Iterator[tuple[int, int]]:
+    return zip(indices[:-1].tolist(), indices[1:].tolist(), strict=True)
 
 
-def _among(search: FrontSearch, left: int, right: int) -> tracer.Indices:
-    """Designs at levels between two given ones, in order."""
+def _section(search: FrontSearch, left: int, right: int) -> Indices:
+    """Designs at levels between those of two designs, in order."""
     levels = np.array([design.level[0] for design in search.designs])
     low, high = sorted((levels[left], levels[right]))
     order = np.argsort(levels, kind="stable")
-    within = (levels[order] >= low) & (levels[order] <= high)
-    return np.asarray(order[within], dtype=np.intp)
+    inside = (levels[order] >= low) & (levels[order] <= high)
+    return np.asarray(order[inside], dtype=np.intp)
 
 
-def _pieces(search: FrontSearch, left: int, right: int) -> Vector:
+def _section_lengths(search: FrontSearch, left: int, right: int) -> Vector:
     """Upper limits of the front's length between neighbouring levels of a section."""
-    among = _among(search, left, right)
-    levels = np.array([search.designs[k].level[0] for k in among])
-    return plane.lengths(levels, search.units[:, among])
+    section = _section(search, left, right)
+    levels = np.array([search.designs[k].level[0] for k in section])
+    return lengths(levels, search.units[:, section])

@@ -1,6 +1,6 @@
-"""Designs of a front at given levels, many at once, from neighbouring designs.
+"""Computes designs of a front at given levels, many at once, from neighbouring designs.
 
-Also: which designs are on the front, how evenly they lie, and where the front bends most.
+It also selects non-dominated designs, measures their spacing and locates the knee.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import kkt
+from ..actuator import MET
 from ..evaluator import Evaluator, Point
 from ..problem import BoxProblem, Vector
 from ..resolve.changed import ChangedProblems, applicable
-from ..resolve.parallel_descents import FEASIBLE, RESIDUAL
-from ..resolve.steps import RADIUS, Descent, free_hessians
+from ..resolve.steps import RADIUS, RESIDUAL, Descent, free_hessians
 from ..solver import solve
 from .objectives import Conditions, Objectives
 
@@ -25,65 +25,68 @@ Indices = npt.NDArray[np.intp]
 
 
 CLEARLY = 100.0
-"""Multiple of `equal` that counts as clearly better, so that designs cannot dominate in a cycle."""
+"""Multiple of `equal` that counts as clearly better; prevents cycles of dominance."""
 
 
 SAME = 1e-6
-"""Distance in normalised objectives below which two designs count as one."""
+"""Distance in normalised objectives below which two designs are equal."""
 
 
 def nondominated(values: Vector, equal: float = 0.0) -> npt.NDArray[np.bool_]:
-    """Which designs no other design dominates: no worse in every objective, better in one.
+    """Mask of the designs that no other design dominates.
+
+    A dominating design is no worse in every objective and clearly better in one.
 
     Parameters
     ----------
-    values : (objectives, designs), to be minimised; of equal designs all stay
-    equal : difference that counts as no worse; better means a gain of `CLEARLY` times that
+    values : (objectives, designs), to be minimised; equal designs all remain
+    equal : difference that counts as no worse; `CLEARLY` times this counts as clearly better
 
     >>> nondominated(np.array([[1.0, 2.0, 3.0], [3.0, 2.0, 2.0]]))
     array([ True,  True, False])
     """
     count = values.shape[1]
-    kept = np.ones(count, dtype=bool)
+    mask = np.ones(count, dtype=bool)
     for k in range(count):
-        one = values[:, k : k + 1]
-        beats = (values <= one + equal).all(axis=0) & (values < one - CLEARLY * equal).any(axis=0)
-        kept[k] = not beats.any()
-    return kept
+        design = values[:, k : k + 1]
+        no_worse = (values <= design + equal).all(axis=0)
+        mask[k] = not (no_worse & (values < design - CLEARLY * equal).any(axis=0)).any()
+    return mask
 
 
 def distinct(units: Vector, order: Indices) -> Indices:
-    """Designs (objectives, designs), in a given order, that are distinct from those before.
+    """Indices of designs (objectives, designs), in a given order, that differ from all before.
 
     >>> distinct(np.array([[0.0, 0.0, 1.0], [1.0, 1.0, 0.0]]), np.array([1, 0, 2]))
     array([1, 2])
     """
-    kept: list[int] = []
+    selected: list[int] = []
     for k in order:
-        if not kept or np.abs(units[:, kept] - units[:, k : k + 1]).max(axis=0).min() > SAME:
-            kept.append(int(k))
-    return np.array(kept, dtype=np.intp)
+        gaps = np.abs(units[:, selected] - units[:, k : k + 1]).max(axis=0)
+        if gaps.min(initial=np.inf) > SAME:
+            selected.append(int(k))
+    return np.array(selected, dtype=np.intp)
 
 
-def thinned(units: Vector, first: Indices, wanted: int) -> Indices:
-    """The requested number of designs (objectives, designs), farthest apart, including `first`.
+def thinned(units: Vector, fixed: Indices, count: int) -> Indices:
+    """Indices of `count` designs (objectives, designs), as distant as possible, with `fixed`.
 
-    Each step adds the design farthest from those selected [Gonzalez1985].
+    Each step adds the design farthest from the selected designs [Gonzalez1985].
     """
-    kept = [int(k) for k in first]
+    selected = [int(k) for k in fixed]
     gaps = np.full(units.shape[1], np.inf)
-    for k in kept:
+    for k in selected:
         gaps = np.minimum(gaps, distances(units, units[:, k]))
-    while len(kept) < min(wanted, units.shape[1]):
-        following = int(np.argmax(gaps))
-        kept.append(following)
-        gaps = np.minimum(gaps, distances(units, units[:, following]))
-    return np.array(sorted(kept), dtype=np.intp)
+    while len(selected) < min(count, units.shape[1]):
+        farthest = int(np.argmax(gaps))
+        selected.append(farthest)
+        gaps = np.minimum(gaps, distances(units, units[:, farthest]))
+    return np.array(sorted(selected), dtype=np.intp)
 
 
-def distances(units: Vector, one: Vector) -> Vector:
-    """Euclidean distance of designs (objectives, designs) from one (objectives,)."""
-    return np.asarray(np.sqrt(((units - one[:, None]) ** 2).sum(axis=0)))
+def distances(units: Vector, unit: Vector) -> Vector:
+    """Euclidean distance of designs (objectives, designs) from a design (objectives,)."""
+    return np.asarray(np.sqrt(((units - unit[:, None]) ** 2).sum(axis=0)))
 
 
 def nearest(units: Vector) -> Vector:
@@ -100,8 +103,8 @@ def knee(units: Vector) -> tuple[int, float] | None:
     """The design farthest from the plane through the anchors towards the ideal, and its distance.
 
     Units (objectives, designs) are 0 at the best of each objective [Das1999]. If the anchors span
-    no plane that falls in every objective, a plane of equal sums through their middle is used. None
-    if the front does not bend towards the ideal.
+    no plane that falls in every objective, the plane of equal sums through their middle replaces
+    it. None if the front does not bend towards the ideal.
 
     >>> knee(np.array([[0.0, 0.25, 1.0], [1.0, 0.25, 0.0]]))
     (1, 0.35355339059327373)
@@ -123,7 +126,7 @@ HELD = 1e-6
 """Normalised shortfall that still counts as at the level."""
 
 ROUNDS = 4
-"""Maximum exchanges of results; each follows only if the last exchange improved."""
+"""Maximum exchanges of results; they end once an exchange improves nothing."""
 
 CURVED = 2
 """Maximum recomputations of the curvature where full steps do not converge."""
@@ -135,37 +138,37 @@ class FrontDesign:
 
     Parameters
     ----------
-    level, way : `a` and `r` of `Objectives.scaled` (objectives,)
+    level, direction : `a` and `r` of `Objectives.scaled` (objectives,)
     point : variables and t
     unit : normalised objectives (objectives,)
     hessian : of the Lagrangian over `Tracer.scale`, as learnt
     """
 
     level: Vector
-    way: Vector
+    direction: Vector
     point: Point
     unit: Vector
     hessian: Vector
 
     @property
-    def held(self) -> bool:
-        """Whether every objective is at its level; else the front has an edge or jump here."""
-        room = self.level + self.way * self.point.objective - self.unit
+    def at_level(self) -> bool:
+        """Whether every objective is at its level; otherwise the front has an edge or jump here."""
+        room = self.level + self.direction * self.point.objective - self.unit
         return bool((room <= HELD).all())
 
 
 @dataclass(frozen=True)
 class FrontStart:
-    """Start for the design at some levels: coordinates with t, and a Hessian."""
+    """Start for a design at given levels: coordinates with t, and a Hessian."""
 
     level: Vector
-    way: Vector
+    direction: Vector
     z: Vector
     hessian: Vector
 
 
 class Tracer:
-    """Finds designs of a front in shared steps.
+    """Computes designs of a front in shared steps.
 
     Parameters
     ----------
@@ -187,7 +190,7 @@ class Tracer:
         """Change the normalisation; earlier designs become invalid."""
         self.ideal, self.width = ideal, width
         self.parametric = self.objectives.scaled(ideal, width)
-        self.evaluator = self.like(self.parametric.problem)
+        self.evaluator = self.evaluator_of(self.parametric.problem)
 
     def from_x(self, x: Vector, t: float) -> Vector:
         """Coordinates (nf,) of variables (n,) at a level t."""
@@ -199,7 +202,7 @@ class Tracer:
         return np.append(z[:-1], np.clip(t / self.scale, space.lower[-1], space.upper[-1]))
 
     def unit(self, x: Vector) -> Vector:
-        """Normalised objectives (objectives, k) of variables (n, k)."""
+        """Normalised objectives (objectives, k) at variables (n, k)."""
         return self.normal(self.objectives.values(x))
 
     def normal(self, values: Vector) -> Vector:
@@ -210,29 +213,29 @@ class Tracer:
         """Objectives (objectives, k) from normalised ones."""
         return units * self.width[:, None] + self.ideal[:, None]
 
-    def at(self, level: Vector, way: Vector) -> BoxProblem:
-        """The problem at some levels."""
-        return self.parametric.at(np.concatenate([level, way]))
+    def at(self, level: Vector, direction: Vector) -> BoxProblem:
+        """The scalar problem at given levels."""
+        return self.parametric.at(np.concatenate([level, direction]))
 
-    def begun(self, x: Vector) -> list[FrontDesign]:
-        """Designs from variables (n, k) at their own levels, without curvature."""
+    def initial_designs(self, x: Vector) -> list[FrontDesign]:
+        """Designs at variables (n, k), at their own levels, without curvature."""
         units = self.unit(x)
         size = self.evaluator.space.size
         return self._at_own(
             [
-                FrontStart(unit, np.ones(len(unit)), self.from_x(one, 0.0), np.eye(size))
-                for one, unit in zip(x.T, units.T, strict=True)
+                FrontStart(unit, np.ones(len(unit)), self.from_x(variables, 0.0), np.eye(size))
+                for variables, unit in zip(x.T, units.T, strict=True)
             ]
         )
 
-    def placed(self, designs: Sequence[FrontDesign]) -> list[FrontDesign]:
-        """The designs at their own levels, for which every design of a front is the best."""
+    def at_own_levels(self, designs: Sequence[FrontDesign]) -> list[FrontDesign]:
+        """The designs, with their own objectives as levels."""
         if not designs:
             return []
         units = self.unit(np.stack([design.point.x[:-1] for design in designs], axis=1))
-        way = np.ones(len(units))
+        direction = np.ones(len(units))
         starts = [
-            FrontStart(unit, way, self.to_t(design.point.z, 0.0), design.hessian)
+            FrontStart(unit, direction, self.to_t(design.point.z, 0.0), design.hessian)
             for design, unit in zip(designs, units.T, strict=True)
         ]
         return self._at_own(starts)
@@ -242,7 +245,7 @@ class Tracer:
         z = np.stack([start.z for start in starts], axis=1)
         if not self.exact:
             x = self.evaluator.space.to_x(z)
-            return [self.located(start, one) for start, one in zip(starts, x.T, strict=True)]
+            return [self.design_at(*pair) for pair in zip(starts, x.T, strict=True)]
         points = self._changed(starts).points(z)
         return [self._design(s, p, s.hessian) for s, p in zip(starts, points, strict=True)]
 
@@ -252,259 +255,277 @@ class Tracer:
         jacobian = self.evaluator.jacobian(front_design.point)
         active = kkt.active_set(self.evaluator, front_design.point)
         equalities = jacobian[1 + self.evaluator.constraint_count :]
-        held, _ = kkt.multipliers(jacobian[0], active, equalities)
-        every = np.zeros(self.evaluator.constraint_count)
-        every[active.constraint] = held[: len(active.constraint)]
-        return every[m : m + count]
+        multipliers, _ = kkt.multipliers(jacobian[0], active, equalities)
+        by_constraint = np.zeros(self.evaluator.constraint_count)
+        by_constraint[active.constraint] = multipliers[: len(active.constraint)]
+        return by_constraint[m : m + count]
 
     def solve(
-        self, starts: Sequence[FrontStart], known: Sequence[FrontDesign] = ()
+        self, starts: Sequence[FrontStart], fallbacks: Sequence[FrontDesign] = ()
     ) -> list[FrontDesign | None]:
         """The design at the levels of each start, or None.
 
-        Where the starts fail, descents start from the `known` designs.
+        Where a start fails, a descent from the best of the designs `fallbacks` follows.
         """
         if not starts:
             return []
-        found: list[FrontDesign | None] = [None] * len(starts)
+        designs: list[FrontDesign | None] = [None] * len(starts)
         if self.exact:
-            found = self._follow(starts)
-            left = [k for k, one in enumerate(found) if one is None]
-            if known and left:
-                self._descend(starts, found, left, known)
-            return found
-        return [self._alone(start) for start in starts]
+            designs = self._follow(starts)
+            missing = [k for k, design in enumerate(designs) if design is None]
+            if fallbacks and missing:
+                self._descend(starts, designs, missing, fallbacks)
+            return designs
+        return [self._solve_alone(start) for start in starts]
 
     def exchange(
-        self, designs: list[FrontDesign], others: Vector, rest: Vector
+        self, designs: list[FrontDesign], other_x: Vector, other_units: Vector
     ) -> list[FrontDesign]:
         """The designs, each replaced where another design's variables are better.
 
         Parameters
         ----------
-        designs : as found
-        others : variables (n, k) of further feasible designs
-        rest : normalised objectives of these (objectives, k)
+        designs : the designs
+        other_x : variables (n, k) of further feasible designs
+        other_units : normalised objectives (objectives, k) of the further designs
         """
-        lost: set[int] = set()
+        failed: set[int] = set()
         for _ in range(ROUNDS if designs else 0):
             x = np.concatenate(
-                [np.stack([d.point.x[:-1] for d in designs], axis=1), others], axis=1
+                [np.stack([d.point.x[:-1] for d in designs], axis=1), other_x], axis=1
             )
-            units = np.concatenate([np.stack([d.unit for d in designs], axis=1), rest], axis=1)
-            better = []
+            units = np.concatenate(
+                [np.stack([d.unit for d in designs], axis=1), other_units], axis=1
+            )
+            improvements = []
             for k, design in enumerate(designs):
-                if k in lost:
+                if k in failed:
                     continue
-                levels = ((units - design.level[:, None]) / design.way[:, None]).max(axis=0)
+                levels = ((units - design.level[:, None]) / design.direction[:, None]).max(axis=0)
                 best = int(np.argmin(levels))
                 if levels[best] < design.point.objective - BETTER:
-                    better.append((k, x[:, best], float(levels[best])))
-            if not better:
+                    improvements.append((k, x[:, best], float(levels[best])))
+            if not improvements:
                 break
             starts = [
-                FrontStart(designs[k].level, designs[k].way, self.from_x(z, t), designs[k].hessian)
-                for k, z, t in better
+                FrontStart(
+                    designs[k].level, designs[k].direction, self.from_x(z, t), designs[k].hessian
+                )
+                for k, z, t in improvements
             ]
-            for (k, _, t), new in zip(better, self._descended(starts), strict=True):
+            for (k, _, t), new in zip(improvements, self._descended(starts), strict=True):
                 if new is not None and new.point.objective <= t + BETTER:
                     designs[k] = new
                 else:
-                    lost.add(k)
+                    failed.add(k)
         return designs
 
-    def spread(self, designs: list[FrontDesign], begun: Sequence[FrontDesign]) -> list[FrontDesign]:
+    def spread(
+        self, designs: list[FrontDesign], changed: Sequence[FrontDesign]
+    ) -> list[FrontDesign]:
         """The designs, each replaced where a descent from another start is better."""
-        news = list(begun)
-        while news:
-            levels = np.stack([new.level for new in news], axis=1)
+        improved = list(changed)
+        while improved:
+            levels = np.stack([descended.level for descended in improved], axis=1)
             starts = []
             for design in designs:
-                near = news[int(np.argmin(distances(levels, design.level)))]
-                t = float(((near.unit - design.level) / design.way).max())
+                nearest_design = improved[int(np.argmin(distances(levels, design.level)))]
+                t = float(((nearest_design.unit - design.level) / design.direction).max())
                 starts.append(
-                    FrontStart(design.level, design.way, self.to_t(near.point.z, t), near.hessian)
+                    FrontStart(
+                        design.level,
+                        design.direction,
+                        self.to_t(nearest_design.point.z, t),
+                        nearest_design.hessian,
+                    )
                 )
-            news = []
-            for k, new in enumerate(self._descended(starts)):
-                if new is not None and new.point.objective < designs[k].point.objective - BETTER:
-                    designs[k] = new
-                    news.append(new)
+            improved = []
+            for k, descended in enumerate(self._descended(starts)):
+                if (
+                    descended is not None
+                    and descended.point.objective < designs[k].point.objective - BETTER
+                ):
+                    designs[k] = descended
+                    improved.append(descended)
         return designs
 
     def _descended(self, starts: Sequence[FrontStart]) -> list[FrontDesign | None]:
         """The designs reached by descents from feasible starts."""
         if not self.exact:
-            return [self._alone(start) for start in starts]
+            return [self._solve_alone(start) for start in starts]
         return self._follow(starts)
 
     def _changed(self, starts: Sequence[FrontStart]) -> ChangedProblems:
         """The problems at the levels of some starts."""
-        levels = np.stack([np.concatenate([start.level, start.way]) for start in starts], axis=1)
+        levels = np.stack(
+            [np.concatenate([start.level, start.direction]) for start in starts], axis=1
+        )
         return ChangedProblems(self.parametric, self.evaluator, levels)
 
     def _descent(self, hessian: Vector, radius: float = RADIUS) -> Descent:
-        """A descent that begins with a Hessian."""
+        """A descent from a Hessian."""
         rows = self.evaluator.constraint_count
         return Descent(hessian, self.scale, rows, 1.0, radius=radius)
 
     def _follow(self, starts: Sequence[FrontStart]) -> list[FrontDesign | None]:
-        """Full steps; where they do not converge, again with the curvature of the last point."""
+        """Take full steps; where they diverge, retry with the curvature of the last point."""
         designs: list[FrontDesign | None] = [None] * len(starts)
-        left, begun = list(range(len(starts))), list(starts)
-        for again in range(1 + CURVED):
-            z = np.stack([one.z for one in begun], axis=1)
-            ways = [self._descent(one.hessian, radius=kkt.RADIUS) for one in begun]
-            found = self._changed(begun).step_fully(ways, z)
-            for k, one, point, way in zip(left, begun, found, ways, strict=True):
+        indices, current = list(range(len(starts))), list(starts)
+        for attempt in range(1 + CURVED):
+            z = np.stack([start.z for start in current], axis=1)
+            descents = [self._descent(start.hessian, radius=kkt.RADIUS) for start in current]
+            points = self._changed(current).step_fully(descents, z)
+            for k, start, point, descent in zip(indices, current, points, descents, strict=True):
                 if point is not None:
-                    designs[k] = self._design(one, point, way.hessian)
-            lost = [
-                i for i, way in enumerate(ways)
-                if found[i] is None and way.point is not None and np.isfinite(way.step).all()
-            ]  # fmt: skip
-            if again == CURVED or not lost:
-                break
-            bent = free_hessians(self.evaluator, [ways[i] for i in lost])
-            begun = [
-                replace(begun[i], z=ways[i].known.z, hessian=hessian)
-                for i, hessian in zip(lost, bent, strict=True)
+                    designs[k] = self._design(start, point, descent.hessian)
+            unfinished = [
+                i
+                for i, (point, descent) in enumerate(zip(points, descents, strict=True))
+                if point is None and descent.point is not None and np.isfinite(descent.step).all()
             ]
-            left = [left[i] for i in lost]
+            if attempt == CURVED or not unfinished:
+                break
+            hessians = free_hessians(self.evaluator, [descents[i] for i in unfinished])
+            current = [
+                replace(current[i], z=descents[i].current.z, hessian=hessian)
+                for i, hessian in zip(unfinished, hessians, strict=True)
+            ]
+            indices = [indices[i] for i in unfinished]
         return designs
 
     def _descend(
         self,
         starts: Sequence[FrontStart],
-        found: list[FrontDesign | None],
-        left: list[int],
-        known: Sequence[FrontDesign],
+        designs: list[FrontDesign | None],
+        missing: list[int],
+        fallbacks: Sequence[FrontDesign],
     ) -> None:
         """Descend from the best known design at each level, within trust regions."""
-        units = np.stack([one.unit for one in known], axis=1)
-        begun, ways = [], []
-        for k in left:
-            moving = starts[k].way > 0
-            level, slope = starts[k].level[moving, None], starts[k].way[moving, None]
+        units = np.stack([design.unit for design in fallbacks], axis=1)
+        coordinates, descents = [], []
+        for k in missing:
+            moving = starts[k].direction > 0
+            level, slope = starts[k].level[moving, None], starts[k].direction[moving, None]
             t = ((units[moving] - level) / slope).max(axis=0)
-            best = known[int(np.argmin(t))]
-            begun.append(self.to_t(best.point.z, float(t.min())))
-            ways.append(self._descent(best.hessian))
-        chosen = [starts[k] for k in left]
-        points = self._changed(chosen).descend(ways, np.stack(begun, axis=1))
-        for k, point, way in zip(left, points, ways, strict=True):
+            best = fallbacks[int(np.argmin(t))]
+            coordinates.append(self.to_t(best.point.z, float(t.min())))
+            descents.append(self._descent(best.hessian))
+        missing_starts = [starts[k] for k in missing]
+        points = self._changed(missing_starts).descend(descents, np.stack(coordinates, axis=1))
+        for k, point, descent in zip(missing, points, descents, strict=True):
             if point is not None:
-                found[k] = self._design(starts[k], point, way.hessian)
+                designs[k] = self._design(starts[k], point, descent.hessian)
 
-    def _alone(self, start: FrontStart) -> FrontDesign | None:
-        """One design alone, by the most robust methods."""
-        problem = replace(self.at(start.level, start.way), start=None)
+    def _solve_alone(self, start: FrontStart) -> FrontDesign | None:
+        """The design at one start, by the most robust method."""
+        problem = replace(self.at(start.level, start.direction), start=None)
         x = self.evaluator.space.to_x(start.z[:, None])[:, 0]
-        best = solve(problem, starts=1, samples=0, more_starts=[x])
-        if best.violation > FEASIBLE or best.kkt is None or best.kkt.residual > FEASIBLE:
+        solution = solve(problem, starts=1, samples=0, more_starts=[x])
+        if solution.violation > MET or solution.kkt is None or solution.kkt.residual > MET:
             return None
-        return self.located(start, best.x)
+        return self.design_at(start, solution.x)
 
     def polished(self, front_design: FrontDesign) -> FrontDesign:
         """The design after exact Newton steps."""
-        own = self.like(self.at(front_design.level, front_design.way))
-        point = kkt.polish(own, own.point(front_design.point.z))
-        own.jacobian(point)
+        evaluator = self.evaluator_of(self.at(front_design.level, front_design.direction))
+        point = kkt.polish(evaluator, evaluator.point(front_design.point.z))
+        evaluator.jacobian(point)
         return self._design(
-            FrontStart(front_design.level, front_design.way, point.z, front_design.hessian),
+            FrontStart(front_design.level, front_design.direction, point.z, front_design.hessian),
             point,
             front_design.hessian,
         )
 
-    def located(self, start: FrontStart, x: Vector) -> FrontDesign:
+    def design_at(self, start: FrontStart, x: Vector) -> FrontDesign:
         """The design at variables with t (n + 1,), with its gradients."""
-        own = self.like(self.at(start.level, start.way))
-        point = own.point(own.space.to_z(x))
-        own.jacobian(point)
+        evaluator = self.evaluator_of(self.at(start.level, start.direction))
+        point = evaluator.point(evaluator.space.to_z(x))
+        evaluator.jacobian(point)
         return self._design(start, point, start.hessian)
 
     def _design(self, start: FrontStart, point: Point, hessian: Vector) -> FrontDesign:
         m = len(self.objectives.problem.constraint_names)
         rows = point.rows[1 + m : 1 + m + self.objectives.count]
-        unit = start.level + start.way * point.objective - rows
-        return FrontDesign(start.level, start.way, point, unit, hessian)
+        unit = start.level + start.direction * point.objective - rows
+        return FrontDesign(start.level, start.direction, point, unit, hessian)
 
-    def like(self, problem: BoxProblem) -> Evaluator:
-        """An evaluator of a problem, reusing the gradient check."""
-        own = Evaluator(problem)
-        own.complex_works = self._checked.complex_works
-        own.difference_rows = self._checked.difference_rows
-        return own
+    def evaluator_of(self, problem: BoxProblem) -> Evaluator:
+        """An evaluator of a problem that reuses the gradient check."""
+        evaluator = Evaluator(problem)
+        evaluator.adopt_check(self._checked)
+        return evaluator
 
 
 EQUAL = 1e-8
-"""Normalised difference that counts as equal, as bounded objectives vary by this much."""
+"""Normalised difference that counts as equal: the accuracy of bounded objectives."""
 JUMP = 5.0
-"""Step of the variables between neighbours, over the median, that suggests another valley."""
+"""Step of the variables between neighbours, relative to the median, that suggests a new valley."""
 
 
 @dataclass
 class FrontSearch:
-    """The designs so far, with other known feasible points."""
+    """The designs so far, and other known feasible points."""
 
     tracer: Tracer
     designs: list[FrontDesign]
     others: Vector
     """Variables (n, k) of further feasible designs."""
-    passed: list[Vector] = field(default_factory=list)
+    replaced: list[Vector] = field(default_factory=list)
     """Objectives of designs that were replaced."""
-    lost: list[Vector] = field(default_factory=list)
+    empty_levels: list[Vector] = field(default_factory=list)
     """Levels without a design."""
-    _rest: tuple[Vector, Vector] | None = None
+    _other_values: tuple[Vector, Vector] | None = None
     _residuals: dict[int, tuple[FrontDesign, float]] = field(default_factory=dict)
 
     def solve(self, starts: Sequence[FrontStart], *, firmly: bool = True) -> int:
         """Add the designs at the levels of some starts; returns their number.
 
-        `firmly` : retry those that shared steps lose within trust regions
+        `firmly` retries failed starts within trust regions.
         """
-        good = [one for one in self.found(starts, firmly=firmly) if one is not None]
-        self.take(good)
-        return len(good)
+        designs = [d for d in self.designs_at(starts, firmly=firmly) if d is not None]
+        self.add(designs)
+        return len(designs)
 
-    def found(
+    def designs_at(
         self, starts: Sequence[FrontStart], *, firmly: bool = True
     ) -> list[FrontDesign | None]:
-        """The designs at the levels of some starts, not added yet; see `solve`."""
-        found = self.tracer.solve(starts, self.designs if firmly else ())
-        self.lost += [s.level for s, one in zip(starts, found, strict=True) if one is None]
-        return found
+        """The designs at the levels of some starts, not yet added; see `solve`."""
+        designs = self.tracer.solve(starts, self.designs if firmly else ())
+        self.empty_levels += [
+            s.level for s, design in zip(starts, designs, strict=True) if design is None
+        ]
+        return designs
 
-    def compared(self, starts: Sequence[FrontStart]) -> list[FrontDesign | None]:
-        """As `found`, but continue from a known design where it is better at the level."""
-        found = self.found(starts)
-        good = [k for k, one in enumerate(found) if one is not None]
-        known = np.stack([design.point.x[:-1] for design in self.designs], axis=1)
-        more = np.concatenate([self.others, known], axis=1)
-        rest = np.concatenate([self.rest, self.units], axis=1)
-        exchanged = self.tracer.exchange([one for one in found if one is not None], more, rest)
-        for k, one in zip(good, exchanged, strict=True):
-            found[k] = one
-        return found
+    def improved_designs(self, starts: Sequence[FrontStart]) -> list[FrontDesign | None]:
+        """As `designs_at`, but continued from a known design where it is better at the level."""
+        designs = self.designs_at(starts)
+        indices = [k for k, d in enumerate(designs) if d is not None]
+        known_x = np.stack([design.point.x[:-1] for design in self.designs], axis=1)
+        others = np.concatenate([self.others, known_x], axis=1)
+        other_units = np.concatenate([self.other_units, self.units], axis=1)
+        exchanged = self.tracer.exchange([d for d in designs if d is not None], others, other_units)
+        for k, d in zip(indices, exchanged, strict=True):
+            designs[k] = d
+        return designs
 
-    def take(self, good: Sequence[FrontDesign]) -> None:
+    def add(self, designs: Sequence[FrontDesign]) -> None:
         """Add designs, and exchange results between them."""
-        before = [*self.designs, *good]
-        self.designs = self.tracer.exchange(list(before), self.others, self.rest)
-        news = [new for old, new in zip(before, self.designs, strict=True) if old is not new]
-        self.designs = self.tracer.spread(self.designs, news)
-        self._pass([o for o, new in zip(before, self.designs, strict=True) if o is not new])
+        previous = [*self.designs, *designs]
+        self.designs = self.tracer.exchange(list(previous), self.others, self.other_units)
+        changed = [new for old, new in zip(previous, self.designs, strict=True) if old is not new]
+        self.designs = self.tracer.spread(self.designs, changed)
+        self._pass([o for o, new in zip(previous, self.designs, strict=True) if o is not new])
 
     def _pass(self, designs: Sequence[FrontDesign]) -> None:
-        """Record the objectives of designs that are replaced."""
-        self.passed += [self.tracer.values(design.unit[:, None])[:, 0] for design in designs]
+        """Record the objectives of replaced designs."""
+        self.replaced += [self.tracer.values(design.unit[:, None])[:, 0] for design in designs]
 
-    def rescale(self, low: Vector, wide: Vector) -> None:
+    def rescale(self, low: Vector, width: Vector) -> None:
         """Normalise to another range (objectives,), in current units."""
         tracer = self.tracer
-        tracer.rescale(tracer.ideal + low * tracer.width, wide * tracer.width)
-        self.designs = tracer.placed(self.designs)
-        self.lost.clear()
+        tracer.rescale(tracer.ideal + low * tracer.width, width * tracer.width)
+        self.designs = tracer.at_own_levels(self.designs)
+        self.empty_levels.clear()
 
     @property
     def plane(self) -> Vector:
@@ -514,7 +535,7 @@ class FrontSearch:
 
     def sort(self) -> None:
         """Sort the designs by their level of the first objective."""
-        self.designs.sort(key=lambda one: one.level[0])
+        self.designs.sort(key=lambda design: design.level[0])
 
     @cached_property
     def _conditions(self) -> Conditions:
@@ -522,58 +543,60 @@ class FrontSearch:
 
     def residual(self, k: int) -> float:
         """Residual of a design's optimality conditions, improved by Newton steps if necessary."""
-        one = self.designs[k]
-        known = self._residuals.get(id(one))
-        if known is not None and known[0] is one:
-            return known[1]
-        found = self._conditions.residual(one.point)
-        if found > RESIDUAL:
-            self.designs[k] = one = self.tracer.polished(one)
-            found = self._conditions.residual(one.point)
-        self._residuals[id(one)] = (one, found)
-        return found
+        design = self.designs[k]
+        cached = self._residuals.get(id(design))
+        if cached is not None and cached[0] is design:
+            return cached[1]
+        residual = self._conditions.residual(design.point)
+        if residual > RESIDUAL:
+            self.designs[k] = design = self.tracer.polished(design)
+            residual = self._conditions.residual(design.point)
+        self._residuals[id(design)] = (design, residual)
+        return residual
 
     def consider(self, x: Vector) -> None:
-        """Compare the designs with further feasible ones (n, k)."""
+        """Compare the designs with further feasible designs (n, k)."""
         self.others = np.concatenate([self.others, x], axis=1)
-        self.take([])
+        self.add([])
 
-    def cross(self) -> None:
+    def retry_jumps(self) -> None:
         """Retry each side of a jump in the variables from the other side."""
         self.sort()
         z = np.stack([design.point.z[:-1] for design in self.designs], axis=1)
         steps = np.abs(np.diff(z, axis=1)).max(axis=0)
-        starts, chosen = [], []
+        starts, targets = [], []
         for k in np.flatnonzero(steps > JUMP * np.median(steps)).tolist():
-            for to, way in ((k, k + 1), (k + 1, k)):
-                one, other = self.designs[to], self.designs[way]
-                at = self.tracer.to_t(other.point.z, float((other.unit - one.level).max()))
-                starts.append(FrontStart(one.level, one.way, at, other.hessian))
-                chosen.append(to)
-        for to, new in zip(chosen, self.tracer.solve(starts), strict=True):
-            if new is not None and new.point.objective < self.designs[to].point.objective - BETTER:
-                self._pass([self.designs[to]])
-                self.designs[to] = new
-                self.designs = self.tracer.spread(self.designs, [new])
+            for target, source in ((k, k + 1), (k + 1, k)):
+                level, neighbour = self.designs[target].level, self.designs[source]
+                at = self.tracer.to_t(neighbour.point.z, float((neighbour.unit - level).max()))
+                direction = self.designs[target].direction
+                starts.append(FrontStart(level, direction, at, neighbour.hessian))
+                targets.append(target)
+        for target, retried in zip(targets, self.tracer.solve(starts), strict=True):
+            design = self.designs[target]
+            if retried is not None and retried.point.objective < design.point.objective - BETTER:
+                self._pass([design])
+                self.designs[target] = retried
+                self.designs = self.tracer.spread(self.designs, [retried])
 
     @property
-    def rest(self) -> Vector:
+    def other_units(self) -> Vector:
         """Normalised objectives of the further designs (objectives, k)."""
-        if self._rest is None or self._rest[0] is not self.others:
-            self._rest = self.others, self.tracer.objectives.values(self.others)
-        return self.tracer.normal(self._rest[1])
+        if self._other_values is None or self._other_values[0] is not self.others:
+            self._other_values = self.others, self.tracer.objectives.values(self.others)
+        return self.tracer.normal(self._other_values[1])
 
     @property
     def units(self) -> Vector:
         """Normalised objectives of all designs (objectives, k)."""
         return np.stack([design.unit for design in self.designs], axis=1)
 
-    def chosen(self) -> Indices:
-        """The distinct non-dominated designs, those at all levels first."""
-        order = np.array(sorted(range(len(self.designs)), key=lambda k: not self.designs[k].held))
+    def front_indices(self) -> Indices:
+        """Indices of distinct non-dominated designs; designs at their levels take precedence."""
+        order = sorted(range(len(self.designs)), key=lambda k: not self.designs[k].at_level)
         units = self.units
-        own = distinct(units, order.astype(np.intp))
-        every = np.concatenate([units[:, own], self.rest + BETTER], axis=1)
+        indices = distinct(units, np.array(order, dtype=np.intp))
+        all_units = np.concatenate([units[:, indices], self.other_units + BETTER], axis=1)
         equal = EQUAL if len(units) > 2 else 0.0
-        best = nondominated(every, equal)[: len(own)]
-        return np.sort(own[best])
+        mask = nondominated(all_units, equal)[: len(indices)]
+        return np.sort(indices[mask])

@@ -1,8 +1,8 @@
-"""Re-optimise a problem from the optimum of a similar one with other bounds or materials.
+"""Re-optimises a problem from the optimum of a similar problem with other bounds or materials.
 
 Quadratic steps with the Hessian of that optimum, one evaluation each, reach most optima. Where they
 fail, a restoration finds the nearest feasible point and SLSQP continues from it. The Hessian is not
-updated here, as results are only compared to seven digits and equalities are allowed.
+updated: results need only seven digits, and equalities are allowed.
 """
 
 from __future__ import annotations
@@ -14,10 +14,19 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import kkt, nlopt_wrapper, repairs
+from ..actuator import MET
 from ..evaluator import Evaluator, Point, points_together
 from ..problem import Vector
-from .parallel_descents import FEASIBLE, RESIDUAL
-from .steps import PATIENCE, SETTLED, ScaledHessian, Steps, restoring_steps, run_batch
+from .steps import (
+    PATIENCE,
+    RESIDUAL,
+    SETTLED,
+    ScaledHessian,
+    Steps,
+    is_met,
+    restoring_steps,
+    run_batch,
+)
 
 STEPS = 14
 """Maximum steps with the Hessian of the other optimum."""
@@ -41,10 +50,10 @@ EXACT = Criteria(SETTLED, 1e-11, RESIDUAL)
 """For final results: the objective is first order in the violation, second in the others."""
 
 ROUGH = Criteria(1e-4, 1e-7, 1e-3)
-"""For comparisons: to seven digits."""
+"""For comparisons, to seven digits."""
 
 NEAR = Criteria(0.02, 1e-3, np.inf)
-"""For results clearly worse than the known one, by `WORSE`."""
+"""For results that are worse than the known result by more than `WORSE`."""
 
 WORSE = 0.02
 """Relative loss of the objective beyond the accuracy of `NEAR`."""
@@ -53,7 +62,7 @@ WORSE = 0.02
 class Nearest(NamedTuple):
     """The nearby optimum, or None and the least infeasible point.
 
-    `followed` : whether steps with the other optimum's Hessian converged to it
+    `followed` is True if steps with the other optimum's Hessian converged to the optimum.
     """
 
     optimum: Point | None
@@ -63,16 +72,16 @@ class Nearest(NamedTuple):
 
 @dataclass(frozen=True)
 class BoxTask:
-    """A problem to re-optimise near a known optimum of another.
+    """A problem to re-optimise near a known optimum of another problem.
 
     Parameters
     ----------
     evaluator : of the problem
     x : the nearest known point (n,)
     hessian : at the optimum of the other problem
-    criteria : of convergence
+    criteria : convergence criteria
     hopeless : whether the other problem is infeasible, with `x` its least infeasible point
-    above : an optimum clearly worse than this objective need not be reached
+    cutoff : steps may stop near an optimum clearly worse than this objective
     """
 
     evaluator: Evaluator
@@ -80,106 +89,110 @@ class BoxTask:
     hessian: ScaledHessian | None
     criteria: Criteria = EXACT
     hopeless: bool = False
-    above: float = np.inf
+    cutoff: float = np.inf
 
 
 def resolve_boxes(tasks: Sequence[BoxTask]) -> list[Nearest]:
-    """The optimum of every task; None without a feasible point near it.
+    """Resolve every task; no optimum without a feasible point nearby.
 
-    The problems differ only in their bounds, so that one model call serves a step of all.
+    The problems differ only in their bounds, so one model call evaluates a step of all.
     """
 
-    def answer(wanted: Mapping[int, Vector]) -> list[Point]:
-        return points_together([(tasks[k].evaluator, z) for k, z in wanted.items()])
+    def evaluate(requests: Mapping[int, Vector]) -> list[Point]:
+        return points_together([(tasks[k].evaluator, z) for k, z in requests.items()])
 
-    ends = run_batch([_approach(task) for task in tasks], answer)
+    ends = run_batch([_approach(task) for task in tasks], evaluate)
     return [_finished(*pair) for pair in zip(tasks, ends, strict=True)]
 
 
 def _finished(task: BoxTask, end: Nearest) -> Nearest:
-    """Continue by SLSQP from a point that is only feasible."""
+    """Continue with SLSQP from a point that is feasible but not optimal."""
     if end.optimum is None or end.followed:
         return end
-    point = nlopt_wrapper.run(task.evaluator, end.optimum, "LD_SLSQP", most=MOST_STEPS).point
+    point = nlopt_wrapper.run(
+        task.evaluator, end.optimum, "LD_SLSQP", max_evaluations=MOST_STEPS
+    ).point
     point = kkt.polish(task.evaluator, point, iterations=8, tolerance=1e-10)
-    return Nearest(point if _met(point) else end.optimum)
+    return Nearest(point if is_met(point) else end.optimum)
 
 
 def _approach(task: BoxTask) -> Steps[Nearest]:
-    """Steps with the other problem's Hessian, else to a feasible point."""
+    """Step to the optimum with the other problem's Hessian, else to a feasible point."""
     evaluator = task.evaluator
     start = yield evaluator.space.to_z(task.x)
     if evaluator.space.size == 0:
-        return Nearest(start, followed=True) if _met(start) else Nearest(None, start)
+        return Nearest(start, followed=True) if is_met(start) else Nearest(None, start)
     if not start.valid:
         return Nearest(None)
     if task.hessian is not None and not task.hopeless:
-        found = yield from fixed_hessian_steps(
-            evaluator, start, task.hessian, task.criteria, task.above
+        optimum = yield from fixed_hessian_steps(
+            evaluator, start, task.hessian, task.criteria, task.cutoff
         )
-        if found is not None:
-            return Nearest(found, followed=True)
+        if optimum is not None:
+            return Nearest(optimum, followed=True)
     return (yield from _restored(evaluator, start, 1 if task.hopeless else PATIENCE))
 
 
 def fixed_hessian_steps(
     evaluator: Evaluator,
     start: Point,
-    known: ScaledHessian,
+    scaled_hessian: ScaledHessian,
     criteria: Criteria,
-    above: float = np.inf,
+    cutoff: float = np.inf,
 ) -> Steps[Point | None]:
     """The optimum reached by steps with another problem's Hessian; None without convergence.
 
-    Steps stop early near an optimum clearly worse than `above`.
+    The steps stop early near an optimum clearly worse than `cutoff`.
     """
-    clearly = above + WORSE * abs(above) if above < np.inf else np.inf
+    clearly_worse = cutoff + WORSE * abs(cutoff) if cutoff < np.inf else np.inf
     space = evaluator.space
-    hessian = known.seen_by(evaluator, start.x)
+    hessian = scaled_hessian.in_coordinates(evaluator, start.x)
     if not (np.diag(hessian) > 0).all():  # free here, but fixed in the other problem
         return None
-    free = np.zeros(len(evaluator.problem.equality_names))
-    last, point, least = np.inf, start, np.inf
+    no_equalities = np.zeros(len(evaluator.problem.equality_names))
+    previous_length, point, reference = np.inf, start, np.inf
     for iteration in range(STEPS):
-        stuck = iteration > PATIENCE and point.violation > max(0.98 * least, FEASIBLE)
+        stuck = iteration > PATIENCE and point.violation > max(0.98 * reference, MET)
         if not point.valid or stuck:
             return None
         if iteration % PATIENCE == 0:
-            least = point.violation
-        if last <= criteria.step and point.violation <= criteria.violation:
+            reference = point.violation
+        if previous_length <= criteria.step and point.violation <= criteria.violation:
             return point if kkt.check(evaluator, point).residual <= criteria.residual else None
-        if last <= NEAR.step and point.violation <= NEAR.violation and point.objective > clearly:
+        if (
+            previous_length <= NEAR.step
+            and point.violation <= NEAR.violation
+            and point.objective > clearly_worse
+        ):
             return point
-        step, _ = kkt.quadratic_step(evaluator, point, known.scale, hessian, free)
+        step, _ = kkt.quadratic_step(evaluator, point, scaled_hessian.scale, hessian, no_equalities)
         longest = float(np.abs(step).max(initial=0.0))
-        if not np.isfinite(longest) or longest > 4 * max(last, 1e-3):
+        if not np.isfinite(longest) or longest > 4 * max(previous_length, 1e-3):
             return None
-        last = longest
+        previous_length = longest
         share = min(1.0, kkt.RADIUS / max(longest, 1e-300))
         point = yield np.clip(point.z + share * step, space.lower, space.upper)
     return None
 
 
 def stepped(
-    evaluator: Evaluator, start: Point, known: ScaledHessian, criteria: Criteria
+    evaluator: Evaluator, start: Point, scaled_hessian: ScaledHessian, criteria: Criteria
 ) -> Point | None:
     """`fixed_hessian_steps` of a single problem."""
-    solver = fixed_hessian_steps(evaluator, start, known, criteria)
-    (found,) = run_batch([solver], lambda wanted: [evaluator.point(z) for z in wanted.values()])
-    return found
+    solver = fixed_hessian_steps(evaluator, start, scaled_hessian, criteria)
+    (optimum,) = run_batch(
+        [solver], lambda requests: [evaluator.point(z) for z in requests.values()]
+    )
+    return optimum
 
 
 def _restored(evaluator: Evaluator, start: Point, patience: int) -> Steps[Nearest]:
-    """A feasible point near another; else None and the least infeasible point."""
+    """A feasible point near the start; else None and the least infeasible point."""
     best = start
     if not evaluator.problem.equality_names:
-        feasible, least = yield from restoring_steps(evaluator, start, patience)
+        feasible, least_infeasible = yield from restoring_steps(evaluator, start, patience)
         if feasible is not None:
             return Nearest(feasible)
-        best = least or start
+        best = least_infeasible or start
     doubtful = best.violation <= DOUBTFUL or bool(evaluator.problem.equality_names)
     return Nearest(repairs.feasible_point(evaluator, best) if doubtful else None, best)
-
-
-def _met(point: Point) -> bool:
-    return point.valid and point.violation <= FEASIBLE

@@ -1,4 +1,4 @@
-"""Problems that differ from a solved one in the values of their parameters, solved together."""
+"""Solves problems together that differ from a solved problem in the values of parameters."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...base.numeric import STEP
+from ..actuator import MET
 from ..evaluator import Evaluator, Point
 from ..problem import ParametricProblem, Vector
 from .steps import (
     FEASIBLE,
     LONGEST,
-    MET,
     Descent,
     Result,
     Steps,
@@ -26,7 +26,7 @@ from .steps import (
 
 
 def applicable(parametric: ParametricProblem, evaluator: Evaluator) -> bool:
-    """Whether one complex evaluation gives exact gradients of every row."""
+    """Whether one complex evaluation gives exact gradients of all rows, without equalities."""
     exact = evaluator.complex_works and not evaluator.difference_rows.any()
     return exact and not parametric.problem.equality_names
 
@@ -46,25 +46,22 @@ class ChangedProblems:
     evaluator: Evaluator
     parameters: Vector
 
-    def chosen(self, numbers: Sequence[int]) -> ChangedProblems:
-        """The problems with these numbers only."""
+    def subset(self, numbers: Sequence[int]) -> ChangedProblems:
+        """The problems with the given numbers."""
         return replace(self, parameters=self.parameters[:, list(numbers)])
 
     def points(self, z: Vector, numbers: Sequence[int] | None = None) -> list[Point]:
-        """Points with gradients at z (nf, k), each of the problem with this number (default: all).
+        """Points with gradients at z (nf, k), one for each problem of `numbers` (default: all).
 
-        Uses one complex evaluation. Raises `LimitReached` at the evaluator's limits.
+        Takes one complex evaluation. Raises `LimitReached` at the evaluator's limits.
         """
-        evaluator, own = self.evaluator, self.parameters
+        evaluator, parameters = self.evaluator, self.parameters
         evaluator.check_limits()
-        own = own if numbers is None else own[:, list(numbers)]
+        parameters = parameters if numbers is None else parameters[:, list(numbers)]
         space, (nf, count) = evaluator.space, z.shape
         x = space.to_x(z)
-        batch = np.repeat(x.astype(complex), nf, axis=1)
-        columns = np.arange(count * nf).reshape(count, nf)
-        batch[space.free[None, :], columns] += 1j * STEP * space.slope(x).T
-        problem = self.parametric.with_columns(np.repeat(own, nf, axis=1))
-        rows = problem.rows(batch).reshape(-1, count, nf)
+        problem = self.parametric.with_columns(np.repeat(parameters, nf, axis=1))
+        rows = problem.rows(space.complex_steps(x)).reshape(-1, count, nf)
         values, slopes = rows.real[:, :, 0], np.asarray(rows.imag / STEP, dtype=float)
         values = Evaluator.screen(values)
         violation = evaluator.violations(values, "worst")
@@ -77,10 +74,10 @@ class ChangedProblems:
     def run(self, solvers: Sequence[Steps[Result]]) -> list[Result]:
         """The result of a solver for each problem."""
 
-        def answer(wanted: Mapping[int, Vector]) -> list[Point]:
-            return self.points(np.stack(list(wanted.values()), axis=1), list(wanted))
+        def evaluate(requests: Mapping[int, Vector]) -> list[Point]:
+            return self.points(np.stack(list(requests.values()), axis=1), list(requests))
 
-        return run_batch(solvers, answer)
+        return run_batch(solvers, evaluate)
 
     def step_fully(self, descents: Sequence[Descent], starts: Vector) -> list[Point | None]:
         """The optimum of each problem by `full_steps` from starts (nf, K)."""
@@ -89,12 +86,12 @@ class ChangedProblems:
         )
 
     def descend(
-        self, descents: Sequence[Descent], starts: Vector, most: int = LONGEST
+        self, descents: Sequence[Descent], starts: Vector, max_evaluations: int = LONGEST
     ) -> list[Point | None]:
         """The optimum of each problem by `trusted_steps` from starts (nf, K)."""
         return self.run(
             [
-                trusted_steps(self.evaluator, *pair, most)
+                trusted_steps(self.evaluator, *pair, max_evaluations)
                 for pair in zip(descents, starts.T, strict=True)
             ]
         )
@@ -102,11 +99,11 @@ class ChangedProblems:
     def restore(self, start: Vector) -> list[Vector | None]:
         """A feasible point (nf,) of each problem near one start (nf,), or None."""
         count = self.parameters.shape[1]
-        found = self.run([restoring_steps(self.evaluator, start) for _ in range(count)])
-        return [None if one.feasible is None else one.feasible.z for one in found]
+        results = self.run([restoring_steps(self.evaluator, start) for _ in range(count)])
+        return [None if result.feasible is None else result.feasible.z for result in results]
 
     def margins_at(self, points: Sequence[Point]) -> Vector:
-        """Rows (rows, points, K) of points under each problem."""
+        """Rows (rows, points, K) of points in each problem."""
         count, size = self.parameters.shape[1], len(points)
         x = np.stack([p.x for p in points], axis=1)
         problem = self.parametric.with_columns(np.tile(self.parameters, size))
@@ -115,7 +112,7 @@ class ChangedProblems:
     def near_optimum(self, valley: Valley, starts: Vector) -> list[Point | None]:
         """Optima by full steps with the Hessian of the unchanged optimum.
 
-        None if these do not converge, or if the unchanged optimum itself is better.
+        None if the steps do not converge, or if the unchanged point is better.
 
         Parameters
         ----------
@@ -127,25 +124,27 @@ class ChangedProblems:
         evaluator, point = self.evaluator, valley.point
         if (starts == point.z[:, None]).all():  # the unchanged optimum is evaluated once
             points = self.points(starts)
-            least = [p.objective if p.violation <= FEASIBLE else np.inf for p in points]
-            begun: Sequence[Point | Vector] = points
+            unmoved_objectives = [
+                p.objective if p.violation <= FEASIBLE else np.inf for p in points
+            ]
+            first_points: Sequence[Point | Vector] = points
         else:
-            begun = list(starts.T)
+            first_points = list(starts.T)
             margins = self.margins_at([point])[:, 0]
-            met = evaluator.violations(margins, "worst") <= FEASIBLE
-            least = np.where(met, margins[0], np.inf).tolist()
-        optima = self.run([full_steps(evaluator, valley.full(), start) for start in begun])
+            feasible = evaluator.violations(margins, "worst") <= FEASIBLE
+            unmoved_objectives = np.where(feasible, margins[0], np.inf).tolist()
+        optima = self.run([full_steps(evaluator, valley.full(), start) for start in first_points])
         return [
-            None  # another valley, then
+            None  # the steps led to another valley
             if optimum is not None and unmoved < optimum.objective - 1e-9 * abs(optimum.objective)
             else optimum
-            for optimum, unmoved in zip(optima, least, strict=True)
+            for optimum, unmoved in zip(optima, unmoved_objectives, strict=True)
         ]
 
     def descend_from(
         self, valley: Valley, starts: Vector
     ) -> tuple[list[Point | None], list[Point | None]]:
-        """Optima by descents, and feasible designs for those not reached.
+        """Optima by descents, and feasible points of the problems without an optimum.
 
         Parameters
         ----------

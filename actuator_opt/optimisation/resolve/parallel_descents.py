@@ -1,8 +1,8 @@
 """SLSQP runs from several starts in parallel: one model call evaluates a step of every run.
 
-A call costs little more for many points than for one, but NLopt requests one point at a time. So
-each run has a thread, which waits until the others have requested theirs. The result and every
-decision of a run are the same as when it runs alone.
+A model call costs little more for many points than for one, but NLopt requests single points. So
+each run has a thread, which waits until all runs have requested a point. Every run takes the same
+steps as it would alone.
 """
 
 from __future__ import annotations
@@ -16,21 +16,13 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import kkt, nlopt_wrapper, repairs
-from ..actuator import StartRecord
+from ..actuator import MET, StartRecord
 from ..evaluator import Evaluator, LimitReached, Point
 from ..kkt import polish
 from ..nlopt_wrapper import ARRIVAL
 from ..problem import ParametricProblem, Vector
 from .changed import ChangedProblems
-from .steps import Batch, Descent, Steps, free_hessians
-
-FEASIBLE = 1e-6
-"""Worst missed margin that still counts as met (contract)."""
-
-
-RESIDUAL = 1e-6
-"""Largest residual of the optimality conditions that counts as an optimum."""
-
+from .steps import RESIDUAL, Batch, Descent, Steps, free_hessians
 
 FINISH = "active-set Newton"
 
@@ -39,11 +31,11 @@ RESTORATION = "least worst violation by LD_SLSQP"
 
 
 NEARER = 1e-3
-"""Share by which a worst violation must improve on the known ones to count as new."""
+"""Share by which a worst violation must fall below the known violations to count as new."""
 
 
 ELSEWHERE = 1.0
-"""Share by which a worst violation must exceed the least known for its search to count as stuck."""
+"""Share by which a worst violation must exceed the least known if its search got stuck."""
 
 
 LOCAL_EVALUATIONS = 150
@@ -52,7 +44,7 @@ LOCAL_EVALUATIONS = 150
 
 @dataclass
 class SearchResult:
-    """The end point of runs: its residual, its algorithm, and how often it was reached."""
+    """An end point of runs: its residual, its algorithm, and the number of runs that reached it."""
 
     point: Point
     residual: float
@@ -62,11 +54,11 @@ class SearchResult:
     @property
     def good(self) -> bool:
         """Whether it is feasible and satisfies the optimality conditions."""
-        return self.point.violation <= FEASIBLE and self.residual <= RESIDUAL
+        return self.point.violation <= MET and self.residual <= RESIDUAL
 
 
 class Descents:
-    """The state of one run: evaluator, results and warnings."""
+    """State of a search: evaluator, results and warnings."""
 
     def __init__(self, evaluator: Evaluator, seed: int) -> None:
         self.evaluator = evaluator
@@ -74,8 +66,8 @@ class Descents:
         self.optima: list[SearchResult] = []
         self.records: list[StartRecord] = []
         self.warnings: list[str] = []
-        self.least: list[Point] = []
-        """The infeasible point with the least worst violation."""
+        self.least_infeasible: list[Point] = []
+        """Infeasible points with the least worst violation."""
         self.objective_scale = 0.0
         self.interrupted = False
 
@@ -87,7 +79,7 @@ class Descents:
     @property
     def feasible(self) -> bool:
         """Whether a feasible point was reached."""
-        return any(optimum.point.violation <= FEASIBLE for optimum in self.optima)
+        return any(optimum.point.violation <= MET for optimum in self.optima)
 
     def residual(self, point: Point) -> float:
         """Residual of the optimality conditions; infinite where the model is undefined."""
@@ -96,135 +88,144 @@ class Descents:
         return kkt.check(self.evaluator, point, objective_scale=self.objective_scale).residual
 
     def same(self, point: Point) -> SearchResult | None:
-        """Return the known optimum that a point has reached."""
+        """The known optimum that a point has reached, or None."""
         for optimum in self.optima:
-            known = optimum.point
-            size = max(abs(known.objective), 1e-3 * self.objective_scale, 1e-300)
-            near = abs(point.objective - known.objective) <= 1e-5 * size
-            if optimum.good and near and np.abs(point.z - known.z).max(initial=0.0) <= 1e-3:
+            end = optimum.point
+            size = max(abs(end.objective), 1e-3 * self.objective_scale, 1e-300)
+            similar = abs(point.objective - end.objective) <= 1e-5 * size
+            if optimum.good and similar and np.abs(point.z - end.z).max(initial=0.0) <= 1e-3:
                 return optimum
         return None
 
     def descend(
-        self, start: Point, algorithm: str, *, linear: bool, most: int | None = None
+        self, start: Point, algorithm: str, *, linear: bool, max_evaluations: int | None = None
     ) -> bool:
         """Run one local search and polish the result; True if it ended at an optimum."""
-        before = self.evaluator.evaluations
-        good = [o for o in self.optima if o.good]
+        evaluations_before = self.evaluator.evaluations
+        known_optima = [o for o in self.optima if o.good]
         run = nlopt_wrapper.run(
             self.evaluator,
             start,
             algorithm,
             linear=linear,
-            most=most,
+            max_evaluations=max_evaluations,
             seed=self.seed,
-            known=[o.point for o in good],
+            optima=[o.point for o in known_optima],
         )
         point, name = run.point, run.algorithm + (" (linear variables)" if linear else "")
-        found = self.same(point) if point.valid and point.violation <= FEASIBLE else None
+        optimum = self.same(point) if point.valid and point.violation <= MET else None
         if run.arrived is not None:
-            found = good[run.arrived]
-        if found is not None:
-            found.hits += 1
-            point = found.point
+            optimum = known_optima[run.arrived]
+        if optimum is not None:
+            optimum.hits += 1
+            point = optimum.point
         else:
-            found = self.finish(point, name)
-        used = self.evaluator.evaluations - before
+            optimum = self.finish(point, name)
+        count = self.evaluator.evaluations - evaluations_before
         self.records.append(
-            StartRecord(start.x, found.point.objective, found.point.violation, name, used)
+            StartRecord(start.x, optimum.point.objective, optimum.point.violation, name, count)
         )
-        return found.good
+        return optimum.good
 
     def restore(self, point: Point, *, start: Point) -> None:
-        """Minimise the worst violation, and descend from there if it vanishes."""
-        before = self.evaluator.evaluations
-        least = min((one.violation for one in self.least), default=np.inf)
-        found = repairs.least_missed(self.evaluator, point, least / 2)
-        if found.violation <= FEASIBLE:
-            self.descend(found, "LD_SLSQP", linear=False, most=LOCAL_EVALUATIONS)
+        """Minimise the worst violation, and descend from the result if it is feasible."""
+        evaluations_before = self.evaluator.evaluations
+        smallest = min((p.violation for p in self.least_infeasible), default=np.inf)
+        end = repairs.least_missed(self.evaluator, point, smallest / 2)
+        if end.violation <= MET:
+            self.descend(end, "LD_SLSQP", linear=False, max_evaluations=LOCAL_EVALUATIONS)
             return
-        if found.violation < least * (1 - NEARER):
-            self.optima.append(SearchResult(found, self.residual(found), RESTORATION))
-        self.least.append(found)
-        if found.violation > least * (1 + ELSEWHERE):
-            self.descend(found, "LD_SLSQP", linear=False, most=LOCAL_EVALUATIONS)
+        if end.violation < smallest * (1 - NEARER):
+            self.optima.append(SearchResult(end, self.residual(end), RESTORATION))
+        self.least_infeasible.append(end)
+        if end.violation > smallest * (1 + ELSEWHERE):
+            self.descend(end, "LD_SLSQP", linear=False, max_evaluations=LOCAL_EVALUATIONS)
         elif point is start:
-            used = self.evaluator.evaluations - before
+            count = self.evaluator.evaluations - evaluations_before
             self.records.append(
-                StartRecord(start.x, found.objective, found.violation, RESTORATION, used)
+                StartRecord(start.x, end.objective, end.violation, RESTORATION, count)
             )
 
     def finish(self, point: Point, algorithm: str) -> SearchResult:
         """Polish a point and add it to the optima."""
-        better = polish(self.evaluator, point)
-        if better is not point:
+        polished = polish(self.evaluator, point)
+        if polished is not point:
             algorithm = f"{algorithm}, {FINISH}"
-        known = self.same(better) if better.valid else None
-        if known is not None:
-            known.hits += 1
-            return known
-        optimum = SearchResult(better, self.residual(better), algorithm)
+        optimum = self.same(polished) if polished.valid else None
+        if optimum is not None:
+            optimum.hits += 1
+            return optimum
+        optimum = SearchResult(polished, self.residual(polished), algorithm)
         self.optima.append(optimum)
         return optimum
 
-    def best(self, others: Sequence[SearchResult] = ()) -> SearchResult | None:
-        """The best of the optima and other points: feasible ones first, by objective.
+    def best(self, further: Sequence[SearchResult] = ()) -> SearchResult | None:
+        """The best of the optima and other points: by violation, then by objective.
 
-        A proven optimum wins over a point that is better only by rounding.
+        An optimum takes precedence over a point that is better only by rounding.
         """
 
         def rank(optimum: SearchResult) -> tuple[float, float]:
             point = optimum.point
             if not point.valid:
                 return (np.inf, np.inf)
-            missed = point.violation if point.violation > FEASIBLE else 0.0
+            missed = point.violation if point.violation > MET else 0.0
             return (missed, point.objective)
 
-        found = [*self.optima, *others]
-        first = min(found, key=rank, default=None)
-        if first is None or first.good:
-            return first
-        room = 1e-7 * max(abs(first.point.objective), 1e-300)
-        proven = [o for o in found if o.good and o.point.objective <= first.point.objective + room]
-        return min(proven, key=rank, default=first)
+        candidates = [*self.optima, *further]
+        best = min(candidates, key=rank, default=None)
+        if best is None or best.good:
+            return best
+        room = 1e-7 * max(abs(best.point.objective), 1e-300)
+        proven = [
+            o for o in candidates if o.good and o.point.objective <= best.point.objective + room
+        ]
+        return min(proven, key=rank, default=best)
 
 
 ROUNDS = 60
-"""Maximum points of a run computed in advance; from a sweep start 10 to 60 suffice."""
+"""Maximum precomputed points of a run; from a start of the sweep, 10 to 60 suffice."""
 
 FIRST = 14
-"""Maximum steps with the Hessian of the free directions if none has reached an optimum yet."""
+"""Maximum steps of a run before only the runs of unsolved problems continue."""
 
 
 @dataclass(frozen=True)
 class DescentTask:
-    """Runs of one problem: its evaluator, and their starting points with gradients."""
+    """Runs of one problem: the evaluator, and the starting points with gradients."""
 
     evaluator: Evaluator
     starts: list[Point]
 
 
 Rows = Callable[[npt.NDArray[np.complex128], npt.NDArray[np.intp]], npt.NDArray[np.generic]]
-"""Rows (rows, k) of points (n, k), each of the task with this index (k,)."""
+"""Rows (rows, k) of points (n, k), for the tasks with the given numbers (k,)."""
 
 
-def precompute(evaluator: Evaluator, starts: Sequence[Point], *, seed: int, most: int) -> None:
-    """Precompute the points SLSQP visits from the given starts.
+def precompute(
+    evaluator: Evaluator, starts: Sequence[Point], *, seed: int, max_evaluations: int
+) -> None:
+    """Precompute the points that SLSQP visits from the given starts.
 
-    Stops early if the first run is infeasible, as the others are then skipped, and at the
-    evaluator's time limit.
+    Does nothing without exact gradients or with a limit of evaluations. Stops early if the first
+    run is infeasible, as the search then skips the others, and at the evaluator's time limit.
 
     Parameters
     ----------
-    evaluator : of the problem; without exact gradients, or with a limit of points, nothing is done
+    evaluator : of the problem
     starts : evaluated points
-    seed, most : of the runs
+    seed, max_evaluations : of the runs
     """
     if len(starts) < 2 or not evaluator.exact or evaluator.max_evaluations is not None:
         return
     evaluator.take_slopes(starts)
     task = DescentTask(evaluator, list(starts))
-    run_together([task], lambda batch, _: evaluator.problem.rows(batch), seed=seed, most=most)
+    run_together(
+        [task],
+        lambda batch, _: evaluator.problem.rows(batch),
+        seed=seed,
+        max_evaluations=max_evaluations,
+    )
 
 
 def run_together(
@@ -232,63 +233,63 @@ def run_together(
     rows: Rows,
     *,
     seed: int,
-    most: int,
+    max_evaluations: int,
     tolerance: float = 1e-9,
     rounds: int = ROUNDS,
 ) -> list[list[Point]]:
     """The best points of SLSQP runs, for each task and start.
 
-    The evaluators store every point visited. If the first run of a task is infeasible, its others
-    stop. All stop at the time limit of the first evaluator.
+    The evaluators store every visited point. If the first run of a task is infeasible, the other
+    runs of the task stop. All runs stop at the time limit of the first evaluator.
 
     Parameters
     ----------
     tasks : with exact gradients
-    rows : of all tasks in one call
-    seed, most, tolerance : of the runs
+    rows : evaluates points of all tasks in one call
+    seed, max_evaluations, tolerance : of the runs
     rounds : maximum points of a run
     """
     runs: list[SlsqpRun] = []
     for number, task in enumerate(tasks):
-        known: list[Point] = []
+        optima: list[Point] = []
         runs += [
-            SlsqpRun(number, start, task.evaluator, known, seed, most, tolerance)
+            SlsqpRun(number, start, task.evaluator, optima, seed, max_evaluations, tolerance)
             for start in task.starts
         ]
     firsts = {run.task: run for run in reversed(runs)}
 
-    def answer(wanted: Mapping[int, Vector]) -> list[Point]:
-        parts = [runs[k].evaluator.columns(z[:, None]) for k, z in wanted.items()]
+    def evaluate(requests: Mapping[int, Vector]) -> list[Point]:
+        parts = [runs[k].evaluator.columns(z[:, None]) for k, z in requests.items()]
         sizes = [part.shape[1] for part in parts]
-        owners = np.repeat([runs[k].task for k in wanted], sizes).astype(np.intp)
+        owners = np.repeat([runs[k].task for k in requests], sizes).astype(np.intp)
         values = rows(np.concatenate(parts, axis=1), owners)
         split = np.split(values, np.cumsum(sizes)[:-1], axis=1)
         return [
-            runs[k].entered(*pair)
-            for k, pair in zip(wanted, zip(wanted.values(), split, strict=True), strict=True)
+            runs[k].enter(*pair)
+            for k, pair in zip(requests, zip(requests.values(), split, strict=True), strict=True)
         ]
 
     solvers = [run.steps() for run in runs]
     try:
-        batch = Batch(solvers, answer)
+        batch = Batch(solvers, evaluate)
         _share(runs, batch, set())
         for _ in range(rounds):
-            for k in [k for k in batch.wanted if firsts[runs[k].task].hopeless]:
+            for k in [k for k in batch.requests if firsts[runs[k].task].hopeless]:
                 batch.drop(k)
-            if not batch.wanted or tasks[0].evaluator.late:
+            if not batch.requests or tasks[0].evaluator.late:
                 break
-            ended = set(batch.results)
+            finished = set(batch.results)
             batch.step()
-            _share(runs, batch, ended)
+            _share(runs, batch, finished)
     finally:
         for solver in solvers:
             solver.close()
     return [[run.best for run in runs if run.task == k] for k in range(len(tasks))]
 
 
-def _share(runs: Sequence[SlsqpRun], batch: Batch[None], before: set[int]) -> None:
+def _share(runs: Sequence[SlsqpRun], batch: Batch[None], finished: set[int]) -> None:
     """Share new optima with the other runs of their task, in order."""
-    for number in sorted(set(batch.results) - before):
+    for number in sorted(set(batch.results) - finished):
         if runs[number].new:
             runs[number].known.append(runs[number].best)
 
@@ -300,9 +301,9 @@ class SlsqpRun:
     Parameters
     ----------
     task : number of its task
-    start : where it starts
-    evaluator : of the task, which keeps the points visited
-    known : optima of the task that end a run
+    start : first point
+    evaluator : of the task; stores the visited points
+    known : optima of the task, at which a run stops
     seed, most, tolerance : of the run
     """
 
@@ -314,69 +315,70 @@ class SlsqpRun:
     most: int
     tolerance: float
     hopeless: bool = False
-    """Whether it ended at an infeasible point."""
+    """Whether the run ended at an infeasible point."""
     new: bool = False
-    """Whether it ended at a feasible point that was not known."""
+    """Whether the run ended at a new feasible point."""
     best: Point = field(init=False)
 
     def __post_init__(self) -> None:
         self.best = self.start
-        self._asked: SimpleQueue[Vector | None] = SimpleQueue()
-        self._answers: SimpleQueue[Point | None] = SimpleQueue()
-        self._own = _Asking(self.evaluator, self.start, self._asked, self._answers)
+        self._requests: SimpleQueue[Vector | None] = SimpleQueue()
+        self._replies: SimpleQueue[Point | None] = SimpleQueue()
+        self._evaluator = _QueuedEvaluator(
+            self.evaluator, self.start, self._requests, self._replies
+        )
 
     def steps(self) -> Steps[None]:
         """The run as a solver; closing it early stops it with the best point so far."""
-        thread = Thread(target=self._go, daemon=True)
+        thread = Thread(target=self._run, daemon=True)
         thread.start()
         try:
-            while (z := self._asked.get()) is not None:
-                self._answers.put((yield z))
+            while (z := self._requests.get()) is not None:
+                self._replies.put((yield z))
         finally:
-            self._answers.put(None)
+            self._replies.put(None)
             thread.join()
 
-    def entered(self, z: Vector, rows: npt.NDArray[np.generic]) -> Point:
+    def enter(self, z: Vector, rows: npt.NDArray[np.generic]) -> Point:
         """The point at z (nf,) from the rows of its columns; stored in the task's evaluator."""
-        self.evaluator.foreseen[z.tobytes()] = rows
-        return self._own.entered(z, rows)
+        self.evaluator.precomputed[z.tobytes()] = rows
+        return self._evaluator.enter(z, rows)
 
-    def _go(self) -> None:
+    def _run(self) -> None:
         try:
             run = nlopt_wrapper.run(
-                self._own, self.start, "LD_SLSQP", most=self.most, seed=self.seed,
-                known=self.known, tolerance=self.tolerance,
+                self._evaluator, self.start, "LD_SLSQP", max_evaluations=self.most, seed=self.seed,
+                optima=self.known, tolerance=self.tolerance,
             )  # fmt: skip
             self.best = run.point
-            self.hopeless = run.point.violation > FEASIBLE
+            self.hopeless = run.point.violation > MET
             self.new = not self.hopeless and run.arrived is None
         finally:
-            self._asked.put(None)
+            self._requests.put(None)
 
 
-class _Asking(Evaluator):
-    """An evaluator whose points the batch evaluates."""
+class _QueuedEvaluator(Evaluator):
+    """An evaluator that requests its points from the batch."""
 
     def __init__(
         self,
         evaluator: Evaluator,
         start: Point,
-        asked: SimpleQueue[Vector | None],
-        answers: SimpleQueue[Point | None],
+        requests: SimpleQueue[Vector | None],
+        replies: SimpleQueue[Point | None],
     ) -> None:
         super().__init__(evaluator.problem)
-        self.complex_works = evaluator.complex_works
-        self.difference_rows = evaluator.difference_rows
-        self._asked, self._answers = asked, answers
+        self.adopt_check(evaluator)
+        self._requests, self._replies = requests, replies
         self._cache[start.z.tobytes()] = start
 
     def point(self, z: Vector) -> Point:
-        """The evaluated point at z (nf,), once the other runs have requested theirs."""
-        known = self._cache.get(z.tobytes())
-        if known is not None:
-            return known
-        self._asked.put(z)
-        point = self._answers.get()
+        """The evaluated point at z (nf,), once all runs have requested a point."""
+        cached = self._cache.get(z.tobytes())
+        if cached is not None:
+            return cached
+        self._requests.put(z)
+        point = self._replies.get()
         if point is None:
             raise LimitReached
         return point
@@ -392,12 +394,12 @@ def descents_from(
     tolerance: float = 1e-9,
     rounds: int = ROUNDS,
 ) -> list[list[Point]]:
-    """The results of SLSQP runs, for each problem from each of its starts.
+    """The end points of SLSQP runs, for each problem and start.
 
     Parameters
     ----------
     parametric : the problems
-    evaluators : one of each problem, with exact gradients
+    evaluators : one per problem, with exact gradients
     parameters : of each problem (q, k)
     starts : coordinates (nf,) for each problem
     seed, tolerance, rounds : of the runs, see `run_together`
@@ -410,17 +412,22 @@ def descents_from(
 
     if not any(starts):
         return [[] for _ in evaluators]
-    places = [(k, z) for k, some in enumerate(starts) for z in some]
-    parts = [evaluators[k].columns(z[:, None]) for k, z in places]
-    owners = np.repeat([k for k, _ in places], parts[0].shape[1]).astype(np.intp)
+    run_starts = [(k, z) for k, points in enumerate(starts) for z in points]
+    parts = [evaluators[k].columns(z[:, None]) for k, z in run_starts]
+    owners = np.repeat([k for k, _ in run_starts], parts[0].shape[1]).astype(np.intp)
     values = np.split(rows(np.concatenate(parts, axis=1), owners), len(parts), axis=1)
     tasks = [DescentTask(evaluator, []) for evaluator in evaluators]
-    for (k, z), part in zip(places, values, strict=True):
-        point = evaluators[k].entered(z, part)
+    for (k, z), part in zip(run_starts, values, strict=True):
+        point = evaluators[k].enter(z, part)
         if point.valid:
             tasks[k].starts.append(point)
     return run_together(
-        tasks, rows, seed=seed, most=LOCAL_EVALUATIONS, tolerance=tolerance, rounds=rounds
+        tasks,
+        rows,
+        seed=seed,
+        max_evaluations=LOCAL_EVALUATIONS,
+        tolerance=tolerance,
+        rounds=rounds,
     )
 
 
@@ -428,58 +435,58 @@ def converged_from(
     parametric: ParametricProblem,
     evaluators: Sequence[Evaluator],
     parameters: Vector,
-    begun: Sequence[Sequence[Point]],
+    starts: Sequence[Sequence[Point]],
 ) -> list[list[Point | None]]:
     """The optimum that steps with the Hessian reach from each point, or None.
 
     Parameters
     ----------
     parametric, evaluators, parameters : as of `descents_from`
-    begun : points of each problem with their gradients
+    starts : points of each problem with their gradients
     """
     descents: list[Descent] = []
-    for evaluator, points in zip(evaluators, begun, strict=True):
-        first = [_descent(evaluator, point, np.eye(evaluator.space.size)) for point in points]
-        for descent, point in zip(first, points, strict=True):
-            descent.go_on(evaluator, point)
-        hessians = free_hessians(evaluator, first)
+    for evaluator, points in zip(evaluators, starts, strict=True):
+        initial = [_descent(evaluator, point, np.eye(evaluator.space.size)) for point in points]
+        for descent, point in zip(initial, points, strict=True):
+            descent.advance(evaluator, point)
+        hessians = free_hessians(evaluator, initial)
         descents += [_descent(evaluator, *pair) for pair in zip(points, hessians, strict=True)]
     if not descents:
-        return [[] for _ in begun]
-    owners = np.repeat(np.arange(len(begun)), [len(points) for points in begun])
+        return [[] for _ in starts]
+    owners = np.repeat(np.arange(len(starts)), [len(points) for points in starts])
     changed = ChangedProblems(parametric, evaluators[0], parameters[:, owners])
-    z = np.stack([point.z for points in begun for point in points], axis=1)
+    z = np.stack([point.z for points in starts for point in points], axis=1)
     optima = changed.descend(descents, z, FIRST)
-    done = {owner for owner, point in zip(owners, optima, strict=True) if point is not None}
-    left = [
-        k for k, owner in enumerate(owners) if owner not in done and descents[k].point is not None
+    solved = {owner for owner, point in zip(owners, optima, strict=True) if point is not None}
+    unsolved = [
+        k for k, owner in enumerate(owners) if owner not in solved and descents[k].point is not None
     ]
-    if left:
-        z = np.stack([descents[k].known.z + descents[k].step for k in left], axis=1)
-        more = changed.chosen(left).descend([descents[k] for k in left], z)
-        for k, reached in zip(left, more, strict=True):
-            optima[k] = reached
-    every = iter(optima)
-    return [[next(every) for _ in points] for points in begun]
+    if unsolved:
+        z = np.stack([descents[k].current.z + descents[k].step for k in unsolved], axis=1)
+        continued = changed.subset(unsolved).descend([descents[k] for k in unsolved], z)
+        for k, optimum in zip(unsolved, continued, strict=True):
+            optima[k] = optimum
+    iterator = iter(optima)
+    return [[next(iterator) for _ in points] for points in starts]
 
 
 def _descent(evaluator: Evaluator, point: Point, hessian: Vector) -> Descent:
-    """A descent from a point, with its own Hessian."""
+    """A descent from a point with a Hessian."""
     scale = kkt.slope_scale(evaluator, point)
     return Descent(hessian, scale, evaluator.constraint_count, 1.0)
 
 
 def distinct_ends(points: Sequence[Point]) -> list[Point]:
-    """Distinct ends of runs, the best first."""
-    kept: list[Point] = []
+    """Distinct end points of runs, the best first."""
+    distinct: list[Point] = []
     for point in sorted(points, key=lambda p: (p.violation > ARRIVAL[2], p.objective)):
-        if not any(_near(point, known) for known in kept):
-            kept.append(point)
-    return kept
+        if not any(_near(point, known) for known in distinct):
+            distinct.append(point)
+    return distinct
 
 
 def _near(point: Point, known: Point) -> bool:
-    """Whether a run counts as arrived at a known point."""
-    reach, share, _ = ARRIVAL
-    alike = abs(point.objective - known.objective) <= share * abs(known.objective)
-    return alike and bool(np.abs(point.z - known.z).max(initial=0.0) <= reach)
+    """Whether a run has arrived at a known point."""
+    distance, share, _ = ARRIVAL
+    similar = abs(point.objective - known.objective) <= share * abs(known.objective)
+    return similar and bool(np.abs(point.z - known.z).max(initial=0.0) <= distance)

@@ -1,17 +1,17 @@
-"""Steps towards an optimum near a solved one, for many problems side by side.
+"""Steps towards an optimum near a solved problem, for many problems in parallel.
 
 A solver is a generator: it yields the coordinates of the point it needs, receives that point with
-its gradients, and returns its result. One model call evaluates a step of every solver. Each sees
-only its own points, so its result is the same alone or beside others.
+its gradients, and returns its result. One model call evaluates a step of every solver. Each solver
+receives only its own points, so its result does not depend on the other solvers.
 
-Full quadratic steps reach most optima. They use the Hessian of the unchanged optimum and update it.
-A descent within a trust region, from a feasible point, reaches the others. A restoration finds such
-a point.
+Full quadratic steps reach most optima. They start with the Hessian of the unchanged optimum and
+update it. A descent within a trust region reaches the other optima from a feasible point, which a
+restoration finds.
 
-Hessians start from another problem's optimum, or along the free directions. Most designs of a front
-have nearly as many active limits as variables. Along the few free directions, a gradient on each
-side gives the curvature. Elsewhere the Hessian only has to be convex, as the rows determine the
-step [NocedalWright2006] section 16.2.
+The first Hessian is that of another optimum, or it is computed along the free directions. Most
+designs of a front have nearly as many active limits as variables. Along the few free directions, a
+gradient on each side gives the curvature. Elsewhere the Hessian only has to be convex, as the rows
+determine the step [NocedalWright2006] section 16.2.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from typing import Generic, NamedTuple, TypeAlias, TypeVar
 import numpy as np
 
 from .. import kkt
+from ..actuator import MET
 from ..evaluator import HESSIAN_STEP, Evaluator, Point
 from ..problem import Vector
 
@@ -33,54 +34,54 @@ Steps: TypeAlias = Generator[Vector, Point, Result]
 """A solver: yields coordinates (nf,), receives the evaluated point, returns its result."""
 
 
-Answer: TypeAlias = Callable[[Mapping[int, Vector]], Sequence[Point]]
+BatchEvaluator: TypeAlias = Callable[[Mapping[int, Vector]], Sequence[Point]]
 """Evaluates the point requested by each solver, by number."""
 
 
 class Batch(Generic[Result]):
-    """Solvers under way.
+    """Solvers that share their model calls.
 
     Parameters
     ----------
-    solvers : all of them
-    answer : evaluates a point for each solver that asks, in one model call
+    solvers : the solvers
+    evaluate : evaluates the requested points in one model call
 
     Attributes
     ----------
-    wanted : the coordinates that the solvers still running ask for, by number
-    results : of the solvers that have ended, by number
+    requests : requested coordinates of the running solvers, by number
+    results : of the finished solvers, by number
     """
 
-    def __init__(self, solvers: Sequence[Steps[Result]], answer: Answer) -> None:
-        self.wanted: dict[int, Vector] = {}
+    def __init__(self, solvers: Sequence[Steps[Result]], evaluate: BatchEvaluator) -> None:
+        self.requests: dict[int, Vector] = {}
         self.results: dict[int, Result] = {}
-        self._solvers, self._answer = solvers, answer
+        self._solvers, self._evaluate = solvers, evaluate
         for number in range(len(solvers)):
             self._advance(number, None)
 
     def step(self) -> None:
-        """Answer every solver that is still running."""
-        wanted, self.wanted = self.wanted, {}
-        for number, point in zip(wanted, self._answer(wanted), strict=True):
+        """Evaluate the requested points, and advance every running solver."""
+        requests, self.requests = self.requests, {}
+        for number, point in zip(requests, self._evaluate(requests), strict=True):
             self._advance(number, point)
 
     def drop(self, number: int) -> None:
         """End a solver without a result."""
-        del self.wanted[number]
+        del self.requests[number]
         self._solvers[number].close()
 
     def _advance(self, number: int, point: Point | None) -> None:
         solver = self._solvers[number]
         try:
-            self.wanted[number] = next(solver) if point is None else solver.send(point)
+            self.requests[number] = next(solver) if point is None else solver.send(point)
         except StopIteration as end:
             self.results[number] = end.value
 
 
-def run_batch(solvers: Sequence[Steps[Result]], answer: Answer) -> list[Result]:
+def run_batch(solvers: Sequence[Steps[Result]], evaluate: BatchEvaluator) -> list[Result]:
     """The result of every solver, in order."""
-    batch = Batch(solvers, answer)
-    while batch.wanted:
+    batch = Batch(solvers, evaluate)
+    while batch.requests:
         batch.step()
     return [batch.results[number] for number in range(len(solvers))]
 
@@ -92,19 +93,19 @@ LONGEST = 60
 """Maximum evaluations of a descent within a trust region."""
 
 MEMORY = 3
-"""Number of past merits; a trial must beat the worst of them."""
+"""Number of past merits; a trial must beat the worst of these."""
 
 RADIUS = 0.1
 """First trust radius, in solver coordinates: 10 % in a logarithmic variable."""
 
 LEAST_RADIUS = 1e-4
-"""Radius at which a descent gives up."""
+"""Trust radius below which a descent fails."""
 
 RESTORATIONS = 24
 """Maximum steps towards a feasible point."""
 
 PATIENCE = 4
-"""Steps within which the violation must fall by 2 %, or the problem counts as infeasible."""
+"""Number of steps within which the violation must fall by 2 %; else the solver gives up."""
 
 SETTLED = 1e-6
 """Step length below which the optimality conditions are checked."""
@@ -112,23 +113,20 @@ SETTLED = 1e-6
 FEASIBLE = 1e-11
 """Allowed violation: the objective is first order in it."""
 
-MET = 1e-6
-"""Violation of a design that still counts as feasible."""
-
 RESIDUAL = 1e-6
 """Allowed residual of the optimality conditions: the objective is second order in it."""
 
 LEAST_CURVATURE = 1e-10
-"""Least ratio of smallest to largest curvature of an updated Hessian, well above rounding."""
+"""Least ratio of smallest to largest curvature of an updated Hessian; well above rounding."""
 
 
 @dataclass
 class Descent:
     """One descent: the last accepted point and the trial step from it.
 
-    The merit is the objective plus the violations, weighted above their price. A trial need only
-    beat the worst of the last `MEMORY` merits, so that curved constraints do not shorten good steps
-    [NocedalWright2006] ch. 15. The trust radius follows the success of the steps.
+    The merit is the objective plus the violations, weighted above their price. A trial must
+    only beat the worst of the last `MEMORY` merits, so that curved constraints do not shorten good
+    steps [NocedalWright2006] ch. 15. The trust radius follows the success of the steps.
     """
 
     hessian: Vector
@@ -142,10 +140,10 @@ class Descent:
     multipliers: Vector = field(default_factory=lambda: np.zeros(0))
     corrected: bool = False
     """Whether the trial step includes a correction for the curvature of constraints."""
-    past: list[tuple[float, float]] = field(default_factory=list)
+    measures: list[tuple[float, float]] = field(default_factory=list)
 
     @property
-    def known(self) -> Point:
+    def current(self) -> Point:
         """The last accepted point, which must exist."""
         assert self.point is not None
         return self.point
@@ -160,10 +158,10 @@ class Descent:
         if self.point is None or self.length <= SETTLED:
             return True
         value, missed = self._measures(trial)
-        merits = [v + self.price * m for v, m in self.past[-MEMORY:]]
+        merits = [v + self.price * m for v, m in self.measures[-MEMORY:]]
         return value + self.price * missed < max(merits)
 
-    def go_on(self, evaluator: Evaluator, trial: Point) -> None:
+    def advance(self, evaluator: Evaluator, trial: Point) -> None:
         """Update the Hessian from an accepted trial and choose the next step."""
         jacobian = evaluator.jacobian(trial)
         if self.point is not None:
@@ -173,19 +171,19 @@ class Descent:
         if self.point is not None and self.length > 0.9 * self.radius:
             self.radius = min(2 * self.radius, kkt.RADIUS)
         self.point = trial
-        self.past.append(self._measures(trial))
-        self.choose(evaluator)
+        self.measures.append(self._measures(trial))
+        self.choose_step(evaluator)
 
-    def choose(self, evaluator: Evaluator, trial: Point | None = None) -> None:
+    def choose_step(self, evaluator: Evaluator, trial: Point | None = None) -> None:
         """Choose the step from the accepted point, within the trust radius.
 
-        After a trial that curved constraints spoilt, the step is corrected for that curvature
-        [NocedalWright2006] section 18.3.
+        A rejected `trial` corrects the step for the curvature of constraints [NocedalWright2006]
+        section 18.3.
         """
-        space, point, unit = evaluator.space, self.known, np.eye(len(self.hessian))
+        space, point, unit = evaluator.space, self.current, np.eye(len(self.hessian))
         jacobian = evaluator.jacobian(point)
-        down = np.minimum(point.z - space.lower, self.radius)
-        up = np.minimum(space.upper - point.z, self.radius)
+        room_below = np.minimum(point.z - space.lower, self.radius)
+        room_above = np.minimum(space.upper - point.z, self.radius)
         constraints = slice(1, 1 + self.rows)
         margins, self.corrected = point.rows[constraints], trial is not None
         if trial is not None:
@@ -194,7 +192,7 @@ class Descent:
             self.hessian,
             jacobian[0] / self.scale,
             np.concatenate([jacobian[constraints], unit, -unit]),
-            np.concatenate([margins, down, up]),
+            np.concatenate([margins, room_below, room_above]),
             self.prices,
         )
         self.multipliers = self.prices[: self.rows]
@@ -206,26 +204,26 @@ class Descent:
         return trial.objective / self.scale, float(missed)
 
     def _learn(self, step: Vector, change: Vector) -> None:
-        """Damped update that keeps the Hessian positive [NocedalWright2006] procedure 18.2."""
-        turned = self.hessian @ step
-        bent, straight = float(step @ turned), float(step @ change)
-        if bent <= 1e-20:
+        """Damped update, which keeps the Hessian positive [NocedalWright2006] procedure 18.2."""
+        product = self.hessian @ step
+        curvature, measured = float(step @ product), float(step @ change)
+        if curvature <= 1e-20:
             return
-        if straight < 0.2 * bent:
-            share = 0.8 * bent / (bent - straight)
-            change = share * change + (1 - share) * turned
-        learnt = (
+        if measured < 0.2 * curvature:
+            share = 0.8 * curvature / (curvature - measured)
+            change = share * change + (1 - share) * product
+        update = (
             self.hessian
-            - np.outer(turned, turned) / bent
+            - np.outer(product, product) / curvature
             + np.outer(change, change) / float(step @ change)
         )
-        curvatures = np.linalg.eigvalsh(learnt)
-        if curvatures[0] > LEAST_CURVATURE * curvatures[-1]:  # otherwise lost in rounding
-            self.hessian = learnt
+        curvatures = np.linalg.eigvalsh(update)
+        if curvatures[0] > LEAST_CURVATURE * curvatures[-1]:  # otherwise below rounding
+            self.hessian = update
 
 
 def margin_price(multipliers: Vector) -> float:
-    """A penalty for missed margins above every multiplier."""
+    """A penalty per missed margin that exceeds every multiplier."""
     return 2 * float(multipliers.max(initial=0.0)) + 1.0
 
 
@@ -239,7 +237,7 @@ class Valley:
     hessian : of the Lagrangian over `scale`, made positive definite (nf, nf)
     scale : size of the objective's gradient
     rows : number of constraints
-    price : of missed margins, above every multiplier
+    price : penalty per missed margin, above every multiplier
     """
 
     point: Point
@@ -260,7 +258,7 @@ class Valley:
 def valley_at(evaluator: Evaluator, point: Point) -> Valley:
     """The valley of a local optimum."""
     state = kkt.state_at(evaluator, point)
-    price = margin_price(state.multipliers[: len(state.near.constraint)] / state.scale)
+    price = margin_price(state.multipliers[: len(state.active.constraint)] / state.scale)
     hessian = kkt.convex_hessian(evaluator, state)
     return Valley(point, hessian, state.scale, evaluator.constraint_count, price)
 
@@ -270,6 +268,11 @@ def is_optimum(evaluator: Evaluator, point: Point) -> bool:
     return point.violation <= FEASIBLE and kkt.residual(evaluator, point) <= RESIDUAL
 
 
+def is_met(point: Point) -> bool:
+    """Whether the point has finite values and meets every limit."""
+    return point.valid and point.violation <= MET
+
+
 def full_steps(
     evaluator: Evaluator, descent: Descent, start: Vector | Point
 ) -> Steps[Point | None]:
@@ -277,62 +280,62 @@ def full_steps(
 
     Parameters
     ----------
-    evaluator : of the problem, or of one with the same rows and box
-    descent : a fresh descent with its initial Hessian
+    evaluator : of the problem, or of a problem with the same rows and box
+    descent : a new descent with its initial Hessian
     start : coordinates (nf,), or the evaluated point
     """
     space = evaluator.space
     z = np.clip(start.z if isinstance(start, Point) else start, space.lower, space.upper)
-    last, least = np.inf, np.inf
+    previous_length, reference = np.inf, np.inf
     for iteration in range(ITERATIONS):
         trial = start if isinstance(start, Point) and not iteration else (yield z)
         if not trial.valid:
             return None
-        if last <= SETTLED and is_optimum(evaluator, trial):
+        if previous_length <= SETTLED and is_optimum(evaluator, trial):
             return trial
-        if iteration > PATIENCE and trial.violation > max(0.98 * least, MET):
+        if iteration > PATIENCE and trial.violation > max(0.98 * reference, MET):
             return None
         if iteration % PATIENCE == 0:
-            least = trial.violation
-        descent.go_on(evaluator, trial)
-        if not np.isfinite(descent.length) or descent.length > 4 * max(last, 1e-3):
+            reference = trial.violation
+        descent.advance(evaluator, trial)
+        if not np.isfinite(descent.length) or descent.length > 4 * max(previous_length, 1e-3):
             return None
-        last = descent.length
+        previous_length = descent.length
         z = np.clip(z + descent.step, space.lower, space.upper)
     return None
 
 
 def trusted_steps(
-    evaluator: Evaluator, descent: Descent, start: Vector, most: int = LONGEST
+    evaluator: Evaluator, descent: Descent, start: Vector, max_evaluations: int = LONGEST
 ) -> Steps[Point | None]:
     """The optimum that a descent within a trust region reaches, or None.
 
     Parameters
     ----------
     evaluator, descent, start : as of `full_steps`
-    most : evaluations
+    max_evaluations : maximum number of evaluations
     """
     space = evaluator.space
     z = np.clip(start, space.lower, space.upper)
-    for _ in range(most):
+    for _ in range(max_evaluations):
         trial = yield z
         if trial.valid and descent.accepts(trial):
             if descent.length <= SETTLED and is_optimum(evaluator, trial):
                 return trial
-            descent.go_on(evaluator, trial)
+            descent.advance(evaluator, trial)
         elif descent.point is None or descent.length <= LEAST_RADIUS:
             return None
         elif trial.valid and not descent.corrected:
-            descent.choose(evaluator, trial)
+            descent.choose_step(evaluator, trial)
         else:
             descent.radius = descent.length / 2
-            descent.choose(evaluator)
-        z = np.clip(descent.known.z + descent.step, space.lower, space.upper)
+            descent.choose_step(evaluator)
+        z = np.clip(descent.current.z + descent.step, space.lower, space.upper)
     return None
 
 
 class RestorationResult(NamedTuple):
-    """A feasible point, or None and the least infeasible one met."""
+    """A feasible point, or None and the least infeasible point of the steps."""
 
     feasible: Point | None
     least: Point | None
@@ -341,18 +344,17 @@ class RestorationResult(NamedTuple):
 def restoring_steps(
     evaluator: Evaluator, start: Vector | Point, patience: int = PATIENCE
 ) -> Steps[RestorationResult]:
-    """A feasible point near a start.
+    """A feasible point near a start, for a problem without equalities.
 
-    Every step is the shortest one that satisfies the linearised rows, or violates them least. The
-    problem has no equalities.
+    Every step is the shortest step that satisfies the linearised rows, or violates them least.
 
     Parameters
     ----------
-    evaluator : of the problem, or of one with the same rows and box
+    evaluator : of the problem, or of a problem with the same rows and box
     start : coordinates (nf,), or the evaluated point
     patience : steps within which the violation must fall by 2 %
     """
-    space, least, best = evaluator.space, np.inf, None
+    space, reference, best = evaluator.space, np.inf, None
     trial = start if isinstance(start, Point) else (yield start)
     for iteration in range(RESTORATIONS):
         if not trial.valid:
@@ -361,10 +363,10 @@ def restoring_steps(
             return RestorationResult(trial, trial)
         if best is None or trial.violation < best.violation:
             best = trial
-        if iteration > patience and trial.violation > 0.98 * least:
+        if iteration > patience and trial.violation > 0.98 * reference:
             break
         if iteration % patience == 0:
-            least = trial.violation
+            reference = trial.violation
         rows = kkt.active_set(evaluator, trial, width=1.0)
         step, _ = kkt.quadratic_programme(
             np.eye(space.size), np.zeros(space.size), rows.gradients, rows.margins - 1e-7
@@ -377,20 +379,20 @@ def restoring_steps(
 FIRM = 1e-6
 """Multiplier, relative to the largest, above which a row is active."""
 FLATTEST = 1e-10
-"""Least curvature relative to the largest, above rounding; below it no direction is crossed."""
+"""Least ratio of smallest to largest curvature; below it, mixed curvatures are dropped."""
 LEAST = 1e-6
-"""Least curvature over the largest multiplier."""
+"""Least curvature, relative to the largest multiplier."""
 
 
 @dataclass(frozen=True)
 class ScaledHessian:
-    """Scaled Hessian (n, n) of the Lagrangian at an optimum, per x of all variables."""
+    """Hessian (n, n) of the Lagrangian over `scale` at an optimum, in the variables x."""
 
     hessian: Vector
     scale: float
 
-    def seen_by(self, evaluator: Evaluator, x: Vector) -> Vector:
-        """The Hessian in the free coordinates of a problem, at one of its points (n,)."""
+    def in_coordinates(self, evaluator: Evaluator, x: Vector) -> Vector:
+        """The Hessian in the free coordinates of a problem, at a point x (n,)."""
         space = evaluator.space
         slope = space.slope(x[:, None])[:, 0]
         return np.asarray(self.hessian[np.ix_(space.free, space.free)] * np.outer(slope, slope))
@@ -414,28 +416,32 @@ def free_hessians(evaluator: Evaluator, descents: Sequence[Descent]) -> list[Vec
 
     Parameters
     ----------
-    evaluator : of the problems, which have the same curvature
+    evaluator : of the problems, which share their curvature
     descents : with a point and its multipliers
     """
     free = [_free(evaluator, descent) for descent in descents]
     if not any(z.shape[1] for z in free):
         return [np.eye(evaluator.space.size) for _ in descents]
     moves = np.concatenate([HESSIAN_STEP * z for z in free], axis=1)
-    at = np.repeat(
-        np.stack([descent.known.z for descent in descents], axis=1),
+    points = np.repeat(
+        np.stack([descent.current.z for descent in descents], axis=1),
         [z.shape[1] for z in free],
         axis=1,
     )
-    slopes = evaluator.jacobians(np.concatenate([at + moves, at - moves], axis=1), inside=False)
-    bends = np.nan_to_num(slopes[:, : at.shape[1]] - slopes[:, at.shape[1] :]) / (2 * HESSIAN_STEP)
-    result, first = [], 0
+    slopes = evaluator.jacobians(
+        np.concatenate([points + moves, points - moves], axis=1), inside=False
+    )
+    second_derivatives = np.nan_to_num(
+        slopes[:, : points.shape[1]] - slopes[:, points.shape[1] :]
+    ) / (2 * HESSIAN_STEP)
+    result, offset = [], 0
     for descent, z in zip(descents, free, strict=True):
-        part = bends[:, first : first + z.shape[1]]
-        first += z.shape[1]
+        part = second_derivatives[:, offset : offset + z.shape[1]]
+        offset += z.shape[1]
         weights = -descent.multipliers
-        along = np.tensordot(weights, part[1 : 1 + len(weights)], axes=1).T
-        along += part[0].T / descent.scale
-        result.append(_convex(z, along, float(np.abs(weights).max(initial=0.0))))
+        products = np.tensordot(weights, part[1 : 1 + len(weights)], axes=1).T
+        products += part[0].T / descent.scale
+        result.append(_convex(z, products, float(np.abs(weights).max(initial=0.0))))
     return result
 
 
@@ -443,24 +449,28 @@ def _free(evaluator: Evaluator, descent: Descent) -> Vector:
     """Orthonormal directions (nf, d) that leave the active rows unchanged."""
     size, prices = evaluator.space.size, descent.prices
     unit = np.eye(size)
-    rows = np.concatenate([evaluator.jacobian(descent.known)[1 : 1 + descent.rows], unit, -unit])
+    rows = np.concatenate([evaluator.jacobian(descent.current)[1 : 1 + descent.rows], unit, -unit])
     assert prices is not None
     weight = prices * np.sqrt((rows**2).sum(axis=1))
     return kkt.null_space(rows[weight > FIRM * weight.max(initial=0.0)], size)
 
 
-def _convex(z: Vector, along: Vector, largest: float) -> Vector:
-    """A convex matrix (nf, nf) with known products (nf, d) along orthonormal directions (nf, d)."""
+def _convex(z: Vector, products: Vector, largest: float) -> Vector:
+    """A convex matrix (nf, nf) with given products (nf, d) with orthonormal vectors z (nf, d)."""
     size = len(z)
     if z.shape[1] == 0:
         return np.eye(size)
-    values, vectors = np.linalg.eigh(z.T @ along + along.T @ z)
+    values, vectors = np.linalg.eigh(z.T @ products + products.T @ z)
     values = np.maximum(np.abs(values) / 2, LEAST * max(largest, 1e-3))
     inner = (vectors * values) @ vectors.T
-    across = along - z @ (z.T @ along)
-    rest = np.eye(size) - z @ z.T
+    across = products - z @ (z.T @ products)
+    complement = np.eye(size) - z @ z.T
     crossed = across @ np.linalg.solve(inner, across.T)
-    firm = 1.0 + float(np.linalg.norm(crossed, 2))
-    whole = np.asarray(z @ inner @ z.T + across @ z.T + z @ across.T + firm * rest)
-    bends = np.linalg.eigvalsh(whole)
-    return whole if bends[0] > FLATTEST * bends[-1] else np.asarray(z @ inner @ z.T + rest)
+    stiffness = 1.0 + float(np.linalg.norm(crossed, 2))
+    matrix = np.asarray(z @ inner @ z.T + across @ z.T + z @ across.T + stiffness * complement)
+    curvatures = np.linalg.eigvalsh(matrix)
+    return (
+        matrix
+        if curvatures[0] > FLATTEST * curvatures[-1]
+        else np.asarray(z @ inner @ z.T + complement)
+    )

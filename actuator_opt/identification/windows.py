@@ -1,0 +1,347 @@
+"""Windows of a record about reversals, and the LuGre friction along them.
+
+The model is integrated along each window and passes the same filter as the record.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..base.numeric import Array
+from ..models import friction
+from .balance import Sliding
+from .conditioning import SLOWEST, ConditionedRecord, velocities, zero_phase
+from .points import SETTLED, settled
+
+BEFORE, AFTER = 0.1, 0.4
+"""Length of a window before and after the rod reverses or starts [s] (a choice: at 30 Hz 26
+independent samples, most of them after the reversal)."""
+MOST = 24
+"""Largest number of windows, spread over the record (a choice: twice as many would take twice the
+time for bounds 30 % narrower)."""
+LAG = 20e-3
+"""Largest pressure lag searched [s] (a choice: five times that of a usual sensor)."""
+PER_PERIOD = 12
+"""Least integration steps per period of the cut-off (a choice: a second-order step has an error of
+(2 pi/12)^2/12 = 2 % at the cut-off itself)."""
+SAMPLES, LEFT = 2.0, 0.05
+"""Independent samples that the deflection distance of the bristles must take, and the share of that
+distance that still counts as rest (choices)."""
+LEAST = 4
+"""Least independent samples of a window (a choice: one more than stiffness, lag and level)."""
+GRAIN = 0.35
+"""Least share of the position error due to resolution that shifts all reversals alike (a choice,
+from records of known friction). Relative to the breakaway travel it is an error of the bristles'
+stiffness; divided by the speed there, an error of the lag."""
+LASTING = 0.05
+"""Least duration of motion in one direction [s] (a choice: three independent samples at 30 Hz)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Windows:
+    """Sections of a record about reversals and starts, SI; arrays (lanes, samples).
+
+    Parameters
+    ----------
+    velocity : velocity of the rod, selected from `options`
+    options : velocities at the record's cut-off and lower ones (cut-offs, lanes, samples)
+    turn : sample at which the rod reverses or starts
+    change : of the pressure from its reference [Pa]
+    hydraulic : hydraulic force, with `margin` more samples at both ends so that it can be shifted
+    resisting : load and inertia force
+    step : between samples [s]
+    sections, reach : filter of the record at this step
+    kept : indices of the samples in use: independent, away from the ends
+    steady : 0 where points of steady sliding give the same information, else 1 (lanes, kept)
+    judged : weights of the samples in use: `steady`, but 0 in windows that are too fast
+    blur : time for which the position resolution hides a reversal, sqrt(2 q/a) [s]
+    grain : position error due to resolution that shifts all reversals alike [m]
+    noise : position error due to white sensor noise, different in every reversal [m]
+    sample_time : of the record [s]
+    quick : whether all windows are too fast
+    """
+
+    velocity: Array
+    options: Array
+    turn: int
+    change: Array
+    hydraulic: Array
+    resisting: Array
+    step: float
+    margin: int
+    sections: Array
+    reach: int
+    kept: Array
+    steady: Array
+    judged: Array
+    blur: float
+    grain: float
+    noise: float
+    sample_time: float
+    quick: bool = False
+
+    @property
+    def fastest(self) -> float:
+        """Largest speed in the windows [m/s]."""
+        return float(np.max(np.abs(self.velocity)))
+
+    @property
+    def largest(self) -> float:
+        """Largest friction in the windows [N]."""
+        return float(np.max(np.abs(self.measured(np.zeros(1))[..., self.kept])))
+
+    def resolved(self, travel: float) -> Windows:
+        """Ignore windows in which the rod takes under `SAMPLES` for a distance after reversal.
+
+        There the filter blurs the motion that bends the bristles. If all windows are too fast, all
+        are kept.
+        """
+        place = np.cumsum(self.velocity, axis=-1) * self.step
+        distance = np.abs(place - place[:, self.turn, None])[:, self.turn :]
+        within = np.cumprod(distance < travel, axis=-1)
+        slow_samples = np.sum(within * (distance > LEFT * travel), axis=-1)
+        slow = slow_samples >= SAMPLES * (self.kept[1] - self.kept[0])
+        judged = self.steady * slow[:, None]
+        return replace(self, judged=judged if slow.any() else self.steady, quick=not slow.any())
+
+    def short(self, distance: float) -> Windows:
+        """Add a distance [m] at the reversal or start, as the position resolution may hide it."""
+        velocity = self.velocity.copy()
+        way = np.sign(np.sum(velocity[:, self.turn :], axis=-1))
+        velocity[:, self.turn] -= way * distance / self.step
+        return replace(self, velocity=velocity)
+
+    def measured(self, lag: Array) -> Array:
+        """Friction from the hydraulic force `lag` later (rows,) -> (rows, lanes, samples).
+
+        Values between samples follow by cubic interpolation.
+        """
+        count = self.velocity.shape[-1]
+        rows = []
+        for value in np.atleast_1d(lag):
+            whole = int(np.floor(value / self.step))
+            fraction = value / self.step - whole
+            weights = (
+                -fraction * (fraction - 1) * (fraction - 2) / 6,
+                (fraction + 1) * (fraction - 1) * (fraction - 2) / 2,
+                -(fraction + 1) * fraction * (fraction - 2) / 2,
+                (fraction + 1) * fraction * (fraction - 1) / 6,
+            )
+            first = self.margin + whole - 1
+            rows.append(
+                sum(
+                    weight * self.hydraulic[:, first + k : first + k + count]
+                    for k, weight in enumerate(weights)
+                )
+            )
+        return np.stack(rows) - self.resisting
+
+    def misfit(self, values: Mapping[str, Array]) -> Array:
+        """Model friction less measured friction at samples in use (rows, lanes, kept).
+
+        `values` are parameters (rows,). The model's friction passes the same filter as the record.
+        """
+        measured = self.measured(values["lag"])
+        model = self._integrated({n: v[:, None, None] for n, v in values.items()}, measured)
+        smooth = zero_phase(self.sections, model, reach=self.reach)
+        return (smooth - measured)[..., self.kept] * self.judged
+
+    def chosen(self, values: Mapping[str, Array]) -> Windows:
+        """Select for every lane the velocity with which the model fits friction best.
+
+        In slow motion the steps of the position pass the record's filter and look like motion; at a
+        start a lower cut-off blurs the motion. The friction shows which cut-off is better.
+        """
+        costs = [
+            np.sum(replace(self, velocity=option).misfit(values)[0] ** 2, axis=-1)
+            for option in self.options
+        ]
+        best = np.argmin(np.stack(costs), axis=0)
+        return replace(self, velocity=self.options[best, np.arange(best.size)])
+
+    def _integrated(self, values: Mapping[str, Array], measured: Array) -> Array:
+        """LuGre friction along every window, by the exact step of `models.lugre.lugre_step`.
+
+        The bristles start with the deflection of the friction measured there.
+        """
+        between = (self.velocity[:, 1:] + self.velocity[:, :-1]) / 2
+        change = (self.change[:, 1:] + self.change[:, :-1]) / 2
+        level = friction.stribeck_level(
+            speed=np.abs(between),
+            coulomb=values["coulomb"],
+            static=values["static"],
+            stribeck_speed=values["stribeck_speed"],
+            exponent=values["exponent"],
+        )
+        level = level * (1 + values["pressure_slope"] * change / values["coulomb"])
+        stiffness, damping = values["bristle_stiffness"], values["bristle_damping"]
+        viscous = values["viscous"] * self.velocity
+        initial = (measured - values["offset"] - viscous)[..., :3].mean(axis=-1)
+        first = np.clip(initial, -level[..., 0], level[..., 0]) / stiffness[..., 0]
+        rate = stiffness * np.abs(between) / level
+        decay = rate * self.step
+        tail = np.exp(-decay)
+        negligible = decay < 1e-9
+        reach = np.where(negligible, 1.0, (1 - tail) / np.where(negligible, 1.0, decay)) * self.step
+        retained, added = 1 - rate * reach, between * reach
+        deflections = np.empty((*level.shape[:-1], self.velocity.shape[-1]))
+        deflections[..., 0] = deflection = first
+        for k in range(between.shape[-1]):
+            deflections[..., k + 1] = deflection = retained[..., k] * deflection + added[..., k]
+        slip = np.diff(deflections, axis=-1, append=deflections[..., -1:]) / self.step
+        return stiffness * deflections + damping * slip + viscous + values["offset"]
+
+
+def windows(
+    slidings: Sequence[Sliding],
+    motion: ConditionedRecord,
+    reference: float,
+    slowest: float = np.inf,
+    settling: float = SETTLED,
+) -> Windows | None:
+    """Windows where the rod reverses or starts; without reversals, spread over the record.
+
+    Parameters
+    ----------
+    slidings, motion : friction along the record, and its filter
+    reference : pressure from which changes are counted [Pa]
+    slowest : speed above which points of steady sliding cover steady motion [m/s]
+    settling : distance after a reversal from which sliding is steady [m]
+
+    Returns
+    -------
+    the windows, or None if the record is too short for any
+    """
+    stride = max(1, int(1 / (PER_PERIOD * motion.cutoff * motion.sample_time)))
+    step = stride * motion.sample_time
+    margin = int(np.ceil(LAG / step)) + 2
+    before, after = round(BEFORE / step), round(AFTER / step)
+    room = (before + margin) * stride, (after + margin) * stride
+    lanes = _lanes(slidings, motion, room)
+    kept = _independent_samples(motion, step, before + after)
+    if not lanes or kept.size < LEAST:
+        return None
+
+    def cut(values: Sequence[Array], more: int = 0) -> Array:
+        ends = (before + more) * stride, (after + more) * stride
+        pairs = zip(values, lanes, strict=True)
+        return np.stack([along[at - ends[0] : at + ends[1] : stride] for along, (_, at) in pairs])
+
+    sections = {id(sliding): sliding for sliding, _ in lanes}
+    masks = {key: _steady_above(sliding, slowest, settling) for key, sliding in sections.items()}
+    steady = np.where(cut([masks[id(sliding)] for sliding, _ in lanes])[:, kept], 0.0, 1.0)
+    first, last = before * stride, after * stride
+    sets = [velocities(sliding.piece, motion, at - first, at + last) for sliding, at in lanes]
+    options = np.stack([velocity[:, ::stride] for velocity in sets], axis=1)
+    accelerations = np.abs(np.gradient(options[-1], step, axis=-1))
+    sharpest = max(float(np.median(np.max(accelerations, axis=-1))), 1e-12)
+    resolution = motion.quality["x"].resolution
+    return Windows(
+        velocity=options[0],
+        options=options,
+        turn=before,
+        change=cut([sliding.pressure for sliding, _ in lanes]) - reference,
+        hydraulic=cut([sliding.hydraulic for sliding, _ in lanes], margin),
+        resisting=cut([sliding.resisting for sliding, _ in lanes]),
+        step=step,
+        margin=margin,
+        sections=motion.sections(cutoff=motion.cutoff, sample_time=step),
+        reach=round(3 / (motion.cutoff * step)),
+        kept=kept,
+        steady=steady,
+        judged=steady,
+        grain=_grain([sliding.piece["x"][at] for sliding, at in lanes], resolution),
+        noise=motion.quality["x"].noise * float(np.sqrt(motion.band)),
+        sample_time=motion.sample_time,
+        blur=float(np.sqrt(2 * resolution / sharpest)),
+    )
+
+
+def _independent_samples(motion: ConditionedRecord, step: float, count: int) -> Array:
+    """Independent samples of a window, away from its ends."""
+    edge = round(1 / (motion.cutoff * step))
+    apart = max(1, round(1 / (2 * motion.cutoff * step)))
+    return np.arange(edge, count - edge, apart)
+
+
+def no_windows(motion: ConditionedRecord) -> str:
+    """Why a record has no windows.
+
+    A window T has (T - 2/f) 2 f = n independent samples: the filter affects 1/f at each end, and
+    2 f samples per second are independent. So f = (n + 4)/2T is the lowest cut-off, n = `LEAST`.
+    """
+    lowest = (LEAST + 4) / (2 * (BEFORE + AFTER))
+    if motion.cutoff <= lowest:
+        remedy = f"filter above {lowest:.2g} Hz (--cutoff)"
+        if motion.sample_time * lowest * SLOWEST > 1:
+            remedy = f"sample at {SLOWEST * lowest:.3g} Hz or faster, and {remedy}"
+        return (
+            f"no windows at this cut-off: {motion.cutoff:.3g} Hz blur the half second about a "
+            f"reversal in which bristles show; {remedy}"
+        )
+    return "no uninterrupted half second about a reversal, where bristles show"
+
+
+def _grain(places: Sequence[float], step: float) -> float:
+    """Position error due to resolution that shifts all reversals alike [m].
+
+    q/sqrt 12 sqrt(sum n_i^2)/n of n reversals, n_i of them on step i: the errors of different steps
+    are independent [derived].
+    """
+    if step == 0:
+        return 0.0
+    counts = np.unique(np.round(np.array(places) / step), return_counts=True)[1]
+    share = float(np.sqrt(np.sum(counts**2)) / len(places))
+    return float(step / np.sqrt(12) * max(share, GRAIN))
+
+
+def _lanes(
+    slidings: Sequence[Sliding], motion: ConditionedRecord, room: tuple[int, int]
+) -> list[tuple[Sliding, int]]:
+    """Sections and samples of windows: reversals and starts, or spread over the record."""
+    places = [
+        (sliding, at)
+        for sliding in slidings
+        for at in _starts_of_motion(sliding, motion)
+        if _fits(sliding, at, room)
+    ]
+    if not places:
+        places = [
+            (sliding, at)
+            for sliding in slidings
+            for at in range(room[0], sliding.piece.time.size, room[0] + room[1])
+            if _fits(sliding, at, room)
+        ]
+    if not places:
+        return []
+    selected = np.linspace(0, len(places) - 1, min(MOST, len(places))).round().astype(int)
+    return [places[k] for k in np.unique(selected)]
+
+
+def _steady_above(sliding: Sliding, slowest: float, settling: float) -> Array:
+    """Samples of steady sliding above a speed."""
+    mask = np.zeros(sliding.piece.time.size, dtype=bool)
+    mask[settled(sliding, settling)] = True
+    return mask & (np.abs(sliding.piece.velocity) >= slowest)
+
+
+def _fits(sliding: Sliding, at: int, room: tuple[int, int]) -> bool:
+    """Whether a window about a sample lies within the usable part of the section."""
+    first, last = at - room[0], at + room[1]
+    sound = sliding.piece.sound
+    return first >= 0 and last < sound.size and bool(sound[first] and sound[last])
+
+
+def _starts_of_motion(sliding: Sliding, motion: ConditionedRecord) -> list[int]:
+    """Samples at which lasting sliding begins, after a reversal or rest."""
+    way = np.where(sliding.moving, np.sign(sliding.piece.velocity), 0.0)
+    begins = np.flatnonzero((way != 0) & (np.diff(way, prepend=0.0) != 0))
+    lasting = round(LASTING / motion.sample_time)
+    starts: list[int] = []
+    for at in map(int, begins):
+        if np.all(way[at : at + lasting] == way[at]) and (not starts or at - starts[-1] > lasting):
+            starts.append(at)
+    return starts
