@@ -12,20 +12,22 @@ import numpy as np
 from ..evaluation.dynamics_study import DynamicsStudy, LoopStudy
 from ..evaluation.result import Evaluation, Requirement
 from ..rendering import text
-from ..rendering.blocks import Block, Cell, Column, Drawing, Table, clean, short, soft
+from ..rendering.blocks import Block, Cell, Chart, Column, Table, clean, short, soft
 from ..rendering.text import DASH
 from .dynamics_figures import (
     LoopLimits,
     Shaken,
-    closed_figure,
-    compact_figure,
-    modes_figure,
-    open_figure,
-    response_figure,
+    closed_panel,
+    compact_panels,
+    modes_panels,
+    open_panels,
+    response_panels,
 )
 
 FASTEST = 1e4
 """Poles above this frequency (Hz) are counted, not listed: the model describes nothing there."""
+COMPACT, MODES, RESPONSE, OPEN, CLOSED = 56.0, 54.0, 105.0, 97.0, 58.0
+"""Heights of the figures [mm]."""
 _END = {
     "closed": "ports closed",
     "valve": "the valve at its centre",
@@ -41,10 +43,10 @@ def dynamics_blocks(evaluation: Evaluation) -> list[Block]:
         return []
     if study.position_loop is None and not study.shaken:
         return [_compact(evaluation, study)]
-    found = [_modes(evaluation, study), _poles(study), _response(evaluation, study)]
+    blocks = [_modes(evaluation, study), _poles(study), _response(evaluation, study)]
     if study.position_loop is not None:
-        found += _loop(evaluation, study, (study.position_loop, *study.other_loops))
-    return found
+        blocks += _loop(evaluation, study, (study.position_loop, *study.other_loops))
+    return blocks
 
 
 def required(evaluation: Evaluation, metric: str) -> list[Requirement]:
@@ -57,75 +59,77 @@ def _ratio(value: float) -> str:
 
 
 def damping_sentence(study: DynamicsStudy) -> str:
-    """Where the damping at the weakest position comes from."""
+    """Damping ratio at the weakest position, with its causes."""
     friction, ends = study.friction_share, study.conductance_share
     whole = friction + ends
     small = 1e-4 * abs(whole)
     circle = " (open circle)" if abs(ends) >= small else ""
     shares = {f"friction and oil shear{circle}": friction, "leakage and lines": ends}
-    given = ", ".join(
+    causes = ", ".join(
         f"{name} {_ratio(share) if abs(share) >= small else 'next to nothing'}"
         for name, share in shares.items()
     )
-    said = f"At the weakest position the damping ratio is {_ratio(whole)}: {given}."
+    words = f"At the weakest position the damping ratio is {_ratio(whole)}: {causes}."
     if whole >= 1:
-        said += " Above one the load does not swing."
+        words += " Above one the load does not swing."
     if whole < 0:
-        said += " Below zero the motion grows: friction falls with speed."
-    return said
+        words += " Below zero the motion grows: friction falls with speed."
+    return words
 
 
-def _held(study: DynamicsStudy) -> str:
+def _line_end(study: DynamicsStudy) -> str:
     return _END.get(study.end, study.end.replace("_", " "))
 
 
 def _compact(evaluation: Evaluation, study: DynamicsStudy) -> Block:
-    ink = compact_figure(
+    panels = compact_panels(
         study, required(evaluation, "natural_frequency"), required(evaluation, "damping_ratio")
     )
     note = (
-        f"Case {study.case}, {_held(study)}, {text.number(1.0 * study.mass)} kg at the rod."
+        f"Case {study.case}, {_line_end(study)}, {text.number(1.0 * study.mass)} kg at the rod."
         f" {damping_sentence(study)} Dynamic stiffness counts the mass; above the resonance it is"
         " the mass that resists."
     )
-    return Drawing("Dynamics", ink, note)
+    return Chart("Dynamics", panels, note, height=COMPACT, widths=(52.0, 48.0, 62.0))
 
 
 def _modes(evaluation: Evaluation, study: DynamicsStudy) -> Block:
-    ink = modes_figure(
+    panels = modes_panels(
         study, required(evaluation, "natural_frequency"), required(evaluation, "damping_ratio")
     )
     note = (
         f"Case {study.case}, {text.number(study.mass)} kg at the rod; while the load shakes it:"
-        f" {_held(study)}. {damping_sentence(study)}"
+        f" {_line_end(study)}. {damping_sentence(study)}"
     )
-    return Drawing("Dynamics along the stroke", ink, note)
+    return Chart("Dynamics along the stroke", panels, note, height=MODES)
 
 
 def shaken_cases(study: DynamicsStudy) -> list[Shaken]:
     """Load cases that shake the actuator, with stiffness and phase at their worst place."""
     return [
-        Shaken(clean(one.name), one.frequency, one.stiffness, one.phase) for one in study.shaken
+        Shaken(clean(case.name), case.frequency, case.stiffness, case.phase)
+        for case in study.shaken
     ]
 
 
 def _response(evaluation: Evaluation, study: DynamicsStudy) -> Block:
     cases = shaken_cases(study)
-    ink = response_figure(
+    panels = response_panels(
         study,
         cases,
         required(evaluation, "dynamic_stiffness"),
         required(evaluation, "dynamic_phase"),
     )
-    note = f"Curves: case {study.response_case}, {_held(study)}."
+    note = f"Curves: case {study.response_case}, {_line_end(study)}."
     if cases:
         note += (
-            " Letters: load cases that shake the actuator; circles: each at its own frequency, at"
-            " its worst place. Red: what is required there, with the allowed side."
+            " Circles: load cases that shake the actuator, each at its frequency and worst place."
+            " Red: requirements there; the forbidden side is hatched."
         )
     note += " The position loop is open"
     note += ": slowly, what leaks lets the piston creep." if study.end != "closed" else "."
-    return Drawing("Dynamic stiffness", ink, note + lumped_sentence(study))
+    note += lumped_sentence(study)
+    return Chart("Dynamic stiffness", [panels], note, height=RESPONSE)
 
 
 def lumped_sentence(study: DynamicsStudy) -> str:
@@ -140,38 +144,38 @@ def lumped_sentence(study: DynamicsStudy) -> str:
         reach[share] = float(beyond[0]) if len(beyond) else None
 
     def upto(share: float) -> str:
-        found = reach[share]
-        return "1 kHz" if found is None else f"{text.number(found, 2)} Hz"
+        frequency = reach[share]
+        return "1 kHz" if frequency is None else f"{text.number(frequency, 2)} Hz"
 
-    said = (
+    words = (
         " With transmission lines in place of the lumped ones the magnitude is within 1 % up to "
         f"{upto(0.01)}"
     )
-    return said + (f", within 10 % up to {upto(0.1)}." if reach[0.01] is not None else ".")
+    return words + (f", within 10 % up to {upto(0.1)}." if reach[0.01] is not None else ".")
 
 
 def _poles(study: DynamicsStudy) -> Block:
     shown = [pole for pole in study.poles if pole.frequency <= FASTEST]
-    held = float(study.frequency[int(np.argmin(study.closed_frequency))])
+    natural = float(study.frequency[int(np.argmin(study.closed_frequency))])
     rows: list[list[Cell]] = []
     for pole in shown:
-        if abs(pole.damping_ratio) < 1 and abs(pole.frequency / held - 1) < 1e-3:
-            what = "the load on oil, walls and rod"
+        if abs(pole.damping_ratio) < 1 and abs(pole.frequency / natural - 1) < 1e-3:
+            meaning = "the load on oil, walls and rod"
         elif abs(pole.damping_ratio) < 1:
-            what = "lines and what ends them"
+            meaning = "lines and what ends them"
         else:
             constant = text.number(1e3 / (2 * math.pi * pole.frequency), 3)
-            what = f"does not swing: fades with a time constant of {constant} ms"
+            meaning = f"does not swing: fades with a time constant of {constant} ms"
         if pole.damping_ratio < 0:
-            what += "; grows"
-        rows.append([text.number(pole.frequency), _ratio(pole.damping_ratio), what])
+            meaning += "; grows"
+        rows.append([text.number(pole.frequency), _ratio(pole.damping_ratio), meaning])
     columns = [
         Column("frequency, Hz", "right", 0.5),
         Column("damping ratio", "right", 0.5),
         Column("what", "left", 2.0),
     ]
     fast = len(study.poles) - len(shown)
-    note = f"At the weakest position, case {study.case}, {_held(study)}."
+    note = f"At the weakest position, case {study.case}, {_line_end(study)}."
     if fast:
         plural = "poles lie" if fast > 1 else "pole lies"
         note += f" {fast} {plural} above 10 kHz, where the model describes nothing."
@@ -191,7 +195,7 @@ def _loop(
     )
     note = (
         "A curve for each place and direction of the spool that governs a margin or the bandwidth."
-        " Arrows: the margins where they are least; red: what is required."
+        " Circles: the margins where they are least; red: requirements, hatched where forbidden."
     )
     if any(_passes_behind(loop) for loop in loops):
         note += (
@@ -200,8 +204,8 @@ def _loop(
             " one."
         )
     return [
-        Drawing("Position loop, open", open_figure(study, loops, limits), note),
-        Drawing("Position loop, closed", closed_figure(study, loops, limits)),
+        Chart("Position loop, open", [open_panels(study, loops, limits)], note, height=OPEN),
+        Chart("Position loop, closed", [closed_panel(study, loops, limits)], height=CLOSED),
         _loop_table(evaluation, loops),
     ]
 
@@ -232,11 +236,11 @@ def _loop_table(evaluation: Evaluation, loops: tuple[LoopStudy, ...]) -> Block:
         where = ", ".join(part for part in (metric.case, metric.place) if part)
         if metric.value is None:
             where = metric.why or ""
-        one = at.get((metric.case or "", metric.place or ""), first)
+        loop = at.get((metric.case or "", metric.place or ""), first)
         return [
             name.replace("_", " ").replace("position gain", "gain"),
             value,
-            _remark(name, one, tuned),
+            _remark(name, loop, tuned),
             ", ".join(limits) or DASH,
             soft(short(where, 80) or DASH),
         ]

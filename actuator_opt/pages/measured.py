@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,9 +12,8 @@ import numpy as np
 from ..base.numeric import Array
 from ..base.quantities import Quantity
 from ..design.scenario.reader import gaps
-from ..rendering.blocks import Block, Column, Drawing, Notes, Table, short
-from ..rendering.ink import Ink
-from ..rendering.strips import LEVEL, MEASURED, STYLES, ConstantLevel, Strip, StripCurve, stack
+from ..rendering.blocks import Block, Chart, Column, Notes, Table, short
+from ..rendering.chart import Axis, Curve, Level, Panel
 from ..rendering.text import (
     DASH,
     decimals,
@@ -29,18 +29,16 @@ from ..simulation.measured import Overlay
 from ..simulation.measured.fit import Fit, Fitted
 from ..simulation.measured.record import beside
 from .simulation import tied
-from .simulation_figures import scaled, titled
+from .simulation_figures import CONSTANT, curve, scaled, timed, titled
 
 MOST_PLACES = 6
 """Decimals of a bias, at most."""
-WIDTH, TALL = 180.0, 50.0
-"""Width of a figure, and height of a channel with its residual [mm]."""
+TALL = 50.0
+"""Height of a channel with its residual [mm]."""
 ALONE = 3
 """Channels up to which each has a whole row."""
-LEFT, APART = 12.0, 6.0
-"""Room for the numbers beside a channel, and between two [mm]."""
 BAND = 2.0
-"""Standard deviations of a sensor's noise that are drawn about zero, 95 % of its samples."""
+"""Half the width of the drawn noise band in standard deviations: 95 % of the samples."""
 
 
 def blocks(overlay: Overlay, fit: Fit | None) -> list[Block]:
@@ -51,9 +49,7 @@ def blocks(overlay: Overlay, fit: Fit | None) -> list[Block]:
     if sentences:
         title = "What to know of the record"
         made.append(Notes(title, [tied(words) for words in sentences], style="yellow"))
-    for k, ink in enumerate(measured_figures(overlay)):
-        made.append(Drawing("The record over the simulation" if k == 0 else "", ink))
-    return made
+    return [*made, *measured_charts(overlay)]
 
 
 def drawn(overlay: Overlay) -> dict[str, tuple[Array, Array]]:
@@ -173,39 +169,45 @@ def remarks(overlay: Overlay, fit: Fit | None) -> list[str]:
 # ---- figures ----
 
 
-def measured_figures(overlay: Overlay) -> Iterator[Ink]:
-    """Every channel that was compared: a figure for every row, so that rows may change sheets."""
+def measured_charts(overlay: Overlay) -> list[Chart]:
+    """Every channel that was compared: a chart for every row, so that rows may change sheets."""
     names = list(overlay.residuals)
     columns = 1 if len(names) <= ALONE else 2
-    wide = (WIDTH - (columns - 1) * APART) / columns
     channels = drawn(overlay)
-    end = float(overlay.simulation.time[-1])
-    for first in range(0, len(names), columns):
-        ink = Ink(WIDTH, TALL)
-        for k, name in enumerate(names[first : first + columns]):
-            box = ((wide + APART) * k + LEFT, 0.0, wide - LEFT - 4.0, TALL)
-            stack(ink, box, _strips(overlay, name, channels), (0.0, end))
-        yield ink
+    panels = [_panels(overlay, name, channels) for name in names]
+    return [
+        Chart(
+            "The record over the simulation" if first == 0 else "",
+            panels[first : first + columns],
+            height=TALL,
+        )
+        for first in range(0, len(names), columns)
+    ]
 
 
-def _strips(
+def _panels(
     overlay: Overlay, name: str, channels: Mapping[str, tuple[Array, Array]]
-) -> tuple[Strip, Strip]:
+) -> list[Panel]:
     """A channel over its simulation, and its residual with the noise of the sensor."""
-    quantity, noise = overlay.simulation.told[name].quantity, overlay.residuals[name].noise
-    time, signal = overlay.simulation.time, overlay.simulation.signals[name]
-    recorded, values = channels[name]
-    over = StripCurve("simulated", time, scaled(quantity, signal), STYLES[0])
-    under = StripCurve("measured", recorded, scaled(quantity, values), MEASURED)
+    simulation = overlay.simulation
+    quantity, noise = simulation.told[name].quantity, overlay.residuals[name].noise
+    time, values = channels[name]
     words = channel_words(name)
-    title = titled(words[:1].upper() + words[1:], quantity)
-    residual = StripCurve("", *_residual(overlay, name, quantity), STYLES[0] | {"pen": 0.15})
+    record = Curve("measured", time, scaled(quantity, values), weight="broad")
     half = BAND * quantity.to_display(noise)
-    levels = tuple(
-        ConstantLevel(f"±{BAND:g}σ of noise", way * half, LEVEL) for way in (1, -1) if half
+    levels = [Level(way * half, f"±{BAND:g}σ of noise", style=CONSTANT) for way in (1, -1) if half]
+    span = (0.0, float(simulation.time[-1]))
+    above = Panel(
+        titled(words[:1].upper() + words[1:], quantity),
+        curves=[record, curve(simulation, name, "simulated")],
     )
-    below = titled("Measured less simulated", quantity)
-    return Strip(title, (under, over)), Strip(below, (residual,), levels, zero=True)
+    below = Panel(
+        titled("Measured less simulated", quantity),
+        y=Axis(zero=True),
+        curves=[Curve("", *_residual(overlay, name, quantity), weight="thin")],
+        levels=levels,
+    )
+    return [replace(timed(above, span), x=Axis()), timed(below, span)]
 
 
 def _residual(overlay: Overlay, name: str, quantity: Quantity) -> tuple[Array, Array]:

@@ -65,13 +65,13 @@ ZERO_BELOW = {
 }
 """Results that read 0 below this, SI: the tolerances of the integration."""
 CLOSED = 1e-3
-"""Error of a balance from which on a page warns (a choice: a digit of what it shows)."""
+"""Least error of a balance that a page warns of (a choice: one digit of the printed value)."""
 AGREE = 1e-2
-"""Difference of two integrators over a signal's span from which on a page warns (a choice)."""
+"""Least difference of two integrators, share of a signal's span, that raises a warning (choice)."""
 MOST_EVENTS = 4
-"""Events that are listed."""
+"""Most events that are listed."""
 MOST_PARTS = 3
-"""Parts of a signal that are listed."""
+"""Most parts of a signal that are listed."""
 MOST_TILES = 6
 BRIEF = 900
 """Letters of the notes that fit beside a table (a choice: a quarter of the sheet)."""
@@ -102,7 +102,7 @@ def page(
 
     Parameters
     ----------
-    simulation : to show
+    simulation : the run
     notes : further sentences for the reader
     measured : time [s] and values (SI) by the name of a signal, drawn under it
     static : positions [m] and static stiffness [N/m], drawn beside the dynamic one
@@ -113,7 +113,7 @@ def page(
         kind="Simulation in time",
         design=simulation.plant.design.name,
         verdict=verdict(simulation),
-        sentence=tied(what(simulation)),
+        sentence=tied(description(simulation)),
         tiles=tiles(simulation),
         hero=lambda room: simulation_figure(
             simulation, min(room, MOST), measured=measured, static=static
@@ -158,7 +158,7 @@ def tied(words: str) -> str:
     return _TIED.sub("\N{NO-BREAK SPACE}", words)
 
 
-def what(simulation: Simulation) -> str:
+def description(simulation: Simulation) -> str:
     """Machine, duration, reference and load in a few sentences."""
     scenario, plant = simulation.scenario, simulation.plant
     control = scenario.control

@@ -4,31 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any, TypeAlias
+from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 
 from ..base.errors import Diagnostic, InputError, remedy
+from ..base.numeric import Array
 from ..base.quantities import RESULTS, SCENARIOS
-from ..rendering.axes import (
-    AREAS,
-    COLOURS,
-    DASHES,
-    SIZE,
-    ZERO,
-    Axes,
-    Box,
-    even_ticks,
-    fitted,
-    lines,
-    names,
-    steady_range,
-    time_axis,
-)
+from ..rendering.axes import AREAS, SIZE, fitted, names, steady_range
 from ..rendering.blocks import (
     Block,
     Cell,
+    Chart,
     Column,
     Notes,
     Page,
@@ -40,21 +28,28 @@ from ..rendering.blocks import (
     short,
     tile,
 )
-from ..rendering.ink import GREY, Ink, text_width
-from ..rendering.strips import ASKED, MEASURED, Strip, StripCurve, stack
+from ..rendering.chart import Axis, Curve, Level, Panel
+from ..rendering.chart_ink import LINES, ROW as KEY_ROW, drawn
+from ..rendering.ink import Ink, text_width
 from ..rendering.text import DASH, number, pretty, sentence, unit_text, value_text, with_unit
 from ..simulation.components.circuit import LOOPS
 from ..simulation.linear import BAND, Tuned
-from ..simulation.result import Simulation
-from .simulation import known, label, remarks, share_words, sound, tied, what
+from ..simulation.result import Servo, Simulation
+from .simulation import description, known, label, remarks, share_words, sound, tied
 from .simulation_energy import ENERGY
 from .simulation_figures import (
+    CONSTANT,
+    REFERENCE,
     Measured,
     Static,
+    Strip,
     along,
+    curve,
     overlay,
     scaled,
     stiffness_panels,
+    strips_with_room,
+    timed,
     titled,
     travelled,
     window,
@@ -62,37 +57,26 @@ from .simulation_figures import (
 
 Runs: TypeAlias = Sequence[tuple[str, Simulation]]
 """Runs with their names."""
-
-
-WIDTH = 180.0
-
-
 LEAST, MOST = 70.0, 150.0
 """Heights of the whole figure [mm]."""
-
-
 ROW = 3.6
-"""Height of a row of names, and of a bar of energy [mm]."""
-
-
+"""Height of a bar of energy [mm]."""
 TALLEST = 92.0
 """Height beyond which a curve over the stroke shows no more [mm] (a choice)."""
-
-
+WIDTHS = (93.6, 80.4)
+"""Widths of the columns of a figure of steps [mm]."""
 ERROR = 0.1
 """Errors that are shown enlarged, share of the step (a choice: five bands)."""
-
-
-DOORS = ("valve edges", "relief valve", "return line", "load", "friction of the seals",
+SINKS = ("valve edges", "relief valve", "return line", "load", "friction of the seals",
          "losses of the motor", "leakage across the piston")  # fmt: skip
 """Sinks of energy with a colour of their own; all others are "other"."""
-
-
 SIGNALS = (
     "position", "speed", "shaft_speed", "shaft_angle", "signal", "pressure_a", "pressure_b",
     "flow_a", "flow_b", "friction",
 )  # fmt: skip
 """Signals of the figure of runs without a common step or stiffness."""
+Pen: TypeAlias = tuple[int, int]
+"""Numbers of the colour and of the dash of a run."""
 
 
 def comparison_figure(
@@ -112,20 +96,22 @@ def comparison_figure(
     """
     height = min(max(height, LEAST), MOST)
     pens = styles([name for name, _ in runs])
-    ink = Ink(WIDTH, height)
-    top = _names(ink, runs, pens) + 2.0
     kind = kind_of([run for _, run in runs])
-    if kind == "stiffness":
-        height = min(height, top + TALLEST)
-        ink.height = height
-    box = (0.0, top, WIDTH, height - top)
+    known_signals = measured or {}
+    panels: Sequence[Panel | Sequence[Panel | Ink]]
     if kind == "step":
-        _steps(ink, box, runs, pens, measured or {})
+        panels = _steps(runs, pens, known_signals)
     elif kind == "stiffness":
-        _stiffness(ink, box, runs, pens, static)
+        panels = _stiffness(runs, pens, static)
+        height = min(height, TALLEST + KEY_ROW * len(runs))
     else:
-        _signals(ink, box, runs, pens, measured or {})
-    return ink
+        panels = [_signals(runs, pens, known_signals, height)]
+    key = [
+        Curve(name, (), (), style=style, dash=dash)
+        for (name, _), (style, dash) in zip(runs, pens, strict=True)
+    ]
+    widths = WIDTHS if kind == "step" else ()
+    return drawn(Chart("Simulations", panels, widths=widths, key=key), height=height)
 
 
 def kind_of(simulations: Sequence[Simulation]) -> str:
@@ -136,63 +122,69 @@ def kind_of(simulations: Sequence[Simulation]) -> str:
     return "step" if len(loops) == 1 and None not in loops else "signals"
 
 
-def styles(names: Sequence[str]) -> list[dict[str, Any]]:
-    """Ink of every run: the words before the last comma choose the colour, those after it the dash.
+def styles(names: Sequence[str]) -> list[Pen]:
+    """Pen of every run: the words before the last comma choose the colour, those after it the dash.
 
     Where the names form no such groups, every run has its own colour and dash.
 
-    >>> [pen["dash"] for pen in styles(["0 %, out", "0 %, in", "50 %, out", "50 %, in"])]
-    [[], [1.6, 0.8], [], [1.6, 0.8]]
+    >>> styles(["0 %, out", "0 %, in", "50 %, out", "50 %, in"])
+    [(0, 0), (0, 1), (1, 0), (1, 1)]
     """
     split = [name.rpartition(", ") for name in names]
     families = list(dict.fromkeys(head for head, _, _ in split))
     kinds = list(dict.fromkeys(tail for _, _, tail in split))
     grouped = all(head for head, _, _ in split) and 1 < len(families) < len(names)
-    if not grouped or len(kinds) > len(DASHES):
-        return [_style(k, k) for k in range(len(names))]
-    return [_style(families.index(head), kinds.index(tail)) for head, _, tail in split]
+    count = len(LINES)
+    if not grouped or max(len(kinds), len(families)) > count:
+        return [(k % count, (k + k // count) % count) for k in range(len(names))]
+    return [(families.index(head), kinds.index(tail)) for head, _, tail in split]
 
 
-def _style(colour: int, dash: int) -> dict[str, Any]:
-    return {
-        "stroke": COLOURS[colour % len(COLOURS)],
-        "pen": 0.32,
-        "dash": list(DASHES[dash % len(DASHES)]),
-    }
-
-
-def _names(ink: Ink, runs: Runs, styles: Sequence[dict[str, Any]]) -> float:
-    """Names of the runs in columns; the height they take."""
-    longest = max(text_width(name, 6.5) for name, _ in runs) + 11.0
-    columns = max(1, min(len(runs), int(WIDTH / min(longest, WIDTH / 2))))
-    wide = WIDTH / columns
-    for k, ((name, _), style) in enumerate(zip(runs, styles, strict=True)):
-        x, y = wide * (k % columns), ROW * (k // columns) + 1.8
-        ink.line((x, y), (x + 7.0, y), **style | {"pen": 0.45})
-        ink.text(x + 8.2, y, fitted(name, wide - 10.0, 6.5), size=6.5)
-    return ROW * -(-len(runs) // columns)
-
-
-def _steps(
-    ink: Ink,
-    box: Box,
-    runs: Runs,
-    styles: Sequence[dict[str, Any]],
-    measured: Measured,
-) -> None:
+def _steps(runs: Runs, pens: Sequence[Pen], measured: Measured) -> list[Sequence[Panel | Ink]]:
     """Response and its error at the left, signal and energies at the right."""
-    left, top, width, height = box
-    across = _window(runs)
-    half = 0.52 * width
-    energies = all(run.balance.flows for _, run in runs)
-    used = 12.5 + ROW * len(runs) if energies else 0.0
-    upper = 0.6 * height
-    _response(ink, (left, top, half, upper), runs, styles, across, measured)
-    _error(ink, (left, top + upper, half, height - upper), runs, styles, across)
-    right = (left + half + 6.0, top, width - half - 6.0, height - used - 3.0 * energies)
-    _signal(ink, right, runs, styles, across)
-    if energies:
-        _energies(ink, (right[0], top + height - used, right[2], used), runs)
+    servos = [run.servo for _, run in runs if run.servo is not None]
+    first, servo = runs[0][1], servos[0]
+    words, quantity, *_ = LOOPS[servo.loop]
+    span = _window(runs)
+
+    def of_runs(values: Callable[[Simulation, Servo], Array]) -> list[Curve]:
+        return [
+            Curve("", run.time - own.time, values(run, own), style=style, dash=dash)
+            for (_, run), own, (style, dash) in zip(runs, servos, pens, strict=True)
+        ]
+
+    response = Panel(
+        titled(words.capitalize(), quantity),
+        curves=[
+            *overlay(first, servo.loop, measured, start=servo.time),
+            curve(first, "reference", "asked", REFERENCE, start=servo.time),
+            *of_runs(lambda run, _: scaled(quantity, run.signals[servo.loop])),
+        ],
+        share=0.6,
+    )
+    errors = of_runs(
+        lambda run, own: 100 * (own.target - run.signals[own.loop]) / (own.target - own.start)
+    )
+    least = min([-100 * BAND, *(_least(shown, span) for shown in errors)])
+    error = Panel(
+        "Error, % of the step",
+        y=Axis(range=steady_range([max(least, -400 * ERROR), 100 * ERROR])),
+        curves=errors,
+        levels=[Level(way * 100 * BAND, "±2 %", style=CONSTANT) for way in (-1, 1)],
+        share=0.4,
+    )
+    volts = SCENARIOS["signal_value"]
+    signal = Panel(
+        titled("Valve signal", volts),
+        curves=of_runs(lambda run, _: scaled(volts, run.signals["signal"])),
+    )
+    response, error, signal = (
+        timed(panel, span, "time after the step") for panel in (response, error, signal)
+    )
+    right: list[Panel | Ink] = [signal]
+    if all(run.balance.flows for _, run in runs):
+        right.append(_energies(runs))
+    return [[replace(response, x=Axis()), error], right]
 
 
 def _window(runs: Runs) -> tuple[float, float]:
@@ -207,199 +199,91 @@ def _window(runs: Runs) -> tuple[float, float]:
     return max(begin, -0.06 * end), min(end, shortest)
 
 
-def _frame(
-    ink: Ink, box: Box, title: str, across: tuple[float, float], ends: Sequence[float]
-) -> Axes:
-    left, top, width, height = box
-    frame = (left + 11.0, top + 6.5, width - 14.0, height - 14.5)
-    axes = Axes(ink, frame, across, steady_range(ends))
-    axes.frame_at("", "", [], even_ticks(*axes.y_range, 5 if height > 40 else 3))
-    ink.text(left, top + 2.0, title, size=7.0, bold=True)
-    low, high = axes.y_range
-    if low < 0 < high:
-        ink.line((frame[0], axes.y(0.0)), (frame[0] + frame[2], axes.y(0.0)), **ZERO)
-    return axes
-
-
-def _ends(across: tuple[float, float], curves: Sequence[tuple[Any, Any]]) -> list[float]:
-    ends: list[float] = []
-    for time, values in curves:
-        inside = values[(time >= across[0]) & (time <= across[1])]
-        if inside.size:
-            ends += [float(np.min(inside)), float(np.max(inside))]
-    return ends
-
-
-def _response(
-    ink: Ink,
-    box: Box,
-    runs: Runs,
-    styles: Sequence[dict[str, Any]],
-    across: tuple[float, float],
-    measured: Measured,
-) -> None:
-    first = runs[0][1]
-    assert first.servo is not None
-    words, quantity, *_ = LOOPS[first.servo.loop]
-    curves = []
-    for _, run in runs:
-        assert run.servo is not None
-        own = scaled(quantity, run.signals[first.servo.loop])
-        curves.append((run.time - run.servo.time, own))
-    target = quantity.to_display(first.servo.target)
-    title = titled(words.capitalize(), quantity)
-    axes = _frame(ink, box, title, across, [*_ends(across, curves), target])
-    entries: list[tuple[str, dict[str, Any]]] = []
-    for under in overlay(first, first.servo.loop, measured):
-        ink.path(lines(axes, under.time - first.servo.time, under.values), **MEASURED)
-        entries.append(("measured", MEASURED))
-    asked = scaled(quantity, first.signals["reference"])
-    ink.path(lines(axes, first.time - first.servo.time, asked), **ASKED)
-    entries.append(("asked", ASKED))
-    for (time, values), style in zip(curves, styles, strict=True):
-        ink.path(lines(axes, time, values), **style)
-    room = box[2] - text_width(title, 7.0, bold=True) - 2.0
-    names(ink, box[0] + box[2] - 1.0, box[1] + 2.0, entries, room)
-    time_axis(axes, "time after the step")
-
-
-def _error(
-    ink: Ink,
-    box: Box,
-    runs: Runs,
-    styles: Sequence[dict[str, Any]],
-    across: tuple[float, float],
-) -> None:
-    """The error over the step, enlarged about zero, with the band."""
-    curves = []
-    for _, run in runs:
-        servo = run.servo
-        assert servo is not None
-        done = (servo.target - run.signals[servo.loop]) / (servo.target - servo.start)
-        curves.append((run.time - servo.time, 100 * done))
-    ends = _ends(across, curves)
-    largest = 100 * ERROR
-    low = max(min([*ends, -100 * BAND]), -4 * largest)
-    axes = _frame(ink, box, "Error, % of the step", across, [low, largest])
-    for way in (-1, 1):
-        y = axes.y(way * 100 * BAND)
-        right = axes.left + axes.width
-        ink.line((axes.left, y), (right, y), stroke=GREY, pen=0.15, dash=(0.9, 0.6))
-    for (time, values), style in zip(curves, styles, strict=True):
-        ink.path(lines(axes, time, values), **style)
-    band = [("±2 %", {"stroke": GREY, "pen": 0.15, "dash": (0.9, 0.6)})]
-    names(ink, box[0] + box[2] - 1.0, box[1] + 2.0, band, box[2] / 2)
-    time_axis(axes, "time after the step")
-
-
-def _signal(
-    ink: Ink,
-    box: Box,
-    runs: Runs,
-    styles: Sequence[dict[str, Any]],
-    across: tuple[float, float],
-) -> None:
-    volts = SCENARIOS["signal_value"]
-    curves = []
-    for _, run in runs:
-        assert run.servo is not None
-        own = scaled(volts, run.signals["signal"])
-        curves.append((run.time - run.servo.time, own))
-    axes = _frame(ink, box, titled("Valve signal", volts), across, _ends(across, curves))
-    for (time, values), style in zip(curves, styles, strict=True):
-        ink.path(lines(axes, time, values), **style)
-    time_axis(axes, "time after the step")
+def _least(shown: Curve, span: tuple[float, float]) -> float:
+    """The least value of a curve in a span of time."""
+    time, values = np.asarray(shown.xs), np.asarray(shown.ys)
+    inside = values[(time >= span[0]) & (time <= span[1])]
+    return float(np.min(inside)) if inside.size else 0.0
 
 
 def _taken(run: Simulation) -> dict[str, float]:
-    """Energy that each of `DOORS` took [J]; all others summed."""
+    """Energy that each of `SINKS` took [J]; all others summed."""
     taken: dict[str, float] = {}
     for flow in run.balance.flows:
         if flow.energy < 0:
-            name = flow.name if flow.name in DOORS else "other"
+            name = flow.name if flow.name in SINKS else "other"
             taken[name] = taken.get(name, 0.0) - flow.energy
-    kept = sum(store.energy for store in run.balance.stored)
-    if kept > 0:
-        taken["other"] = taken.get("other", 0.0) + kept
+    stored = sum(store.energy for store in run.balance.stored)
+    if stored > 0:
+        taken["other"] = taken.get("other", 0.0) + stored
     return taken
 
 
-def _energies(ink: Ink, box: Box, runs: Runs) -> None:
-    """Bars of the sinks of energy, a row for every run."""
-    left, top, width, _ = box
+def _energies(runs: Runs) -> Ink:
+    """Bars of the sinks of energy, a row for every run.
+
+    It is no `Chart`: a row is a stack of parts in words, fill and length, without an axis.
+    """
+    width, top = WIDTHS[1], 11.0
+    ink = Ink(width, top + ROW * len(runs) + 1.0)
     taken = [_taken(run) for _, run in runs]
-    totals = [sum(each.values()) for each in taken]
+    totals = [sum(energies.values()) for energies in taken]
     most = max(totals) or 1.0
-    shown = [name for name in (*DOORS, "other")
-             if any(each.get(name, 0.0) > 0.004 * most for each in taken)]  # fmt: skip
-    ink.text(left, top + 2.0, "Where the energy went", size=7.0, bold=True)
-    said = [value_text(ENERGY, total, 3) for total in totals]
-    wide = max(text_width(words, SIZE) for words in said) + 1.5
+    shown = [name for name in (*SINKS, "other")
+             if any(energies.get(name, 0.0) > 0.004 * most for energies in taken)]  # fmt: skip
+    ink.text(0.0, 4.0, "Where the energy went", size=6.8, bold=True)
+    values = [value_text(ENERGY, total, 3) for total in totals]
     room = min(max(text_width(name, SIZE) for name, _ in runs), 0.36 * width)
-    begin, end = left + room + 1.5, left + width - wide
-    for k, ((name, _), each, words) in enumerate(zip(runs, taken, said, strict=True)):
-        y = top + 9.0 + ROW * (k + 0.5)
-        ink.text(left + room, y, fitted(name, room, SIZE), size=SIZE, anchor="right")
+    begin = room + 1.5
+    end = width - max(text_width(words, SIZE) for words in values) - 1.5
+    for k, ((name, _), energies, words) in enumerate(zip(runs, taken, values, strict=True)):
+        y = top + ROW * (k + 0.5)
+        ink.text(room, y, fitted(name, room, SIZE), size=SIZE, anchor="right")
         x = begin
         for j, part in enumerate(shown):
-            size = (end - begin) * each.get(part, 0.0) / most
+            size = (end - begin) * energies.get(part, 0.0) / most
             if size > 0.02:
                 ink.box(x, y - 1.15, size, 2.3, fill=AREAS[j], stroke=None)
             x += size
-        ink.text(left + width, y, words, size=SIZE, anchor="right")
+        ink.text(width, y, words, size=SIZE, anchor="right")
     entries = [
         (part.split(" ")[0] if part != "return line" else "return",
          {"stroke": AREAS[j], "pen": 1.6})
         for j, part in enumerate(shown)
     ]  # fmt: skip
-    names(ink, left + width, top + 6.2, entries, width)
+    names(ink, width, 8.4, entries, width)
+    return ink
 
 
-def _stiffness(
-    ink: Ink,
-    box: Box,
-    runs: Runs,
-    styles: Sequence[dict[str, Any]],
-    static: Static | None,
-) -> None:
+def _stiffness(runs: Runs, pens: Sequence[Pen], static: Static | None) -> list[Panel]:
     """Size and phase of all runs side by side."""
-    left, top, width, height = box
     moved = [travelled(run.shaken.windows, run.plant.stroke)
              for _, run in runs if run.shaken is not None]  # fmt: skip
     over = "stroke" if any(moved) else "time"
-    drawn = [
-        along("", run.shaken, over, style)
-        for (_, run), style in zip(runs, styles, strict=True)
+    profiles = [
+        along(run.shaken, over, *pen)
+        for (_, run), pen in zip(runs, pens, strict=True)
         if run.shaken is not None
     ]
-    half = (width - 6.0) / 2
-    boxes = ((left, top, half, height), (left + half + 6.0, top, half, height))
-    stiffness_panels(ink, boxes, drawn, over, static=static)
+    return [*stiffness_panels(profiles, over, static=static)]
 
 
-def _signals(
-    ink: Ink,
-    box: Box,
-    runs: Runs,
-    styles: Sequence[dict[str, Any]],
-    measured: Measured,
-) -> None:
-    """A strip for every signal that all runs have."""
-    left, top, width, height = box
+def _signals(runs: Runs, pens: Sequence[Pen], measured: Measured, height: float) -> list[Panel]:
+    """A panel for every signal that all runs have."""
     first = runs[0][1]
     shared = [name for name in SIGNALS if all(name in run.signals for _, run in runs)]
+    span = (0.0, max(float(run.time[-1]) for _, run in runs))
     shown = []
     for rank, name in enumerate(shared):
         signal = first.told[name]
         curves = overlay(first, name, measured)
         curves += [
-            StripCurve("", run.time, scaled(signal.quantity, run.signals[name]), style)
-            for (_, run), style in zip(runs, styles, strict=True)
+            replace(curve(run, name, "", style), dash=dash)
+            for (_, run), (style, dash) in zip(runs, pens, strict=True)
         ]
         title = titled(signal.label[:1].upper() + signal.label[1:], signal.quantity)
-        shown.append(Strip(title, tuple(curves), rank=rank))
-    end = max(float(run.time[-1]) for _, run in runs)
-    stack(ink, (left + 11.0, top, width - 13.0, height), shown, (0.0, end))
+        shown.append(Strip(rank, timed(Panel(title, curves=curves), span)))
+    return strips_with_room(shown, height - KEY_ROW * len(runs))
 
 
 MOST_COLUMNS = 9
@@ -580,8 +464,8 @@ def run_table(comparison: RunComparison) -> Table:
     columns = [Column("run", width=1.0, breaks=14)]
     for k, key in enumerate(comparison.columns):
         unit = _unit(comparison, key)
-        first, _, rest = COLUMNS[key].head.rpartition(" ")
-        words = f"{first}\n{rest}" if first else rest
+        first, _, last = COLUMNS[key].head.rpartition(" ")
+        words = f"{first}\n{last}" if first else last
         columns.append(Column(f"{words}, {unit}" if unit else words, "right", drop=k))
     body: list[list[Cell]] = []
     for name, run in comparison.runs:
@@ -603,7 +487,7 @@ def _sentence(comparison: RunComparison, designs: Sequence[str]) -> str:
     named = " and ".join(designs) if len(designs) < 3 else f"{len(designs)} designs"
     count = "1 run" if len(comparison.runs) == 1 else f"{len(comparison.runs)} runs"
     first = f"{count} of {named}."
-    scenarios = {what(run).partition(": ")[2] for _, run in comparison.runs}
+    scenarios = {description(run).partition(": ")[2] for _, run in comparison.runs}
     return f"{first} {sentence(scenarios.pop())}" if len(scenarios) == 1 else first
 
 

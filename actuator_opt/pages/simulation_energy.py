@@ -1,4 +1,4 @@
-"""Energies of a simulation: shares of what supplied and what took them, and their course."""
+"""Energies of a simulation: the share of each source and sink, and all of them over time."""
 
 from __future__ import annotations
 
@@ -9,20 +9,9 @@ import numpy as np
 
 from ..base.numeric import Array
 from ..base.quantities import RESULTS
-from ..rendering.axes import (
-    COLOURS,
-    DASHES,
-    ZERO,
-    Axes,
-    Box,
-    even_ticks,
-    fitted,
-    lines,
-    per_cent,
-    steady_range,
-    time_axis,
-)
-from ..rendering.ink import BLUE, GREY, OCHRE, PALE, Ink, spread_within, text_width
+from ..rendering.axes import SIZE, fitted, per_cent, time_words
+from ..rendering.chart import Axis, Curve, Panel
+from ..rendering.ink import BLUE, GREY, OCHRE, Ink, text_width
 from ..rendering.text import number, value_text
 from ..simulation.result import Simulation
 
@@ -36,20 +25,21 @@ BRIEF = {
     "machine outside": "machine",
     "accumulator neck": "neck",
 }
-"""Short names of doors beside a curve."""
+"""Short names of energy flows beside a curve."""
 SMALL = 2e-3
-"""Share of all energy below which a door is summed with others (a choice: a hair on paper)."""
+"""Share of all energy below which a flow is summed with others (a choice: a hair on paper)."""
 USEFUL = ("load", "joint")
-"""Doors that are shown whatever their share: the purpose of the actuator."""
+"""Energy flows that are shown whatever their share: the purpose of the actuator."""
 MOST_ROWS = 9
 """Rows of the energy figure."""
 MOST_CURVES = 5
 """Energies shown over time."""
 AGREES = 0.01
-"""Share of all energy within which a sampled power must add up to its door (a choice)."""
-ROW, TOP = 3.7, 7.0
+"""Share of all energy within which a sampled power must add up to its flow (a choice)."""
+ROW, TOP = 3.7, 9.0
 """Height of a row, and of the title above the rows [mm]."""
 GIVEN, TAKEN, KEPT = BLUE, OCHRE, "#7d868e"
+"""Fills of sources, of sinks, and of what is stored."""
 
 
 class EnergyShare(NamedTuple):
@@ -61,13 +51,13 @@ class EnergyShare(NamedTuple):
 
 def shares(simulation: Simulation) -> list[EnergyShare]:
     """Sources of energy, the supply first, then sinks by size; small shares are summed."""
-    doors = [EnergyShare(flow.name, flow.energy) for flow in simulation.balance.flows]
-    doors.append(EnergyShare("store", -sum(store.energy for store in simulation.balance.stored)))
-    total = sum(share.energy for share in doors if share.energy > 0)
+    flows = [EnergyShare(flow.name, flow.energy) for flow in simulation.balance.flows]
+    flows.append(EnergyShare("store", -sum(store.energy for store in simulation.balance.stored)))
+    total = sum(share.energy for share in flows if share.energy > 0)
     if total <= 0:
         return []
     order = sorted(
-        doors, key=lambda share: (share.energy < 0, share.name != "supply", -abs(share.energy))
+        flows, key=lambda share: (share.energy < 0, share.name != "supply", -abs(share.energy))
     )
     small = [
         share for share in order if abs(share.energy) < SMALL * total and share.name not in USEFUL
@@ -78,11 +68,10 @@ def shares(simulation: Simulation) -> list[EnergyShare]:
         last = taken.pop()
         large.remove(last)
         small.append(last)
-    rest = sum(share.energy for share in small)
     moved = [share for share in small if share.energy]
     if moved:
         words = moved[0].name if len(moved) == 1 else f"{len(moved)} others"
-        large.append(EnergyShare(words, rest))
+        large.append(EnergyShare(words, sum(share.energy for share in small)))
     return [EnergyShare(_words(share), share.energy) for share in large]
 
 
@@ -94,42 +83,42 @@ def _words(share: EnergyShare) -> str:
     return share.name
 
 
-def share_panel(ink: Ink, box: Box, simulation: Simulation) -> None:
-    """Sources as bars from the left, sinks as bars back to zero."""
-    left, top, width, _ = box
+def share_picture(simulation: Simulation, width: float) -> Ink | None:
+    """Sources as bars from the left, sinks as bars back to zero; None without energy.
+
+    It is no `Chart`: each bar starts where the bar above it ends, and its row is a table line.
+    """
     shown = shares(simulation)
     if not shown:
-        return
-    title = "Where the energy went"
-    ink.text(left, top + 2.0, title, size=7.0, bold=True)
+        return None
+    ink = Ink(width, TOP + ROW * len(shown) + 1.0)
+    ink.text(0.0, 4.0, "Where the energy went", size=6.8, bold=True)
     efficiency = simulation.values.get("efficiency")
     if efficiency is not None:
-        said = f"efficiency {value_text(RESULTS['efficiency'], efficiency, 3)}"
-        ink.text(left + width, top + 2.0, said, anchor="right", color=GREY)
+        words = f"efficiency {value_text(RESULTS['efficiency'], efficiency, 3)}"
+        ink.text(width, 4.0, words, anchor="right", color=GREY)
     total = sum(share.energy for share in shown if share.energy > 0)
     values = [value_text(ENERGY, abs(share.energy), 4) for share in shown]
     parts = [per_cent(abs(share.energy) / total) for share in shown]
-    wide = max(text_width(words, 6.2) for words in values)
-    names = min(max(text_width(share.name, 6.2) for share in shown), 0.42 * width)
-    ends = left + width - wide - 12.5
-    axes = Axes(ink, (left + names + 1.5, top, ends - left - names - 2.5, 1.0), (0, total), (0, 1))
+    names = min(max(text_width(share.name, SIZE) for share in shown), 0.42 * width)
+    left, right = names + 1.5, width - max(text_width(words, SIZE) for words in values) - 13.5
+    scale = (right - left) / total
     level = 0.0
     for k, (share, words, part) in enumerate(zip(shown, values, parts, strict=True)):
-        y = top + TOP + ROW * (k + 0.5)
-        ink.text(left + names, y, fitted(share.name, names, 6.2), size=6.2, anchor="right")
+        y = TOP + ROW * (k + 0.5)
+        ink.text(names, y, fitted(share.name, names, SIZE), size=SIZE, anchor="right")
         begin, level = level, level + share.energy
-        ends_at = sorted(min(max(v, 0.0), total) for v in (begin, level))
+        start, end = sorted(left + scale * min(max(v, 0.0), total) for v in (begin, level))
         colour = KEPT if "oil, walls" in share.name else GIVEN if share.energy > 0 else TAKEN
-        wide_bar = max(axes.x(ends_at[1]) - axes.x(ends_at[0]), 0.25)
-        x = min(axes.x(ends_at[0]), axes.left + axes.width - wide_bar)
-        ink.box(x, y - 1.15, wide_bar, 2.3, fill=colour, stroke=None)
+        bar = max(end - start, 0.25)
+        ink.box(min(start, right - bar), y - 1.15, bar, 2.3, fill=colour, stroke=None)
         if k + 1 < len(shown):
-            at = axes.x(min(max(level, 0.0), total))
+            at = left + scale * min(max(level, 0.0), total)
             ink.line((at, y + 1.15), (at, y + ROW - 1.15), pen=0.1, stroke=GREY)
-        ink.text(left + width - 11.5, y, words, size=6.2, anchor="right")
-        ink.text(left + width, y, part, size=6.2, anchor="right", color=GREY)
-    bottom = top + TOP + ROW * len(shown)
-    ink.line((axes.left, top + TOP), (axes.left, bottom), pen=0.13)
+        ink.text(width - 11.5, y, words, size=SIZE, anchor="right")
+        ink.text(width, y, part, size=SIZE, anchor="right", color=GREY)
+    ink.line((left, TOP), (left, TOP + ROW * len(shown)), pen=0.13)
+    return ink
 
 
 # ---- over time ----
@@ -206,34 +195,35 @@ POWERS: dict[str, Callable[[Simulation], Array | None]] = {
     "losses of the motor": _motor,
     "leakage across the piston": _leaked,
 }
-"""Power through a door from the signals [W]; None where signals are missing."""
+"""Power of an energy flow from the signals [W]; None where signals are missing."""
 
 
 def _summed(simulation: Simulation) -> tuple[dict[str, Array], dict[str, float]]:
-    """Energy over time [J] through every door of known power, and the error of its end.
+    """Energy over time [J] of every flow of known power, and the error of its last value.
 
-    Energies are positive out of the doors, except the supply's; the error is a share of all energy.
+    Energies are positive out of the machine, the supply's into it; the error is a share of all
+    energy.
     """
-    doors: dict[str, float] = {flow.name: flow.energy for flow in simulation.balance.flows}
-    ways = [sum(abs(e) for e in doors.values() if (e > 0) == way) for way in (True, False)]
+    flows: dict[str, float] = {flow.name: flow.energy for flow in simulation.balance.flows}
+    ways = [sum(abs(e) for e in flows.values() if (e > 0) == way) for way in (True, False)]
     curves: dict[str, Array] = {}
     off: dict[str, float] = {}
     for name, power_of in POWERS.items():
-        power = power_of(simulation) if name in doors else None
+        power = power_of(simulation) if name in flows else None
         if power is None or not np.all(np.isfinite(power)):
             continue
         steps = 0.5 * (power[1:] + power[:-1]) * np.diff(simulation.time)
         energy = np.concatenate(([0.0], np.cumsum(steps)))
-        ends = doors[name] if name == "supply" else -doors[name]
+        ends = flows[name] if name == "supply" else -flows[name]
         curves[name] = energy
         off[name] = float(energy[-1] - ends) / (max(ways) or 1.0)
     return curves, off
 
 
 def over_time(simulation: Simulation) -> dict[str, Array]:
-    """Energy through the largest doors over time [J], positive out of them except the supply's.
+    """The largest energies over time [J], positive out of the machine, the supply's into it.
 
-    A door whose sampled power does not add up to its own energy is left out.
+    A flow whose sampled power does not add up to its energy is left out.
     """
     curves, off = _summed(simulation)
     curves = {name: energies for name, energies in curves.items() if abs(off[name]) <= AGREES}
@@ -246,50 +236,39 @@ def over_time(simulation: Simulation) -> dict[str, Array]:
 
 
 _LOADED = ("load", "valve edges")
-"""Doors whose power follows from the signals only without lines, joint or machine outside."""
+"""Flows whose power follows from the signals only without lines, joint or machine outside."""
 
 
 def doubts(simulation: Simulation) -> list[str]:
-    """A sentence about doors whose energy differs from the sum of their sampled power."""
+    """A sentence about flows whose energy differs from the sum of their sampled power."""
     _, off = _summed(simulation)
-    wrong = {n: e for n, e in off.items() if abs(e) > AGREES and n not in _LOADED}
+    wrong = {
+        name: error for name, error in off.items() if abs(error) > AGREES and name not in _LOADED
+    }
     if not wrong:
         return []
-    said = ", ".join(f"{name} by {number(100 * e, 2, signed=True)} %" for name, e in wrong.items())
+    errors = ", ".join(
+        f"{name} by {number(100 * error, 2, signed=True)} %" for name, error in wrong.items()
+    )
     return [
-        f"powers at the samples add up to other energies than the integration: {said} of all"
+        f"powers at the samples add up to other energies than the integration: {errors} of all"
         " energy; take shorter samples, and doubt the energies where that does not help"
     ]
 
 
-def time_panel(ink: Ink, box: Box, simulation: Simulation, curves: Mapping[str, Array]) -> None:
+def time_panel(simulation: Simulation, energies: Mapping[str, Array]) -> Panel:
     """Energies over time, each named at its end."""
-    left, top, width, height = box
+    label, factor = time_words(float(simulation.time[-1]))
     scale = ENERGY.to_display(1.0)
-    words = {name: BRIEF.get(name, name) for name in curves}
-    side = max(text_width(name, 6.2) for name in words.values()) + 4.5
-    frame = (left + 11.0, top + 6.5, width - 11.0 - side, height - 6.5 - 7.5)
-    ends = [
-        float(scale * v)
-        for energies in curves.values()
-        for v in (np.min(energies), np.max(energies))
-    ]
-    axes = Axes(ink, frame, (0.0, float(simulation.time[-1])), steady_range(ends, zero=True))
-    axes.frame_at("", "", [], even_ticks(*axes.y_range, 4))
-    ink.text(left, top + 2.0, f"Energy over time, {ENERGY.unit}", size=7.0, bold=True)
-    ink.line((frame[0], axes.y(0.0)), (frame[0] + frame[2], axes.y(0.0)), **ZERO)
-    order = sorted(curves, key=lambda name: -float(curves[name][-1]))
-    wanted = [axes.y(float(scale * curves[name][-1])) for name in order]
-    low, high = frame[1] - 1.0, frame[1] + frame[3] + 1.0
-    places = spread_within(wanted, [2.9] * len(order), low, high)
-    right = frame[0] + frame[2]
-    for k, (name, y, place) in enumerate(zip(order, wanted, places, strict=True)):
-        colour, dash = COLOURS[k % len(COLOURS)], DASHES[k % len(DASHES)]
-        drawn = lines(axes, simulation.time, scale * curves[name])
-        ink.path(drawn, stroke=colour, pen=0.3, dash=dash)
-        ink.line((right, y), (right + 3.5, place), stroke=PALE, pen=0.13)
-        ink.text(right + 4.0, place, words[name], size=6.2, color=colour)
-    time_axis(axes)
+    return Panel(
+        f"Energy over time, {ENERGY.unit}",
+        Axis(label),
+        Axis(zero=True),
+        curves=[
+            Curve("", factor * simulation.time, scale * values, end=BRIEF.get(name, name))
+            for name, values in energies.items()
+        ],
+    )
 
 
 def table_rows(simulation: Simulation) -> list[list[str]]:

@@ -1,11 +1,11 @@
-"""Figures of a simulation as ink: strips over time, and the panels that its kind of run has."""
+"""Figures of a simulation: signals over time, and the panels that its kind of run has."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,50 +13,26 @@ from ..base.fitting import NORMAL
 from ..base.numeric import Array
 from ..base.quantities import INPUTS, RESULTS, SCENARIOS, Quantity
 from ..models.fluid import ATMOSPHERIC_PRESSURE
-from ..rendering.axes import (
-    SIZE,
-    ZERO,
-    Axes,
-    Box,
-    band,
-    error_bar,
-    even_ticks,
-    lines,
-    names,
-    required,
-    steady_range,
-    thinned,
-    time_axis,
-    x_axis,
-)
-from ..rendering.ink import BLACK, BLUE, OCHRE, WHITE, Ink, text_width
-from ..rendering.strips import (
-    ASKED,
-    LEVEL,
-    LIMIT,
-    MEASURED,
-    STYLES,
-    ConstantLevel,
-    Strip,
-    StripCurve,
-    stack,
-)
+from ..rendering.axes import steady_range, time_words
+from ..rendering.blocks import Chart
+from ..rendering.chart import Axis, Curve, Level, Panel, Points
+from ..rendering.chart_ink import drawn
+from ..rendering.ink import Ink
 from ..rendering.text import SENSES, number, trimmed, unit_text
 from ..simulation.components.circuit import LOOPS, Loop, loop_of
 from ..simulation.harmonic import harmonic_fit
 from ..simulation.linear import BAND
 from ..simulation.result import HarmonicLoad, Servo, Simulation, Window
-from .simulation_energy import ROW, TOP, over_time, share_panel, shares, time_panel
+from .simulation_energy import over_time, share_picture, time_panel
 
-WIDTH = 180.0
 LEAST, MOST = 92.0, 150.0
 """Heights of the whole figure [mm]."""
-LEFT, STRIPS, GAP = 11.0, 83.0, 8.0
-"""Room for numbers beside the strips, their width, and from there to the panels [mm]."""
-LEAST_PANEL = 26.0
-"""Least height of a panel [mm]."""
+WIDTHS = (96.0, 78.0)
+"""Widths of the signals over time and of the other panels [mm]."""
+LEAST_STRIP, FOOT = 15.2, 8.4
+"""Least height of a signal over time with its title, and of the time axis [mm]."""
 MOST_MARKS = 8
-"""Events that are marked in the strips."""
+"""Events that are marked in the signals over time."""
 LAG = 0.02
 """Distance of the spool from its signal, over the largest signal, within which a flow belongs to
 the signal (a choice)."""
@@ -87,92 +63,73 @@ _SIGNALS: tuple[tuple[str, int, bool, tuple[tuple[str, str], ...]], ...] = (
     ("Torque on the joint", 8, True, (("joint_torque", ""),)),
     ("Stops and cushions", 5, True, (("stop_force", "stops"), ("cushion_force", "cushions"))),
 )  # fmt: skip
-"""Title, rank, whether zero belongs to it, and signals with their names."""
+"""Title, rank, whether its axis includes zero, and signals with their names."""
 _STILL = {"Stops and cushions", "Load", "Supply", "Torque on the joint", "Friction"}
 """Strips that are left out while none of their signals moves."""
 _PUMPED = ("Supply", "Flows of the pump")
 """Strips that come early where the supply pressure varies."""
 LEAST_SHOWN = 0.01
 """Overshoot from which on it is marked, share of the step: less is in the width of the band."""
-ROOM = 4.6
-"""Room of a line of words beyond the peak [mm]."""
-_BAND = "#e8eef2"
-_MARK = {"stroke": OCHRE, "pen": 0.18}
+ROOM = 0.08
+"""Room for words beyond the peak, share of the axis."""
+REFERENCE, FINE = 4, 2
+"""Style and dash of a reference."""
+EVENT, MARK, CONSTANT, VAPOUR = 2, 1, 5, 3
+"""Styles of an event, of a marked value, of a constant value, and of the vapour pressure."""
 PRESSURE = INPUTS["pressure"]
 STIFFNESS, PHASE = RESULTS["dynamic_stiffness"], RESULTS["dynamic_phase"]
 MOVED = 0.02
 """Share of the stroke over which windows must spread to be shown along it (a choice)."""
 MOST_WINDOWS = 40
-"""Windows that are shown as marks with bars; more become a line with a band."""
+"""Windows that are shown as points with bars; more become a line with a band."""
 CYCLES = 3
 """Cycles of the loop that are drawn."""
 Static = tuple[Array, Array]
 """Positions [m] and static stiffness there [N/m]."""
 Limits = Sequence[tuple[str, float]]
 """Senses and limits (SI)."""
-Series = tuple[list[float], list[float], list[float], dict[str, Any]]
 
 
 # ---- the whole figure ----
 
 
-@dataclass(frozen=True, slots=True)
-class FigurePanel:
-    """A figure that fills a box: a fixed height, or a weight in what is left [mm]."""
+class FigurePart(NamedTuple):
+    """Panels that belong together, or a picture, with the least height they need [mm]."""
 
     name: str
-    draw: Callable[[Ink, Box], None]
-    height: float = 0.0
-    weight: float = 1.0
-    least: float = LEAST_PANEL
+    panels: Sequence[Panel | Ink]
+    least: float
 
 
-def panels(simulation: Simulation, measured: Measured, static: Static | None) -> list[FigurePanel]:
-    """The panels of this run beside its strips, the most important first."""
-    made = []
+class Strip(NamedTuple):
+    """A signal over time; the strips of highest rank are left out where there is no room."""
+
+    rank: int
+    panel: Panel
+
+
+def parts(simulation: Simulation, measured: Measured, static: Static | None) -> list[FigurePart]:
+    """The panels of this run beside its signals over time, the most important first."""
+    made: list[FigurePart] = []
     if simulation.servo is not None:
-        made.append(
-            FigurePanel(
-                "step", lambda ink, box: step_panel(ink, box, simulation, measured), 0.0, 1.5, 44.0
-            )
-        )
+        panel = step_panel(simulation, simulation.servo, measured)
+        made.append(FigurePart("step", [panel], 44.0))
     if simulation.shaken is not None and simulation.shaken.windows:
-        made.append(
-            FigurePanel(
-                "stiffness",
-                lambda ink, box: _stiffness(ink, box, simulation, static),
-                0.0,
-                1.6,
-                40.0,
-            )
-        )
-        made.append(FigurePanel("cycles", lambda ink, box: loop_panel(ink, box, simulation)))
+        panels = _stiffness(simulation, simulation.shaken, static)
+        made.append(FigurePart("stiffness", panels, 40.0))
+        loop = loop_panel(simulation, simulation.shaken)
+        if loop is not None:
+            made.append(FigurePart("cycles", [loop], 26.0))
     if simulation.scenario.held_ports is not None and np.ptp(simulation.signals["signal"]) > 0:
-        made.append(
-            FigurePanel("flows", lambda ink, box: _flows(ink, box, simulation), 0.0, 1.4, 40.0)
-        )
-    count = len(shares(simulation))
-    if count:
-        made.append(
-            FigurePanel(
-                "energy",
-                lambda ink, box: share_panel(ink, box, simulation),
-                TOP + ROW * count + 1.0,
-            )
-        )
-    curves = over_time(simulation)
-    if len(curves) > 1:
-        made.append(
-            FigurePanel(
-                "energy_time", lambda ink, box: time_panel(ink, box, simulation, curves), weight=0.9
-            )
-        )
+        made.append(FigurePart("flows", [_flows(simulation)], 40.0))
+    picture = share_picture(simulation, WIDTHS[1])
+    if picture is not None:
+        made.append(FigurePart("energy", [picture], picture.height))
+    energies = over_time(simulation)
+    if len(energies) > 1:
+        made.append(FigurePart("energy_time", [time_panel(simulation, energies)], 26.0))
     if "friction" in simulation.signals and np.ptp(simulation.signals["speed"]) > 0:
-        made.append(
-            FigurePanel(
-                "friction", lambda ink, box: _friction(ink, box, simulation), 0.0, 0.9, 38.0
-            )
-        )
+        made.append(FigurePart("friction", [_friction(simulation)], 38.0))
     return made
 
 
@@ -183,128 +140,83 @@ def simulation_figure(
     measured: Measured | None = None,
     static: Static | None = None,
 ) -> Ink:
-    """Strips over time at the left, the panels of this run at the right, in one drawing."""
+    """Signals over time at the left, the panels of this run at the right, in one drawing."""
     height = min(max(height, LEAST), MOST)
-    ink = Ink(WIDTH, height)
     known = measured or {}
-    right = _chosen(panels(simulation, known, static), height)
-    shown = strips(simulation, known)
-    wide = STRIPS if right else WIDTH - LEFT - 2.0
-    stack(ink, (LEFT, 0.0, wide, height), shown, (0.0, _end(simulation)), marks=_marks(simulation))
-    if not right:
-        return ink
-    left = LEFT + STRIPS + GAP
-    fixed = sum(panel.height for panel in right)
-    weights = sum(panel.weight for panel in right if not panel.height)
-    gaps = 2.0 * (len(right) - 1)
-    share = (height - fixed - gaps) / weights if weights else 0.0
-    y = 0.0
-    for panel in right:
-        tall = panel.height or min(share * panel.weight, 70.0 * panel.weight)
-        panel.draw(ink, (left, y, WIDTH - left, tall))
-        y += tall + 2.0
-    return ink
+    left = strips_with_room(strips(simulation, known), height)
+    right: list[Panel | Ink] = []
+    for part in _parts_with_room(parts(simulation, known, static), height):
+        right += part.panels
+    right.sort(key=lambda part: isinstance(part, Ink))  # pictures stand below
+    return drawn(Chart("Simulation", [left, right], widths=WIDTHS if right else ()), height=height)
 
 
-def _chosen(made: list[FigurePanel], height: float) -> list[FigurePanel]:
-    """The first panels that have room; a later one may fill what a larger one leaves."""
-    chosen: list[FigurePanel] = []
+def strips_with_room(shown: Sequence[Strip], height: float) -> list[Panel]:
+    """The signals that have room in a height [mm], in their order; the last has the time axis."""
+    most = max(2, int((height - FOOT) / LEAST_STRIP))
+    order = sorted(range(len(shown)), key=lambda k: (shown[k].rank, k))[:most]
+    panels = [shown[k].panel for k in sorted(order)]
+    return [*(replace(panel, x=Axis()) for panel in panels[:-1]), *panels[-1:]]
+
+
+def _parts_with_room(made: Sequence[FigurePart], height: float) -> list[FigurePart]:
+    """The first parts that have room; a later one may fill what a larger one leaves."""
+    chosen: list[FigurePart] = []
     used = 0.0
-    for panel in made:
-        need = panel.height or panel.least
-        if chosen and used + need > height:
+    for part in made:
+        if chosen and used + part.least > height:
             continue
-        chosen.append(panel)
-        used += need + 2.0
+        chosen.append(part)
+        used += part.least + 2.0
     return chosen
-
-
-def _end(simulation: Simulation) -> float:
-    return float(simulation.time[-1])
-
-
-def _marks(simulation: Simulation) -> list[float]:
-    """Instants of the first events."""
-    return [event.time for event in simulation.events[:MOST_MARKS]]
 
 
 # ---- panels of single kinds of run ----
 
 
-def _stiffness(ink: Ink, box: Box, simulation: Simulation, static: Static | None) -> None:
+def _stiffness(simulation: Simulation, shaken: HarmonicLoad, static: Static | None) -> list[Panel]:
     """Size above phase, along the stroke or over time."""
-    shaken = simulation.shaken
-    assert shaken is not None
-    left, top, width, height = box
     over = "stroke" if travelled(shaken.windows, simulation.plant.stroke) else "time"
-    profile = along("", shaken, over, STYLES[0])
     limits = (limits_of(simulation, "dynamic_stiffness"), limits_of(simulation, "dynamic_phase"))
-    upper = 0.56 * height
-    boxes = ((left, top, width, upper), (left, top + upper, width, height - upper))
-    side = 12.0 if any(limits) else 3.0
-    stiffness_panels(ink, boxes, [profile], over, static=static, limits=limits, side=side)
+    size, phase = stiffness_panels([along(shaken, over)], over, static=static, limits=limits)
+    return [replace(size, x=Axis(), share=0.9), replace(phase, share=0.7)]
 
 
-def _friction(ink: Ink, box: Box, simulation: Simulation) -> None:
+def _friction(simulation: Simulation) -> Panel:
     """Friction over speed during the run."""
-    left, top, width, height = box
     force, speed = (simulation.told[name].quantity for name in ("friction", "speed"))
-    xs, ys = (
-        scaled(simulation.told[n].quantity, simulation.signals[n]) for n in ("speed", "friction")
+    across = scaled(speed, simulation.signals["speed"])
+    values = scaled(force, simulation.signals["friction"])
+    return Panel(
+        titled("Friction over speed", force),
+        Axis(titled("speed", speed), zero=True),
+        Axis(zero=True),
+        curves=[Curve("", across, values, weight="thin")],
+        share=0.9,
     )
-    frame = (left + 11.0, top + 6.5, width - 14.0, height - 14.0)
-    ranges = [steady_range([float(np.min(v)), float(np.max(v))], zero=True) for v in (xs, ys)]
-    axes = Axes(ink, frame, ranges[0], ranges[1])
-    axes.frame_at("", "", [], even_ticks(*ranges[1], 4))
-    ink.text(left, top + 2.0, titled("Friction over speed", force), size=7.0, bold=True)
-    _cross(axes)
-    at = np.union1d(thinned(xs, 2000), thinned(ys, 2000))
-    points = ([float(v) for v in column[at]] for column in (xs, ys))
-    ink.path(axes.clipped(*points), stroke=BLUE, pen=0.2)
-    x_axis(axes, titled("speed", speed))
 
 
-def _cross(axes: Axes) -> None:
-    """Lines at zero, where it lies inside."""
-    (left, right), (low, high) = axes.x_range, axes.y_range
-    if left < 0 < right:
-        axes.ink.line((axes.x(0.0), axes.y(low)), (axes.x(0.0), axes.y(high)), **ZERO)
-    if low < 0 < high:
-        axes.ink.line((axes.x(left), axes.y(0.0)), (axes.x(right), axes.y(0.0)), **ZERO)
-
-
-def _flows(ink: Ink, box: Box, simulation: Simulation) -> None:
+def _flows(simulation: Simulation) -> Panel:
     """Flows of a valve over its signal, at samples where the spool follows the signal."""
-    left, top, width, height = box
     quantity, volts = simulation.told["flow_a"].quantity, SCENARIOS["signal_value"]
     signal = scaled(volts, simulation.signals["signal"])
     lag = np.abs(scaled(volts, simulation.signals["spool"]) - signal)
-    there = lag <= LAG * float(np.max(np.abs(signal)))
-    if np.count_nonzero(there) < 0.5 * there.size:
-        there[:] = True
-    entries = [
-        (words, scaled(quantity, simulation.signals[name])[there], style)
-        for (name, words), style in zip(FLOWS, STYLES, strict=True)
-    ]
-    signal = signal[there]
-    frame = (left + 11.0, top + 6.5, width - 14.0, height - 14.0)
-    across = steady_range([float(np.min(signal)), float(np.max(signal))])
-    ends = [float(v) for _, values, _ in entries for v in (np.min(values), np.max(values))]
-    axes = Axes(ink, frame, across, steady_range(ends, zero=True))
-    axes.frame_at("", "", [], even_ticks(*axes.y_range, 6))
-    title = titled("Flows over signal", quantity)
-    ink.text(left, top + 2.0, title, size=7.0, bold=True)
-    _cross(axes)
-    for _, values, style in entries:
-        at = thinned(values)
-        xs, ys = ([float(v) for v in column[at]] for column in (signal, values))
-        ink.path(axes.clipped(xs, ys), **style | {"pen": 0.35})
-    room = width - text_width(title, 7.0, bold=True) - 2.0
-    names(ink, left + width, top + 2.0, [(words, style) for words, _, style in entries], room)
-    x_axis(axes, f"signal, {unit_text(volts.unit)}")
+    near = lag <= LAG * float(np.max(np.abs(signal)))
+    if np.count_nonzero(near) < 0.5 * near.size:
+        near[:] = True
+    return Panel(
+        titled("Flows over signal", quantity),
+        Axis(titled("signal", volts)),
+        Axis(zero=True),
+        curves=[
+            Curve(words, signal[near], scaled(quantity, simulation.signals[name])[near])
+            for name, words in FLOWS
+        ],
+        share=1.4,
+    )
 
 
-# ---- strips over time ----
+# ---- signals over time ----
 
 
 def scaled(quantity: Quantity, values: Array) -> Array:
@@ -312,23 +224,45 @@ def scaled(quantity: Quantity, values: Array) -> Array:
     return np.asarray(values, dtype=float) * quantity.to_display(1.0)
 
 
-def curve(simulation: Simulation, name: str, words: str, style: dict[str, Any]) -> StripCurve:
-    """A signal as a curve."""
-    return StripCurve(
-        words,
-        simulation.time,
-        scaled(simulation.told[name].quantity, simulation.signals[name]),
-        style,
-    )
+def curve(
+    simulation: Simulation, name: str, words: str, style: int = 0, *, start: float = 0.0
+) -> Curve:
+    """A signal over the time since `start` [s]."""
+    values = scaled(simulation.told[name].quantity, simulation.signals[name])
+    dash = FINE if style == REFERENCE else None
+    return Curve(words, simulation.time - start, values, style=style, weight="thin", dash=dash)
 
 
-def overlay(simulation: Simulation, name: str, measured: Measured) -> list[StripCurve]:
+def overlay(
+    simulation: Simulation, name: str, measured: Measured, *, start: float = 0.0
+) -> list[Curve]:
     """The measured values of a signal, drawn under it."""
     if name not in measured or name not in simulation.told:
         return []
     time, values = measured[name]
     shown = scaled(simulation.told[name].quantity, values)
-    return [StripCurve("measured", np.asarray(time, dtype=float), shown, MEASURED)]
+    return [Curve("measured", np.asarray(time, dtype=float) - start, shown, weight="broad")]
+
+
+def timed(panel: Panel, span: tuple[float, float], words: str = "time") -> Panel:
+    """A panel over seconds with its time axis, in milliseconds where the time is short."""
+    low, high = span
+    label, factor = time_words(high - low, words)
+    return replace(
+        panel,
+        x=Axis(label, range=(factor * low, factor * high)),
+        curves=[replace(shown, xs=factor * np.asarray(shown.xs)) for shown in panel.curves],
+        points=[replace(shown, xs=factor * np.asarray(shown.xs)) for shown in panel.points],
+        levels=[_timed_level(level, factor) for level in panel.levels],
+    )
+
+
+def _timed_level(level: Level, factor: float) -> Level:
+    if level.upright:
+        return replace(level, value=factor * level.value)
+    if level.between is None:
+        return level
+    return replace(level, between=(factor * level.between[0], factor * level.between[1]))
 
 
 def titled(words: str, quantity: Quantity) -> str:
@@ -350,33 +284,31 @@ def followed(simulation: Simulation) -> Loop | None:
     return next((name for name in ("position", "shaft_speed") if name in simulation.signals), None)
 
 
-def response(simulation: Simulation, measured: Measured) -> Strip | None:
+def response(simulation: Simulation, measured: Measured) -> Panel | None:
     """The moving signal with its reference and its record; None where nothing moves."""
     name = followed(simulation)
     if not name:
         return None
     words, quantity, *_ = LOOPS[name]
     curves = overlay(simulation, name, measured)
-    asked = "reference" if "reference" in simulation.signals else "drive_position"
-    if asked in simulation.signals:
-        curves.append(
-            curve(simulation, asked, "asked" if asked == "reference" else "machine", ASKED)
-        )
-    own = "response" if curves else ""
-    curves.append(curve(simulation, name, own, STYLES[0]))
-    return Strip(titled(words.capitalize(), quantity), tuple(curves), rank=0)
+    for reference, own in (("reference", "asked"), ("drive_position", "machine")):
+        if reference in simulation.signals:
+            curves.append(curve(simulation, reference, own, REFERENCE))
+            break
+    curves.append(curve(simulation, name, "response" if curves else ""))
+    return Panel(titled(words.capitalize(), quantity), curves=curves)
 
 
 def strips(simulation: Simulation, measured: Measured) -> list[Strip]:
-    """The strips of a run, the response first."""
-    shown = []
+    """The signals of a run over time, the response first."""
+    shown: list[Strip] = []
     first = response(simulation, measured)
     if first is not None:
-        shown.append(first)
+        shown.append(Strip(0, first))
     if "error" in simulation.signals:
-        quantity = simulation.told["error"].quantity
-        own = curve(simulation, "error", "", STYLES[0])
-        shown.append(Strip(titled("Error", quantity), (own,), zero=True, rank=3))
+        title = titled("Error", simulation.told["error"].quantity)
+        error = curve(simulation, "error", "")
+        shown.append(Strip(3, Panel(title, y=Axis(zero=True), curves=[error])))
     used = followed(simulation)
     if used not in (None, "position") and "position" in simulation.signals:
         shown += _strip(simulation, measured, "Position", 5, False, (("position", ""),))
@@ -385,7 +317,13 @@ def strips(simulation: Simulation, measured: Measured) -> list[Strip]:
         if used not in [name for name, _ in signals]:
             early = 3 if pumped and title in _PUMPED else rank
             shown += _strip(simulation, measured, title, early, zero, signals)
-    return shown
+    span = (0.0, float(simulation.time[-1]))
+    marks = [event.time for event in simulation.events[:MOST_MARKS]]
+    events = [Level(time, "", style=EVENT, upright=True) for time in marks if 0 < time < span[1]]
+    return [
+        Strip(rank, timed(replace(panel, levels=[*panel.levels, *events]), span))
+        for rank, panel in shown
+    ]
 
 
 def _strip(
@@ -396,6 +334,7 @@ def _strip(
     zero: bool,
     signals: Sequence[tuple[str, str]],
 ) -> list[Strip]:
+    """Signals of one quantity in a panel; none where the run has none of them."""
     here = [(name, words) for name, words in signals if name in simulation.signals]
     if title == "Flows of the line" and simulation.scenario.held_ports is None:
         return []
@@ -403,45 +342,40 @@ def _strip(
         return []
     if not here:
         return []
-    under = [
-        measured_curve for name, _ in here for measured_curve in overlay(simulation, name, measured)
-    ]
+    under = [record for name, _ in here for record in overlay(simulation, name, measured)]
+    alone = "simulated" if under else ""
     over = [
-        curve(simulation, name, words if len(here) > 1 else "", style)
-        for (name, words), style in zip(here, STYLES, strict=False)
+        curve(simulation, name, words if len(here) > 1 else alone, style)
+        for style, (name, words) in enumerate(here)
     ]
-    if under and len(over) == 1:
-        over = [curve(simulation, here[0][0], "simulated", STYLES[0])]
     quantity = simulation.told[here[0][0]].quantity
-    levels, zero = _levels(simulation, here[0][0], zero)
-    return [Strip(titled(title, quantity), (*under, *over), levels, zero, rank)]
+    levels = _levels(simulation, here[0][0])
+    y = Axis(zero=zero or bool(levels))
+    return [Strip(rank, Panel(titled(title, quantity), y=y, curves=[*under, *over], levels=levels))]
 
 
 def _moves(values: Array) -> bool:
     return float(np.ptp(values)) > 1e-9 * max(float(np.max(np.abs(values))), 1e-12)
 
 
-def _levels(
-    simulation: Simulation, name: str, zero: bool
-) -> tuple[tuple[ConstantLevel, ...], bool]:
-    """Levels of a strip, and whether its axis includes them."""
-    scale = PRESSURE.to_display(1.0)
+def _levels(simulation: Simulation, name: str) -> list[Level]:
+    """Constant values: pressures of supply, return and vapour, the largest valve signal."""
     if name == "pressure_a":
         plant = simulation.plant
-        vapour = ConstantLevel(
-            "vapour", scale * (plant.oil.vapour_pressure - ATMOSPHERIC_PRESSURE), LIMIT
-        )
-        supplied = simulation.signals.get("pressure_supply")
-        if supplied is None:
-            return (vapour,), False
-        pressures = [plant.return_pressure] + ([] if _moves(supplied) else [plant.supply_pressure])
+        vapour = PRESSURE.to_display(plant.oil.vapour_pressure - ATMOSPHERIC_PRESSURE)
+        level = Level(vapour, "vapour", style=VAPOUR)
+        supply = simulation.signals.get("pressure_supply")
+        if supply is None:
+            return [level] if float(np.min(simulation.signals[name])) < 0 else []
+        pressures = [plant.return_pressure] + ([] if _moves(supply) else [plant.supply_pressure])
         words = "supply, return" if len(pressures) > 1 else "return"
-        return (*(ConstantLevel(words, scale * p, LEVEL) for p in pressures), vapour), True
+        constant = [Level(PRESSURE.to_display(p), words, style=CONSTANT) for p in pressures]
+        return [*constant, level]
     if name == "signal" and simulation.plant.valve is not None:
         full = simulation.plant.valve.signal
         if float(np.max(np.abs(simulation.signals[name]))) > 0.5 * full:
-            return tuple(ConstantLevel("limit", way * full, LEVEL) for way in (1, -1)), True
-    return (), zero
+            return [Level(way * full, "limit", style=CONSTANT) for way in (1, -1)]
+    return []
 
 
 # ---- the step of a servo: rise, overshoot and settling where they are read ----
@@ -467,107 +401,73 @@ def window(simulation: Simulation, servo: Servo) -> tuple[float, float]:
     return max(servo.time - 0.08 * span, 0.0), servo.time + span
 
 
-def step_panel(ink: Ink, box: Box, simulation: Simulation, measured: Measured) -> None:
+def step_panel(simulation: Simulation, servo: Servo, measured: Measured) -> Panel:
     """The response about its step, with the band, 10 to 90 %, the peak and the settling."""
-    servo = simulation.servo
-    if servo is None:
-        return
-    left, top, width, height = box
     words, quantity, *_ = LOOPS[servo.loop]
     begin, end = window(simulation, servo)
-    scale = quantity.to_display(1.0)
-    start, target = scale * servo.start, scale * servo.target
+    start, target = quantity.to_display(servo.start), quantity.to_display(servo.target)
     size = target - start
-    frame = (left + 11.0, top + 6.5, width - 14.0, height - 14.0)
-    values = scaled(quantity, simulation.signals[servo.loop])
-    inside = (simulation.time >= begin) & (simulation.time <= end)
-    under = overlay(simulation, servo.loop, measured)
-    ends = [start, target, float(np.min(values[inside])), float(np.max(values[inside]))]
-    low, high = steady_range(ends)
-    spare = max(0.06, ROOM / max(frame[3] - ROOM, ROOM)) * (high - low)
-    low, high = (low, high + spare) if size > 0 else (low - spare, high)
-    axes = Axes(ink, frame, (begin - servo.time, end - servo.time), (low, high))
-    time = simulation.time - servo.time
-    half = BAND * abs(size)
-    upper, lower = axes.y(target + half), axes.y(target - half)
-    ink.box(frame[0], upper, frame[2], lower - upper, fill=_BAND, stroke=None)
-    axes.frame_at("", "", [], even_ticks(low, high, 5))
-    title = titled(f"Step of {words}" if under else f"Step of the {words}", quantity)
-    ink.text(left, top + 2.0, title, size=7.0, bold=True)
-    ink.path(lines(axes, time, scaled(quantity, simulation.signals["reference"])), **ASKED)
-    for measured_curve in under:
-        ink.path(
-            lines(axes, measured_curve.time - servo.time, measured_curve.values),
-            **measured_curve.style,
-        )
-    style = STYLES[0] | {"pen": 0.4}
-    ink.path(lines(axes, time, values), **style)
-    entries = [("measured", under[0].style)] if under else []
-    entries += [("±2 %", {"stroke": _BAND, "pen": 1.6}), ("asked", ASKED)]
-    room = width - text_width(title, 7.0, bold=True) - 2.0
-    names(ink, left + width, top + 2.0, entries, room)
-    _rise(axes, servo, time, (values - start) / size, start, size)
-    _settled(axes, servo, start, size)
-    _peak(axes, servo, scale, target, size)
-    time_axis(axes, "time after the step")
+    own = curve(simulation, servo.loop, "", start=servo.time)
+    own = replace(own, weight="normal")
+    asked = curve(simulation, "reference", "asked, ±2 %", REFERENCE, start=servo.time)
+    at_target = np.abs(np.asarray(asked.ys) - target) <= 1e-9 * abs(size)
+    bounds = (np.where(at_target, target + way * BAND * abs(size), np.nan) for way in (-1, 1))
+    asked = replace(asked, low=next(bounds), high=next(bounds))
+    under = overlay(simulation, servo.loop, measured, start=servo.time)
+    marks, points, levels = _rise(servo, own, start, size)
+    note = ""
+    settling = servo.metrics.settling_time
+    if settling is None:
+        note = "The response does not settle within 2 %."
+    elif settling <= end - servo.time:
+        level = float(np.interp(settling, *_sorted(own)))
+        settled = f"settled {number(1e3 * settling, 3)} ms"
+        points.append(Points("", [settling], [level], style=2, labels=[settled]))
+        levels.append(Level(settling, "", style=MARK, upright=True))
+    if servo.metrics.overshoot >= LEAST_SHOWN and servo.metrics.peak_time <= end - servo.time:
+        at, peak = servo.metrics.peak_time, quantity.to_display(servo.metrics.peak)
+        overshoot = f"overshoot {number(100 * servo.metrics.overshoot, 3)} %"
+        marks.append(Curve("", [at, at], [target, peak], style=4, dash=0, weight="thin"))
+        points.append(Points("", [at], [peak], style=2, labels=[overshoot]))
+    time, values = np.asarray(own.xs), np.asarray(own.ys)
+    inside = values[(time >= begin - servo.time) & (time <= end - servo.time)]
+    low, high = steady_range([start, target, float(np.min(inside)), float(np.max(inside))])
+    spare = ROOM * (high - low)
+    panel = Panel(
+        titled(f"Step of {words}" if under else f"Step of the {words}", quantity),
+        y=Axis(range=(low, high + spare) if size > 0 else (low - spare, high)),
+        curves=[*under, asked, own, *marks],
+        points=points,
+        levels=levels,
+        note=note,
+        share=1.5,
+    )
+    return timed(panel, (begin - servo.time, end - servo.time), "time after the step")
 
 
-def _beside(axes: Axes, x: float, y: float, words: str) -> None:
-    """Words to the right of a place, or to its left where there is no room."""
-    wide = text_width(words, SIZE)
-    right = axes.left + axes.width
-    if x + 1.0 + wide <= right - 0.5:
-        axes.ink.text(x + 1.0, y, words, size=SIZE, color=OCHRE, halo=True)
-    else:
-        at = max(x - 1.0, axes.left + wide + 0.5)
-        axes.ink.text(at, y, words, size=SIZE, anchor="right", color=OCHRE, halo=True)
+def _sorted(shown: Curve) -> tuple[Array, Array]:
+    """Times and values of a curve; of an instant with two samples the later one."""
+    time, at = np.unique(np.asarray(shown.xs)[::-1], return_index=True)
+    return time, np.asarray(shown.ys)[::-1][at]
 
 
-def _rise(axes: Axes, servo: Servo, time: Array, done: Array, start: float, size: float) -> None:
+def _rise(
+    servo: Servo, own: Curve, start: float, size: float
+) -> tuple[list[Curve], list[Points], list[Level]]:
     """The rise from 10 to 90 %, marked at the lower level."""
     rise = servo.metrics.rise_time
-    if rise is None:
-        return
-    late = np.flatnonzero((time > 0) & (done >= 0.9))
-    if not late.size:
-        return
-    right = axes.x(float(time[late[0]]))
-    left = axes.x(float(time[late[0]]) - rise)
-    low, high = (axes.y(start + share * size) for share in (0.1, 0.9))
-    axes.ink.line((left, low), (right, low), (right, high), **_MARK)
-    for y in (low, high):
-        axes.ink.circle(left if y == low else right, y, 0.5, fill=OCHRE, stroke=None)
-    _beside(axes, right, low, f"rise {number(1e3 * rise, 3)} ms")
-
-
-def _settled(axes: Axes, servo: Servo, start: float, size: float) -> None:
-    """The last instant outside the band."""
-    settling = servo.metrics.settling_time
-    level = axes.y(start + 0.4 * size)
-    if settling is None:
-        x = axes.left + axes.width - 1.0
-        words = "does not settle within 2 %"
-        axes.ink.text(x, level, words, size=SIZE, anchor="right", color=OCHRE, halo=True)
-        return
-    x = axes.x(settling)
-    if axes.left <= x <= axes.left + axes.width:
-        end = axes.y(start + size)
-        axes.ink.line((x, axes.y(start + 0.34 * size)), (x, end), **_MARK | {"dash": (1.0, 0.6)})
-        _beside(axes, x, level, f"settled {number(1e3 * settling, 3)} ms")
-
-
-def _peak(axes: Axes, servo: Servo, scale: float, target: float, size: float) -> None:
-    """The overshoot, marked at its peak."""
-    own = servo.metrics
-    if own.overshoot < LEAST_SHOWN:
-        return
-    x, y = axes.x(own.peak_time), axes.y(scale * own.peak)
-    if not axes.left <= x <= axes.left + axes.width:
-        return
-    axes.ink.line((x, y), (x, axes.y(target)), **_MARK | {"stroke": BLACK})
-    axes.ink.circle(x, y, 0.6, fill=OCHRE, stroke=None)
-    away = -2.2 if size > 0 else 2.2
-    _beside(axes, x, y + away, f"overshoot {number(100 * own.overshoot, 3)} %")
+    time, values = np.asarray(own.xs), np.asarray(own.ys)
+    late = np.flatnonzero((time > 0) & ((values - start) / size >= 0.9))
+    if rise is None or not late.size:
+        return [], [], []
+    last = float(time[late[0]])
+    low, high = (start + share * size for share in (0.1, 0.9))
+    words = f"rise {number(1e3 * rise, 3)} ms"
+    return (
+        [Curve("", [last, last], [low, high], style=MARK, dash=0, weight="thin")],
+        [Points("", [last - rise, last], [low, high], style=2)],
+        [Level(low, words, style=MARK, between=(last - rise, last))],
+    )
 
 
 # ---- dynamic stiffness: size and phase along the stroke ----
@@ -575,15 +475,15 @@ def _peak(axes: Axes, servo: Servo, scale: float, target: float, size: float) ->
 
 @dataclass(frozen=True, slots=True)
 class StrokeProfile:
-    """Windows of a run as drawn: place, size and phase with their errors, and their style."""
+    """Windows of a run as drawn: place, size and phase with their errors, colour and dash."""
 
-    words: str
     place: list[float]
     size: list[float]
     size_error: list[float]
     phase: list[float]
     phase_error: list[float]
-    style: dict[str, Any]
+    style: int = 0
+    dash: int | None = None
 
 
 def travelled(windows: Sequence[Window], stroke: float) -> bool:
@@ -592,28 +492,29 @@ def travelled(windows: Sequence[Window], stroke: float) -> bool:
     return max(places) - min(places) > MOVED * stroke
 
 
-def along(words: str, shaken: HarmonicLoad, over: str, style: dict[str, Any]) -> StrokeProfile:
+def along(
+    shaken: HarmonicLoad, over: str, style: int = 0, dash: int | None = None
+) -> StrokeProfile:
     """Windows over the stroke (mm) or over time (s), in kN/mm and degrees.
 
-    An error of the stiffness turns it by the same share at most: that is the phase's.
+    A relative error of the stiffness turns its phase by the same angle at most [rad].
     """
-    order = sorted(
+    windows = sorted(
         shaken.windows, key=lambda window: window.position if over == "stroke" else window.time
     )
-    place = [1e3 * window.position if over == "stroke" else window.time for window in order]
-    size = [abs(window.stiffness) for window in order]
-    errors = [NORMAL * window.standard_error for window in order]
-    turn = PHASE.to_display(1.0)
-    phases = np.unwrap([float(np.angle(window.stiffness)) for window in order])
+    sizes = [abs(window.stiffness) for window in windows]
+    errors = [NORMAL * window.standard_error for window in windows]
+    phases = np.unwrap([float(np.angle(window.stiffness)) for window in windows])
+    turns = [min(e / k, math.pi) if k > 0 else math.pi for e, k in zip(errors, sizes, strict=True)]
     scale = STIFFNESS.to_display(1.0)
     return StrokeProfile(
-        words,
-        place,
-        [scale * k for k in size],
-        [scale * e for e in errors],
-        [turn * float(p) for p in phases],
-        [turn * min(e / k, math.pi) if k > 0 else 180.0 for e, k in zip(errors, size, strict=True)],
+        [1e3 * window.position if over == "stroke" else window.time for window in windows],
+        [scale * size for size in sizes],
+        [scale * error for error in errors],
+        [PHASE.to_display(float(phase)) for phase in phases],
+        [PHASE.to_display(turn) for turn in turns],
         style,
+        dash,
     )
 
 
@@ -623,163 +524,110 @@ def limits_of(simulation: Simulation, metric: str) -> Limits:
 
 
 def stiffness_panels(
-    ink: Ink,
-    boxes: tuple[Box, Box],
-    runs: Sequence[StrokeProfile],
+    profiles: Sequence[StrokeProfile],
     over: str,
     *,
     static: Static | None = None,
     limits: tuple[Limits, Limits] = ((), ()),
-    side: float = 3.0,
-) -> None:
-    """Size (first box) and phase (second box) of several runs; `side` is the room for limits."""
-    across = _across(runs)
-    xs = "position from the cap end, mm" if over == "stroke" else "time, s"
-    size_box, phase_box = boxes
-    shared = phase_box[0] == size_box[0] and phase_box[1] > size_box[1]
-    named = [(profile.words, profile.style) for profile in runs if profile.words]
-    curve = _static_curve(static, over)
-    if curve is not None:
-        named.append(("static", LEVEL))
-    _panel(
-        ink, size_box, f"Dynamic stiffness, {STIFFNESS.unit}", "" if shared else xs, across,
-        [(profile.place, profile.size, profile.size_error, profile.style) for profile in runs],
-        curve, [(s, STIFFNESS.to_display(v)) for s, v in limits[0]], named, side,
-    )  # fmt: skip
-    _panel(
-        ink, phase_box, "Phase of the force, °", xs, across,
-        [(profile.place, profile.phase, profile.phase_error, profile.style) for profile in runs],
-        None, [(s, PHASE.to_display(v)) for s, v in limits[1]], [], side,
-    )  # fmt: skip
-
-
-def _across(runs: Sequence[StrokeProfile]) -> tuple[float, float]:
-    places = [x for profile in runs for x in profile.place]
+) -> tuple[Panel, Panel]:
+    """Size and phase of several runs."""
+    places = [place for profile in profiles for place in profile.place]
     low, high = min(places), max(places)
     spare = 0.04 * (high - low) or 0.5
-    return low - spare, high + spare
+    label = "position from the cap end, mm" if over == "stroke" else "time, s"
+    x = Axis(label, range=(low - spare, high + spare))
+    beside: list[Curve] = []
+    if static is not None and over == "stroke":
+        across, stiffness = (np.asarray(column, dtype=float) for column in static)
+        across, stiffness = 1e3 * across, STIFFNESS.to_display(1.0) * stiffness
+        inside = (across >= low - spare) & (across <= high + spare)
+        beside = [Curve("static", across[inside], stiffness[inside], weight="guide", dash=1)]
+    sizes = [(profile.size, profile.size_error) for profile in profiles]
+    phases = [(profile.phase, profile.phase_error) for profile in profiles]
+    title = titled("Dynamic stiffness", STIFFNESS)
+    return (
+        _profile_panel(title, x, profiles, sizes, beside, STIFFNESS, limits[0]),
+        _profile_panel("Phase of the force, °", x, profiles, phases, [], PHASE, limits[1]),
+    )
 
 
-def _static_curve(static: Static | None, over: str) -> tuple[Array, Array] | None:
-    if static is None or over != "stroke":
-        return None
-    place, stiffness = (np.asarray(column, dtype=float) for column in static)
-    return 1e3 * place, STIFFNESS.to_display(1.0) * stiffness
-
-
-def _panel(
-    ink: Ink,
-    box: Box,
+def _profile_panel(
     title: str,
-    x_words: str,
-    across: tuple[float, float],
-    series: Sequence[Series],
-    static: tuple[Array, Array] | None,
+    x: Axis,
+    profiles: Sequence[StrokeProfile],
+    values: Sequence[tuple[list[float], list[float]]],
+    beside: Sequence[Curve],
+    quantity: Quantity,
     limits: Limits,
-    named: Sequence[tuple[str, dict[str, Any]]],
-    side: float,
-) -> None:
-    left, top, width, height = box
-    below = 7.5 if x_words else 1.0
-    frame = (left + 11.0, top + 6.5, width - 11.0 - side, height - 6.5 - below)
-    ends = _ends(series)
-    if static is not None:
-        inside = (static[0] >= across[0]) & (static[0] <= across[1])
-        ends += [float(v) for v in static[1][inside & np.isfinite(static[1])]]
-    near = [v for _, v in limits if v <= 2 * max(map(abs, ends))]
-    axes = Axes(ink, frame, across, steady_range([*ends, *near]))
-    low, high = axes.y_range
-    axes.frame_at("", "", [], even_ticks(low, high, 4 if height > 30 else 3))
-    ink.text(left, top + 2.0, title, size=7.0, bold=True)
-    names(ink, left + width, top + 2.0, named, width - text_width(title, 7.0, bold=True) - 2.0)
-    if low < 0 < high:
-        ink.line((frame[0], axes.y(0.0)), (frame[0] + frame[2], axes.y(0.0)), **ZERO)
-    if static is not None:
-        known = np.isfinite(static[1]) & (static[0] >= across[0]) & (static[0] <= across[1])
-        xs, ys = ([float(v) for v in column[known]] for column in static)
-        ink.path(axes.clipped(xs, ys), **LEVEL)
-    for sense, limit in limits:
-        required(axes, limit, f"{SENSES[sense]} {trimmed(limit)}")
-    for xs, ys, errors, style in series:
-        _drawn(axes, xs, ys, errors, style, alone=len(series) == 1)
-    x_axis(axes, x_words)
+) -> Panel:
+    """Values with their errors: points with bars, or a line for many windows.
+
+    A single run has no line between its points, and a band around its line.
+    """
+    alone = len(profiles) == 1
+    curves, points = [*beside], []
+    for profile, (ys, errors) in zip(profiles, values, strict=True):
+        low = [y - error for y, error in zip(ys, errors, strict=True)]
+        high = [y + error for y, error in zip(ys, errors, strict=True)]
+        style, many = profile.style, len(ys) > MOST_WINDOWS
+        if many or not alone:
+            line = Curve("", profile.place, ys, style=style, dash=profile.dash)
+            curves.append(replace(line, low=low, high=high) if alone else line)
+        if not many:
+            small = not alone
+            points.append(Points("", profile.place, ys, low, high, style=style, small=small))
+    ends = _ends(values)
+    ends += [float(v) for shown in beside for v in shown.ys if math.isfinite(v)]
+    levels = [
+        Level(quantity.to_display(limit), f"{SENSES[sense]} {trimmed(quantity.to_display(limit))}",
+              "min" if sense == "min" else "max")
+        for sense, limit in limits
+    ]  # fmt: skip
+    ends += [level.value for level in levels if level.value <= 2 * max(map(abs, ends))]
+    y = Axis(range=steady_range(ends))
+    return Panel(title, x, y, curves=curves, points=points, levels=levels)
 
 
-def _ends(series: Sequence[Series]) -> list[float]:
+def _ends(values: Sequence[tuple[list[float], list[float]]]) -> list[float]:
     """Ends of values and bars; long bars are cut, so that values stay distinct."""
-    values = [y for _, ys, _, _ in series for y in ys]
-    errors = [e for _, _, es, _ in series for e in es]
-    low, high = min(values), max(values)
+    ys = [y for column, _ in values for y in column]
+    errors = [error for _, column in values for error in column]
+    low, high = min(ys), max(ys)
     most = max(0.5 * (high - low), 3.0 * float(np.median(errors)), 1e-6 * max(abs(low), abs(high)))
-    bars = [y + way * e for y, e in zip(values, errors, strict=True) for way in (-1, 1)]
-    return [min(max(v, low - most), high + most) for v in (*values, *bars)]
-
-
-def _drawn(
-    axes: Axes,
-    xs: list[float],
-    ys: list[float],
-    errors: list[float],
-    style: dict[str, Any],
-    *,
-    alone: bool,
-) -> None:
-    """Marks with bars, or a line for many windows; the only run of a panel has a band."""
-    colour = style["stroke"]
-    if len(xs) > MOST_WINDOWS:
-        if alone:
-            band(axes, xs, [y - e for y, e in zip(ys, errors, strict=True)],
-                 [y + e for y, e in zip(ys, errors, strict=True)])  # fmt: skip
-        axes.ink.path(axes.clipped(xs, ys), **style)
-        return
-    if not alone:
-        axes.ink.path(axes.clipped(xs, ys), **style)
-    for x, y, error in zip(xs, ys, errors, strict=True):
-        error_bar(axes, x, y - error, y + error, colour)
-        axes.ink.circle(axes.x(x), axes.y(y), 0.6, fill=WHITE, stroke=colour, pen=0.25)
+    bars = [y + way * error for y, error in zip(ys, errors, strict=True) for way in (-1, 1)]
+    return [min(max(value, low - most), high + most) for value in (*ys, *bars)]
 
 
 # ---- the last cycles ----
 
 
-def loop_panel(ink: Ink, box: Box, simulation: Simulation) -> None:
+def loop_panel(simulation: Simulation, shaken: HarmonicLoad) -> Panel | None:
     """Force over position in the last cycles, without drift, and the fitted ellipse."""
-    shaken = simulation.shaken
-    if shaken is None:
-        return
-    left, top, width, height = box
     last = shaken.windows[-1]
     half = min(CYCLES, simulation.scenario.analysis.window_cycles) / shaken.frequency / 2
     time, at = np.unique(simulation.time, return_index=True)
     inside = (time >= last.time - half) & (time <= last.time + half)
     if np.count_nonzero(inside) < 8:
-        return
+        return None
     t = time[inside]
     x, force = (simulation.signals[name][at][inside] for name in ("position", "load_force"))
-    swing = [harmonic_fit(time=t, values=v, frequency=shaken.frequency) for v in (x, -force)]
-    drawn_x, drawn_f = (
-        v - fit.mean - fit.slope * (t - t.mean()) for v, fit in zip((x, -force), swing, strict=True)
-    )
+    fits = [harmonic_fit(time=t, values=v, frequency=shaken.frequency) for v in (x, -force)]
+    swings = [
+        values - fit.mean - fit.slope * (t - t.mean())
+        for values, fit in zip((x, -force), fits, strict=True)
+    ]
     turn = np.exp(1j * np.linspace(0.0, 2 * np.pi, 90))
-    fitted_x = np.real(swing[0].amplitude * turn)
-    fitted_f = np.real(last.stiffness * swing[0].amplitude * turn)
-    x_scale = _micro(float(np.max(np.abs(drawn_x))))
-    unit, factor = x_scale
-    frame = (left + 11.0, top + 6.5, width - 14.0, height - 14.0)
-    across = steady_range([float(factor * v) for values in (drawn_x, fitted_x) for v in values])
-    upwards = steady_range([float(v) for values in (drawn_f, fitted_f) for v in values])
-    axes = Axes(ink, frame, across, upwards)
-    axes.frame_at("", "", [], even_ticks(*upwards, 4))
-    title = "Last cycles: force, N"
-    ink.text(left, top + 2.0, title, size=7.0, bold=True)
-    room = width - text_width(title, 7.0, bold=True) - 2.0
-    names(ink, left + width, top + 2.0, [("run", STYLES[0]), ("fit", ASKED)], room)
-    for xs, ys, style in (
-        (factor * drawn_x, drawn_f, {"stroke": BLUE, "pen": 0.25}),
-        (factor * fitted_x, fitted_f, ASKED),
-    ):
-        ink.path(axes.clipped([float(v) for v in xs], [float(v) for v in ys]), **style)
-    x_axis(axes, f"position about its mean, {unit}")
+    ellipse_x = np.real(fits[0].amplitude * turn)
+    ellipse_force = np.real(last.stiffness * fits[0].amplitude * turn)
+    unit, factor = _micro(float(np.max(np.abs(swings[0]))))
+    return Panel(
+        "Last cycles: force, N",
+        Axis(f"position about its mean, {unit}"),
+        curves=[
+            Curve("run", factor * swings[0], swings[1], weight="thin"),
+            Curve("fit", factor * ellipse_x, ellipse_force, (), (), REFERENCE, "thin", dash=FINE),
+        ],
+    )
 
 
 def _micro(size: float) -> tuple[str, float]:

@@ -1,4 +1,4 @@
-"""The stiffness over the stroke: the curve, its parts, and which part would buy most."""
+"""The stiffness over the stroke: the curve, its parts, and the most effective change."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ import numpy as np
 
 from ..evaluation.result import Evaluation, Requirement, StrokeCurve
 from ..rendering import text
-from ..rendering.axes import AREAS, Axes, lowest, per_cent, required
-from ..rendering.blocks import Block, Cell, Column, Drawing, Table, TerminalFigure
-from ..rendering.ink import BLACK, BLUE, GREY, Ink, spread_within
+from ..rendering.axes import per_cent
+from ..rendering.blocks import Block, Cell, Chart, Column, Notes, Table, TerminalFigure
+from ..rendering.chart import Area, Axis, Curve, Level, Panel
 from ..rendering.text import trimmed
+from .dynamics_figures import ALONG, limit_level, minimum
 
 SHARES = ((0.0, "cap end"), (0.25, "25 %"), (0.5, "50 %"), (0.75, "75 %"), (1.0, "rod end"))
 """Places of the table, as shares of the stroke."""
@@ -37,12 +38,14 @@ def stiffness_blocks(evaluation: Evaluation, *, curve_shown: bool = True) -> lis
     """
     rows = evaluation.requirements
     required = next((r for r in rows if r.metric == "stiffness_min" and r.sense == "min"), None)
-    curve = evaluation.curve
+    curve, title = evaluation.curve, "Stiffness over the stroke"
     note = f"Case {curve.case}, ports closed. {_topology(evaluation)}."
-    ink, small = stiffness_figure(curve, required), None
-    if curve_shown and _usable(curve):
-        small = _terminal_curve(curve, required)
-    blocks: list[Block] = [Drawing("Stiffness over the stroke", ink, note, instead=small)]
+    panels = stiffness_panels(curve, required)
+    if not panels:
+        words = "No stiffness curve: the stroke was not evaluated."
+        return [Notes(title, [words], note=note, on="paper")]
+    small = _terminal_curve(curve, required) if curve_shown and _usable(curve) else None
+    blocks: list[Block] = [Chart(title, panels, note, instead=small, height=62.0)]
     if len(parts(curve)) > 1 and _usable(curve):
         blocks.append(_budget(curve))
     return blocks
@@ -66,10 +69,8 @@ def _terminal_curve(curve: StrokeCurve, required: Requirement | None) -> Termina
 
 
 def _topology(evaluation: Evaluation) -> str:
-    said = _TOPOLOGY[evaluation.design.stiffness.topology]
-    if evaluation.design.stiffness.seals == "sticking":
-        said += "; seals stick"
-    return said
+    words = _TOPOLOGY[evaluation.design.stiffness.topology]
+    return f"{words}; seals stick" if evaluation.design.stiffness.seals == "sticking" else words
 
 
 def _usable(curve: StrokeCurve) -> bool:
@@ -98,11 +99,11 @@ def weakest(curve: StrokeCurve) -> int:
 
 
 def gain_sentence(curve: StrokeCurve) -> str:
-    """Which part would buy most, and how much."""
+    """The part whose change would raise the stiffness most, and by how much."""
     index = weakest(curve)
-    found = shares(curve, float(curve.position[index]))
-    name, share = max(found.items(), key=lambda one: one[1])
-    oil = sum(value for part, value in found.items() if part.startswith("oil"))
+    compliances = shares(curve, float(curve.position[index]))
+    name, share = max(compliances.items(), key=lambda part: part[1])
+    oil = sum(value for part, value in compliances.items() if part.startswith("oil"))
     both = ""
     if name.startswith("oil") and oil > share:
         both = f" (all oil {per_cent(oil)})"
@@ -119,10 +120,10 @@ def summary(curve: StrokeCurve) -> str:
     """The shares at the weakest position in one line, largest first."""
     if not _usable(curve) or not parts(curve):
         return ""
-    found = shares(curve, float(curve.position[weakest(curve)]))
-    ordered = sorted(found.items(), key=lambda one: -one[1])
-    said = (f"{name.replace('_', ' ')} {per_cent(share)}" for name, share in ordered)
-    return ", ".join(said).replace(" %", f"{text.NARROW}%")
+    compliances = shares(curve, float(curve.position[weakest(curve)]))
+    ordered = sorted(compliances.items(), key=lambda part: -part[1])
+    words = (f"{name.replace('_', ' ')} {per_cent(share)}" for name, share in ordered)
+    return ", ".join(words).replace(" %", f"{text.NARROW}%")
 
 
 def _budget(curve: StrokeCurve) -> Block:
@@ -136,7 +137,7 @@ def _budget(curve: StrokeCurve) -> Block:
         rows.append(
             [
                 name.replace("_", " "),
-                *(text.share_text(found[name]) for found in columns_at),
+                *(text.share_text(compliances[name]) for compliances in columns_at),
                 text.number(1e-6 / alone if alone > 0 else math.inf),
             ]
         )
@@ -157,95 +158,66 @@ PARTS = (
     "oil A", "oil B", "oil in lines", "barrel", "stretch", "pipes", "hoses", "seals", "rod",
     "mount", "load cell",
 )  # fmt: skip
-"""Parts of the stiffness budget, each with its own fill in every report."""
+"""Parts of the stiffness budget; each has the same fill in every report."""
 
 
-def stiffness_figure(
-    curve: StrokeCurve,
-    requirement: Requirement | None,
-    *,
-    width: float = 180.0,
-    height: float = 62.0,
-) -> Ink:
-    """Stiffness over the stroke (left) and the compliances it is made of, stacked (right)."""
-    ink = Ink(width, height)
+def stiffness_panels(curve: StrokeCurve, requirement: Requirement | None) -> list[Panel]:
+    """Stiffness over the stroke, and the compliances it is made of; none without a stroke."""
     positions = [1000.0 * float(x) for x in curve.position]
     stiffness = [float(k) / 1e6 for k in curve.stiffness]
     usable = [(x, k) for x, k in zip(positions, stiffness, strict=True) if math.isfinite(k)]
     if len(usable) < 2 or not usable[-1][0] > usable[0][0]:
-        ink = Ink(width, 6.0)
-        ink.text(0.0, 3.0, "No stiffness curve: the stroke was not evaluated.")
-        return ink
-    panel = (width - 56.0) / 2
-    _stiffness_panel(ink, (9.0, 8.0, panel, height - 18.0), usable, requirement)
-    _compliance_panel(ink, (panel + 26.0, 8.0, panel, height - 18.0), curve, positions)
-    return ink
+        return []
+    panels = [_stiffness_panel(usable, requirement)]
+    if any(float(c) > 0 for column in curve.contributions.values() for c in column):
+        panels.append(_compliance_panel(curve, positions))
+    return panels
 
 
 def _stiffness_panel(
-    ink: Ink,
-    box: tuple[float, float, float, float],
-    points: Sequence[tuple[float, float]],
-    requirement: Requirement | None,
-) -> None:
+    points: Sequence[tuple[float, float]], requirement: Requirement | None
+) -> Panel:
     xs, ys = [x for x, _ in points], [k for _, k in points]
     place, weakest = min(points, key=lambda point: point[1])
     limit = None if requirement is None else requirement.limit / 1e6
     floor = max(weakest, limit or 0.0)
     top = min(max(*ys, 1.15 * floor), 3.0 * floor) * 1.06
-    axes = Axes(ink, box, (xs[0], xs[-1]), (0.0, top))
-    axes.frame("Axial stiffness, kN/mm", "piston position from the cap end, mm")
-    ink.path(axes.clipped(xs, ys), stroke=BLUE, pen=0.45)
-    lowest(axes, place, weakest, [] if limit is None else [limit])
-    if limit is not None:
-        required(axes, limit, f"≥ {trimmed(limit)}")
+    return Panel(
+        "Axial stiffness, kN/mm",
+        Axis(ALONG, range=(xs[0], xs[-1])),
+        Axis(range=(0.0, top)),
+        curves=[Curve("", xs, ys)],
+        points=[minimum(place, weakest)],
+        levels=[] if requirement is None else [limit_level(requirement, requirement.limit / 1e6)],
+    )
 
 
-def fills(parts: Sequence[str]) -> list[str]:
-    """The fill of each part: its own, or one that no other part has."""
+def fills(parts: Sequence[str]) -> list[int]:
+    """The fill of each part by number; unknown parts get one that no other part has."""
     free = [k for k, name in enumerate(PARTS) if name not in parts]
-    own = [PARTS.index(name) if name in PARTS else free.pop(0) if free else 0 for name in parts]
-    return [AREAS[k] for k in own]
+    return [PARTS.index(name) if name in PARTS else free.pop(0) if free else 0 for name in parts]
 
 
-def _compliance_panel(
-    ink: Ink,
-    box: tuple[float, float, float, float],
-    curve: StrokeCurve,
-    positions: Sequence[float],
-) -> None:
+def _compliance_panel(curve: StrokeCurve, positions: Sequence[float]) -> Panel:
+    """Compliances of all parts, stacked; the stiffness is least at the upright line."""
     parts = {
-        name.replace("_", " "): [float(c) * 1e9 for c in values]
+        name.replace("_", " "): 1e9 * np.asarray(values, dtype=float)
         for name, values in curve.contributions.items()
         if any(float(c) > 0 for c in values)
     }
-    if not parts:
-        return
-    totals = [sum(column) for column in zip(*parts.values(), strict=True)]
-    axes = Axes(ink, box, (positions[0], positions[-1]), (0.0, max(totals) * 1.06))
-    axes.frame("Compliance, µm/kN, stacked", "piston position from the cap end, mm")
-    below = [0.0] * len(positions)
-    weakest = max(range(len(totals)), key=totals.__getitem__)
-    middles, labels, paints = [], [], fills(list(parts))
-    for paint, (name, values) in zip(paints, parts.items(), strict=True):
-        above = [low + value for low, value in zip(below, values, strict=True)]
-        edge = [(axes.x(x), axes.y(y)) for x, y in zip(positions, above, strict=True)]
-        back = [(axes.x(x), axes.y(y)) for x, y in zip(positions, below, strict=True)]
-        ink.path([[*edge, *back[::-1]]], fill=paint, stroke=None, closed=True)
-        ink.path([edge], stroke="#ffffff", pen=0.12)
-        middles.append((edge[-1][1] + back[-1][1]) / 2)
-        labels.append(f"{name} {per_cent(values[weakest] / totals[weakest])}")
-        below = above
-    ink.path([edge], stroke=BLACK, pen=0.3)
-    x = axes.x(positions[weakest])
-    ink.line((x, box[1]), (x, box[1] + box[3]), stroke=BLACK, pen=0.13, dash=(0.5, 0.7))
-    right = box[0] + box[2]
-    order = list(range(len(middles)))[::-1]
-    places = spread_within(
-        [middles[k] for k in order], [3.6] * len(order), box[1] - 0.4, box[1] + box[3] + 2.0
+    totals = np.sum([*parts.values()], axis=0)
+    weakest = int(np.argmax(totals))
+    below = np.zeros(len(positions))
+    areas = []
+    for fill, (name, values) in zip(fills(list(parts)), parts.items(), strict=True):
+        words = f"{name} {per_cent(float(values[weakest] / totals[weakest]))}"
+        areas.append(Area(words, positions, below, below + values, fill))
+        below = below + values
+    return Panel(
+        "Compliance, µm/kN; shares at the minimum",
+        Axis(ALONG),
+        Axis(range=(0.0, 1.06 * float(totals[weakest]))),
+        curves=[Curve("", positions, totals, style=4, dash=0)],
+        levels=[Level(positions[weakest], "", style=4, upright=True)],
+        areas=areas,
     )
-    for k, y in zip(order, places, strict=True):
-        ink.line((right, middles[k]), (right + 3.0, y), pen=0.13, stroke=GREY)
-        ink.box(right + 3.2, y - 1.1, 2.2, 2.2, fill=paints[k], pen=0.1)
-        ink.text(right + 6.2, y, labels[k], size=6.5)
-    ink.text(right + 3.2, box[1] - 3.6, "share at minimum", size=6.0, color=GREY)

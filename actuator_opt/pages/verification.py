@@ -57,7 +57,7 @@ class RequirementLine(NamedTuple):
 
 
 def blocks(verification: Verification) -> list[Block]:
-    """Every requirement in both tiers, then its experiment, on the terminal."""
+    """Every requirement by the linear model and in time, then the experiments, on the terminal."""
     lines = [_line(row) for row in verification.rows]
     columns = [Column(HEADS[0], width=1.0, least=20)]
     columns += [
@@ -86,7 +86,7 @@ def blocks(verification: Verification) -> list[Block]:
 
 
 def tables(verification: Verification) -> tuple[Table, ...]:
-    """The same as plain tables, which a record of a run can hold."""
+    """Requirements and experiments as plain tables, for the report and the record of a run."""
     if not verification.rows:
         return ()
     lines = [_line(row) for row in verification.rows]
@@ -143,7 +143,7 @@ def _name(row: VerifiedRequirement) -> str:
 
 
 def _beside(row: VerifiedRequirement) -> bool:
-    """Whether the linear tier is clearly worse where no experiment can stand."""
+    """Whether the linear model is clearly worse where no experiment can rest."""
     if row.stated is None or row.linear is None:
         return False
     return abs(row.stated - row.linear) > BESIDE * abs(row.stated)

@@ -14,8 +14,8 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from ..base.numeric import Array
-from .ink import BLACK, BLUE, GREEN, GREY, OCHRE, PALE, RED, WHITE, Ink, Point, text_width
-from .text import MINUS, SUPERSCRIPTS, fixed, number, trimmed
+from .ink import GREY, PALE, Ink, Point, text_width
+from .text import MINUS, SUPERSCRIPTS, fixed, trimmed
 
 AREAS = (
     "#0b3c5d", "#9ec3da", "#d5e6f0", "#4f86a8", "#f0e2b6", "#b98b3e",
@@ -28,19 +28,8 @@ Box: TypeAlias = tuple[float, float, float, float]
 """Left, top, width and height on the paper [mm]."""
 THINNED = 640
 """Values of a thinned curve (a choice: two per 0.3 mm of paper)."""
-COLOURS = (BLUE, OCHRE, GREEN, "#7a5a8c", RED, "#4f86a8", BLACK, "#b98b3e")
-DASHES: tuple[tuple[float, ...], ...] = (
-    (), (1.6, 0.8), (2.4, 0.7, 0.4, 0.7), (0.8, 0.5), (3.2, 0.8), (0.4, 0.5),
-)  # fmt: skip
-"""Colours and dashes of curves."""
-ZERO: dict[str, Any] = {"stroke": GREY, "pen": 0.13}
-"""Ink of a line at zero."""
 SIZE = 6.2
 """Type of the names of curves [pt]."""
-_DENSE = 8
-"""Values of a thinned curve per mm (a choice: four pairs, finer than the pen)."""
-_MOST_JUMPS = 500
-"""Maximum number of times with two samples that a thinned curve keeps."""
 _MILLISECONDS = 0.1
 """Time below which an axis counts milliseconds [s]."""
 
@@ -156,48 +145,6 @@ def fitted(words: str, room: float, size: float = 6.5) -> str:
     return words.rstrip() + "…"
 
 
-def legend(
-    ink: Ink,
-    x: float,
-    y: float,
-    entries: Sequence[tuple[str, dict[str, Any]]],
-    *,
-    ends: bool = True,
-) -> None:
-    """Names of curves in a row that ends or starts at `x`; a sample of its line precedes each."""
-    if ends:
-        x -= sum(text_width(words, 6.5) + 11.0 for words, _ in entries) - 3.5
-    for words, style in entries:
-        ink.line((x, y), (x + 6.0, y), **style)
-        ink.text(x + 7.5, y, words, size=6.5)
-        x += 11.0 + text_width(words, 6.5)
-
-
-def lowest(axes: Axes, place: float, value: float, limits: Sequence[float]) -> None:
-    """The lowest point of a curve (place in mm), with its label below and clear of the limits."""
-    x, y = axes.x(place), axes.y(value)
-    axes.ink.circle(x, y, 0.8, fill=BLUE, stroke="#ffffff", pen=0.2)
-    label = f"minimum {number(value)} at {trimmed(place, 3)} mm"
-    half = text_width(label, 6.5) / 2
-    text_x = min(max(x, axes.left + half + 1.0), axes.left + axes.width - half - 1.0)
-    text_y = y + 4.0
-    for limit in limits:
-        level = axes.y(limit)
-        if level > y:
-            text_y = max(text_y, level + 3.0) if level - y < 6.5 else y + 3.0
-    if text_y > axes.top + axes.height - 1.8:
-        text_y = y - 3.4
-    axes.ink.text(text_x, text_y, label, anchor="center", halo=True, color=BLUE)
-
-
-def required(axes: Axes, level: float, words: str) -> None:
-    """A limit over the whole frame, with its name to the right; omitted outside the frame."""
-    if axes.y_range[0] <= level <= axes.y_range[1]:
-        right, y = axes.left + axes.width, axes.y(level)
-        axes.ink.line((axes.left, y), (right, y), stroke=RED, pen=0.25, dash=(1.8, 1.0))
-        axes.ink.text(right + 1.0, y, words, color=RED, anchor="left")
-
-
 def per_cent(share: float) -> str:
     """A share in whole per cent, small ones with a decimal.
 
@@ -241,11 +188,6 @@ def level_ticks(low: float, high: float) -> Ticks:
         if power % interval == 0
     ]
     return [(at, level_words(v)) for at, v in places if low - 1e-9 <= at <= high + 1e-9]
-
-
-def dot(axes: Axes, x: float, y: float, color: str = BLUE, fill: str = WHITE) -> None:
-    """A single value as a dot."""
-    axes.ink.circle(axes.x(x), axes.y(y), 0.75, fill=fill, stroke=color, pen=0.3)
 
 
 def even_ticks(low: float, high: float, count: int) -> Ticks:
@@ -298,22 +240,13 @@ def even_range(values: Sequence[float], *, zero: bool = False) -> tuple[float, f
     return low - below, high + above
 
 
-def error_bar(axes: Axes, x: float, low: float, high: float, color: str) -> None:
-    """A bar from low to high, cut at the frame, with feet at ends inside the frame."""
-    bottom, top = axes.y_range
-    if high < bottom or low > top:
-        return
-    at = axes.x(x)
-    axes.ink.line(
-        (at, axes.y(max(low, bottom))), (at, axes.y(min(high, top))), pen=0.2, stroke=color
-    )
-    for level in (low, high):
-        if bottom <= level <= top:
-            y = axes.y(level)
-            axes.ink.line((at - 0.7, y), (at + 0.7, y), pen=0.2, stroke=color)
-
-
-def band(axes: Axes, xs: Sequence[float], low: Sequence[float], high: Sequence[float]) -> None:
+def band(
+    axes: Axes,
+    xs: Sequence[float],
+    low: Sequence[float],
+    high: Sequence[float],
+    fill: str = "#d5e6f0",
+) -> None:
     """The area between two curves, cut at the frame; empty where a bound has no value."""
     bottom, top = axes.y_range
     runs: list[list[tuple[float, float, float]]] = [[]]
@@ -326,7 +259,7 @@ def band(axes: Axes, xs: Sequence[float], low: Sequence[float], high: Sequence[f
         upper = [(axes.x(x), axes.y(y)) for x, _, y in run]
         lower = [(axes.x(x), axes.y(y)) for x, y, _ in run]
         if len(run) > 1:
-            axes.ink.path([[*upper, *lower[::-1]]], fill="#d5e6f0", stroke=None, closed=True)
+            axes.ink.path([[*upper, *lower[::-1]]], fill=fill, stroke=None, closed=True)
 
 
 def thinned(values: Array, most: int = THINNED) -> Array:
@@ -364,42 +297,6 @@ def steady_range(ends: Sequence[float], *, zero: bool = False) -> tuple[float, f
         return low, high
     middle = (low + high) / 2
     return middle - 0.05 * max(size, 1e-9), middle + 0.05 * max(size, 1e-9)
-
-
-def lines(axes: Axes, time: Array, values: Array) -> list[list[Point]]:
-    """A curve on paper, thinned, and interrupted outside the frame and where it has no value."""
-    inside = (time >= axes.x_range[0]) & (time <= axes.x_range[1]) & np.isfinite(values)
-    known = np.flatnonzero(inside)
-    jumps = np.flatnonzero(np.diff(time) == 0)  # two samples at the same time: a vertical line
-    jumps = np.union1d(jumps, jumps + 1) if jumps.size < _MOST_JUMPS else jumps[:0]
-    polylines: list[list[Point]] = []
-    for run in np.split(known, np.flatnonzero(np.diff(known) > 1) + 1):
-        if run.size > 1:
-            at = run[thinned(values[run], max(int(_DENSE * axes.width), 16))]
-            at = np.union1d(at, np.intersect1d(run, jumps))
-            polylines += axes.clipped([float(t) for t in time[at]], [float(v) for v in values[at]])
-    return polylines
-
-
-def time_axis(axes: Axes, words: str = "time") -> None:
-    """Ticks, numbers and label of the time axis below a frame with a range in seconds."""
-    label, scale = time_words(axes.x_range[1] - axes.x_range[0], words)
-    x_axis(axes, label, scale)
-
-
-def x_axis(axes: Axes, label: str, scale: float = 1.0) -> None:
-    """Ticks of an x axis that shows its values times `scale`; numbers only with a label."""
-    bottom = axes.top + axes.height
-    low, high = (scale * v for v in axes.x_range)
-    ticks = even_ticks(low, high, max(2, int(axes.width / 11)))
-    for value, number_words in spaced([(v / scale, w, 1) for v, w in ticks], axes):
-        x = axes.x(value)
-        axes.ink.line((x, bottom), (x, bottom + 1.0), pen=0.13)
-        if label:
-            axes.ink.text(x, bottom + 2.8, number_words, anchor="center")
-    if label:
-        middle = axes.left + axes.width / 2
-        axes.ink.text(middle, bottom + 6.0, label, anchor="center", color=GREY)
 
 
 def names(

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import Literal, TypeAlias
 
 from ..base.errors import CONTROLS
-from .chart import Panel
+from .chart import Curve, Panel
 from .ink import Ink
 from .text import STATUS_WORDS
 
@@ -24,22 +24,25 @@ class Chart:
     Parameters
     ----------
     title : of the block
-    panels : panels and columns of panels, from the left
+    panels : panels and columns of panels, from the left; an ink stands below the panels of its
+        column
     note : below the chart
     instead : block for the terminal
     height : on paper [mm]
     widths : of the columns, relative; default: equal
+    key : curves named once, above all panels
     """
 
     title: str
-    panels: Sequence[Panel | Sequence[Panel]]
+    panels: Sequence[Panel | Sequence[Panel | Ink]]
     note: str = ""
     instead: Table | TerminalFigure | None = None
     height: float = 64.0
     widths: Sequence[float] = ()
+    key: Sequence[Curve] = ()
 
     @property
-    def columns(self) -> list[list[Panel]]:
+    def columns(self) -> list[list[Panel | Ink]]:
         """The panels by column."""
         return [[part] if isinstance(part, Panel) else [*part] for part in self.panels]
 

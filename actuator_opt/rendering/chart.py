@@ -19,7 +19,7 @@ from .ink import text_width
 from .text import MINUS, number
 
 Values: TypeAlias = Sequence[float] | Array
-Weight: TypeAlias = Literal["normal", "thin", "guide"]
+Weight: TypeAlias = Literal["normal", "thin", "guide", "broad"]
 PointWeight: TypeAlias = Literal["normal", "guide", "strong"]
 
 
@@ -59,8 +59,10 @@ class Curve:
     xs, ys : values
     low, high : bounds of a band around it
     style : colour and dash by number; default: its index among the curves of the panel
-    weight : "thin" for a record over time, "guide" for a grey hairline
+    weight : "thin" for a record over time, "guide" for a grey hairline, "broad" for a pale line
+        under the other curves
     end : words at its right end
+    dash : dash by number; default: the dash of its style
     """
 
     words: str
@@ -71,6 +73,7 @@ class Curve:
     style: int | None = None
     weight: Weight = "normal"
     end: str = ""
+    dash: int | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -86,6 +89,7 @@ class Points:
     small : small dots and crosses in the colours of the curves
     across : error bars are along x instead of y
     shades : values of the panel's surface, whose shades fill the points
+    labels : words beside each point
     weight : "guide" for pale dots in the background, "strong" for a ring around a chosen point
     """
 
@@ -98,6 +102,7 @@ class Points:
     small: bool = False
     across: bool = False
     shades: Values = ()
+    labels: Sequence[str] = ()
     weight: PointWeight = "normal"
 
 
@@ -122,6 +127,24 @@ class Level:
     style: int = 2
     between: tuple[float, float] | None = None
     upright: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Area:
+    """The area between two curves over x, named at the right of the frame.
+
+    Parameters
+    ----------
+    words : its name
+    xs, low, high : values
+    fill : by number
+    """
+
+    words: str
+    xs: Values
+    low: Values
+    high: Values
+    fill: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,6 +180,7 @@ class Panel:
     curves, points, levels, surface, stretches : its content
     note : below the title; inside an empty frame, the reason
     share : of the height among the panels of a column
+    areas : filled areas
     """
 
     title: str
@@ -168,6 +192,7 @@ class Panel:
     surface: ShadedMap | None = None
     note: str = ""
     share: float = 1.0
+    areas: Sequence[Area] = ()
     stretches: Sequence[Stretch] = ()
 
 

@@ -9,16 +9,29 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any, TypeAlias
 
 import numpy as np
 
+from ..base.numeric import Array
 from . import contours
-from .axes import Axes, Box, Ticks, band, fitted, thinned
+from .axes import AREAS, Axes, Box, Ticks, band, fitted, thinned
 from .blocks import Chart
-from .chart import Curve, Level, Panel, Points, PointWeight, Scale, Stretch, Values, known, scale
+from .chart import (
+    Area,
+    Curve,
+    Level,
+    Panel,
+    Points,
+    PointWeight,
+    Scale,
+    Stretch,
+    Values,
+    known,
+    scale,
+)
 from .heights import wrap
 from .ink import (
     BLACK,
@@ -54,6 +67,7 @@ MARKS = (
 STRETCHES = ("#e2e7eb", "#f1f3f5", "#f6efdc")
 """Fills of stretches of x."""
 THIN, GUIDE = 0.2, {"stroke": GREY, "pen": 0.18}
+BROAD: dict[str, Any] = {"stroke": "#a9b4bc", "pen": 0.7}
 LIMIT: dict[str, Any] = {"stroke": RED, "pen": 0.25, "dash": (1.8, 1.0)}
 DOTS = {"normal": (0.75, 0.3), "guide": (0.55, 0.1), "strong": (1.15, 0.45)}
 """Radius and pen of points by weight [mm]."""
@@ -61,8 +75,8 @@ SKETCH, BETWEEN = 4.6, 2.6
 """Length of a line in the legend, and gap between its entries [mm]."""
 GAP, ROW, BELOW = 6.0, 3.7, 2.2
 """Gap between columns, height of a row of words above a frame, gap between two frames [mm]."""
-FOOT = 8.4
-"""Ticks and label below the last frame [mm]."""
+FOOT, APART = 8.4, 1.8
+"""Ticks and label below a frame, and from there to the title of the next one [mm]."""
 OVER = 2.8
 """Room of a line of words that name a place of x, directly above a frame [mm]."""
 LEAST = 4.0
@@ -71,6 +85,12 @@ RIGHT, NAMES = 26.0, 36.0
 """Maximum width of words to the right and to the left of a frame [mm]."""
 SHADES = 13.0
 """Width of the scale of shades [mm]."""
+SWATCH = 2.8
+"""Width of the swatch before the name of an area [mm]."""
+LOOP = 4
+"""Values of a loop over those of a function (a choice)."""
+JUMPS = 500
+"""Maximum number of times with two values that a thinned curve keeps."""
 DENSE = 10.0
 """Values of a curve and cells of points drawn per mm (a choice: finer than the pen)."""
 TITLE, SIZE, SMALL = 6.8, 6.5, 6.2
@@ -81,7 +101,8 @@ def drawn(chart: Chart, *, width: float = 180.0, height: float | None = None) ->
     """The chart in ink; `height` in mm, default: its own."""
     tall = chart.height if height is None else height
     ink = Ink(width, tall)
-    columns = [_Column(panels) for panels in chart.columns if panels]
+    top = _key(ink, chart.key)
+    columns = [_Column(parts) for parts in chart.columns if parts]
     shares = [*chart.widths, *[1.0] * len(columns)][: len(columns)]
     room = width - GAP * (len(columns) - 1)
     wides = [room * share / sum(shares) for share in shares]
@@ -89,12 +110,27 @@ def drawn(chart: Chart, *, width: float = 180.0, height: float | None = None) ->
         row = all(len(column.frames) == 1 for column in columns)
         head = max((column.head for column in columns), default=0.0) if row else 0.0
         for column, wide in zip(columns, wides, strict=True):
-            column.fit(wide, tall, head)
+            column.fit(wide, top, tall, head)
     left = 0.0
     for column, wide in zip(columns, wides, strict=True):
         column.draw(ink, left)
         left += wide + GAP
     return ink
+
+
+def _key(ink: Ink, curves: Sequence[Curve]) -> float:
+    """Names of curves in even columns above all panels; the height of their rows."""
+    if not curves:
+        return 0.0
+    entries = [_Entry(curve.words, _line(curve, k)) for k, curve in enumerate(curves)]
+    longest = min(max(entry.width() for entry in entries), ink.width / 2)
+    columns = max(1, min(len(entries), int(ink.width / longest)))
+    wide = ink.width / columns
+    for k, entry in enumerate(entries):
+        words = fitted(entry.words, wide - entry.sketch - BETWEEN, SIZE)
+        place = wide * (k % columns), ROW * (k // columns) + 1.8
+        _legend(ink, *place, [replace(entry, words=words)])
+    return ROW * -(-len(entries) // columns) + 2.0
 
 
 def titled(chart: Chart, notes: Sequence[str] = (), *, width: float = 180.0) -> Ink:
@@ -175,8 +211,10 @@ class _Frame:
 class _Column:
     """Panels above each other; those with a common x axis are a group."""
 
-    def __init__(self, panels: Sequence[Panel]) -> None:
+    def __init__(self, parts: Sequence[Panel | Ink]) -> None:
         self.frames: list[_Frame] = []
+        self.inks = [part for part in parts if isinstance(part, Ink)]
+        panels = [part for part in parts if isinstance(part, Panel)]
         group: list[Panel] = []
         for panel in panels:
             group.append(panel)
@@ -187,15 +225,18 @@ class _Column:
                 members[-1].shared = any(not member.why for member in members)
                 self.frames += members
                 group = []
-        self.left = self.right = self.wide = 0.0
+        self.left = self.right = self.wide = self.top = 0.0
 
     @property
     def head(self) -> float:
         """Height of the words above the first frame."""
-        return self.frames[0].head
+        return self.frames[0].head if self.frames else 0.0
 
-    def fit(self, room: float, height: float, head: float) -> None:
+    def fit(self, room: float, top: float, bottom: float, head: float) -> None:
         """Place the frames in a width `room` and a height [mm]; the first begins below `head`."""
+        self.top = top if not self.frames else bottom - sum(ink.height for ink in self.inks)
+        if not self.frames:
+            return
         ticks = [words for frame in self.frames for _, words in _y_ticks(frame)]
         self.left = min(max([text_width(w, SIZE) for w in ticks], default=0.0), NAMES) + 2.0
         self.right = max(_right_room(frame) for frame in self.frames)
@@ -205,22 +246,26 @@ class _Column:
         self.wide = max(room - self.left - self.right, 8.0)
         for frame in self.frames:
             _fit_head(frame, self.wide, self.right)
+        height = self.top - top
         heads = [max(self.frames[0].head, head)]
         for upper, lower in pairwise(self.frames):
-            heads.append((FOOT if upper.label else BELOW) + lower.head)
+            heads.append((FOOT + APART if upper.label else BELOW) + lower.head)
         free = height - sum(heads) - FOOT
         shares = [frame.panel.share for frame in self.frames]
-        top = 0.0
         for frame, above, share in zip(self.frames, heads, shares, strict=True):
             frame.top, frame.right = top + above, self.right
-            frame.above = frame.head if top else above
+            frame.above = above if frame is self.frames[0] else frame.head
             frame.height = max(free * share / sum(shares), LEAST)
             top = frame.top + frame.height
 
     def draw(self, ink: Ink, left: float) -> None:
-        """Draw all frames."""
+        """Draw all frames, and the inks below them."""
         for frame in self.frames:
             _draw(ink, (left + self.left, frame.top, self.wide, frame.height), frame, left)
+        top = self.top
+        for own in self.inks:
+            ink.paste(own, left, top)
+            top += own.height
 
 
 def _overhang(frame: _Frame, wide: float) -> tuple[float, float]:
@@ -249,12 +294,14 @@ def _x_scale(panels: Sequence[Panel]) -> Scale:
         if panel.surface is not None and not values:
             values += known(panel.surface.xs)
     bare = not any(panel.points for panel in panels)
-    functions = all(_rises(curve.xs) for panel in panels for curve in panel.curves)
+    lines = [xs for panel in panels for xs in _xs(replace(panel, points=()))]
+    functions = all(map(_rises, lines))
     return scale(axis, values, exact=bare and functions)
 
 
 def _xs(panel: Panel) -> list[Values]:
-    return [*(curve.xs for curve in panel.curves), *(points.xs for points in panel.points)]
+    drawn_over: list[Curve | Points | Area] = [*panel.curves, *panel.points, *panel.areas]
+    return [part.xs for part in drawn_over]
 
 
 def _rises(values: Values) -> bool:
@@ -275,6 +322,7 @@ def _frame(panel: Panel, x: Scale) -> _Frame:
         ends += _near(ends, more, log) if ends else more
     if panel.surface is not None and not ends:
         ends += known(panel.surface.ys, log=log)
+    ends += [v for area in panel.areas for v in known([*area.low, *area.high], log=log)]
     levels = known([level.value for level in panel.levels if not level.upright], log=log)
     why = "" if ends or levels else _why(panel)
     if ends:
@@ -363,7 +411,8 @@ def _entries(frame: _Frame, wide: float) -> Iterator[_Entry]:
     for k, curve in enumerate(panel.curves):
         words = curve.words or ("" if curve in _at_end(frame) else curve.end)
         if words:
-            add(words, line=_line(curve, k) | {"pen": 0.4})
+            line = _line(curve, k)
+            add(words, line=line | {"pen": max(line["pen"], 0.4)})
     for level in panel.levels:
         if not level.sense and level.between is None:
             add(level.words, line=_level_style(level))
@@ -371,13 +420,19 @@ def _entries(frame: _Frame, wide: float) -> Iterator[_Entry]:
 
 
 def _line(curve: Curve, index: int) -> dict[str, Any]:
-    if curve.weight == "guide":
-        return GUIDE
     style = LINES[(index if curve.style is None else curve.style) % len(LINES)]
-    return style | {"pen": THIN} if curve.weight == "thin" else style
+    if curve.weight == "thin":
+        style = style | {"pen": THIN}
+    elif curve.weight != "normal":
+        style = GUIDE if curve.weight == "guide" else BROAD
+    if curve.dash is None:
+        return style
+    return style | {"dash": LINES[curve.dash % len(LINES)].get("dash", ())}
 
 
 def _level_style(level: Level) -> dict[str, Any]:
+    if level.sense and level.between is not None:
+        return LIMIT | {"pen": 0.4, "dash": ()}
     return LIMIT if level.sense else LINES[level.style % len(LINES)] | {"pen": 0.3}
 
 
@@ -385,13 +440,15 @@ def _at_end(frame: _Frame) -> list[Curve]:
     """Curves with words at their right end; empty if the frame is too low for all of them."""
     curves = [curve for curve in frame.panel.curves if curve.end]
     limits = sum(bool(level.sense) for level in frame.panel.levels if not level.upright)
+    limits += len(frame.panel.areas)
     return curves if 2.7 * (len(curves) + limits) <= frame.height - 1.0 else []
 
 
 def _right_room(frame: _Frame) -> float:
     words = [curve.end for curve in _at_end(frame)]
     limits = [level for level in frame.panel.levels if level.sense and not level.upright]
-    words += [level.words + " ↑" for level in limits]
+    words += [level.words + " ↑" for level in limits if level.words]
+    words += [area.words + " " * 3 for area in frame.panel.areas]  # blanks: the swatch
     room = min(max(text_width(w, SIZE) for w in words), RIGHT) + 2.0 if words else 0.5
     return room + (SHADES if frame.panel.surface is not None and not frame.why else 0.0)
 
@@ -421,6 +478,8 @@ def _draw(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
             if len(curve.low):
                 _band(axes, curve, frame.y, x)
         axes.frame_at("", label, x_ticks, y_ticks, upright=True)
+        for area in panel.areas:
+            _area(axes, area, frame.y, x)
         _zero_lines(axes, frame, x)
     lines = [_curve(axes, curve, k, frame.y, x) for k, curve in enumerate(panel.curves)]
     for level in panel.levels:
@@ -434,8 +493,22 @@ def _draw(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
     drawn_points = [p for part in lines for line in part for p in _dotted(line)]
     drawn_points += [spot for part in spots for spot in part]
     for level in panel.levels:
-        if level.between is not None and level.words and not level.upright:
+        if level.between is not None and level.words and not (level.sense or level.upright):
             _beside(axes, level, frame.y, x, drawn_points)
+    if any(points.labels for points in panel.points):
+        drawn_points += [spot for line in _level_lines(axes, frame, x) for spot in _dotted(line)]
+    for k, points in enumerate(panel.points):
+        _labels(axes, points, k, frame.y, x, drawn_points)
+
+
+def _area(axes: Axes, area: Area, y: Scale, x: Scale) -> None:
+    """A filled area with a white upper edge."""
+    xs, low, high = (scale.at(v) for scale, v in ((x, area.xs), (y, area.low), (y, area.high)))
+    paint = AREAS[area.fill % len(AREAS)]
+    places, lower, upper = xs.tolist(), low.tolist(), high.tolist()
+    band(axes, places, lower, upper, fill=paint)
+    edge = [(axes.x(a), axes.y(b)) for a, b in zip(places, upper, strict=True) if a == a and b == b]
+    axes.ink.path(_cut(edge, axes), stroke=WHITE, pen=0.12)
 
 
 def _band(axes: Axes, curve: Curve, y: Scale, x: Scale) -> None:
@@ -513,11 +586,23 @@ def _curve(axes: Axes, curve: Curve, index: int, y: Scale, x: Scale) -> list[Lin
                 lines.append([at])
             continue
         if run.size:
-            indices = run[thinned(ys[run], max(8, most * run.size // defined.size))]
+            indices = run[_kept(xs[run], ys[run], max(8, most * run.size // defined.size))]
             paper = [(axes.x(float(xs[k])), axes.y(float(ys[k]))) for k in indices]
             lines += _cut(paper, axes)
     axes.ink.path([line for line in lines if len(line) > 1], **style)
     return lines
+
+
+def _kept(xs: Array, ys: Array, most: int) -> Array:
+    """Places of the values that are drawn: extremes of every stretch, and jumps of a function."""
+    steps = np.diff(xs)
+    if np.any(steps < 0):  # a loop: any stretch of it may be long
+        return np.union1d(*(thinned(values, LOOP * most) for values in (xs, ys)))
+    kept = thinned(ys, most)
+    jumps = np.flatnonzero(steps == 0)
+    if kept.size == ys.size or not 0 < jumps.size < JUMPS:
+        return kept
+    return np.union1d(kept, [*jumps, *jumps + 1])
 
 
 def _inside(axes: Axes, at: Point) -> bool:
@@ -674,6 +759,13 @@ def _stretches(axes: Axes, stretches: Sequence[Stretch], x: Scale) -> None:
             axes.ink.line((at, axes.top), (at, bottom), stroke=WHITE, pen=0.35)
 
 
+def _ends(axes: Axes, between: tuple[float, float], x: Scale) -> tuple[float, float]:
+    """Ends of a short level inside the frame [mm]; one without a place lies at the left."""
+    low, high = axes.x_range
+    start, end = np.clip(np.nan_to_num(x.at(between), nan=low), low, high)
+    return axes.x(float(start)), axes.x(float(end))
+
+
 def _words_over(axes: Axes, panel: Panel, x: Scale) -> None:
     """Names of stretches and of upright limits above the frame, where they fit."""
     y, right = axes.top - 1.7, axes.left + axes.width
@@ -706,17 +798,16 @@ def _words_over(axes: Axes, panel: Panel, x: Scale) -> None:
                 free = middle + half + 0.8
 
 
-def _ends(axes: Axes, between: tuple[float, float], x: Scale) -> tuple[float, float]:
-    """Ends of a short level inside the frame [mm]; an end that is not shown is at the left."""
-    low, high = axes.x_range
-    start, end = np.clip(np.nan_to_num(x.at(between), nan=low), low, high)
-    return axes.x(float(start)), axes.x(float(end))
-
-
 def _right_words(axes: Axes, frame: _Frame, lines: Sequence[Sequence[Line]]) -> None:
-    """Names of curve ends and limits right of the frame, nearest to their places."""
+    """Names of curve ends, limits and areas right of the frame, nearest to their places."""
     low, high = axes.top, axes.top + axes.height
     labels: list[tuple[float, str, str]] = []
+    paints: dict[str, str] = {}
+    for area in frame.panel.areas:
+        known_ends = frame.y.at([area.low[-1], area.high[-1]])
+        if np.isfinite(known_ends).all():
+            labels.append((axes.y(float(np.mean(known_ends))), area.words, BLACK))
+            paints[area.words] = AREAS[area.fill % len(AREAS)]
     ends = _at_end(frame)
     for k, (curve, parts) in enumerate(zip(frame.panel.curves, lines, strict=True)):
         if curve in ends and parts:
@@ -740,6 +831,10 @@ def _right_words(axes: Axes, frame: _Frame, lines: Sequence[Sequence[Line]]) -> 
     for (y, words, color), at in zip(labels, places, strict=True):
         if abs(at - y) > 1.4:
             axes.ink.line((right + 0.2, y), (right + 1.3, at), pen=0.1, stroke=color)
+        if words in paints:
+            axes.ink.box(right + 1.6, at - 1.1, 2.2, 2.2, fill=paints[words], pen=0.1)
+            axes.ink.text(right + 1.6 + SWATCH, at, fitted(words, RIGHT - SWATCH, SIZE))
+            continue
         axes.ink.text(right + 1.6, at, fitted(words, RIGHT, SIZE), color=color)
 
 
@@ -752,29 +847,87 @@ def _beside(axes: Axes, level: Level, y: Scale, x: Scale, drawn_points: Sequence
     way = 1.0 if end >= start else -1.0
     before: Anchor = "right" if way > 0 else "left"
     beyond: Anchor = "left" if way > 0 else "right"
-    at, wide = axes.y(place), text_width(level.words, 6.0)
+    at = axes.y(place)
     sides: list[tuple[float, Anchor, float]] = []
     for dy in (0.0, -2.6, 2.6):
         sides += [(start - 1.2 * way, before, dy), (end + 1.2 * way, beyond, dy)]
     sides += [((start + end) / 2, "center", dy) for dy in (-2.0, 2.0)]
+    sides = [(across, anchor, at + dy) for across, anchor, dy in sides]
+    _written(axes, level.words, sides, drawn_points, str(_level_style(level)["stroke"]))
+
+
+def _written(
+    axes: Axes,
+    words: str,
+    sides: Sequence[tuple[float, Anchor, float]],
+    drawn_points: Sequence[Point],
+    color: str,
+    *,
+    halo: bool = False,
+) -> None:
+    """Words at the side that crosses the fewest lines; nowhere where no side is free of words."""
+    wide = text_width(words, 6.0)
     best: tuple[int, float, Anchor, float] | None = None
     text_boxes = [box[1:] for box in axes.ink.text_boxes()]
-    for across, anchor, dy in sides:
+    for across, anchor, at in sides:
         left = across - {"left": 0.0, "center": wide / 2, "right": wide}[anchor]
-        box = (left - 0.3, at + dy - 1.0, left + wide + 0.3, at + dy + 1.0)
+        box = (left - 0.3, at - 1.0, left + wide + 0.3, at + 1.0)
         if not (_inside(axes, box[:2]) and _inside(axes, box[2:])) or any(
             box[0] < b[2] and b[0] < box[2] and box[1] < b[3] and b[1] < box[3] for b in text_boxes
         ):
             continue
         crossed = sum(box[0] < p[0] < box[2] and box[1] < p[1] < box[3] for p in drawn_points)
         if best is None or crossed < best[0]:
-            best = (crossed, across, anchor, dy)
+            best = (crossed, across, anchor, at)
     if best is not None:
-        color = str(_level_style(level)["stroke"])
-        crossed, across, anchor, dy = best
+        crossed, across, anchor, at = best
         axes.ink.text(
-            across, at + dy, level.words, size=6.0, anchor=anchor, color=color, halo=crossed > 0
+            across, at, words, size=6.0, anchor=anchor, color=color, halo=halo or crossed > 0
         )
+
+
+def _level_lines(axes: Axes, frame: _Frame, x: Scale) -> Iterator[Line]:
+    """Levels on paper."""
+    left, right = axes.left, axes.left + axes.width
+    for level in frame.panel.levels:
+        place = (x if level.upright else frame.y).place(level.value)
+        low, high = axes.x_range if level.upright else axes.y_range
+        if not low <= place <= high:
+            continue
+        if level.upright:
+            at = axes.x(place)
+            yield [(at, axes.top), (at, axes.top + axes.height)]
+        else:
+            at = axes.y(place)
+            start, end = (left, right) if level.between is None else _ends(axes, level.between, x)
+            yield [(start, at), (end, at)]
+            if level.sense:
+                edge = at + (1.3 if level.sense == "min" else -1.3)
+                yield [(start, edge), (end, edge)]
+
+
+def _labels(
+    axes: Axes, points: Points, index: int, y: Scale, x: Scale, drawn_points: Sequence[Point]
+) -> None:
+    """Words beside points, each at its nearest free side."""
+    style = index if points.style is None else points.style
+    color = MARKS[style % len(MARKS)][0]
+    if points.small:
+        color = str(LINES[style % len(LINES)]["stroke"])
+    for words, place, height in zip(points.labels, x.at(points.xs), y.at(points.ys), strict=False):
+        if not words or not math.isfinite(place) or not math.isfinite(height):
+            continue
+        at = axes.x(float(place)), axes.y(float(height))
+        if not _inside(axes, at):
+            continue
+        half = text_width(words, 6.0) / 2 + 0.4
+        middle = min(max(at[0], axes.left + half), axes.left + axes.width - half)
+        sides: list[tuple[float, Anchor, float]] = []
+        for away in (0.0, 2.2, 4.4):
+            for dy in sorted({-away, away}):
+                sides += [(at[0] + 1.5, "left", at[1] + dy), (at[0] - 1.5, "right", at[1] + dy)]
+            sides += [(middle, "center", at[1] + way * (away + 2.4)) for way in (1, -1)]
+        _written(axes, words, sides, drawn_points, color, halo=True)
 
 
 def _dotted(line: Line) -> Iterator[Point]:

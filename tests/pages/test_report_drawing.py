@@ -12,7 +12,8 @@ from report_fixture import overlaps
 from actuator_opt.evaluation.result import Outline
 from actuator_opt.pages import section as drawing, stiffness as stiffness_page
 from actuator_opt.pages.section import SCALES, choose_scale, section
-from actuator_opt.rendering import axes as figures, ink
+from actuator_opt.rendering import axes as figures, chart_ink, ink
+from actuator_opt.rendering.blocks import Chart
 
 
 def span(marks, pick):
@@ -145,10 +146,16 @@ def test_spread_keeps_order_and_gaps(wanted, gap):
         assert places == pytest.approx(wanted)
 
 
+def stiffness_ink(curve, requirement):
+    """The stiffness figure of a report."""
+    panels = stiffness_page.stiffness_panels(curve, requirement)
+    return chart_ink.drawn(Chart("Stiffness", panels, height=62.0))
+
+
 def test_stiffness_figure_stacks_to_the_total():
     """The top edge of the stacked compliances is the sum, at the scale of the axis."""
     curve = fixture.curve()
-    drawn = stiffness_page.stiffness_figure(curve, fixture.requirements()[2])
+    drawn = stiffness_ink(curve, fixture.requirements()[2])
     areas = [
         m
         for m in drawn.marks
@@ -168,14 +175,14 @@ def test_stiffness_figure_stacks_to_the_total():
 def test_stiffness_labels_stay_apart(limit):
     """The minimum and the requirement may coincide or not: labels never overlap."""
     row = replace(fixture.requirements()[2], limit=limit)
-    assert overlaps(stiffness_page.stiffness_figure(fixture.curve(), row).text_boxes()) == []
+    assert overlaps(stiffness_ink(fixture.curve(), row).text_boxes()) == []
 
 
 def test_degenerate_curves_do_not_fail():
-    """A stroke of one point, or no requirement, still gives a figure."""
+    """A stroke of one point has no figure; a curve without requirement has one."""
     curve = fixture.curve()
     single = replace(
         curve, position=curve.position[:1], stiffness=curve.stiffness[:1], contributions={}
     )
-    assert stiffness_page.stiffness_figure(single, None).marks
-    assert stiffness_page.stiffness_figure(curve, None).marks
+    assert stiffness_page.stiffness_panels(single, None) == []
+    assert stiffness_ink(curve, None).marks

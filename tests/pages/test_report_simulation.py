@@ -27,8 +27,9 @@ from actuator_opt.pages import (
     simulation_figures as figures,
 )
 from actuator_opt.rendering import axes, paper, series, terminal
-from actuator_opt.rendering.blocks import Column, Pair, Status, Table
-from actuator_opt.rendering.ink import Ink
+from actuator_opt.rendering.blocks import Chart, Column, Pair, Status, Table
+from actuator_opt.rendering.chart import Axis, Curve, Panel
+from actuator_opt.rendering.chart_ink import drawn
 from actuator_opt.rendering.origin import Origin
 from actuator_opt.simulation.integrate import Event
 from actuator_opt.simulation.result import EnergyFlow, RequirementResult, Second
@@ -92,24 +93,20 @@ def shown(page, width=100, unicode=True, colour=False):
 
 
 def alone(kind, **more):
-    """Every panel of a kind of run on its own paper, and its strips."""
-    run, made = case.simulated(kind), {}
-    strips = figures.strips(run, {})
-    tall = 20.0 * len(strips) + 8.0
-    made["signals"] = Ink(120.0, tall)
-    axes_of = (11.0, 0.0, 105.0, tall)
-    figures.stack(made["signals"], axes_of, strips, (0.0, float(run.time[-1])))
-    for panel in figures.panels(run, {}, more.get("static")):
-        height = panel.height or 60.0 * max(panel.weight, 1.0)
-        made[panel.name] = Ink(90.0, height)
-        panel.draw(made[panel.name], (1.0, 0.0, 88.0, height))
+    """Every panel of a kind of run on its own paper, and its signals over time."""
+    run = case.simulated(kind)
+    strips = [strip.panel for strip in figures.strips(run, {})]
+    made = {"signals": drawn(Chart("t", [strips], height=20.0 * len(strips) + 8.0), width=120.0)}
+    for part in figures.parts(run, {}, more.get("static")):
+        height = max(60.0 * len(part.panels), part.least)
+        made[part.name] = drawn(Chart("t", [part.panels], height=height), width=90.0)
     return made
 
 
 def titles(kind):
     """Titles of the strips of a kind of run."""
     strips = figures.strips(case.simulated(kind), {})
-    return [one.title.partition(",")[0] for one in strips]
+    return [strip.panel.title.partition(",")[0] for strip in strips]
 
 
 # ---- numbers ----
@@ -298,18 +295,18 @@ def test_no_words_are_lost_and_none_are_nan(kind):
 
 def test_scenarios_are_told_in_words():
     """Start, steps, load and supply of a servo; parts beyond three are counted."""
-    said = subject.what(case.simulated("step"))
+    said = subject.description(case.simulated("step"))
     assert "Position from 55 mm: step of 20 mm at 0.1 s, step of −30 mm at 0.6 s." in said
     assert "constant supply 210 bar, return 5 bar, LuGre friction, 1 s." in said
     assert "Load: 2000 N." in said
-    bench = subject.what(case.simulated("bench"))
+    bench = subject.description(case.simulated("bench"))
     assert "the valve alone, ports at 35 bar and 35 bar" in bench
     assert "Valve signal: −10 V, ramp of 20 V from 0 to 2 s." in bench
     found = case.simulated("open")
     pulse = found.scenario.signal[0]
     many = found.scenario.model_copy(update={"signal": (pulse,) * 7})
-    assert subject.what(replace(found, scenario=many)).endswith("and 4 more.")
-    assert "ports closed" in subject.what(case.simulated("closed"))
+    assert subject.description(replace(found, scenario=many)).endswith("and 4 more.")
+    assert "ports closed" in subject.description(case.simulated("closed"))
 
 
 def test_blocked_ports_and_a_load_cylinder_are_told():
@@ -330,7 +327,7 @@ def test_blocked_ports_and_a_load_cylinder_are_told():
         (cylinder | {"signal": []}, "and rod 36 mm, no signal at its valve."),
     ):
         scenario = Scenario.model_validate(stated | {"load": {"cylinder": own}})
-        said = subject.what(replace(found, scenario=scenario))
+        said = subject.description(replace(found, scenario=scenario))
         assert "ports blocked" in said
         assert words in said
 
@@ -438,7 +435,7 @@ def test_the_step_stands_where_the_ticks_say():
     unit = 1e3 if any(m.get("text") == "time after the step, ms" for m in ink.marks) else 1.0
     dots = [m["path"][0] for m in ink.marks if m.get("closed") and len(m["path"][0]) == 32]
     centres = [np.mean(one, axis=0) for one in dots]
-    early, late, peak = centres
+    early, late, _, peak = centres
     assert late[0] - early[0] == pytest.approx(time[0] * unit * own.rise_time, abs=0.1)
     for at, share in ((early, 0.1), (late, 0.9)):
         value = 1e3 * (found.servo.start + share * (found.servo.target - found.servo.start))
@@ -453,8 +450,9 @@ def test_the_step_stands_where_the_ticks_say():
 def test_jumps_are_drawn_upright():
     """The reference of a step goes up at one place, however long the record."""
     found = case.simulated("step")
-    frame = axes.Axes(Ink(100, 50), (0, 0, 40, 40), (0.0, 1.0), (0.0, 100.0))
-    (line,) = axes.lines(frame, found.time, 1e3 * found.signals["reference"])
+    asked = Curve("", found.time, 1e3 * found.signals["reference"])
+    ink = drawn(Chart("t", [Panel("x, mm", Axis("time, s"), curves=[asked])]), width=60.0)
+    (line,) = next(m["path"] for m in ink.marks if "path" in m and m["pen"] == 0.4)
     steps = [(a, b) for a, b in itertools.pairwise(line) if abs(a[1] - b[1]) > 1]
     assert len(steps) == 2
     assert all(a[0] == pytest.approx(b[0], abs=1e-6) for a, b in steps)
@@ -465,7 +463,7 @@ def test_windows_stand_along_the_stroke_or_over_time():
     travelled, held = case.simulated("stroke"), case.simulated("closed")
     assert figures.travelled(travelled.shaken.windows, travelled.plant.stroke)
     assert not figures.travelled(held.shaken.windows, held.plant.stroke)
-    one = figures.along("", travelled.shaken, "stroke", {"stroke": "#000000"})
+    one = figures.along(travelled.shaken, "stroke")
     windows = sorted(travelled.shaken.windows, key=lambda w: w.position)
     assert one.place == pytest.approx([1e3 * w.position for w in windows])
     assert one.size == pytest.approx([abs(w.stiffness) / 1e6 for w in windows])
@@ -478,18 +476,18 @@ def test_measured_values_lie_under_the_simulated_ones():
     """A measured curve is drawn before the run's own, and named; unknown names are left out."""
     found = case.simulated("step")
     measured = {"position": (found.time, found.signals["position"]), "nothing": ([0.0], [1.0])}
-    first = figures.strips(found, measured)[0]
+    first = figures.strips(found, measured)[0].panel
     assert [one.words for one in first.curves] == ["measured", "asked", "response"]
-    alone = figures.strips(found, {})[0]
+    alone = figures.strips(found, {})[0].panel
     assert [one.words for one in alone.curves] == ["asked", "response"]
 
 
 def test_a_static_stiffness_is_drawn_beside_the_dynamic_one():
     """Its name stands in the legend where the rod travels, not over time."""
     place = np.linspace(0.0, 0.22, 9)
-    for kind, drawn in (("stroke", True), ("closed", False)):
+    for kind, beside in (("stroke", True), ("closed", False)):
         ink = alone(kind, static=(place, 1e7 + 0 * place))["stiffness"]
-        assert any(m.get("text") == "static" for m in ink.marks) == drawn
+        assert any(m.get("text") == "static" for m in ink.marks) == beside
 
 
 # ---- several ----
@@ -531,11 +529,11 @@ def test_families_share_a_colour_and_kinds_a_dash():
     """What stands before the last comma decides the colour, what stands after it the dash."""
     names = [f"{k} %, {way}" for k in (0, 50, 75, 100) for way in ("out", "in")]
     made = pair_figures.styles(names)
-    assert len({one["stroke"] for one in made}) == 4
-    assert [one["dash"] for one in made[::2]] == [[]] * 4
-    assert len({tuple(one["dash"]) for one in made[1::2]}) == 1
+    assert [colour for colour, _ in made] == [0, 0, 1, 1, 2, 2, 3, 3]
+    assert [dash for _, dash in made] == [0, 1] * 4
     alone = pair_figures.styles(["P", "PI", "PID", "PID, half"])
-    assert len({(one["stroke"], tuple(one["dash"])) for one in alone}) == 4
+    assert len(set(alone)) == 4
+    assert len(set(pair_figures.styles([str(k) for k in range(20)]))) == 20
 
 
 @pytest.mark.parametrize(

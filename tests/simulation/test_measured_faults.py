@@ -19,9 +19,9 @@ from actuator_opt.base.errors import InputError
 from actuator_opt.design.scenario import reader
 from actuator_opt.identification import parse_column
 from actuator_opt.pages import measured as pages
-from actuator_opt.pages.measured import drawn, measured_figures
+from actuator_opt.pages.measured import drawn, measured_charts
 from actuator_opt.pages.simulation_figures import simulation_figure
-from actuator_opt.rendering import terminal
+from actuator_opt.rendering import chart_ink, terminal
 from actuator_opt.simulation.components.circuit import acts_after, at_start
 from actuator_opt.simulation.measured import AlignedRecord, fit, overlay, parse_measured
 from actuator_opt.studies.plant import plant
@@ -224,7 +224,7 @@ def test_lines_break_where_samples_are_missing():
 def test_every_channel_is_drawn_with_what_is_left_over(count):
     """Names, the noise of the sensor, the gap left open; nothing overlaps or leaves the paper."""
     found = overlay(ao.simulate(trial()), record(count))
-    made = [*measured_figures(found)]
+    made = [chart_ink.drawn(chart) for chart in measured_charts(found)]
     assert [boxes_collide(ink) for ink in made] == [[]] * len(made)
     words = [one[0] for ink in made for one in ink.text_boxes()]
     assert sum(one.startswith("Measured less simulated, ") for one in words) == count
