@@ -423,8 +423,8 @@ def _bars(
     """Title, a stacked bar for each design with its sum, and a key of the fills; its height."""
     scale, unit = PART_UNITS[question.name]
     parts, tall = list(question.parts), _SHARE * step
-    own = fills(parts) if question.name == "stiffer" else AREAS
-    paints = {part: own[k % len(own)] for k, part in enumerate(parts)}
+    shades = fills(parts) if question.name == "stiffer" else range(len(parts))
+    paints = {part: AREAS[k % len(AREAS)] for part, k in zip(parts, shades, strict=True)}
     sums = [sum(column) for column in zip(*question.parts.values(), strict=True)]
     room = _WIDTH - 9.0 - _RIGHT
     ink.text(4.0, top + 2.0, f"{PART_TITLES[question.name]}, {unit}", size=7.5, bold=True)
