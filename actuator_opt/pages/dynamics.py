@@ -127,7 +127,7 @@ def _response(evaluation: Evaluation, study: DynamicsStudy) -> Block:
             " Red: requirements there; the forbidden side is hatched."
         )
     note += " The position loop is open"
-    note += ": slowly, what leaks lets the piston creep." if study.end != "closed" else "."
+    note += ", so leakage lets the piston creep slowly." if study.end != "closed" else "."
     note += lumped_sentence(study)
     return Chart("Dynamic stiffness", [panels], note, height=RESPONSE)
 

@@ -79,10 +79,11 @@ def printable(text: str) -> str:
     return _PAPER.sub(lambda m: f"⟨U+{ord(m[0]):04X}⟩", text)
 
 
-def soft(text: str, longest: int = 14) -> str | list[str]:
+def soft(text: str, longest: int = 14, *, name: int = _NAME) -> str | list[str]:
     """A text whose words of more than `longest` letters may break after ``. / = [``.
 
-    A single name that is wider than the column may also break after ``_``, then anywhere.
+    A single name of more than `name` letters may also break after ``_``; if it is still wider than
+    the column, anywhere.
 
     >>> soft("materials.steel_42crmo4.density", 22)
     ['materials.', 'steel_42crmo4.', 'density']
@@ -93,20 +94,20 @@ def soft(text: str, longest: int = 14) -> str | list[str]:
         if len(word.rstrip()) <= longest:
             pieces[-1] += word
             continue
-        first, *rest = _pieces(word, max(longest, _NAME))
+        first, *rest = _pieces(word, max(longest, name))
         pieces[-1] += first
         pieces += rest
     return text if len(pieces) == 1 else pieces
 
 
 def _pieces(word: str, most: int) -> Iterator[str]:
-    """Parts of a word, of at most `most` letters, between which a line may break."""
+    """Parts of a word between which a line may break; after ``_`` only beyond `most` letters."""
     for part in filter(None, _PIECES.findall(word)):
         if len(part.rstrip()) <= most:
             yield part
             continue
         for name in filter(None, _NAMES.findall(part)):
-            yield from (name[k : k + most] for k in range(0, len(name), most))
+            yield from (name[k : k + _NAME] for k in range(0, len(name), _NAME))
 
 
 def short(text: str, length: int) -> str:

@@ -50,6 +50,8 @@ from .origin import Origin, ReportFile, with_input
 PIXELS_PER_INCH = 150.0
 _SUSPECTS = b"/Suspects false"
 """Default entry of Typst that Poppler warns of; blanks of the same length keep all offsets."""
+HEAD = 12
+"""Letters of a name in the head of a column, beyond which it may break after ``_``."""
 TEMPLATE = Path(__file__).with_name("template.typ")
 
 
@@ -202,7 +204,7 @@ def _table(table: Table) -> dict[str, object]:
         "title": clean(table.title),
         "columns": [
             {
-                "head": soft(column.head, column.breaks)
+                "head": soft(column.head, column.breaks, name=HEAD)
                 if column.breaks and "\n" not in column.head
                 else column.head,
                 "align": column.align,

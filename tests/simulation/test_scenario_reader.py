@@ -432,7 +432,7 @@ ONE = [
     (LOOP, ("    max: 5 %", "    max: -5 %"), "-5 %", "requirements.overshoot.max", ">= 0", "0 %"),
     (DRIVEN, ("load:\n", "requirements:\n  rise_time:\n    max: 9 ms\nload:\n"), "rise_time",
      "requirements.rise_time", "the reference has no step",
-     'give control with a reference a part of "shape: step"'),
+     'add a part "shape: step" to control with a reference'),
 ]  # fmt: skip
 
 
