@@ -295,7 +295,7 @@ def infeasibility_blocks(card: Infeasibility) -> list[Block]:
     blocks: list[Block] = [Notes("Why nothing fits", [conflict])]
     if card.joint:
         these = "this" if len(card.joint) == 1 else "all of these together"
-        note = f"With {these} a design exists: the one shown here. No smaller sum was found."
+        note = f"With {these} a design exists: the one shown here. The search gave no smaller sum."
         if any(entry["safety_factor"] for entry in card.joint):
             note += " It weakens a safety factor, which is not advised."
         rows = [_limit(entry) for entry in card.joint]

@@ -277,7 +277,7 @@ def titled(words: str, quantity: Quantity) -> str:
 
 
 def followed(simulation: Simulation) -> Loop | None:
-    """The signal that a controller follows, else the one that moves; None where nothing moves."""
+    """The signal that a controller follows, else the signal that moves; None where nothing moves."""
     control = simulation.scenario.control
     if control is not None and "reference" in simulation.signals:
         return loop_of(control)
@@ -421,8 +421,8 @@ def step_panel(simulation: Simulation, servo: Servo, measured: Measured) -> Pane
         note = "The response does not settle within 2 %."
     elif settling <= end - servo.time:
         level = float(np.interp(settling, *_sorted(own)))
-        settled = f"settled {number(1e3 * settling, 3)} ms"
-        points.append(Points("", [settling], [level], style=2, labels=[settled]))
+        settling_label = f"settling {number(1e3 * settling, 3)} ms"
+        points.append(Points("", [settling], [level], style=2, labels=[settling_label]))
         levels.append(Level(settling, "", style=MARK, upright=True))
     if servo.metrics.overshoot >= LEAST_SHOWN and servo.metrics.peak_time <= end - servo.time:
         at, peak = servo.metrics.peak_time, quantity.to_display(servo.metrics.peak)

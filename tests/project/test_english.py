@@ -31,6 +31,7 @@ PACKAGES = (
     "metrics",
     "models",
     "optimisation",
+    "pages",
     "rendering",
     "replicas",
     "seals",
