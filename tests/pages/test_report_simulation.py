@@ -444,7 +444,7 @@ def test_the_step_stands_where_the_ticks_say():
     assert peak[1] == pytest.approx(np.polyval(level, 1e3 * own.peak), abs=0.1)
     words = " ".join(m["text"] for m in ink.marks if "text" in m)
     assert f"overshoot {100 * own.overshoot:.1f} %" in words
-    assert f"settled {1e3 * own.settling_time:.1f} ms" in words
+    assert f"settling {1e3 * own.settling_time:.1f} ms" in words
 
 
 def test_jumps_are_drawn_upright():
