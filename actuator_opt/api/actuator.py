@@ -9,9 +9,10 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError
 from ..design import Design, FileSource, LoadedDesign, read_design, with_values
 from ..design.reader import TEXT

@@ -8,12 +8,13 @@ import re
 import sys
 import tomllib
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from importlib import import_module, metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, Unpack
 
 from ..base import files as store
+from ..base.dataclass import dataclass
 from ..base.errors import InputError
 from ..base.tables import Displayed
 from ..version import VERSION

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
+from ..base.dataclass import dataclass
 from ..base.tables import Displayed
 from ..design import Design
 from ..evaluation import Evaluation, PreparedDesign, evaluate as evaluate_subject, prepare

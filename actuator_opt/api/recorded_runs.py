@@ -12,13 +12,14 @@ import platform
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Unpack
 
 from ..base import runs as run_store
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError
 from ..base.tables import Displayed
 from ..evaluation.plugin import Plugin

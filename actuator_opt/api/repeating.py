@@ -6,11 +6,12 @@ import argparse
 import re
 import shlex
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, Unpack
 
 from ..base.bounds import CHECKS, FRONT, SEED, STARTS, IntegerRange
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, shown
 from ..base.tables import Displayed
 from ..evaluation import Evaluation

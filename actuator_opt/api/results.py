@@ -8,13 +8,13 @@ method of the result. None means that a type lacks it; an omitted function fails
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from ..base import runs as run_store
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, ExitCode, UsageError
 from ..base.tables import show_by
 from ..design import Design

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, UsageError, remedy
 from ..base.quantities import Quantity
 from ..base.tables import aligned

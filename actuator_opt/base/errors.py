@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from enum import IntEnum
 from importlib import import_module
 from typing import Any
+
+from .dataclass import dataclass
 
 
 def closest(word: str, names: Iterable[str]) -> str | None:

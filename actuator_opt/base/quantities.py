@@ -6,10 +6,10 @@ quantities of design and material files. Computed quantities are in `metrics.tab
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
 from . import units
+from .dataclass import dataclass
 
 Sense = Literal["min", "max"]
 """Senses: limits of at least or at most; the smallest or largest of several values."""

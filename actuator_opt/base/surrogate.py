@@ -8,12 +8,13 @@ arithmetic and supports complex steps.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import product
 from math import cos, exp, log, pi
 
 import numpy as np
 
+from .dataclass import dataclass
 from .numeric import Array, clip
 
 

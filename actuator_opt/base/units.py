@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
 from decimal import Decimal
+
+from .dataclass import dataclass
 
 _NUMBER = re.compile(
     r"\s*(?P<number>[+-]?(?:\d+(?:[\d_]*\d)?\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>.*?)\s*$"

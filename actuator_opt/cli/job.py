@@ -5,12 +5,13 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ..base import files as store
+from ..base.dataclass import dataclass
 from ..base.errors import ActuatorError, Diagnostic, ExitCode
 from . import streams
 from .options import REPORTS

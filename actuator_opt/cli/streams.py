@@ -13,11 +13,11 @@ import signal
 import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from time import monotonic
 from types import FrameType
 from typing import TYPE_CHECKING, Any, TextIO
 
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, ExitCode, InputError, escaped, shown
 from ..base.progress import watched
 from ..base.units import whole

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 from pydantic import ValidationError
 
 from ..base import errors
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, Fault, InputError
 from ..base.quantities import Quantity
 from ..metrics import METRICS

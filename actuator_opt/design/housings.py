@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError
 from .standard_sizes import Gland, citation, metres, section_tolerance, tables
 

@@ -9,13 +9,13 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any, Final, Literal, TypeAlias, get_args
 
 from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from ..base import kinds, quantities, units
+from ..base.dataclass import dataclass
 from ..base.errors import article, shown
 from ..base.numeric import Array
 from ..base.quantities import Quantity

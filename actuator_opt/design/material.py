@@ -14,12 +14,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any, Final
 
 import numpy as np
 
 from ..base import fitting as least_squares
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, Fault, InputError
 from ..base.fitting import WEAK, Parameter, known
 from ..base.kinds import Kinds

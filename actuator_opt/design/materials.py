@@ -9,11 +9,12 @@ from __future__ import annotations
 import functools
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any, TypeAlias
 
 from ..base import files as store, units
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, remedy, shown
 from ..base.quantities import INPUTS, MATERIAL_PROPERTIES, Quantity
 from . import material, yaml_source

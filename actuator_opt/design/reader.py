@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 from ..base import errors, units
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, Fault, InputError
 from ..base.files import read_bytes
 from ..base.quantities import Quantity

@@ -8,11 +8,12 @@ outer diameter. `groups` joins such variables; its rows are the allowed combinat
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from decimal import Decimal
 from typing import Any
 
 from ..base import errors
+from ..base.dataclass import dataclass
 from ..base.errors import Fault
 from ..base.quantities import Quantity
 from .kinds import ValueFault, example, read_quantity, shape_in_words

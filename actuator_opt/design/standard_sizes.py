@@ -13,11 +13,11 @@ import functools
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from decimal import Decimal
 from typing import Any, Literal, TypeAlias
 
 from ..base import files as store
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError
 from ..base.quantities import INPUTS
 from ..seals.kinds import TYPES

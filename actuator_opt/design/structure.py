@@ -7,12 +7,12 @@ so none of them names a field.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache
 from types import UnionType
 from typing import Any, Literal, Protocol, TypeAlias, Union, get_args, get_origin, runtime_checkable
 
 from ..base import quantities
+from ..base.dataclass import dataclass
 from ..base.errors import Fault
 from ..base.quantities import Quantity
 from .kinds import Choice, Fraction, Of, PositionKind, Section, ValueKind

@@ -7,11 +7,12 @@ Anchors, aliases, tags and merge keys are refused, so a document cannot grow whe
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, NamedTuple
 
 import yaml
 
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, shown
 from .structure import Loc
 

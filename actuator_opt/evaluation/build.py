@@ -10,12 +10,12 @@ import hashlib
 import json
 import math
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
 from ..base import quantities
+from ..base.dataclass import dataclass
 from ..base.errors import InputError
 from ..base.numeric import Array
 from ..design import paths, standard_sizes as standards

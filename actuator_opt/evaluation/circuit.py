@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, maximum, where
 from ..design.model import Design, Line
 from ..models import accumulator, elements, holding_valve, line_ends, lines, one_way_valve, valve

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.errors import InputError
 from ..base.quantities import Quantity, Sense
 from ..base.tables import Displayed

@@ -6,12 +6,13 @@ SI units; for the governing load case and place only.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import pi
 from typing import Any
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array
 from ..base.polynomial import Polynomial, add, at_frequency, roots, scale
 from ..design.model import Design, Line

@@ -7,12 +7,13 @@ Two elements with a film share the oil: at the pressure between them both have t
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import nan
 from typing import Literal, NamedTuple
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import STEP, Array, maximum
 from ..design.model import Design
 from ..lubrication import (

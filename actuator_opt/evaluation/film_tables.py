@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import pickle
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from math import log, pi
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, Unsolvable
 from ..base.numeric import Array
 from ..base.surrogate import Interpolation, Surrogate, SurrogateAxis, surrogate

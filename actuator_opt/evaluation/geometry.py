@@ -9,9 +9,9 @@ single `End` represents both.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute, maximum
 from ..design.material import Material
 from ..design.model import Design, Ply, Retention, closed_length

@@ -8,10 +8,11 @@ losses are computed here.
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute, maximum, minimum, real, where
 from ..base.quantities import Quantity, Sense
 from ..design.material import Material

@@ -8,11 +8,12 @@ limit; `waivers` remove a line, and the report prints their reason.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Literal
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute, real, where
 from ..base.quantities import Sense
 from ..design.material import Material, allowable_factor, ply_constants

@@ -7,10 +7,11 @@ at a stop. Each stop has its own row: the optimiser sees no kink.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute, clip, minimum, real, sqrt, where
 from ..design.model import Design
 from ..models import linkage

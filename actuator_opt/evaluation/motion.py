@@ -8,10 +8,10 @@ maximum.
 from __future__ import annotations
 
 from collections.abc import Container, Iterable
-from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, angle, magnitude, maximum, real, where
 from ..design.model import Design
 from ..models import dynamics, line_ends, linear, loop

@@ -7,11 +7,11 @@ cure, and hot, where the matrix is weakest. Each `Climate` has the allowables of
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, maximum, real
 from ..design.model import Design, Ply
 from ..models.burst_ladder import WallLayer

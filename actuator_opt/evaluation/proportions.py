@@ -8,11 +8,11 @@ include these warnings.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
 from math import inf, pi
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array
 from ..design.model import Design
 from ..joints.joint import End, Joint

@@ -8,10 +8,11 @@ a limit.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, field
 from typing import Any, Literal, TypeAlias
 
 from ..base import quantities
+from ..base.dataclass import dataclass
 from ..base.numeric import Array
 from ..base.tables import Displayed, aligned
 from ..design.model import Design

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute, maximum, minimum, real, where
 from ..design.housings import extrusion_tables
 from ..design.material import Material

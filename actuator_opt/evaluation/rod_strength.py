@@ -8,12 +8,12 @@ inside chamber B is under its pressure while pulling.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import partial
 from typing import TypeAlias
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, maximum, minimum, where
 from ..design.model import Design
 from ..models import column, rod, shell_buckling, stepped, strength

@@ -6,11 +6,12 @@ Only this module distinguishes the two; all later code works with a `RodSection`
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from math import pi
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, maximum, real, sqrt as root
 from ..design.model import Design
 from ..joints.joint import Thermal

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from math import pi
 from typing import NamedTuple
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, real
 from ..design.model import Design
 from ..models import dynamics, lugre, stiffness, stiffness_published as published

@@ -8,11 +8,12 @@ decides. All are properties of the pure liquid, except `bulk_modulus`, which inc
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TypeAlias
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, minimum, real, where
 from ..design.kinds import Fraction
 from ..design.material import Material, bulk_modulus_law, viscosity_law

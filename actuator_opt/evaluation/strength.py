@@ -7,9 +7,9 @@ tension), and the end-stop force through barrel and retention.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from math import sqrt
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, real, where
 from ..design.model import Design
 from ..joints.joint import Joint, Loaded, Strength

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from functools import cache
 from importlib import import_module
@@ -13,6 +12,7 @@ from typing import cast
 import numpy as np
 
 from .. import models as formulas
+from ..base.dataclass import dataclass
 from ..design.material import compatible
 from ..design.model import PLAIN_CAP
 from ..design.paths import quantity_of

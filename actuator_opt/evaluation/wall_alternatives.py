@@ -6,11 +6,12 @@ Also the decay of bore growth beside the pressure step under the piston seal. Fl
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import e, isfinite, pi
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array
 from ..design.materials import load_library
 from ..models import barrel, barrel_ends, laminate, liner, ply

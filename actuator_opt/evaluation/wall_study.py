@@ -8,12 +8,13 @@ those of the exact tube, even if the design uses another model. For a single des
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import isfinite, pi
 from typing import Any, Literal
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array
 from ..models import burst_ladder, strength, tube_burst
 from ..models.autofrettage import Autofrettage

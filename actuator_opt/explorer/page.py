@@ -12,12 +12,12 @@ import html
 import json
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.files import write_text
 from ..base.numeric import Array
 from ..base.quantities import Quantity

@@ -11,11 +11,11 @@ import io
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from itertools import pairwise
 from math import cos, radians, sin, sqrt, tan
 from typing import Any, TypeAlias
 
+from ..base.dataclass import dataclass
 from ..base.errors import library
 from ..evaluation.outline import notes
 from ..evaluation.result import Evaluation, Outline

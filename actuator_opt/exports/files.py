@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, UsageError, library, shown
 from ..base.files import write_all
 from ..evaluation.result import Evaluation

@@ -8,11 +8,11 @@ around the axis are closed by a seam.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from math import atan2, cos, hypot, pi, sin
 from typing import TypeAlias
 
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError
 from ..evaluation.result import Evaluation, Outline
 

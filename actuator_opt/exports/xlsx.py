@@ -12,11 +12,11 @@ import math
 import textwrap
 import zipfile
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
 from ..base import units
+from ..base.dataclass import dataclass
 from ..base.errors import library
 from ..base.quantities import Quantity
 from ..design.paths import get, quantity_of

@@ -17,7 +17,6 @@ between two edges would otherwise oscillate.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -25,6 +24,7 @@ import numpy.typing as npt
 from scipy.sparse import bmat, csc_matrix, csr_matrix, vstack
 from scipy.sparse.linalg import splu
 
+from ..base.dataclass import dataclass
 from ..base.errors import ActuatorError, Diagnostic
 from .material import Floats, MooneyRivlin
 from .mesh import Integers

@@ -8,12 +8,12 @@ first use, so the program works without it.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from ..base.dataclass import dataclass
 from ..base.errors import ActuatorError, Diagnostic
 
 Floats = npt.NDArray[np.float64]

@@ -7,11 +7,11 @@ from the sliding face.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from ..base.dataclass import dataclass
 from .material import Floats, finite_element_library
 
 Integers = npt.NDArray[np.int64]

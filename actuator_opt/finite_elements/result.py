@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from ..base.dataclass import dataclass
 from . import material
 from .material import Floats
 from .mesh import Integers

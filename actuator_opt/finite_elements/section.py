@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import csc_matrix
 
+from ..base.dataclass import dataclass
 from . import material
 from .material import Floats, MooneyRivlin
 from .mesh import Integers, Mesh

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Protocol
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, real, where
 from ..models import friction
 from ..seals.contact import SealContact

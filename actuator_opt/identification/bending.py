@@ -8,12 +8,13 @@ chord open and prefers the steepest tangent, which noise makes too steep.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import inf, isfinite
 from typing import Any, Literal
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError
 from ..base.fitting import WEAK, Parameter, quantile, rated
 from ..base.tables import Displayed

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
 from ..base import units
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, shown
 from ..base.files import read_bytes
 from ..design.yaml_source import MAX_BYTES, decode, parse

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.errors import InputError
 from ..base.numeric import Array
 from .cleaning import ROBUST, Quality, clean, runs

@@ -7,11 +7,12 @@ reversals, together with the Stribeck parameters from the points of steady slidi
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from ..base import fitting as least_squares
+from ..base.dataclass import dataclass
 from ..base.fitting import NORMAL, Parameter, known, quantile
 from ..base.numeric import Array
 from .balance import Sliding

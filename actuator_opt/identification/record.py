@@ -5,13 +5,13 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from ..base import units
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, remedy as remedy_for, shown
 from ..base.numeric import Array
 from ..models.fluid import ATMOSPHERIC_PRESSURE

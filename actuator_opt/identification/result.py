@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.fitting import Parameter
 from ..base.numeric import Array
 from ..base.tables import Displayed

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from ..base import fitting as least_squares
+from ..base.dataclass import dataclass
 from ..base.fitting import Parameter, known
 from ..base.numeric import STEP, Array
 from ..models import friction

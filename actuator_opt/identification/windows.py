@@ -6,10 +6,11 @@ The model is integrated along each window and passes the same filter as the reco
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array
 from ..models import friction
 from .balance import Sliding

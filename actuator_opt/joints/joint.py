@@ -6,9 +6,10 @@ Lengths in m, forces in N, stresses in Pa; numbers are floats or arrays (designs
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, NamedTuple, Protocol, TypeAlias
 
+from ..base.dataclass import dataclass
 from ..base.errors import Fault
 from ..base.numeric import Array
 from ..base.quantities import Quantity

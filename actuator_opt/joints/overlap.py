@@ -8,10 +8,10 @@ Bond and thread share the skirts.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import partial
 from math import pi
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute
 from ..models import lap_joint, mass
 from ..models.strength_modes import load_multiplier

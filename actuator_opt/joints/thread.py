@@ -9,11 +9,11 @@ must be cut into metal and leave metal under it: other files are refused.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from math import pi, sqrt
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.errors import Fault
 from ..base.numeric import Array, minimum, real, where
 from ..base.quantities import INPUTS, Quantity

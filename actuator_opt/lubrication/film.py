@@ -8,10 +8,11 @@ derivatives by the inputs, from the implicit-function theorem.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import STEP, Array, real
 from ..models.rough_surface import (
     film_ratio_under_contact,

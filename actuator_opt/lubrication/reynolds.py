@@ -16,11 +16,12 @@ conditions. Every number is a Python float or, inside `sensitivities`, has a com
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import STEP, Array, real
 from ..models.oil_laws import VISCOSITY_LAWS
 from ..models.rough_surface import (

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from .film import outputs
 from .newton import Bed, FilmState, NewtonResult, follow, kernel, newton, weights
 from .reynolds import Elastic, Lubricant, ReynoldsProblem, Vector

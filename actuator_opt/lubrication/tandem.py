@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
+from ..base.dataclass import dataclass
 from .film import Film, solve_film
 from .reynolds import Contact, Elastic, Lubricant, Surface, Vector
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from types import MappingProxyType
 from typing import Literal, get_args
 
+from ..base.dataclass import dataclass
 from ..base.quantities import INFINITY, Quantity, Sense
 from ..base.units import BASE, unit
 

@@ -13,11 +13,11 @@ laminate, `tube_burst` the exact tube.
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass
 from functools import reduce
 from math import inf, pi
 from typing import Any, Protocol
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute, geometry, maximum, namespace, real, together, where
 from .ply import ply_stiffness
 from .strength import yield_utilisation

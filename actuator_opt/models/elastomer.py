@@ -7,9 +7,9 @@ scatters by 5 Shore A. An uncertainty study should include both.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Protocol
 
+from ..base.dataclass import dataclass
 from ..base.kinds import kinds
 from ..base.numeric import Array, maximum, minimum, namespace, real, where
 

@@ -7,8 +7,8 @@ Friction has the sign of the speed; the magnitudes here are positive. The dynami
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute, geometry, maximum, namespace, real, where
 
 

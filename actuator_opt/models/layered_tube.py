@@ -8,10 +8,11 @@ for a point inside a layer, split the layer there: identical sublayers act as on
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import pi
 from typing import Any
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, lifted, namespace, together
 from .solid_ply import solid_ply_stresses
 from .tube_elements import LayeredTube, TubeLayer, layered_tube

@@ -6,9 +6,9 @@ A line end is a ratio of two polynomials in s, so it can be used directly in the
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from math import pi
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, namespace, real, sqrt, where
 from ..base.polynomial import Polynomial, add, at_frequency, multiply, scale
 

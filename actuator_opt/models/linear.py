@@ -6,10 +6,10 @@ modes, margins and bandwidth from their roots.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import pi
 from typing import NamedTuple
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array
 from ..base.polynomial import Parts, Polynomial, add, at_frequency, multiply, scale
 from .line_ends import CLOSED, LineEnd

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import STEP, Array, absolute, geometry, namespace, real, where
 from .layered_tube import TubeLayer, layered_tube, tube_state
 from .strength import mises_product

@@ -9,12 +9,12 @@ integral of e + T_d de/dt).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from math import pi
 from typing import NamedTuple
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute, angle, positive, real, sqrt, where
 from ..base.polynomial import (
     Polynomial,

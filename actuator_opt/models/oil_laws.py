@@ -9,10 +9,10 @@ modulus at zero pressure, and B = 1 + K0'.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import inf
 from typing import Any
 
+from ..base.dataclass import dataclass
 from ..base.kinds import kinds
 from ..base.numeric import Array, namespace, real, where
 from . import fluid

@@ -22,9 +22,9 @@ A new law needs three functions of (squeeze, section, youngs_modulus, pressure) 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Protocol
 
+from ..base.dataclass import dataclass
 from ..base.kinds import kinds
 from ..base.numeric import Array, clip, geometry, namespace, real, sqrt, where
 from .contact_profile import o_ring_mean

@@ -15,10 +15,10 @@ exact.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import pi
 from typing import Any, Literal, TypeAlias
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, geometry, maximum, minimum, namespace, positive, real, sqrt, where
 
 End: TypeAlias = Literal["pinned", "fixed", "free", "guided"]

@@ -25,10 +25,10 @@ Metal yields by von Mises, exact along the load path.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import inf
 from typing import Protocol
 
+from ..base.dataclass import dataclass
 from ..base.kinds import kinds
 from ..base.numeric import Array, namespace, real, where
 from .strength_modes import (

@@ -14,10 +14,10 @@ are 0. Every surface is a conic in (sigma_2, tau), and so a quadratic in SR alon
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import inf
 from typing import TypeAlias
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute, namespace, real, where
 
 Stress: TypeAlias = tuple[Array, Array, Array, Array]

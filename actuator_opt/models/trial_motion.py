@@ -8,9 +8,9 @@ a stepped column gives an upper bound.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, geometry, namespace, sqrt
 
 Chamber: TypeAlias = Literal["a", "b"]

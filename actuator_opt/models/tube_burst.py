@@ -7,9 +7,9 @@ layer, so that the bore's fibres and the liner's bore govern where they are the 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any, cast
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, geometry, namespace, together, where
 from .burst_ladder import BurstLadder, WallLayer, batch_zero, climb, inverse_strengths, metals_first
 from .layered_tube import closed, forcing

@@ -16,9 +16,9 @@ a barrel's wall, 1e-7 in a single layer with a radius ratio of 3 and E_t/E_r = 1
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, NamedTuple, cast
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, expm1_quotient, geometry, lifted, namespace, stacked, together
 from .solid_ply import Solid, TubeStiffness, solid_expansion_load, solid_rotated
 

@@ -9,12 +9,13 @@ finite difference, as in a look-up table, uses differences. Bounds of variables 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from enum import Enum
 from typing import Any
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError
 from ..base.numeric import STEP, Array, real, where
 from ..base.quantities import Sense

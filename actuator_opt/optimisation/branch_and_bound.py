@@ -14,11 +14,12 @@ import itertools
 import math
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TypeAlias
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array
 from .actuator import MET
 from .evaluator import Evaluator, Point

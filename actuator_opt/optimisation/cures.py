@@ -11,10 +11,11 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.errors import InputError
 from ..base.numeric import STEP, Array
 from ..base.progress import tell

@@ -10,10 +10,10 @@ these points.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from .evaluator import Evaluator, Point
 from .problem import BoxProblem, Vector
 from .resolve.boxes import NEAR

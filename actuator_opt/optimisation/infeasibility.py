@@ -9,11 +9,11 @@ searches are local, from the given points: their remedies are valid, but others 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from ..base.dataclass import dataclass
 from ..base.progress import tell
 from . import kkt, repairs
 from .evaluator import Evaluator, Point

@@ -13,12 +13,12 @@ near that of a slightly changed problem.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
 import numpy.typing as npt
 
+from ..base.dataclass import dataclass
 from .evaluator import Evaluator, LimitReached, Point
 from .problem import Vector
 

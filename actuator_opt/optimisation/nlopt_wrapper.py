@@ -11,12 +11,12 @@ from __future__ import annotations
 import difflib
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from typing import Any
 
 import nlopt
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, UsageError
 from .evaluator import Evaluator, LimitReached, Point
 from .problem import BoxProblem, Vector

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from statistics import median
 from typing import Any, Literal
 
 import numpy as np
 
 from ..base.bounds import FRONT
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, UsageError, remedy
 from ..base.numeric import Array
 from ..base.quantities import Quantity

@@ -8,12 +8,13 @@ positive lower bound; for others, multiples of half the box width.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, field, replace
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from ..base.dataclass import dataclass
 from ..base.errors import InputError
 from ..base.numeric import STEP, Array
 

@@ -8,11 +8,11 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..design.choice_list import Value
 from ..evaluation import PreparedDesign
 from . import kkt, nlopt_wrapper, repairs

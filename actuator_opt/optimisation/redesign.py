@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from math import hypot
 from typing import Any, NamedTuple
 
+from ..base.dataclass import dataclass
 from ..base.errors import InputError
 from ..base.quantities import Quantity
 from ..design.build import with_values

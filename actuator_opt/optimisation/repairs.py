@@ -9,12 +9,13 @@ The least sufficient change follows from the feasible point.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array
 from ..base.progress import tell
 from . import kkt

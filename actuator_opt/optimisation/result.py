@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, field, replace
 from math import isfinite
 from typing import Any, Literal, TypeAlias
 
+from ..base.dataclass import dataclass
 from ..base.quantities import INPUTS
 from ..base.tables import Displayed, aligned
 from ..design import choice_list

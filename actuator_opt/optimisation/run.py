@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from ..base.dataclass import dataclass
 from ..base.progress import tell
 from ..design import quantity_of
 from ..evaluation import Evaluation, PreparedDesign, evaluate

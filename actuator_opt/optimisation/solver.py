@@ -13,10 +13,10 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.progress import tell
 from . import kkt, nlopt_wrapper
 from .actuator import MET, LocalOptimum, Outcome, Solution

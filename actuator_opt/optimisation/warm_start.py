@@ -10,10 +10,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from . import kkt, prices
 from .actuator import MET, ActuatorProblem, Outcome, Responses, Solution, responses
 from .evaluator import Evaluator, LimitReached, Point

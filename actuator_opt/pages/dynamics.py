@@ -133,7 +133,7 @@ def _response(evaluation: Evaluation, study: DynamicsStudy) -> Block:
 
 
 def lumped_sentence(study: DynamicsStudy) -> str:
-    """The frequencies up to which lumped lines agree with transmission lines; empty without lines."""
+    """Frequencies up to which lumped and transmission lines agree; empty without lines."""
     if study.distributed is None:
         return ""
     lumped = next(response for response in study.responses if response.place == "weakest position")

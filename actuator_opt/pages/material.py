@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array
 from ..base.quantities import MATERIAL_PROPERTIES
 from ..design.material import Material, Property, bulk_modulus_law, viscosity_law

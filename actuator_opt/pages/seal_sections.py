@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..design import paths
 from ..design.model import Design
 from ..design.seals import Guide, Seal, SealElement, Wiper

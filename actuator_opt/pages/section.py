@@ -7,9 +7,9 @@ those. `ink.spread_within` places every label, so that no two touch.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
+from ..base.dataclass import dataclass
 from ..evaluation.result import Evaluation, Outline
 from ..rendering.ink import BLACK, GREY, Ink, Point, Polygon, hatch, spread_within, text_width
 from ..rendering.text import trimmed

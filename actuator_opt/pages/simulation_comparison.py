@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TypeAlias
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, remedy
 from ..base.numeric import Array
 from ..base.quantities import RESULTS, SCENARIOS

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.fitting import NORMAL
 from ..base.numeric import Array
 from ..base.quantities import INPUTS, RESULTS, SCENARIOS, Quantity
@@ -277,7 +278,7 @@ def titled(words: str, quantity: Quantity) -> str:
 
 
 def followed(simulation: Simulation) -> Loop | None:
-    """The signal that a controller follows, else the signal that moves; None where nothing moves."""
+    """The signal that a controller follows, else the moving signal; None where nothing moves."""
     control = simulation.scenario.control
     if control is not None and "reference" in simulation.signals:
         return loop_of(control)

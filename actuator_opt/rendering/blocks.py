@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Literal, TypeAlias
 
+from ..base.dataclass import dataclass
 from ..base.errors import CONTROLS
 from .chart import Curve, Panel
 from .ink import Ink

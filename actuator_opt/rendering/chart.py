@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array
 from .axes import Ticks, even_range, even_ticks, level_ticks, log_range, ticks
 from .ink import text_width

@@ -6,9 +6,9 @@ import re
 import textwrap
 import unicodedata
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TypedDict
 
+from ..base.dataclass import dataclass
 from .blocks import Column, clean
 from .text import plain
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
+from ..base.dataclass import dataclass
 from ..version import VERSION
 from .blocks import Block, Listing, Page
 

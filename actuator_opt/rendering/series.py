@@ -11,7 +11,6 @@ import hashlib
 import io
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack
-from dataclasses import dataclass
 from math import isnan
 from pathlib import Path
 from types import TracebackType
@@ -19,6 +18,7 @@ from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.errors import library
 from ..base.files import aside, aside_bytes, write_text, writing
 from ..base.numeric import Array

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
+from ..base.dataclass import dataclass
 from . import text
 from .axes import Axes, fitted, ticks
 from .ink import BLACK, BLUE, GREY, RED, Ink

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array
 from ..rendering.axes import Axes
 from ..rendering.ink import BLUE, GREEN, GREY, OCHRE, PALE, Ink, spread_within

@@ -8,11 +8,11 @@ gives no number of its pressure record either, so the record is our own.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from math import pi
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array
 from ..design.materials import load_library
 from ..design.seals import Seal

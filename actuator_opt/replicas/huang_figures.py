@@ -9,10 +9,10 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array
 from ..models.friction import HUANG_TABLE_2
 from ..rendering.axes import Axes, ticks

@@ -20,12 +20,13 @@ effect of both as printed.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import isfinite, nan, pi
 from typing import Any
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import STEP, Array
 from ..design.material import fit_double_exponential, fit_power_law
 from ..design.model import Design

@@ -8,11 +8,12 @@ hold.
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import NamedTuple
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array
 from ..design.material import LawFit, fit_double_exponential, fit_power_law
 from ..models import damping, forces, friction

@@ -11,11 +11,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Container, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.errors import InputError, Unsolvable
 from ..design.model import Design
 from ..design.seals import Seal

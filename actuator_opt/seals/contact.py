@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Literal, NamedTuple, TypeAlias
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, maximum
 from ..models import contact_profile
 

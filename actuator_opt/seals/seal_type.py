@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array
 from .contact import SealContact, Shape, SizeField
 

@@ -17,12 +17,13 @@ import threading
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import field
 from types import FrameType
 from typing import Any, Final, Literal
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, Unsolvable
 from ..base.numeric import Array
 from ..base.progress import tell

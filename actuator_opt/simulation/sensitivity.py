@@ -8,10 +8,10 @@ disagree, noise or a jump dominates, and the value is marked.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from time import perf_counter
 from typing import Any, Literal, TypeAlias
 
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, Unsolvable, remedy
 from ..base.progress import steps
 from ..base.quantities import RESULTS, Quantity

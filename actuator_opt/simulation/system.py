@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, clip, where
 from ..base.quantities import Quantity
 from ..base.symbolic import Expression, Graph, Namespace, Symbol, function, jacobian, vectorised

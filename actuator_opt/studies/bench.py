@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import pi
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array
 from ..design.model import Design
 from ..evaluation import state

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import nan, pi
 from typing import Literal, NamedTuple
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array
 from ..evaluation.barrel import SEAL_STEP
 from ..evaluation.film import FilmRow, Solved, floats, of_place, ring_films, solve

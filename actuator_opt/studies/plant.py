@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.numeric import Array, absolute, maximum
 from ..design.model import Design
 from ..evaluation import circuit, state

@@ -6,12 +6,13 @@ Works for every sealing element, whether the design uses its film or a friction 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import isfinite, nan, pi
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError
 from ..base.tables import Displayed
 from ..design.model import Design

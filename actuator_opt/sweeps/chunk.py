@@ -7,11 +7,12 @@ import hashlib
 import inspect
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 
 from ..base.database import NumberColumn, StoredNumbers
+from ..base.dataclass import dataclass
 from ..base.errors import InputError
 from ..base.numeric import Array
 from ..base.quantities import Quantity

@@ -5,12 +5,12 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from ..base.database import Reader, StoredNumbers, StoredRows, reading
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError
 from ..base.numeric import Array
 from ..design import Design, read_design

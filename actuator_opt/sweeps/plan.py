@@ -10,13 +10,13 @@ import math
 import re
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 
 from ..base import units
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, UsageError, shown
 from ..base.numeric import Array
 from ..base.quantities import Quantity

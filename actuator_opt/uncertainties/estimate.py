@@ -7,13 +7,13 @@ probabilities and variance-based sensitivity indices, from points of the unit cu
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from math import erfc, sqrt
 from statistics import NormalDist
 from typing import Any
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.progress import tell
 from ..design.uncertain import REACH, limits, log_deviation
 from ..optimisation.problem import Vector

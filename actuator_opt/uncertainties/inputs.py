@@ -10,11 +10,12 @@ drawn: strengths stay at their allowables, gland tolerances at their limits.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError
 from ..base.quantities import Quantity
 from ..design import quantity_of

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import isfinite
 from typing import Any
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.tables import Displayed, aligned
 from ..optimisation.problem import Vector
 from .estimate import Rate

@@ -10,10 +10,11 @@ verify the last design.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, UsageError
 from ..base.numeric import Array
 from ..base.progress import whole

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.dataclass import dataclass
 from ..base.errors import ActuatorError
 from ..base.progress import tell
 from ..evaluation import Evaluation, PreparedDesign

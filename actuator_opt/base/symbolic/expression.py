@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import partial
 from types import SimpleNamespace
 from typing import Any, Final, TypeAlias
 
 import numpy as np
+
+from ..dataclass import dataclass
 
 Bounds: TypeAlias = tuple[float, float]
 ANY: Final[Bounds] = (-math.inf, math.inf)

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from math import pi
 from typing import Annotated, Any, Literal, Protocol, TypeAlias
 
 import numpy as np
 
+from ...base.dataclass import dataclass
 from ...base.errors import shown
 from ...base.kinds import kinds
 from ...base.numeric import Array, where

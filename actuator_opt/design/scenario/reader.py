@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from ...base.dataclass import dataclass
 from ...base.errors import Diagnostic, Fault, InputError
 from ...base.numeric import Array
 from ...base.quantities import RESULTS, Quantity

@@ -10,12 +10,13 @@ most copies have equal walls: only the distinct walls of a batch are computed.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import fields, is_dataclass, replace
 from math import pi
 from typing import Any
 
 import numpy as np
 
+from ...base.dataclass import dataclass
 from ...base.numeric import Array, maximum, real, where
 from ...design.model import Design
 from ...models import burst_ladder, column, liner, rod, strength, tube_burst

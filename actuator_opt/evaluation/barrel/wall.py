@@ -11,11 +11,12 @@ force. The default preload keeps the joint closed at proof pressure.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from math import pi
 
 import numpy as np
 
+from ...base.dataclass import dataclass
 from ...base.numeric import Array, maximum
 from ...design.model import Design
 from ...joints.joint import Clamp

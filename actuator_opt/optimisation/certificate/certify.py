@@ -14,11 +14,12 @@ import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any, TypeAlias
 
 import numpy as np
 
+from ...base.dataclass import dataclass
 from ...base.symbolic import Graph, Symbol
 from ...base.symbolic.expression import bounds_of, needed
 from ...evaluation.kernel import ModelRun, Statics, compute, statics

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from ...base.dataclass import dataclass
 from ...base.symbolic import Symbol
 from ...base.symbolic.expression import Bounds, at_end, bounds, bounds_of
 from ..problem import Vector

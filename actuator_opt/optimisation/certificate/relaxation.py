@@ -14,11 +14,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
+from ...base.dataclass import dataclass
 from ..problem import Vector
 
 Name: TypeAlias = Literal["softplus", "exp", "log", "tanh"]

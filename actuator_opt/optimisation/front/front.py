@@ -13,11 +13,12 @@ distant designs, the front jumps and no design lies between.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
+from ...base.dataclass import dataclass
 from ...base.numeric import Array
 from ...base.progress import tell
 from ..actuator import MET, Solution

@@ -9,11 +9,12 @@ design is nearest to the ideal along the line through `a` that trades all object
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
+from ...base.dataclass import dataclass
 from ...base.numeric import Array
 from ..evaluator import Evaluator, Point
 from ..kkt import residual

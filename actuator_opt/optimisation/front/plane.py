@@ -13,12 +13,12 @@ it fills wide holes and explains the gaps that remain.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import permutations, product
 
 import numpy as np
 import numpy.typing as npt
 
+from ...base.dataclass import dataclass
 from ...base.progress import tell
 from ..problem import Vector
 from ..resolve.steps import RESIDUAL

@@ -6,12 +6,13 @@ It also selects non-dominated designs, measures their spacing and locates the kn
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
+from ...base.dataclass import dataclass
 from .. import kkt
 from ..actuator import MET
 from ..evaluator import Evaluator, Point

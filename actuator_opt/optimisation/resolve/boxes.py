@@ -8,11 +8,11 @@ updated: results need only seven digits, and equalities are allowed.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
+from ...base.dataclass import dataclass
 from .. import kkt, nlopt_wrapper, repairs
 from ..actuator import MET
 from ..evaluator import Evaluator, Point, points_together

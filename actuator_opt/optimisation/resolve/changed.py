@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
+from ...base.dataclass import dataclass
 from ...base.numeric import STEP
 from ..actuator import MET
 from ..evaluator import Evaluator, Point

@@ -11,10 +11,11 @@ Only the last method may end without a design.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
+from ...base.dataclass import dataclass
 from .. import kkt, repairs
 from ..actuator import MET, Solution
 from ..evaluator import Evaluator, Point

@@ -8,13 +8,14 @@ steps as it would alone.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from queue import SimpleQueue
 from threading import Thread
 
 import numpy as np
 import numpy.typing as npt
 
+from ...base.dataclass import dataclass
 from .. import kkt, nlopt_wrapper, repairs
 from ..actuator import MET, StartRecord
 from ..evaluator import Evaluator, LimitReached, Point

@@ -17,11 +17,12 @@ determine the step [NocedalWright2006] section 16.2.
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Generic, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
 
+from ...base.dataclass import dataclass
 from .. import kkt
 from ..actuator import MET
 from ..evaluator import HESSIAN_STEP, Evaluator, Point

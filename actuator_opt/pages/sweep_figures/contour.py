@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
+from ...base.dataclass import dataclass
 from ...base.errors import Diagnostic, InputError
 from ...base.numeric import Array
 from ...rendering.axes import Axes, even_ticks, spaced

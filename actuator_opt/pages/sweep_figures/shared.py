@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
@@ -11,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base.bounds import SWEEP_FIGURES
+from ...base.dataclass import dataclass
 from ...base.errors import Diagnostic, InputError, UsageError, remedy, shown
 from ...base.files import write_all
 from ...base.numeric import Array

@@ -7,11 +7,12 @@ or speed, of the piston or of a motor shaft.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
+from ...base.dataclass import dataclass
 from ...base.numeric import Array
 from ...base.quantities import INPUTS, SCENARIOS, Quantity
 from ...base.symbolic import Expression, Namespace, Symbol, jacobian

@@ -5,8 +5,7 @@ Seal friction follows the LuGre law, a smooth Stribeck curve, or is viscous only
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from ...base.dataclass import dataclass
 from ...base.kinds import per_kind
 from ...base.numeric import maximum, where
 from ...base.quantities import INPUTS, SCENARIOS

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from ...base.dataclass import dataclass
 from ...base.kinds import per_kind
 from ...base.numeric import clip, where
 from ...base.quantities import INPUTS, SCENARIOS

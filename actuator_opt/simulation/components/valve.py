@@ -5,10 +5,10 @@ The controller is P, PI or PID on the error, with inner loops and limits of valu
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import inf
 from typing import NamedTuple
 
+from ...base.dataclass import dataclass
 from ...base.numeric import clip, where
 from ...base.quantities import SCENARIOS
 from ...base.symbolic import Expression

@@ -6,7 +6,7 @@ Residuals and slopes come from the simulation; the bounds of the parameters foll
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import combinations
 from math import ceil
 from time import perf_counter
@@ -15,6 +15,7 @@ from typing import Any, Final, Literal
 import numpy as np
 
 from ...base import fitting as least_squares
+from ...base.dataclass import dataclass
 from ...base.errors import Unsolvable, shown
 from ...base.fitting import WEAK, FittedParameters, Parameter, known, rated
 from ...base.numeric import Array

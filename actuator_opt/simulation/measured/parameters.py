@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TypeAlias
 
+from ...base.dataclass import dataclass
 from ...base.errors import Diagnostic, InputError, remedy, shown
 from ...base.quantities import INPUTS, MATERIAL_PROPERTIES, RECORDS, SCENARIOS, Quantity
 from ...design.scenario.model import ForceSignal, Scenario

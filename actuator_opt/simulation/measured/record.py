@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import comb, sqrt
 from typing import Any
 
 import numpy as np
 
+from ...base.dataclass import dataclass
 from ...base.errors import Diagnostic, InputError, shown
 from ...base.numeric import Array
 from ...design.scenario.reader import WIDE, gap_words, gaps

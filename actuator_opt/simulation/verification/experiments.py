@@ -9,12 +9,13 @@ them.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from math import cos, exp, inf, isfinite, log, nan, pi, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...base.dataclass import dataclass
 from ...base.numeric import Array
 from ...base.polynomial import at_frequency
 from ...design.scenario.model import (

@@ -9,11 +9,12 @@ point.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from math import inf, isfinite, isnan
 from time import perf_counter
 from typing import Any, Final, Literal
 
+from ...base.dataclass import dataclass
 from ...base.errors import InputError, Unsolvable
 from ...base.progress import steps
 from ...base.tables import Displayed
