@@ -116,6 +116,16 @@ def log1p_quotient(value: Array) -> Array:
     return where(undefined, np.nan, mean)
 
 
+def sorted_unique(values: Array) -> Array:
+    """The different values in rising order; `numpy.unique` would import `numpy.ma` at every start.
+
+    >>> sorted_unique(np.array([3.0, 1.0, 3.0]))
+    array([1., 3.])
+    """
+    ordered = np.sort(values)
+    return ordered[np.append(True, ordered[1:] != ordered[:-1])]
+
+
 def together(values: Sequence[Array], axis: int = 0) -> Array:
     """Stack arrays on a new axis after broadcasting them."""
     xp = namespace(*values)

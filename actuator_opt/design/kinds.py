@@ -395,4 +395,4 @@ class ObjectiveKind(ValueKind):
 class Section(BaseModel):
     """A block of the design file; unknown keys are faults."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)

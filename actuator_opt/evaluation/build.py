@@ -17,7 +17,7 @@ import numpy as np
 from ..base import quantities
 from ..base.dataclass import dataclass
 from ..base.errors import InputError
-from ..base.numeric import Array
+from ..base.numeric import Array, sorted_unique
 from ..design import paths, standard_sizes as standards
 from ..design.housings import gland_deviations, housings, housings_for
 from ..design.material import Material
@@ -421,7 +421,7 @@ def _curve(run: ModelRun, v: Values, case: str | None) -> StrokeCurve:
     stroke = float(np.squeeze(run.geometry.stroke))
     index = v.cases.index(case) if case in v.cases else 0
     weakest = of_case(run.weakest, index)
-    position = np.unique(np.append(np.linspace(0.0, stroke, 101), weakest))
+    position = sorted_unique(np.append(np.linspace(0.0, stroke, 101), weakest))
     parts = {
         name: np.broadcast_to(np.atleast_2d(value), (len(v.cases), position.size))[index]
         for name, value in run.springs.compliances(position).items()

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..base.dataclass import dataclass
-from ..base.numeric import Array
+from ..base.numeric import Array, sorted_unique
 from ..base.polynomial import Polynomial, add, at_frequency, roots, scale
 from ..design.model import Design, Line
 from ..models import dynamics, line_ends, linear, lines, loop, transmission_line
@@ -243,7 +243,7 @@ def study(
     index = v.cases.index(case) if case in v.cases else 0
     stroke = float(np.squeeze(run.geometry.stroke))
     weakest = of_case(run.places["weakest position"], index)
-    position = np.unique(np.append(np.linspace(0.0, stroke, 61), weakest))
+    position = sorted_unique(np.append(np.linspace(0.0, stroke, 61), weakest))
     model = motion.model(position)
     along = motion.mode(model, position)
     closed = dynamics.natural_frequency(
@@ -380,7 +380,7 @@ def _frequencies(polynomials: list[tuple[Polynomial, int]]) -> Array:
         near = (size > FREQUENCIES[0]) & (size < FREQUENCIES[-1])
         width = np.clip(-oscillating.real / np.abs(oscillating), 1e-9, 0.05)
         groups.append((size * (1 + width * AROUND[:, None]))[:, near].reshape(-1))
-    grid = np.unique(np.concatenate(groups))
+    grid = sorted_unique(np.concatenate(groups))
     return grid[(grid >= FREQUENCIES[0]) & (grid <= FREQUENCIES[-1])]
 
 
