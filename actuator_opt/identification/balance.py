@@ -14,16 +14,16 @@ from .conditioning import ConditionedRecord, RecordSection
 
 RESTING, CREEP = 3.0, 2e-5
 """Speeds below which the rod may be at rest: in standard deviations of the velocity's noise, and at
-least in m/s (choices: 0.3 % of the samples at rest are faster; two steps of 10 um in a second)."""
+least in m/s (our choices: 0.3 % of the samples at rest are faster; two steps of 10 um in a second)."""
 OPPOSED = 0.5
-"""Share of the friction's power that must oppose motion; less indicates a wrong sign (a choice: a
+"""Share of the friction's power that must oppose motion; less indicates a wrong sign (our choice: a
 quarter of the power then drives the rod, more than noise and offsets explain)."""
 SLIDES = 5e-4
-"""Travel of a section that counts as sliding [m] (a choice: ten breakaway travels of 50 um; below
+"""Travel of a section that counts as sliding [m] (our choice: ten breakaway travels of 50 um; below
 it bristles return much of their energy)."""
 SURE = 0.8
 """Share of the power that must oppose motion after a correction for the correction to be suggested
-(a choice: a tenth of the power then still drives the rod)."""
+(our choice: a tenth of the power then still drives the rod)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -24,7 +24,7 @@ from .straight import BENT, SHARES, Loop, Straight, Term, by_way, mean, scatter,
 
 Part = Literal["rod", "barrel"]
 POISSON = 0.3
-"""Default Poisson's ratio for the shear coefficient (a choice: from 0 to 0.5 the coefficient of a
+"""Default Poisson's ratio for the shear coefficient (our choice: from 0 to 0.5 the coefficient of a
 round section changes by 9 %)."""
 
 
@@ -158,17 +158,17 @@ def _refuse(message: str, remedy: str) -> None:
 STRAINS = (0.0005, 0.0025)
 """Strains between which the slope is determined [ISO178], [ISO14125]."""
 SHORT = 0.5
-"""Least share of the strain range that a test must cover to use strain limits (a choice)."""
+"""Least share of the strain range that a test must cover to use strain limits (our choice)."""
 SLENDER = 16.0
 """Least span over depth [ISO178], [ASTM-D790]."""
 SHEARED = 0.1
-"""Shear deflection relative to bending above which the modulus depends on it (a choice)."""
+"""Shear deflection relative to bending above which the modulus depends on it (our choice)."""
 APART = 0.05
-"""Difference of loading and unloading slope that indicates friction or creep (a choice)."""
+"""Difference of loading and unloading slope that indicates friction or creep (our choice)."""
 NOISY = 0.02
-"""Scatter 1 - r^2 at which noise of the deflection lowers the slope noticeably (a choice)."""
+"""Scatter 1 - r^2 at which noise of the deflection lowers the slope noticeably (our choice)."""
 STATED = 0.2
-"""Difference from the material's modulus at which part, span and units are questioned (a choice: an
+"""Difference from the material's modulus at which part, span and units are questioned (our choice: an
 error of the span counts three times, one of the diameter four)."""
 
 

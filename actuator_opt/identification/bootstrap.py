@@ -39,15 +39,15 @@ from .windows import LAG, Windows, windows
 FEWEST = 80
 """Least number of resamples: bounds are then the second values from the ends, not the outermost."""
 STARTS = (1.0, 1 / 3, 3.0)
-"""Initial Stribeck speeds of a refit over the optimum (a choice: half a decade either way)."""
+"""Initial Stribeck speeds of a refit over the optimum (our choice: half a decade either way)."""
 STEPS, LUGRE_STEPS = 40, 8
-"""Steps of a Stribeck fit, and of a LuGre fit with the slopes at the optimum (a choice: more steps
+"""Steps of a Stribeck fit, and of a LuGre fit with the slopes at the optimum (our choice: more steps
 do not change the bounds of the synthetic records)."""
 LEAST_WINDOWS = 3
-"""Least number of windows to draw from (a choice: with two, a single difference would determine the
+"""Least number of windows to draw from (our choice: with two, a single difference would determine the
 noise)."""
 ROWS = 256
-"""Draws integrated at once (a choice: some 100 MB)."""
+"""Draws integrated at once (our choice: some 100 MB)."""
 RANK = 1e-10
 """Least ratio of singular values of slopes for the leverage: rounding lies below."""
 LOGS = ("stribeck_speed", "bristle_stiffness")

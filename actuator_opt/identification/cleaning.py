@@ -10,34 +10,34 @@ from ..base.numeric import Array
 
 SPIKE, QUANTA, RANGE = 6.0, 3.0, 1e-3
 """Least height of a spike over its neighbours' median: in robust standard deviations, in sensor
-steps, and as a share of the channel's range (choices: one normal sample in 5e8 lies as far out;
+steps, and as a share of the channel's range (our choices: one normal sample in 5e8 lies as far out;
 rounding alone makes two steps; the usual noise of pressures reaches that share)."""
 JUMP, BURST, FLANK = 0.7, 0.45, 0.3
 """Least share of its height by which a spike rises within a sample. `BURST` suffices if the channel
-does not continue outside the spike with `FLANK` of the step at its edge (choices: three adjacent
+does not continue outside the spike with `FLANK` of the step at its edge (our choices: three adjacent
 stray samples rise by half or more, the top of a triangle as wide as the median's window by a third,
 of a half sine by 0.6)."""
 WINDOW = 5e-3
-"""Half the width of a sample's neighbourhood [s] (a choice: a sixth of a 30 Hz period)."""
+"""Half the width of a sample's neighbourhood [s] (our choice: a sixth of a 30 Hz period)."""
 SAMPLED = 100_000
-"""Samples used for the spread of a channel (a choice: accurate to 1 %)."""
+"""Samples used for the spread of a channel (our choice: accurate to 1 %)."""
 LEVELS = 20_000
-"""Samples used for the resolution of a sensor (a choice: several per step of a fine sensor)."""
+"""Samples used for the resolution of a sensor (our choice: several per step of a fine sensor)."""
 CROWD, GARBAGE = 0.15, 0.5
 """Shares of spikes in two windows above which the other samples are doubtful, and useless (choices:
 with 5 % random strays the second occurs once in 1e10 samples, with 10 % once in 1e6; noise as high
 as the range gives three quarters spikes)."""
 HELD = 6
-"""Least number of equal samples at an end of the channel's range to count as clipped (a choice: a
+"""Least number of equal samples at an end of the channel's range to count as clipped (our choice: a
 fifth of a 30 Hz period at 1 kHz; the filter removes shorter runs)."""
 FLICKER = 0.6
-"""Noise in sensor steps above which a constant level is no coincidence (a choice: on a true plateau
+"""Noise in sensor steps above which a constant level is no coincidence (our choice: on a true plateau
 two of five samples would leave their step)."""
 LIVE = 0.2
-"""Least share of samples away from the ends of the range for noise to be judged by them (a choice:
+"""Least share of samples away from the ends of the range for noise to be judged by them (our choice:
 four times as many as strays)."""
 TURNS = 0.3
-"""Share of its steps after which a noisy channel reverses (a choice: half of the 2/3 of white
+"""Share of its steps after which a noisy channel reverses (our choice: half of the 2/3 of white
 noise)."""
 ROBUST = 1.4826
 """Standard deviation of a normal variable over its median deviation, 1/0.67449 [derived]."""

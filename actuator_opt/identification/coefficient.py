@@ -14,9 +14,9 @@ from .balance import Sliding
 from .conditioning import ConditionedRecord
 
 WINDOW = 0.1
-"""Averaging time of friction and contact force [s] (a choice: six independent samples at 30 Hz)."""
+"""Averaging time of friction and contact force [s] (our choice: six independent samples at 30 Hz)."""
 LEAST_SPEED = 1e-3
-"""Least mean speed of a window [m/s] (a choice: ten sensor steps of 10 um show its direction)."""
+"""Least mean speed of a window [m/s] (our choice: ten sensor steps of 10 um show its direction)."""
 
 
 @dataclass(frozen=True, slots=True)

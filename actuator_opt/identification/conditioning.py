@@ -22,26 +22,26 @@ CUTOFF, ORDER = 30.0, 4
 """Cut-off of the zero-phase Butterworth filter [Huang2017] [Hz], and its order per pass (a choice,
 as the source gives only the cut-off)."""
 SLOWEST = 3.0
-"""Least samples per period of the cut-off (a choice: the cut-off is then 2/3 of the Nyquist
+"""Least samples per period of the cut-off (our choice: the cut-off is then 2/3 of the Nyquist
 frequency)."""
 SHORTEST = 6.0
-"""Least length of a section in periods of the cut-off (a choice: without `EDGE` at each end a third
+"""Least length of a section in periods of the cut-off (our choice: without `EDGE` at each end a third
 of it remains)."""
 EDGE = 2.0
-"""Periods of the cut-off at both ends of a section where the filter is inaccurate (a choice: there
+"""Periods of the cut-off at both ends of a section where the filter is inaccurate (our choice: there
 a step response is within 0.2 %)."""
 BRIDGE = 5
 """Successive missing samples that are interpolated linearly; more if they last less than a quarter
-of a period of the cut-off (choices: 5 ms at 1 kHz; a chord of that length misses a sine at a tenth
+of a period of the cut-off (our choices: 5 ms at 1 kHz; a chord of that length misses a sine at a tenth
 of the cut-off by 0.3 %)."""
 ORDERS = 10
-"""Highest order of a pass (a choice: above it the filter rings for longer than `EDGE`)."""
+"""Highest order of a pass (our choice: above it the filter rings for longer than `EDGE`)."""
 CROWDED = 3.0
-"""Largest mean over median time step (a choice: even steps then have three times the samples)."""
+"""Largest mean over median time step (our choice: even steps then have three times the samples)."""
 SAMPLED = 100_000
-"""Samples of a section used for its noise (a choice: accurate to 0.3 %)."""
+"""Samples of a section used for its noise (our choice: accurate to 0.3 %)."""
 LATEST = 0.1
-"""Largest lag that is corrected [s] (a choice: twenty times that of a pressure sensor)."""
+"""Largest lag that is corrected [s] (our choice: twenty times that of a pressure sensor)."""
 NEEDED = ("p1", "p2", "x", "F_L")
 """Channels whose missing samples split a record."""
 
@@ -392,13 +392,13 @@ def _noise(time: Array, values: Array, name: str, pieces: Sequence[RecordSection
 
 
 CUTOFFS = (1 / 3, 1 / 8, 1 / 20)
-"""Lower cut-offs over that of the record (a choice: down to 1.5 Hz, some ten times the frequency of
+"""Lower cut-offs over that of the record (our choice: down to 1.5 Hz, some ten times the frequency of
 a slow test, in steps of 2 to 3)."""
 BENT = 1.5
 """Largest mean square change of the position by a lower cut-off over that of the sensor's errors (a
 choice: 1 if only errors are removed)."""
 PADDING = 1.5
-"""Periods of a lower cut-off on either side of a section that affect the filter inside (a choice: a
+"""Periods of a lower cut-off on either side of a section that affect the filter inside (our choice: a
 step response is within 0.5 % there)."""
 
 

@@ -13,16 +13,16 @@ from .points import ALIKE, FrictionPoint
 
 REACH = 1.5
 """Multiple of the Stribeck speed that a record must reach to separate F_C from sigma_2: there the
-Stribeck part is e^(-1.5^2) = 0.1 of its height at exponent 2 (a choice)."""
+Stribeck part is e^(-1.5^2) = 0.1 of its height at exponent 2 (our choice)."""
 SPREAD, APART = 0.2, 3.0
 """Least pressure range that can show an effect: over the highest pressure, and over the pressure
-that overcomes friction alone (choices: effects of pressure then exceed scatter)."""
+that overcomes friction alone (our choices: effects of pressure then exceed scatter)."""
 UNEQUAL = 2e-3
-"""Relative area error above which it is reported (a choice: below it, seals whose pressure effect
+"""Relative area error above which it is reported (our choice: below it, seals whose pressure effect
 differs by a fifth between directions look alike)."""
 MISSED, BEYOND = 0.3, 5.0
 """Misfit of a curve, as a share of friction and a multiple of errors, above which it is reported
-(choices: the share of an identifiable parameter, `WEAK`; more than errors too small by half
+(our choices: the share of an identifiable parameter, `WEAK`; more than errors too small by half
 explain)."""
 SIGNED = ("offset", "pressure_slope")
 """Parameters that may be 0."""

@@ -40,7 +40,7 @@ from .windows import LAG
 LEAST_LAG = 3e-4
 """Least lag worth correcting [s]."""
 EARLIEST = 6e-3
-"""Largest plausible lead of the pressures over the position [s] (a choice: filters of a position
+"""Largest plausible lead of the pressures over the position [s] (our choice: filters of a position
 sensor also have a lag, but bristles may look the same)."""
 STATE = "state --pressure-lag if it is known"
 CANNOT = (
@@ -112,15 +112,15 @@ LAWS = {"power_law": fit_power_law, "double_exponential": fit_double_exponential
 LEAST_SPEEDS = 3
 """Different speeds needed for a model of two parameters with a degree of freedom."""
 WARMER = 10.0
-"""Temperature difference above which it is reported [K] (a choice: rubber softens by some per
+"""Temperature difference above which it is reported [K] (our choice: rubber softens by some per
 cent)."""
 OUTSIDE = 0.02
 """Share of the stroke by which a position may exceed its ends."""
 STEPS, NOISES = 2.0, 10.0
 """Largest apparent travel of a rod at rest: in sensor steps, and in standard deviations of the
-filtered position (a choice: 10 000 normal samples span 8 standard deviations)."""
+filtered position (our choice: 10 000 normal samples span 8 standard deviations)."""
 PACE = 0.05
-"""Share by which a channel v may differ from the slope of x (a choice)."""
+"""Share by which a channel v may differ from the slope of x (our choice)."""
 
 
 def identify(record: Record, bench: Bench, settings: Settings | None = None) -> Identification:

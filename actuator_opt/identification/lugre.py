@@ -31,14 +31,14 @@ from .stribeck_fit import (
 from .windows import LAG, Windows, no_windows, windows
 
 TRAVELS = (1e-6, 3e-3)
-"""Bristle travels F_S/sigma_0 searched [m] (a choice: nearly two decades either side of 50 um)."""
+"""Bristle travels F_S/sigma_0 searched [m] (our choice: nearly two decades either side of 50 um)."""
 DAMPING_TIMES = (1e-6, 0.3)
-"""sigma_1/sigma_0 searched [s] (a choice: from none to the length of a window)."""
+"""sigma_1/sigma_0 searched [s] (our choice: from none to the length of a window)."""
 USUAL = 5e-3
 """Usual standard deviation of the pressure lag [s], included in bounds if a record does not show
-the lag (a choice: sensors and lines of a test bench, up to 10 ms)."""
+the lag (our choice: sensors and lines of a test bench, up to 10 ms)."""
 STEP = 1e-4
-"""Relative step of central differences (a choice: error 1e-8)."""
+"""Relative step of central differences (our choice: error 1e-8)."""
 SYMBOLS = {"bristle_stiffness": "σ₀", "bristle_damping": "σ₁", "lag": "τ"}
 """Parameters in addition to those of the Stribeck curve: N/m, N s/m, s."""
 MODEL = 1e-3
@@ -55,9 +55,9 @@ choice, from records of known friction: position steps add up to 3 times the noi
 DETERMINED = 3
 """Number of parameters that the windows determine: stiffness, lag or damping, level."""
 RCOND = 1e-6
-"""Least ratio of singular values of the slopes (a choice: far above rounding)."""
+"""Least ratio of singular values of the slopes (our choice: far above rounding)."""
 ROUNDS = 2
-"""Number of searches, each with windows weighted by their scatter in the last (a choice: the second
+"""Number of searches, each with windows weighted by their scatter in the last (our choice: the second
 changes the weights by a few per cent)."""
 LOGARITHMIC = ("bristle_stiffness", "bristle_damping", "stribeck_speed")
 """Parameters searched by logarithm."""
@@ -440,14 +440,14 @@ class LugreProblem:
 
 
 BLUR = 40e-3
-"""Longest hidden reversal for which a lag is fitted [s] (a choice: ten usual lags)."""
+"""Longest hidden reversal for which a lag is fitted [s] (our choice: ten usual lags)."""
 SURER = 10.0
-"""Gain in Akaike information required to prefer a falling level to a constant one (a choice: very
+"""Gain in Akaike information required to prefer a falling level to a constant one (our choice: very
 strong evidence)."""
 SLID = 0.95
-"""Share of the level that friction must reach for the level to be identifiable (a choice)."""
+"""Share of the level that friction must reach for the level to be identifiable (our choice)."""
 FAR = 3.0
-"""Multiple of the Stribeck speed that the rod must reach (a choice: at most 5 % of F_S - F_C then
+"""Multiple of the Stribeck speed that the rod must reach (our choice: at most 5 % of F_S - F_C then
 remain at exponent 1)."""
 
 

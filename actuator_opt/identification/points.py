@@ -12,34 +12,34 @@ from .balance import Sliding
 from .conditioning import ConditionedRecord, velocities
 
 STEADY, FLOOR = 0.04, 2e-5
-"""Speed tolerance of a plateau, relative and in m/s (choices: viscous friction then changes by at
+"""Speed tolerance of a plateau, relative and in m/s (our choices: viscous friction then changes by at
 most that share; two sensor steps of 10 um in a second)."""
 LASTING = 0.15
 """Least duration of a plateau [s]. Its first and last fifth are excluded, also its samples before
-the settling distance if enough others remain (choices: at 30 Hz five independent samples remain;
+the settling distance if enough others remain (our choices: at 30 Hz five independent samples remain;
 the adjacent ramps reach into the fifths)."""
 ALIKE = 0.06
-"""Relative speed difference within which plateaus merge into one point (a choice: more than
+"""Relative speed difference within which plateaus merge into one point (our choice: more than
 `STEADY`, less than the steps between speeds of a test)."""
 PER_DECADE = 8
-"""Points per decade of speed in a sweep (a choice: a third apart, so that several points show a
+"""Points per decade of speed in a sweep (our choice: a third apart, so that several points show a
 Stribeck part that falls within a decade)."""
 BLURRED = 1.0
 """Periods of the cut-off at both ends of a plateau that the filter mixes with the adjacent ramps (a
 choice: there a step response is within 2 %)."""
 SETTLED = 5e-4
-"""Distance after a reversal from which sliding is steady [m] (a choice: ten breakaway travels of 50
+"""Distance after a reversal from which sliding is steady [m] (our choice: ten breakaway travels of 50
 um). With known bristles it is `SETTLING` times their breakaway travel, if this is more."""
 SLIDES = 2e-4
-"""Least travel of a plateau [m] (a choice: four breakaway travels of 50 um; less may be bristle
+"""Least travel of a plateau [m] (our choice: four breakaway travels of 50 um; less may be bristle
 deflection)."""
 SETTLING = 8.0
-"""Breakaway travels F_S/sigma_0 after which sliding is steady (a choice: 2 e^-8 is below 0.1 %)."""
+"""Breakaway travels F_S/sigma_0 after which sliding is steady (our choice: 2 e^-8 is below 0.1 %)."""
 LEVELS = 0.1
-"""Share of the highest pressure within which pressures are one level (a choice: less than the steps
+"""Share of the highest pressure within which pressures are one level (our choice: less than the steps
 between loads of a test, more than friction itself changes them by)."""
 PRIOR = 8
-"""Weight of the record's usual scatter in that of a point, in independent samples (a choice: some
+"""Weight of the record's usual scatter in that of a point, in independent samples (our choice: some
 points have four)."""
 
 Kind = Literal["plateau", "sweep"]
@@ -306,7 +306,7 @@ def _common_speeds(at: Array, speed: Array, rising: Array) -> tuple[Array, Array
 def _balanced(halves: Sequence[FrictionPoint]) -> FrictionPoint:
     """One point from rising and falling speed with equal weights, so that a lag cancels.
 
-    It cancels to first order only: a quarter of the difference counts as error (a choice).
+    It cancels to first order only: a quarter of the difference counts as error (our choice).
     """
     numbers = np.mean([point[:5] for point in halves], axis=0)
     by_lag = (halves[0].friction - halves[1].friction) / 4

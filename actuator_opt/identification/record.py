@@ -20,7 +20,7 @@ from .column_units import NONE, ColumnUnits
 ABSENT = {"", "-", "--", "na", "n/a", "nan", "-nan", "null", "none", "#n/a", "inf", "-inf", "+inf"}
 """Cells that mark a missing sample, in lower case."""
 _BATCH = 50_000
-"""Lines read at once (a choice: a record of an hour then fits in memory)."""
+"""Lines read at once (our choice: a record of an hour then fits in memory)."""
 _BINARY = re.compile(r"[\x00-\x08\x0e-\x1f\x7f]")
 _ZIP = b"PK\x03\x04"
 _COMMENT = re.compile(r"\s*#(?!n/a)", re.IGNORECASE)
@@ -315,7 +315,7 @@ _HEADER = re.compile(
     r"(?P<name>.*?)\s*(?:\[(?P<square>[^\[\]]*)\]|\((?P<round>(?:[^()]|\([^()]*\))*)\))\s*"
 )
 _LONGEST = 200
-"""Maximum letters of a header cell with a unit (a choice: longer text is not a header)."""
+"""Maximum letters of a header cell with a unit (our choice: longer text is not a header)."""
 _OPTIONAL = ("v", "T")
 """Channels left out if their unit is unsuitable: a column "Speed [rpm]" is another speed."""
 _ABSOLUTE = re.compile(

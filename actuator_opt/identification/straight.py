@@ -16,41 +16,41 @@ from .conditioning import ConditionedRecord
 from .record import Record
 
 TERMS = 8
-"""Number of cosines for a long-run variance (a choice: few enough for noise correlated over an
+"""Number of cosines for a long-run variance (our choice: few enough for noise correlated over an
 eighth of a branch, although bounds are then 18 % wider than with known noise)."""
 PER_TERM = 4
-"""Least degrees of freedom per cosine (a choice: the longest correlation in short records)."""
+"""Least degrees of freedom per cosine (our choice: the longest correlation in short records)."""
 MEMORY = 0.99
-"""Largest correlation of neighbouring residuals allowed for (a choice: beyond it the fit takes the
+"""Largest correlation of neighbouring residuals allowed for (our choice: beyond it the fit takes the
 noise for part of the slope)."""
 FEWEST = 5
-"""Least samples of a branch for a slope (a choice: three degrees of freedom)."""
+"""Least samples of a branch for a slope (our choice: three degrees of freedom)."""
 OUTSTANDING, PART = 10.0, 0.02
 """Least height of a spike over the median of five neighbours: in robust standard deviations, and as
-a share of the range (choices: far outside noise, too little to change a slope)."""
+a share of the range (our choices: far outside noise, too little to change a slope)."""
 
 SHARES = (0.2, 0.8)
 """Shares of the highest force for the slope if the test does not reach the strains or the depth is
-unknown (a choice: the toe and the reversal at the top lie outside)."""
+unknown (our choice: the toe and the reversal at the top lie outside)."""
 BENT = 0.02
-"""Largest change of slope along the straight part (a choice: the chord is then within 1 % of the
+"""Largest change of slope along the straight part (our choice: the chord is then within 1 % of the
 tangents at both ends)."""
 FOLLOWS = 0.3
-"""Least correlation of force and deflection (a choice: it is 0.46 if 90 % of the record is approach
+"""Least correlation of force and deflection (our choice: it is 0.46 if 90 % of the record is approach
 without force)."""
 TOP, BEGUN = 0.9, 0.05
 """Shares of the highest force: a loading ends at the last sample above the first, as slip or
-failure follows; the search for zero begins at the second (choices: both beyond usual noise)."""
+failure follows; the search for zero begins at the second (our choices: both beyond usual noise)."""
 BACK = 0.25
 """Share of the range by which the deflection must return for an unloading, and that lies on either
-side of zero for a specimen bent both ways (choices: both far from noise and from offsets)."""
+side of zero for a specimen bent both ways (our choices: both far from noise and from offsets)."""
 WON = 0.02
 """Share of its work that a loop may gain by noise and coarse samples (a choice as `BENT`)."""
 USUAL = (1e-12, 1e12)
-"""Least and largest range of force [N] and deflection [m] (a choice: far beyond those of any sensor
+"""Least and largest range of force [N] and deflection [m] (our choice: far beyond those of any sensor
 and machine)."""
 CUTS = ((0.0, 1.0), (0.25, 1.0), (0.0, 0.75), (0.5, 1.0), (0.25, 0.75), (0.0, 0.5))
-"""Parts of the range, tested in turn until a part is straight (a choice: the longest first, without
+"""Parts of the range, tested in turn until a part is straight (our choice: the longest first, without
 the toe before without the top)."""
 
 
@@ -420,10 +420,10 @@ def straight(loop: Loop, zeros: Sequence[float], low: float, high: float) -> Str
 
 
 SHARE = 0.999
-"""Share of the velocity's power that counts as motion (a choice: 3 % of the velocity is then left
+"""Share of the velocity's power that counts as motion (our choice: 3 % of the velocity is then left
 out)."""
 ABOVE = 4.0
-"""Multiple of the noise above which the velocity's spectrum shows motion (a choice: white noise
+"""Multiple of the noise above which the velocity's spectrum shows motion (our choice: white noise
 reaches it in one of 55 lines of a single periodogram, hardly ever in the mean of many)."""
 
 

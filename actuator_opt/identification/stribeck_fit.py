@@ -15,9 +15,9 @@ from .doubtful import INSEPARABLE, hidden, misled, spread, unbounded, unequal, w
 from .points import FrictionPoint
 
 STATIC_MOST = 3.0
-"""Largest F_S over the largest friction measured (a choice: a higher F_S is a guess)."""
+"""Largest F_S over the largest friction measured (our choice: a higher F_S is a guess)."""
 SPEEDS, EXPONENTS = (2e-4, 5e-2), (0.5, 2.5)
-"""Search ranges of the Stribeck speed [m/s] and of its exponent (choices: a decade either side of
+"""Search ranges of the Stribeck speed [m/s] and of its exponent (our choices: a decade either side of
 the few mm/s of seals; half a unit beyond the 1 and 2 of the usual laws)."""
 EXPONENT = 2.0
 """Exponent if the points cannot determine it ([MECE5005], [Huang2017] Table 2)."""
@@ -28,10 +28,10 @@ OTHER = 0.5
 """Second exponent that bounds allow for if the exponent is fixed: 0.5 to 1 by Bo and Pavelescu, 1
 by Tustin, 2 by others [ArmstrongHelouvry1994]."""
 DIFFERENT = 0.05
-"""Relative difference above which speeds count as different (a choice: more than
+"""Relative difference above which speeds count as different (our choice: more than
 `points.STEADY`)."""
 MODEL = 1e-3
-"""Error of a point over the largest friction, in addition to its scatter (a choice: no curve fits
+"""Error of a point over the largest friction, in addition to its scatter (our choice: no curve fits
 better)."""
 _LEVELS = (("coulomb", "viscous"), ("static", "stribeck_speed"), ("exponent",))
 """Fitted parameters, in groups that are added in turn."""

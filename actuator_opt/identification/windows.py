@@ -17,27 +17,27 @@ from .conditioning import SLOWEST, ConditionedRecord, velocities, zero_phase
 from .points import SETTLED, settled
 
 BEFORE, AFTER = 0.1, 0.4
-"""Length of a window before and after the rod reverses or starts [s] (a choice: at 30 Hz 26
+"""Length of a window before and after the rod reverses or starts [s] (our choice: at 30 Hz 26
 independent samples, most of them after the reversal)."""
 MOST = 24
-"""Largest number of windows, spread over the record (a choice: twice as many would take twice the
+"""Largest number of windows, spread over the record (our choice: twice as many would take twice the
 time for bounds 30 % narrower)."""
 LAG = 20e-3
-"""Largest pressure lag searched [s] (a choice: five times that of a usual sensor)."""
+"""Largest pressure lag searched [s] (our choice: five times that of a usual sensor)."""
 PER_PERIOD = 12
-"""Least integration steps per period of the cut-off (a choice: a second-order step has an error of
+"""Least integration steps per period of the cut-off (our choice: a second-order step has an error of
 (2 pi/12)^2/12 = 2 % at the cut-off itself)."""
 SAMPLES, LEFT = 2.0, 0.05
 """Independent samples that the deflection distance of the bristles must take, and the share of that
-distance that still counts as rest (choices)."""
+distance that still counts as rest (our choices)."""
 LEAST = 4
-"""Least independent samples of a window (a choice: one more than stiffness, lag and level)."""
+"""Least independent samples of a window (our choice: one more than stiffness, lag and level)."""
 GRAIN = 0.35
 """Least share of the position error due to resolution that shifts all reversals alike (a choice,
 from records of known friction). Relative to the breakaway travel it is an error of the bristles'
 stiffness; divided by the speed there, an error of the lag."""
 LASTING = 0.05
-"""Least duration of motion in one direction [s] (a choice: three independent samples at 30 Hz)."""
+"""Least duration of motion in one direction [s] (our choice: three independent samples at 30 Hz)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
