@@ -329,7 +329,10 @@ class _Integrator:
 
 
 def _equations(casadi: Any, compiled: Compiled) -> dict[str, Any]:
-    """Rates of the states per sample, for CVODES. Each state is in units of its tolerance, because CVODES has a single tolerance."""
+    """Rates of the states per sample, in the form that CVODES needs.
+
+    Each state is in units of its tolerance, because CVODES has a single tolerance for all.
+    """
     system, unit = compiled.system, compiled.tolerances
     free, rates = translate([state.rate for state in system.states])
 

@@ -344,7 +344,7 @@ class RecordFitProblem:
         return float(lags[int(np.argmin(np.where(enough, cost, np.inf)))])
 
     def _best_guess(self, x: Array) -> Array:
-        """Improve the initial values: apply the best trial factor to one parameter after another."""
+        """Improve the initial values: apply the best trial factor to each parameter in turn."""
         best, least = x, self._likelihood_cost(x)
         for k, parameter in enumerate(self.parameters):
             for factor in GUESSES if parameter.positive else ():
