@@ -140,7 +140,7 @@ def check_signs(slidings: Sequence[Sliding], bench: Bench, *, mass: float, name:
     Raises
     ------
     InputError
-        names the error that explains the record, if any does. If several do, the one with the least
+        names the error that explains the record, if any does. If several do, the error with the least
         friction is named; the sign of x, which does not change the size of the friction, comes last
     """
     share = opposing_share(slidings)

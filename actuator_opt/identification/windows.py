@@ -69,7 +69,7 @@ class Windows:
     grain : position error due to resolution that shifts all reversals alike [m]
     noise : position error due to white sensor noise, independent in every reversal [m]
     sample_time : sample time of the record [s]
-    quick : whether the rod is too fast in all windows
+    quick : whether the rod is too fast in every window
     """
 
     velocity: Array
@@ -104,8 +104,8 @@ class Windows:
     def resolved(self, travel: float) -> Windows:
         """Ignore windows whose rod covers `travel` in under `SAMPLES` independent samples.
 
-        The filter blurs such fast motion, which bends the bristles. If the rod is too fast in all
-        windows, all are kept.
+        The filter blurs such fast motion, which bends the bristles. If the rod is too fast
+        everywhere, every window is kept.
         """
         place = np.cumsum(self.velocity, axis=-1) * self.step
         distance = np.abs(place - place[:, self.turn, None])[:, self.turn :]
