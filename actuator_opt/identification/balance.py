@@ -140,8 +140,9 @@ def check_signs(slidings: Sequence[Sliding], bench: Bench, *, mass: float, name:
     Raises
     ------
     InputError
-        names the error that explains the record, if any does. If several do, the error with the least
-        friction is named; the sign of x, which does not change the size of the friction, comes last
+        names the error that explains the record, if any does. If several do, the error that leaves
+        the least friction is named. A wrong sign of x is named last, as it does not change the size
+        of the friction
     """
     share = opposing_share(slidings)
     slides = any(_slides(sliding) for sliding in slidings)

@@ -37,13 +37,13 @@ class Specimen:
     span : distance L between the supports [m]
     outer_diameter, inner_diameter : diameters of a round section [m]
     second_moment : I about the neutral axis, in place of the diameters [m^4]; can be from
-    `equivalent_second_moment`
+        `equivalent_second_moment`
     depth : height of the section given by `second_moment`, in the plane of bending [m]; strains are
-    unknown without it
+        unknown without it
     shear_modulus : G of a round section [Pa]
     poissons_ratio : Poisson's ratio for the shear coefficient of a round section [-]
     shear_compliance : 1/(kappa G A) with the shear coefficient kappa and the area A, in place of
-    `shear_modulus` [1/N]
+        `shear_modulus` [1/N]
     local_compliance : C, deflection per force due to indentation, supports and frame [m/N]
     expected_modulus : modulus of the material, for comparison [Pa]
     """
@@ -194,13 +194,13 @@ class BendingResult(Displayed):
     modulus : E, corrected for known shear and indentation [Pa]
     taken_off : names of the corrections made: "shear", "dents"
     shear_share : 12 E I/(kappa G A L^2), the ratio of shear deflection to bending deflection; None
-    if unknown
+        if unknown
     strains : strains of the outer fibre between which the slope is determined; None if the depth is
-    unknown
+        unknown
     deflections : deflections between which the slope is determined, from zero force [m]
     bent : change of the slope along the straight part, divided by the slope
     hysteresis : work lost, divided by the work done on loading, mean of the cycles; None if not
-    available
+        available
     cycles : number of loadings or of unloadings
     samples : number of samples in the straight part
     doubts : reasons to doubt the modulus
@@ -263,7 +263,7 @@ def bending(record: Record, specimen: Specimen) -> BendingResult:
     Parameters
     ----------
     record : record with channels F_L and w, with any offsets. The specimen is unloaded at the
-    start; both channels increase or both decrease under load
+        start; both channels increase or both decrease under load
     specimen : span and section, and shear and indentation if known
 
     Returns

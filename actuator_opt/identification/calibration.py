@@ -106,7 +106,7 @@ class SealParameter:
     name : key in the design: friction_coefficient, breakaway_ratio, stribeck_speed or
         viscous_friction
     known : value and confidence interval for the cylinder, SI; for friction_coefficient, the factor
-    on the values of the design
+        on the values of the design
     shares : value of each seal divided by that of the cylinder, by PATH
     before : value in the design, stated or from the compound, by PATH
     source : name of the fit that gives the value

@@ -72,7 +72,7 @@ def clean(values: Array, step: float, *, pressure: bool) -> tuple[Array, Quality
     values : raw samples, NaN where missing
     step : time step [s]
     pressure : whether the channel is a pressure. Its smallest value then does not count as clipped,
-    because a chamber open to the tank stays at that value
+        because a chamber open to the tank stays at that value
 
     Returns
     -------

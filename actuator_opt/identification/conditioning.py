@@ -166,7 +166,7 @@ def condition(
     ----------
     record : raw record
     cutoff, order : cut-off of the zero-phase Butterworth filter [Hz], and order of each of its two
-    passes
+        passes
     compensated : whether both passes together have -3 dB at the cut-off; if not, they have -6 dB
     pressure_lag : time lag of the pressures to correct [s]
     before : the same record with other settings, whose cleaned channels are used again

@@ -76,7 +76,7 @@ class LuGreFit:
     Parameters
     ----------
     parameters : fitted parameters by name: those of the Stribeck curve, `bristle_stiffness`,
-    `bristle_damping`, and the `lag` of the pressures
+        `bristle_damping`, and the `lag` of the pressures
     held : fixed parameters
     count : number of windows
     misfit : standard deviation of measured friction from the model in the windows [N]
@@ -505,7 +505,7 @@ def fit_lugre(
     slidings, motion : friction along the record, and the conditioned record with its filter
     points : points of steady sliding
     stribeck : the curve through the points, where the search starts; or the reason why it is
-    missing
+        missing
     lag_known : whether to fit sigma_1; if not, the lag of the pressures is fitted and sigma_1 is 0
     settling : distance after a reversal beyond which sliding is steady [m]
 

@@ -394,11 +394,11 @@ def parse_record(
     text : text of the file
     name : name of the file, for messages
     columns : heading by channel, for headings that are not known names; ``"Channel 3 [bar]"`` also
-    states the unit of a column ``Channel 3`` that has none
+        states the unit of a column ``Channel 3`` that has none
     channels : channels to read, including ``t``
     units : units of columns whose heading states none
     needed : channels that must have a unit, besides ``t`` and those of `columns`. Other channels
-    without a unit are ignored. Default: all channels but ``v`` and ``T``
+        without a unit are ignored. Default: all channels but ``v`` and ``T``
 
     Returns
     -------

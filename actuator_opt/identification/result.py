@@ -32,11 +32,11 @@ class Settings:
     ----------
     cutoff, order, compensated : settings of the zero-phase filter, as for `condition`
     mass : moving mass on the actuator's side of the force sensor [kg]; default: rod, piston and
-    fastening, and also the load if there is no force channel
+        fastening, and also the load if there is no force channel
     load_force : force of the load on the rod, if no channel measures it [N]
     pressure_lag : lag of the pressures [s]; None to fit it to the record
     bootstrap : number of resamples for the confidence intervals; 0 for intervals of the linearised
-    model
+        model
     seed : seed of the random draws of the resampling
     """
 
@@ -70,16 +70,16 @@ class Identification(Displayed):
     mass : moving mass that was used, on the actuator's side of the force sensor [kg]
     pressure_lag : lag by which the pressures were corrected [s]
     lag_seen : lag of the pressures as fitted before any correction [s]; None if not fitted. Its
-    confidence limits are infinite if the record does not show the lag
+        confidence limits are infinite if the record does not show the lag
     spectrum : spectrum of the motion, which shows how much motion and noise the filter's cut-off
-    removes
+        removes
     mean, largest : mean |F_r| in sliding, without pre-sliding, and largest |F_r| of the record [N]
     slides : whether the rod slides; if not, `mean` is the mean of the whole record
     area : piston area of the cap end [m^2]
     points : points of steady sliding
     coefficient, stribeck, lugre : results, each replaced by a text with the reason if it is missing
     fits : fits of the secant damping as a function of speed by name, or the reason why one is
-    missing
+        missing
     notes : notes on samples that were left out, repaired or assumed
     """
 

@@ -444,7 +444,7 @@ class Spectrum(NamedTuple):
     ----------
     motion : frequency below which 99.9 % of the velocity's power lies
     floor : frequency, above that of the motion, at which the position becomes noise; 0 if it does
-    not
+        not
     kept : share of the velocity's power that passes the filter
     """
 

@@ -52,20 +52,20 @@ class Windows:
     ----------
     velocity : velocity of the rod: for each window, one of the `options`
     options : velocities at the cut-off of the record and at lower cut-offs (cut-offs, lanes,
-    samples)
+        samples)
     turn : index of the sample at which the rod reverses or starts
     change : pressure, minus the reference pressure [Pa]
     hydraulic : hydraulic force; it has `margin` extra samples at both ends, so that it can be
-    shifted in time
+        shifted in time
     resisting : sum of load and inertia force
     step : time between samples [s]
     sections, reach : filter of the record, computed for this step
     kept : indices of the samples in use, which are independent and not at the ends
     steady : 0 where points of steady sliding already give the same information, else 1 (lanes,
-    kept)
+        kept)
     judged : weights of the samples in use: `steady`, but 0 in windows in which the rod is too fast
     blur : time for which the position resolution q hides a reversal with acceleration a: sqrt(2
-    q/a) [s]
+        q/a) [s]
     grain : position error due to resolution that shifts all reversals alike [m]
     noise : position error due to white sensor noise, independent in every reversal [m]
     sample_time : sample time of the record [s]

@@ -228,8 +228,7 @@ class Linear:
             with np.errstate(all="ignore"):
                 solution = root(residual, start, jac=slopes, method="hybr", tol=1e-12)
             remainder = residual(solution.x)
-        # the equations cannot be evaluated at some trial point
-        except (ArithmeticError, ValueError):
+        except (ArithmeticError, ValueError):  # no values at some trial point
             return None
         # also rejects NaN
         return point(solution.x) if np.max(np.abs(remainder)) < RESTING else None
@@ -350,7 +349,7 @@ def _grow(poles: Array) -> bool:
 def margins(loop: OpenLoop, law: ControllerLaw) -> LoopMargins:
     """Gain and phase margin of L(i omega) C(i omega).
 
-    The closed-loop poles decide whether it is stable.
+    The closed-loop poles decide whether the loop is stable.
     """
 
     def response(omega: Array) -> Array:
@@ -384,8 +383,8 @@ def least(loops: Sequence[OpenLoop]) -> tuple[Ultimate, OpenLoop]:
 
 
 MARGIN = {"p": 2.0, "pi": 3.0}
-"""Gain margin for tuning by margins (our choice). A P controller gets the default of a design, half
-the ultimate gain. An integral part costs phase, so its margin is larger."""
+"""Gain margin for tuning by margins (our choice). A P controller gets the design's
+default, which is half the ultimate gain. An integral part costs phase, so its margin is larger."""
 PHASE = radians(60.0)
 """Phase margin that counts as sufficient (our choice)."""
 MARGIN_SHARE = 0.9

@@ -567,7 +567,7 @@ class Fit:
     parameters : fitted parameters by name
     correlations : between the errors of two parameters, by their names
     before, after : comparisons of the record with the simulation at the initial and at the fitted
-    values. If a lag is fitted, the best lag is used in both
+        values. If a lag is fitted, the best lag is used in both
     doubts : reasons to doubt the result that its numbers do not show
     runs, seconds : number of simulations, and computing time
     """
