@@ -93,8 +93,8 @@ KEYS = ("friction_coefficient", "breakaway_ratio", "stribeck_speed", "viscous_fr
 _FIT_NAMES = ("coulomb", "static", "stribeck_speed", "viscous")
 """Names of the same parameters in the fits."""
 RISEN = 0.05
-"""Share by which friction at the record's speed exceeds that at high speed, above which this is
-reported (our choice: the error of a good record)."""
+"""Share by which the design's friction at the record's speed exceeds its Coulomb part, above which
+this is reported (our choice: the error of a good record)."""
 
 
 @dataclass(frozen=True, slots=True)

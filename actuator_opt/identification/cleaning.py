@@ -26,10 +26,9 @@ LEVELS = 20_000
 """Number of samples from which the resolution of a sensor is estimated (our choice: several for
 each step of a fine sensor)."""
 CROWD, GARBAGE = 0.15, 0.5
-"""Shares of spikes in a window: above the first, the other samples within one window are doubtful;
-above the second, they are useless (our choices). With 5 % random stray samples the second share is
-exceeded once in 1e10 samples, with 10 % once in 1e6. Noise as high as the range gives three
-quarters of spikes."""
+"""Shares of spikes in a window above which the other samples are doubtful (first share) or useless
+(second share; our choices). With 5 % random stray samples the second share is exceeded once in 1e10
+samples, with 10 % once in 1e6. Noise as high as the range gives three quarters of spikes."""
 HELD = 6
 """Number of successive equal samples at an end of the channel's range that count as clipped (our
 choice: a fifth of a 30 Hz period at 1 kHz; the filter removes shorter runs)."""

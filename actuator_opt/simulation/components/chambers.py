@@ -27,8 +27,8 @@ from . import valve
 from .circuit import Circuit
 
 DEEPEST = -12.0
-"""Travel into an end stop at which 6e-6 of half the dead volume remains, in units of half the dead
-volume's length (our choice)."""
+"""Deepest travel into an end stop, divided by half the length of the dead volume (our choice). Of
+that half of the dead volume, 6e-6 then remains."""
 FLOOR = 1e-6
 """Lower limit of the absolute pressure in the formulas for oil and air [Pa], to guard against
 rounding."""

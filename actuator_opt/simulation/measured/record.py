@@ -332,8 +332,8 @@ class SimulatedSignal:
 def beside(moment: Array, measured: Array, time: Array, values: Array) -> Array:
     """A simulated signal at measured samples.
 
-    Close to a jump, it is the value from before to after the jump that is nearest to the measured
-    value.
+    Close to a jump, any value between those before and after the jump may apply. The value nearest
+    to the measured value is used.
     """
     simulated = SimulatedSignal(time, values)(moment)
     half = 0.5 * float(np.median(np.diff(moment)))
