@@ -342,7 +342,7 @@ class LugreProblem:
         return BENDS * level / values["bristle_stiffness"]
 
     def changes(self, x: Array, chain: Array, misfit: Array) -> dict[str, float]:
-        """Changes of the parameters if the windows had the given misfit [N] instead of their own."""
+        """Changes of the parameters if the windows had the given misfit [N]."""
         before = self.residuals_at(x)
         weighted = (misfit / self.spread).reshape(-1)
         change = np.zeros_like(before)
