@@ -13,30 +13,31 @@ from ..studies.bench import Bench
 from .conditioning import ConditionedRecord, RecordSection
 
 RESTING, CREEP = 3.0, 2e-5
-"""Speeds below which the rod may be at rest: in standard deviations of the velocity's noise, and at
-least in m/s (choices: 0.3 % of the samples at rest are faster; two steps of 10 um in a second)."""
+"""Speeds below which the rod may be at rest: in standard deviations of the velocity noise, and in
+m/s (our choices: only 0.3 % of the samples at rest are faster; two steps of 10 um in a second). The
+larger speed is used."""
 OPPOSED = 0.5
-"""Share of the friction's power that must oppose motion; less indicates a wrong sign (a choice: a
-quarter of the power then drives the rod, more than noise and offsets explain)."""
+"""Share of the friction's power that must oppose the motion; a smaller share indicates a wrong sign
+(our choice: a quarter of the power then drives the rod, more than noise and offsets explain)."""
 SLIDES = 5e-4
-"""Travel of a section that counts as sliding [m] (a choice: ten breakaway travels of 50 um; below
-it bristles return much of their energy)."""
+"""Travel from which a section counts as sliding [m] (our choice: ten breakaway travels of 50 um;
+below it the bristles return much of their energy)."""
 SURE = 0.8
-"""Share of the power that must oppose motion after a correction for the correction to be suggested
-(a choice: a tenth of the power then still drives the rod)."""
+"""Share of the friction's power that must oppose the motion after a correction of the record, for
+the correction to be suggested (our choice: a tenth of the power then still drives the rod)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sliding:
-    """Friction along one section of a record, SI; arrays (samples).
+    """Friction along one section of a record, SI; arrays are (samples).
 
     Parameters
     ----------
-    piece : the motion
-    hydraulic : p_1 A_1 - p_2 A_2 [N]
-    resisting : F_L + m a [N], the part that is not friction
-    pressure : the higher of both chambers, gauge [Pa]
-    resting : velocity below which the rod may be at rest [m/s]
+    piece : motion in the section
+    hydraulic : hydraulic force p_1 A_1 - p_2 A_2 [N]
+    resisting : F_L + m a [N], the part of the hydraulic force that is not friction
+    pressure : the higher chamber pressure, gauge [Pa]
+    resting : speed below which the rod may be at rest [m/s]
     """
 
     piece: RecordSection
@@ -47,20 +48,21 @@ class Sliding:
 
     @property
     def friction(self) -> Array:
-        """F_r = p_1 A_1 - p_2 A_2 - F_L - m a [N]."""
+        """Friction force F_r = p_1 A_1 - p_2 A_2 - F_L - m a [N]."""
         return self.hydraulic - self.resisting
 
     @property
     def moving(self) -> Array:
-        """Samples at which the rod certainly moves."""
+        """Flags for samples at which the rod certainly moves."""
         return self.piece.sound & (np.abs(self.piece.velocity) > self.resting)
 
 
 def velocity_noise(motion: ConditionedRecord) -> float:
-    """Standard deviation of the velocity due to noise and resolution of the position [m/s].
+    """Standard deviation of the velocity due to noise and resolution of the position sensor [m/s].
 
-    White noise s of a sample, filtered to f_c and differentiated: s_v = 2 pi f_c s sqrt(2 f_c dt/3)
-    [derived]; a sensor step q counts as q/sqrt 12.
+    White noise with a standard deviation s of a sample, filtered at the cut-off f_c and
+    differentiated, gives s_v = 2 pi f_c s sqrt(2 f_c dt/3) with the time step dt [derived]. A
+    sensor step q counts as s = q/sqrt 12.
     """
     quality = motion.quality["x"]
     sample = max(quality.noise, quality.resolution / np.sqrt(12))
@@ -71,20 +73,21 @@ def velocity_noise(motion: ConditionedRecord) -> float:
 def slide(
     motion: ConditionedRecord, bench: Bench, *, mass: float, load_force: float | None
 ) -> list[Sliding]:
-    """Friction along every section of a record.
+    """Friction along every section of a record, from the force balance.
 
-    F_r = p_1 A_1 - p_2 A_2 - F_L - m a, [Huang2017] eq. 1; areas include the growth of the bore.
+    F_r = p_1 A_1 - p_2 A_2 - F_L - m a, [Huang2017] eq. 1. The areas include the growth of the
+    bore.
 
     Parameters
     ----------
     motion : conditioned record; without a channel p2 the rod end is vented
-    bench : the actuator's areas
-    mass : moving mass inside the force sensor [kg]
-    load_force : force of the load if no channel F_L measures it [N]
+    bench : the actuator, which gives the areas
+    mass : moving mass on the actuator's side of the force sensor [kg]
+    load_force : force of the load, if no channel F_L measures it [N]
 
     Returns
     -------
-    friction by section
+    friction of each section
     """
     resting = max(RESTING * velocity_noise(motion), CREEP)
     return [_sliding(piece, bench, mass, load_force or 0.0, resting) for piece in motion.pieces]
@@ -108,10 +111,10 @@ def _sliding(
 
 
 def opposing_share(slidings: Sequence[Sliding]) -> float:
-    """Share of the friction's power that opposes motion: 1 for all of it, -1 for none.
+    """Share of the friction's power that opposes motion: 1 if all does, -1 if all drives the rod.
 
-    A section that hardly slides counts by the power of its changes, dF dx: friction then acts as a
-    spring.
+    A section that hardly slides counts by the power of its changes of friction, dF dx, because
+    friction then acts as a spring.
     """
     power = np.concatenate([_power(sliding) for sliding in slidings])
     total = float(np.sum(np.abs(power)))
@@ -119,7 +122,7 @@ def opposing_share(slidings: Sequence[Sliding]) -> float:
 
 
 def _power(sliding: Sliding) -> Array:
-    """F v of the moving samples if the section slides, else dF v."""
+    """Power of the friction: F v of moving samples if the section slides, else dF v."""
     velocity = sliding.piece.velocity
     if _slides(sliding):
         return (sliding.friction * velocity)[sliding.moving]
@@ -127,18 +130,19 @@ def _power(sliding: Sliding) -> Array:
 
 
 def _slides(sliding: Sliding) -> bool:
-    """Whether the travel of a section counts as sliding."""
+    """Whether the section travels far enough to count as sliding."""
     return float(np.ptp(sliding.piece["x"])) > SLIDES
 
 
 def check_signs(slidings: Sequence[Sliding], bench: Bench, *, mass: float, name: str) -> None:
-    """Reject a record whose friction drives the rod, which means a channel has the wrong sign.
+    """Reject a record whose friction drives the rod, because a channel then has the wrong sign.
 
     Raises
     ------
     InputError
-        names the error that explains the record, if any: of several that with the least friction,
-        so x last, as its sign does not change the size of the friction
+        names the error that explains the record, if any does. If several do, the error that leaves
+        the least friction is named. A wrong sign of x is named last, as it does not change the size
+        of the friction
     """
     share = opposing_share(slidings)
     slides = any(_slides(sliding) for sliding in slidings)
@@ -171,18 +175,18 @@ _ERRORS = {
     ),
     "p": ("p1 and p2 seem swapped", "swap them, e.g. with --column p1=... --column p2=..."),
 }
-"""Errors of a single channel: message and remedy."""
+"""Possible errors of a single channel: message and remedy."""
 
 
 def _mean_friction(slidings: Sequence[Sliding]) -> float:
-    """Mean size of the friction [N]."""
+    """Mean absolute friction [N]."""
     return float(
         np.mean(np.concatenate([np.abs(sliding.friction[sliding.moving]) for sliding in slidings]))
     )
 
 
 def _corrected(sliding: Sliding, bench: Bench, mass: float, error: str) -> Sliding:
-    """The friction without one of the `_ERRORS`."""
+    """The friction after correcting one of the `_ERRORS`."""
     piece = sliding.piece
     channels = dict(piece.channels)
     if error == "p" and "p2" in channels:

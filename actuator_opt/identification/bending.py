@@ -1,9 +1,9 @@
-"""Modulus from a bending test: slope of force over deflection in its straight part, with bounds.
+"""Modulus from a bending test: slope of force over deflection in its straight part.
 
-The straight part lies between the strains 0.0005 and 0.0025 of the outer fibre, as the chord of
+The straight part lies between the strains 0.0005 and 0.0025 of the outer fibre, as for the chord of
 [ISO178] and [ISO14125]. Strain counts from the point where the straight line meets zero force (toe
-compensation of [ASTM-D790], annex A1). [ASTM-D7264] takes 0.001 to 0.003; ASTM D790 leaves the
-chord open and prefers the steepest tangent, which noise makes too steep.
+compensation of [ASTM-D790], annex A1). [ASTM-D7264] uses 0.001 to 0.003. ASTM D790 does not fix the
+chord and prefers the steepest tangent, which noise makes too steep.
 """
 
 from __future__ import annotations
@@ -25,26 +25,28 @@ from .straight import BENT, SHARES, Loop, Straight, Term, by_way, mean, scatter,
 
 Part = Literal["rod", "barrel"]
 POISSON = 0.3
-"""Default Poisson's ratio for the shear coefficient (a choice: from 0 to 0.5 the coefficient of a
-round section changes by 9 %)."""
+"""Default Poisson's ratio for the shear coefficient (our choice: between 0 and 0.5 the coefficient
+of a round section changes by only 9 %)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Specimen:
-    """The specimen, SI: a round bar or tube, or any section by its second moment.
+    """The specimen, SI: a round bar or tube, or any section given by its second moment of area.
 
     Parameters
     ----------
-    span : L between the supports [m]
-    outer_diameter, inner_diameter : of the round section [m]
-    second_moment : I about the neutral axis in place of the diameters [m^4], also from
+    span : distance L between the supports [m]
+    outer_diameter, inner_diameter : diameters of a round section [m]
+    second_moment : I about the neutral axis, in place of the diameters [m^4]; can be from
         `equivalent_second_moment`
-    depth : height of that section in the plane of bending [m]; without it strains are unknown
-    shear_modulus : G of the round section [Pa]
-    poissons_ratio : of its shear coefficient [-]
-    shear_compliance : 1/(kappa G A), in place of `shear_modulus` [1/N]
-    local_compliance : C, deflection per force by indentation, supports and frame [m/N]
-    expected_modulus : the material's value, for comparison [Pa]
+    depth : height of the section given by `second_moment`, in the plane of bending [m]; strains are
+        unknown without it
+    shear_modulus : G of a round section [Pa]
+    poissons_ratio : Poisson's ratio for the shear coefficient of a round section [-]
+    shear_compliance : 1/(kappa G A) with the shear coefficient kappa and the area A, in place of
+        `shear_modulus` [1/N]
+    local_compliance : C, deflection per force due to indentation, supports and frame [m/N]
+    expected_modulus : modulus of the material, for comparison [Pa]
     """
 
     span: float
@@ -98,12 +100,12 @@ class Specimen:
 
     @property
     def height(self) -> float | None:
-        """Depth in the plane of bending [m]."""
+        """Depth of the section in the plane of bending [m]; None if unknown."""
         return self.outer_diameter or self.depth
 
     @property
     def shear(self) -> float | None:
-        """1/(kappa G A) [1/N], if known."""
+        """Shear compliance 1/(kappa G A) [1/N]; None if unknown."""
         outer, inner = self.outer_diameter, self.inner_diameter
         if self.shear_modulus is None or outer is None:
             return self.shear_compliance
@@ -112,23 +114,25 @@ class Specimen:
         return float(1 / (kappa * self.shear_modulus * area))
 
     def deflection(self, strain: float) -> float | None:
-        """Mid-span deflection at a strain of the outer fibre, e L^2/(6 D) [ISO178], [m]."""
+        """Mid-span deflection [m] at a strain e: e L^2/(6 D) for the depth D [ISO178]."""
         return None if self.height is None else strain * self.span**2 / (6 * self.height)
 
 
 def specimen_of(subject: PreparedDesign, part: Part, span: float) -> Specimen:
-    """A part of a design as a bar, with its moduli if it is of one metal, G = E/(2 (1 + nu)).
+    """A part of a design as a specimen.
+
+    The moduli are set if the part is of a single metal; its shear modulus is G = E/(2 (1 + nu)).
 
     Parameters
     ----------
     subject : the design
-    part : "rod" or "barrel"
-    span : between the supports [m]
+    part : name of the part, "rod" or "barrel"
+    span : distance between the supports [m]
 
     Raises
     ------
     InputError
-        no such part
+        the design has no such part
     """
     if part not in ("rod", "barrel"):
         raise InputError(Diagnostic(f'part "{part}"', "write rod or barrel"))
@@ -159,42 +163,48 @@ def _refuse(message: str, remedy: str) -> None:
 STRAINS = (0.0005, 0.0025)
 """Strains between which the slope is determined [ISO178], [ISO14125]."""
 SHORT = 0.5
-"""Least share of the strain range that a test must cover to use strain limits (a choice)."""
+"""Share of the strain range that a test must cover, for the strains to limit the straight part (our
+choice)."""
 SLENDER = 16.0
-"""Least span over depth [ISO178], [ASTM-D790]."""
+"""Smallest ratio of span to depth [ISO178], [ASTM-D790]."""
 SHEARED = 0.1
-"""Shear deflection relative to bending above which the modulus depends on it (a choice)."""
+"""Ratio of shear deflection to bending deflection above which it is reported that the modulus
+depends on shear (our choice)."""
 APART = 0.05
-"""Difference of loading and unloading slope that indicates friction or creep (a choice)."""
+"""Relative difference between the slopes of loading and unloading that indicates friction or creep
+(our choice)."""
 NOISY = 0.02
-"""Scatter 1 - r^2 at which noise of the deflection lowers the slope noticeably (a choice)."""
+"""Scatter 1 - r^2 above which noise of the deflection lowers the slope noticeably (our choice)."""
 STATED = 0.2
-"""Difference from the material's modulus at which part, span and units are questioned (a choice: an
-error of the span counts three times, one of the diameter four)."""
+"""Relative difference from the material's modulus above which part, span and units are questioned
+(our choice: an error of the span enters threefold, an error of the diameter fourfold)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BendingResult(Displayed):
     """Results of a bending test, SI.
 
-    The bounds cover the record only. An error of the span counts three times in addition, an error
-    of a solid bar's diameter four times.
+    The confidence intervals only cover the scatter of the record. The relative error of the span
+    enters threefold in addition, that of a solid bar's diameter fourfold.
 
     Parameters
     ----------
-    slope : k_0, mean of loading and unloading [N/m]
+    slope : k_0, mean of the slopes of loading and unloading [N/m]
     loading, unloading : slopes of loading and unloading [N/m]; None if not in the record
-    as_published : E = k_0 L^3/(48 I), uncorrected [Pa]
-    modulus : E corrected for known shear and indentation [Pa]
-    taken_off : corrections made: "shear", "dents"
-    shear_share : 12 E I/(kappa G A L^2), deflection by shear over that by bending; None if unknown
-    strains : of the outer fibre between which the slope is taken; None if the depth is unknown
-    deflections : from zero force, between which the slope is taken [m]
-    bent : change of slope along the straight part over the slope
-    hysteresis : work lost over work done on loading, mean of the cycles; None if not available
-    cycles : number of loadings or unloadings
-    samples : number in the straight part
-    doubts : caveats of the modulus
+    as_published : E = k_0 L^3/(48 I) without corrections [Pa]
+    modulus : E, corrected for known shear and indentation [Pa]
+    taken_off : names of the corrections made: "shear", "dents"
+    shear_share : 12 E I/(kappa G A L^2), the ratio of shear deflection to bending deflection; None
+        if unknown
+    strains : strains of the outer fibre between which the slope is determined; None if the depth is
+        unknown
+    deflections : deflections between which the slope is determined, from zero force [m]
+    bent : change of the slope along the straight part, divided by the slope
+    hysteresis : work lost, divided by the work done on loading, mean of the cycles; None if not
+        available
+    cycles : number of loadings or of unloadings
+    samples : number of samples in the straight part
+    doubts : reasons to doubt the modulus
     """
 
     record: Record
@@ -215,7 +225,7 @@ class BendingResult(Displayed):
     doubts: tuple[str, ...]
 
     def to_dict(self) -> dict[str, Any]:
-        """As plain data for JSON, SI; a missing value is null."""
+        """Plain data for JSON, SI; a missing value is null."""
         height = self.specimen.height
         return {
             "record": self.record.name,
@@ -243,28 +253,29 @@ def _percent(share: float) -> str:
 
 
 def bending(record: Record, specimen: Specimen) -> BendingResult:
-    """The bending modulus of a three-point bending test.
+    """The bending modulus from a three-point bending test.
 
-    Slope of force over deflection in the straight part, each branch with its own offsets, mean of
-    loading and unloading. Support friction proportional to the load makes one slope too steep by as
-    much as the other is too flat. The 95 % bounds allow for correlated noise, `straight.term`, and
-    for the change of slope along the part.
+    The slope of force over deflection is fitted in the straight part. Each loading or unloading has
+    its own offsets; loading and unloading have equal weight. Support friction proportional to the
+    load makes one slope too steep by as much as it makes the other too flat. The 95 % confidence
+    intervals allow for correlated noise (`straight.term`) and for the change of slope along the
+    straight part.
 
     Parameters
     ----------
-    record : with channels F_L, w, of an initially unloaded specimen; both increase or both decrease
-        under load; any offsets
-    specimen : span, section, and known shear and indentation
+    record : record with channels F_L and w, with any offsets. The specimen is unloaded at the
+        start; both channels increase or both decrease under load
+    specimen : span and section, and shear and indentation if known
 
     Returns
     -------
-    slope, modulus as published and corrected for shear and indentation
+    slope, published modulus, and modulus corrected for shear and indentation
 
     Raises
     ------
     InputError
-        a channel missing or constant, too few samples, a wrong sign, or a stated compliance above
-        the measured compliance
+        a channel is missing or constant, there are too few samples, a sign is wrong, or a stated
+        compliance exceeds the measured compliance
 
     References
     ----------
@@ -283,7 +294,7 @@ def bending(record: Record, specimen: Specimen) -> BendingResult:
 
 
 def _result(loop: Loop, specimen: Specimen, straight_part: Straight) -> BendingResult:
-    """Properties of the specimen from the straight part, without caveats."""
+    """Properties of the specimen from the straight part; the doubts are added later."""
     record, parts, ends = loop.record, straight_part.parts, straight_part.ends
     slope = _parameter(slopes(parts, 1, record), straight_part.unsure)
     terms = by_way(parts, 1)
@@ -321,7 +332,11 @@ def _result(loop: Loop, specimen: Specimen, straight_part: Straight) -> BendingR
 
 
 def _range(loop: Loop, specimen: Specimen) -> tuple[list[float], float, float, bool]:
-    """Zeros of the branches, the range of deflection from zero, whether strains limit the range."""
+    """Limits of the range of deflection in which the straight part is searched for.
+
+    Returns the deflections at zero force of all branches, the limits relative to them, and whether
+    strains determine the limits.
+    """
     zeros = loop.begins()
     first, last = (specimen.deflection(strain) for strain in STRAINS)
     low = high = 0.0
@@ -338,7 +353,7 @@ def _range(loop: Loop, specimen: Specimen) -> tuple[list[float], float, float, b
 
 
 def _parameter(term: Term, unsure: float) -> Parameter:
-    """A slope with its bounds, widened by its change along the part."""
+    """A slope with its confidence interval, widened by the change of slope along the part."""
     error = float(np.sqrt(term.variance))
     half = quantile(term.freedom) * error + unsure * abs(term.value)
     identifiable = half <= WEAK * abs(term.value)
@@ -346,7 +361,7 @@ def _parameter(term: Term, unsure: float) -> Parameter:
 
 
 def _modulus(slope: Parameter, specimen: Specimen, *, published: bool = False) -> Parameter:
-    """The modulus for a slope and its bounds."""
+    """The modulus that follows from a slope, with its confidence interval."""
 
     def modulus(stiffness: float) -> float:
         return float(
@@ -369,7 +384,7 @@ def _modulus(slope: Parameter, specimen: Specimen, *, published: bool = False) -
 def _doubts_of_record(
     result: BendingResult, *, by_strain: bool, cut: bool, noise: float
 ) -> list[str]:
-    """Caveats of the slope."""
+    """Reasons to doubt the slope."""
     doubts = []
     for name, parameter in (("slope", result.slope), ("modulus", result.modulus)):
         if not parameter.identifiable:
@@ -419,7 +434,7 @@ def _doubts_of_record(
 
 
 def _doubts_of_specimen(result: BendingResult) -> list[str]:
-    """Caveats of shear and indentation."""
+    """Reasons to doubt the modulus that come from shear and indentation."""
     doubts = []
     specimen, share = result.specimen, result.shear_share
     height, stated = specimen.height, specimen.expected_modulus

@@ -1,22 +1,25 @@
-"""Bounds by resampling instead of the linearised model: a wild bootstrap of points and windows.
+"""Confidence intervals by resampling (a wild bootstrap), instead of from the linearised model.
 
-Points of steady sliding are few, and a single point often determines a parameter: the slowest F_S,
-the fastest sigma_2. Drawing points with replacement would lose that point, so residuals are drawn
-instead [Wu1986]. The noise of a point has the variance E[noise_i^2 | residuals] = r_i^2 + h_i s^2
-for independent noise of unit weight: r_i its residual, h_i its leverage, s^2 the sum of squares
-over n - p [derived]. Where the fit follows a point closely, s^2 dominates; else the residual.
-Windows about reversals are blocks, as their samples are correlated: all residuals of a window are
-drawn together. To first order this is the bootstrap of whole windows, but every draw keeps both
+There are few points of steady sliding, and often a single point determines a parameter: the slowest
+point determines F_S, the fastest sigma_2. Drawing points with replacement would lose such a point.
+Therefore the noise of the points is drawn [Wu1986], from their residuals. With r_i the residual of
+a point, h_i its leverage and s^2 the sum of squares divided by n - p, the variance is E[noise_i^2 |
+residuals] = r_i^2 + h_i s^2 for independent noise of unit weight [derived]. Where the fit follows a
+point closely, s^2 dominates, elsewhere the residual.
+The samples of a window around a reversal are correlated, so all residuals of a window are drawn
+together. To first order this equals a bootstrap of whole windows, but every draw contains both
 directions and the sharpest reversals.
 
-Each draw also scales the noise by sqrt(nu/chi^2_nu), as its size is known from only nu degrees of
-freedom; for a linear model the bounds are then Student's t. Every draw is fitted again from the
-optimum, with three starting values of v_s, by damped Gauss-Newton steps within the search limits.
-Bounds are percentiles: they respect the limits, follow skewed parameters, and do not depend on the
-parametrisation. The acceleration of BCa needs fits without one point at a time, which do not exist
-where that point alone determines a parameter.
+Each draw also scales the noise by sqrt(nu/chi^2_nu), because only nu degrees of freedom determine
+its size. For a linear model, the intervals are then those of Student's t. Every draw is fitted
+again within the search limits, by damped Gauss-Newton steps from the optimum with three initial
+values of v_s. The confidence limits are percentiles of these fits.
+Percentiles respect the search limits, follow skewed distributions, and do not depend on the
+parametrisation. The BCa method would need fits that leave out one point at a time. Such a fit does
+not exist if that point alone determines a parameter.
 
-The selection of parameters is not repeated: the bounds apply to those already selected.
+The selection of fitted parameters is not repeated for each draw. The intervals are thus valid for
+the parameters already selected.
 """
 
 from __future__ import annotations
@@ -37,27 +40,30 @@ from .stribeck_fit import EXPONENTS, SPEEDS, STATIC_MOST, Steady, StribeckFit
 from .windows import LAG, Windows, windows
 
 FEWEST = 80
-"""Least number of resamples: bounds are then the second values from the ends, not the outermost."""
+"""Smallest number of resamples: the confidence limits are then the second values from the ends, not
+the outermost."""
 STARTS = (1.0, 1 / 3, 3.0)
-"""Initial Stribeck speeds of a refit over the optimum (a choice: half a decade either way)."""
+"""Initial Stribeck speeds of a new fit, relative to the optimum (our choice: half a decade both
+ways)."""
 STEPS, LUGRE_STEPS = 40, 8
-"""Steps of a Stribeck fit, and of a LuGre fit with the slopes at the optimum (a choice: more steps
-do not change the bounds of the synthetic records)."""
+"""Number of steps of a Stribeck fit, and of a LuGre fit that keeps its slopes (our choice: more
+steps do not change the confidence limits for synthetic records)."""
 LEAST_WINDOWS = 3
-"""Least number of windows to draw from (a choice: with two, a single difference would determine the
-noise)."""
+"""Smallest number of windows to draw from (our choice: with two windows, a single difference would
+determine the noise)."""
 ROWS = 256
-"""Draws integrated at once (a choice: some 100 MB)."""
+"""Number of draws that are integrated at once (our choice: needs some 100 MB)."""
 RANK = 1e-10
-"""Least ratio of singular values of slopes for the leverage: rounding lies below."""
+"""Smallest ratio of singular values of the slopes that counts for the leverage; smaller ratios are
+rounding."""
 LOGS = ("stribeck_speed", "bristle_stiffness")
-"""Searched by logarithm; sigma_1, which may be 0, is not."""
+"""Parameters that are searched by logarithm. sigma_1 is not, because it may be 0."""
 PHYSICAL = ("static", "viscous", "bristle_damping")
-"""Parameters with a physical lower limit: F_C for F_S, else 0."""
+"""Parameters with a physical lower limit: F_C for F_S, 0 for the others."""
 SIGNED = ("offset", "pressure_slope", "lag")
-"""Parameters that may be 0, so bounds that include 0 do not mean that they are unknown."""
+"""Parameters that may be 0. If their interval contains 0, they still count as known."""
 AT_END = 1e-6
-"""Relative distance from a search limit that counts as reached."""
+"""Relative distance from a search limit within which the limit counts as reached."""
 
 
 def resampled(
@@ -71,27 +77,29 @@ def resampled(
     seed: int,
     settling: float = SETTLED,
 ) -> tuple[StribeckFit | str, LuGreFit | str]:
-    """Both models of a record with bounds by resampling.
+    """Both friction models of a record, with confidence intervals by resampling.
 
-    Values stay; bounds, standard errors (half the bounds over Student's t) and verdicts change. A
-    parameter without bounds in the linearised model remains without, and a parameter loses its
-    bounds if its draws reach a search limit. A parameter that is not identifiable keeps the wider
-    of both bounds: its optimum lies in a flat valley, and draws show the scatter about the optimum,
-    not the valley. The same applies to LuGre if F_C is unbounded or no lag is fitted, as the
-    linearised bounds then contain more than scatter. The covariance of the Stribeck curve stays
+    The fitted values stay. Confidence limits, standard errors (half the interval, divided by
+    Student's t) and verdicts change. A parameter without limits in the linearised model remains
+    without. A parameter whose draws reach a search limit loses its limits.
+
+    A parameter that is not identifiable keeps the wider of both intervals: its optimum lies in a
+    flat valley, and the draws show the scatter around the optimum, not the length of the valley.
+    The same applies to the LuGre model if F_C has no limits or no lag is fitted, because the
+    linearised interval then contains more than scatter. The covariance of the Stribeck curve stays
     that of the linearised model.
 
     Parameters
     ----------
-    slidings, motion, points : data of both fits
-    stribeck, lugre : the fits, or the reason for a missing fit
+    slidings, motion, points : data to which both models are fitted
+    stribeck, lugre : the fits, or the reason why a fit is missing
     count : number of resamples
-    seed : seed of the draws; the same seed gives the same bounds
-    settling : distance after a reversal from which sliding is steady [m], as in the fits
+    seed : seed of the random draws; the same seed gives the same result
+    settling : distance after a reversal beyond which sliding is steady [m], as in the fits
 
     Returns
     -------
-    the fits with new bounds
+    the fits with new confidence intervals
 
     Raises
     ------
@@ -117,7 +125,7 @@ def resampled(
 def resampled_stribeck(
     points: Sequence[FrictionPoint], fit: StribeckFit, *, count: int, rng: np.random.Generator
 ) -> StribeckFit:
-    """A Stribeck curve with bounds by resampling its points."""
+    """A Stribeck curve with confidence intervals from resampled points."""
     names = tuple(fit.parameters)
     spare = len(points) - len(names)
     if spare < 1:
@@ -157,7 +165,7 @@ def _lugre(
     count: int,
     rng: np.random.Generator,
 ) -> LuGreFit:
-    """A LuGre model with bounds by resampling points and windows."""
+    """A LuGre model with confidence intervals from resampled points and windows."""
     blocks = reversals.velocity.shape[0]
     if blocks < LEAST_WINDOWS:
         doubt = f"{blocks} windows are too few to resample: bounds are from the linearised model"
@@ -219,7 +227,7 @@ def _bristles(parameters: Mapping[str, Parameter]) -> list[str]:
 
 
 class LuGreResiduals:
-    """Weighted residuals of points and windows as functions of the searched numbers."""
+    """Weighted residuals of points and windows as functions of the searched values."""
 
     def __init__(
         self,
@@ -255,7 +263,7 @@ class LuGreResiduals:
         return np.concatenate([self.steady.residual(steady), misfits], axis=1)
 
     def slopes(self, best: Array) -> Array:
-        """Derivatives at the optimum by central differences (residuals, searched)."""
+        """Derivatives (residuals, searched) at the optimum, by central differences."""
         steps = STEP * sizes(self.names, self.largest, self.steady)
         if "bristle_damping" in self.names:
             steps[self.names.index("bristle_damping")] *= 1e-2 * self.values["bristle_stiffness"]
@@ -269,7 +277,7 @@ def _search(
     largest: float,
     ends: Mapping[str, tuple[float, float]],
 ) -> FitSearch:
-    """Limits of the search, moved outwards where the optimum lies beyond."""
+    """Limits of the search, moved outwards if the optimum lies outside them."""
     limits = {
         "static": (0.0, STATIC_MOST * largest),
         "stribeck_speed": (float(np.log(SPEEDS[0])), float(np.log(SPEEDS[1]))),
@@ -284,14 +292,14 @@ def _search(
 
 
 def searched(names: Sequence[str], values: Mapping[str, float]) -> Array:
-    """Parameters as searched: some by logarithm, F_S as its excess over F_C."""
+    """The searched values of parameters: logarithms for some, and the excess over F_C for F_S."""
     numbers = dict(values)
     numbers["static"] = numbers.get("static", numbers["coulomb"]) - numbers["coulomb"]
     return np.array([np.log(numbers[n]) if n in LOGS else numbers[n] for n in names])
 
 
 def natural(names: Sequence[str], rows: Array, values: Mapping[str, float]) -> dict[str, Array]:
-    """Parameters (rows,) from searched numbers (rows, searched); other parameters are unchanged."""
+    """Convert searched values (rows, searched) to parameters (rows,); other parameters stay."""
     searched_values = {
         name: np.exp(column) if name in LOGS else column
         for name, column in zip(names, rows.T, strict=True)
@@ -305,7 +313,10 @@ def natural(names: Sequence[str], rows: Array, values: Mapping[str, float]) -> d
 
 
 def _spreads(slopes: Array, residuals: Array, variance: float) -> Array:
-    """Standard deviation of the noise in each weighted residual, sqrt(r^2 + h s^2)."""
+    """Standard deviation of the noise in each weighted residual: sqrt(r^2 + h s^2).
+
+    r is the residual, h its leverage, s^2 the variance of the fit.
+    """
     lengths = np.linalg.norm(slopes, axis=0)
     left, singular, _ = np.linalg.svd(
         slopes / np.where(lengths > 0, lengths, 1.0), full_matrices=False
@@ -315,7 +326,7 @@ def _spreads(slopes: Array, residuals: Array, variance: float) -> Array:
 
 
 def _scales(rng: np.random.Generator, freedom: int, count: int) -> Array:
-    """Noise factor of each draw relative to the residuals (count, 1)."""
+    """Random factor on the noise of each draw (count, 1)."""
     return np.sqrt(freedom / rng.chisquare(freedom, (count, 1)))
 
 
@@ -327,9 +338,11 @@ def _bounded(
     spare: int,
     wider: Sequence[str] = (),
 ) -> dict[str, Parameter]:
-    """Parameters with percentile bounds; infinite bounds if draws reach an unphysical search limit.
+    """Parameters with percentiles of the draws as confidence limits.
 
-    Parameters named in `wider` keep the wider of both bounds.
+    The limits are infinite if draws reach a search limit that has no physical meaning.
+
+    Parameters named in `wider` keep the wider of both intervals.
     """
     count = rows.shape[0]
     samples = natural(search.names, rows, values)

@@ -1,4 +1,4 @@
-"""Seal friction parameters of a design from its test record, each with bounds."""
+"""Seal friction parameters of a design from its test record, with confidence intervals."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ from .result import Identification
 from .stribeck_fit import StribeckFit
 
 FARTHER = 1.05
-"""Speed or pressure of the design over that of the record above which extrapolation is reported (a
-choice)."""
+"""Ratio of the design's speed or pressure to that of the record above which extrapolation is
+reported (our choice)."""
 MISFIT = 0.1
-"""Deviation of the contact law at other pressures, as a share of F_C, above which it is reported (a
-choice: a third of the bounds that make a parameter weakly identifiable)."""
+"""Error of the contact law at other pressures, as a share of F_C, above which it is reported (our
+choice: a third of the confidence interval that makes a parameter weakly identifiable)."""
 
 
 def of_curve(
     points: Sequence[FrictionPoint], stribeck: StribeckFit, level: Array, stated: Array
 ) -> Iterator[str]:
-    """Effects that the design's friction omits: an offset, another pressure dependence."""
+    """Notes on effects that the design's friction omits: an offset, another pressure dependence."""
     offset = stribeck.parameters.get("offset")
     if offset is not None and (offset.lower > 0 or offset.upper < 0):
         yield (
@@ -53,7 +53,7 @@ def of_curve(
 
 
 def _shape(points: Sequence[FrictionPoint], stribeck: StribeckFit) -> Iterator[str]:
-    """Deviation of the Stribeck exponent from the design's, and the resulting error of friction."""
+    """Note on a Stribeck exponent unlike the design's, with the resulting friction error."""
     exponent = stribeck.parameters.get("exponent")
     if exponent is None or exponent.lower <= STRIBECK_EXPONENT <= exponent.upper:
         return
@@ -70,7 +70,7 @@ def _shape(points: Sequence[FrictionPoint], stribeck: StribeckFit) -> Iterator[s
 
 
 def extrapolated(bench: Bench, points: Sequence[FrictionPoint]) -> Iterator[str]:
-    """Speeds and pressures of the design beyond those of the record."""
+    """Notes on speeds and pressures of the design that exceed those of the record."""
     fastest = max(case.speed for case in bench.design.load_cases)
     speed, pressure = max(point.speed for point in points), max(point.pressure for point in points)
     if fastest > FARTHER * speed or bench.supply_pressure > FARTHER * pressure:
@@ -82,34 +82,34 @@ def extrapolated(bench: Bench, points: Sequence[FrictionPoint]) -> Iterator[str]
 
 
 def weakly_known(parameters: Mapping[str, Parameter]) -> Iterator[str]:
-    """Names of weakly known parameters, in one line."""
+    """One-line note with the names of weakly known parameters."""
     names = [name for name, parameter in parameters.items() if not parameter.identifiable]
     if names:
         yield f"only weakly known (bounds beyond 30 %): {', '.join(names)}"
 
 
 KEYS = ("friction_coefficient", "breakaway_ratio", "stribeck_speed", "viscous_friction")
-"""Seal keys that a record can determine."""
+"""Keys of a seal whose values a record can determine."""
 _FIT_NAMES = ("coulomb", "static", "stribeck_speed", "viscous")
-"""Fit parameters behind these keys."""
+"""Names of the same parameters in the fits."""
 RISEN = 0.05
-"""Rise of friction towards rest at the record's speed, as a share, above which it is reported (a
-choice: the error of a good record)."""
+"""Share by which the design's friction at the record's speed exceeds its Coulomb part, above which
+this is reported (our choice: the error of a good record)."""
 
 
 @dataclass(frozen=True, slots=True)
 class SealParameter:
-    """One cylinder parameter from a record, and its distribution over the seals.
+    """A parameter of the whole cylinder from a record, and its values for the seals.
 
     Parameters
     ----------
     name : key in the design: friction_coefficient, breakaway_ratio, stribeck_speed or
         viscous_friction
-    known : value and bounds for the cylinder, SI; for friction_coefficient, the factor on the
-        stated values
-    shares : value of each seal over that of the cylinder, by PATH
-    before : value stated in the design or taken from the compound, by PATH
-    source : name of the fit
+    known : value and confidence interval for the cylinder, SI; for friction_coefficient, the factor
+        on the values of the design
+    shares : value of each seal divided by that of the cylinder, by PATH
+    before : value in the design, stated or from the compound, by PATH
+    source : name of the fit that gives the value
     """
 
     name: str
@@ -119,11 +119,11 @@ class SealParameter:
     source: str
 
     def values(self) -> dict[str, float]:
-        """Values by PATH, SI."""
+        """Values of the seals by PATH, SI."""
         return {path: self.known.value * share for path, share in self.shares.items()}
 
     def bounds(self) -> dict[str, tuple[float, float]]:
-        """Bounds by PATH, within the valid range of the design."""
+        """Confidence intervals of the seals by PATH, within the valid range of a design."""
         least, most = INPUTS[self.name].lower, INPUTS[self.name].upper
 
         def limited(value: float) -> float:
@@ -158,11 +158,11 @@ class Calibration:
 
     Parameters
     ----------
-    identification : of the record
-    learned : parameters from the record
-    left : reason why the design's value stays, by key
-    coulomb, stated : Coulomb friction, measured and by the design, mean over the points [N]
-    doubts : caveats of the numbers
+    identification : result of the identification from the record
+    learned : parameters that the record determines
+    left : for every key whose value stays as in the design, the reason
+    coulomb, stated : Coulomb friction as measured and as in the design, mean over the points [N]
+    doubts : reasons to doubt the numbers
     """
 
     identification: Identification
@@ -173,13 +173,13 @@ class Calibration:
     doubts: tuple[str, ...]
 
     def values(self) -> dict[str, float]:
-        """New values by PATH, SI."""
+        """New values of the seals by PATH, SI."""
         return {
             path: value for parameter in self.learned for path, value in parameter.values().items()
         }
 
     def measured(self) -> dict[str, TestBounds]:
-        """Bounds of the new values by PATH."""
+        """Confidence intervals of the new values by PATH."""
         name = self.identification.record.file_name
         return {
             path: TestBounds(lower=low, upper=high, record=name)
@@ -189,17 +189,18 @@ class Calibration:
 
 
 def calibration(identification: Identification) -> Calibration:
-    """Return the seal friction parameters from a record of their design.
+    """Determine the seal friction parameters of a design from a record of it.
 
-    The coefficients of all rings and wipers change by one factor, so that the design's Coulomb
-    friction at the pressures of the steady points equals the measured friction; a cylinder record
-    cannot separate piston from rod. F_S/F_C and v_s apply to every ring; sigma_2 is distributed by
-    circumference. Each parameter comes from the fit with the tightest bounds; it stays if no fit
-    determines it. A record of one speed gives the factor alone.
+    The coefficients of all rings and wipers change by the same factor. With it, the design's
+    Coulomb friction at the pressures of the steady points equals the measured friction. A cylinder
+    record cannot separate the piston's friction from the rod's. F_S/F_C and v_s are the same for
+    every ring; sigma_2 is distributed by circumference. Each parameter comes from the fit with the
+    narrowest confidence interval; if no fit determines it, the design's value stays. A record of a
+    single speed gives only the factor.
 
     Parameters
     ----------
-    identification : identification with points of steady sliding
+    identification : an identification with points of steady sliding
 
     Returns
     -------
@@ -208,7 +209,7 @@ def calibration(identification: Identification) -> Calibration:
     Raises
     ------
     InputError
-        no steady sliding, or friction that the design takes from an oil film
+        no steady sliding, or a design whose friction comes from an oil film
     """
     bench, points = identification.bench, identification.points
     refuse_films(bench.design)
@@ -256,7 +257,7 @@ def calibration(identification: Identification) -> Calibration:
 
 
 def _beyond_range(parameter: SealParameter) -> str | None:
-    """Why a design cannot state a parameter, or None."""
+    """Reason why a design cannot state a parameter, such as a value out of range; else None."""
     quantity = INPUTS[parameter.name]
     outside = [
         value
@@ -274,7 +275,7 @@ def refuse_films(design: Design) -> None:
     Raises
     ------
     InputError
-        with the PATH of the seal
+        names the PATH of the seal
     """
     for place in ("piston", "rod"):
         for tail, element in getattr(design.seals, place).elements().items():
@@ -298,10 +299,11 @@ def _pressures(points: Sequence[FrictionPoint]) -> tuple[Array, Array]:
 def _from_fits(
     identification: Identification, stribeck: StribeckFit, stated: Array
 ) -> tuple[list[SealParameter], dict[str, str], Array]:
-    """Parameters from both fits, reasons for missing ones, and the Coulomb level by point.
+    """Parameters from both fits, reasons for missing parameters, and F_C at every point.
 
-    The factor is the mean measured level over the mean of the design. Its bounds also cover the
-    ratio at every point, so a contact law with another pressure dependence widens them.
+    The factor is the mean measured Coulomb friction divided by that of the design. Its confidence
+    interval also covers the ratio at every single point. A contact law with a wrong pressure
+    dependence thus widens it.
     """
     bench = identification.bench
     fits = {name: _best(identification, name) for name in _FIT_NAMES}
@@ -338,9 +340,12 @@ def _from_fits(
 def _from_level(
     bench: Bench, points: Sequence[FrictionPoint]
 ) -> tuple[list[SealParameter], Array, list[str]]:
-    """The factor alone, from friction at one speed; other speeds follow the design.
+    """The factor alone, from friction at a single speed.
 
-    If the speed is within the design's Stribeck rise, the upper bound assumes no rise.
+    At other speeds the design's curve is kept.
+
+    If the design's Stribeck curve still rises towards rest at this speed, the upper limit is
+    computed as if it did not rise.
     """
     speed = np.array([point.speed for point in points])
     measured = np.array([point.friction * np.sign(point.velocity) for point in points])
@@ -367,7 +372,10 @@ def _from_level(
 
 
 def _best(identification: Identification, name: str) -> tuple[Parameter, str] | None:
-    """A parameter from the fit with the tightest bounds, and the fit's name; None if unknown."""
+    """A parameter from the fit with the narrowest interval, and the name of the fit.
+
+    None if unknown.
+    """
     fits = (("Stribeck fit", identification.stribeck), ("LuGre fit", identification.lugre))
     candidates = [
         (fit.parameters[name], source)
@@ -380,13 +388,13 @@ def _best(identification: Identification, name: str) -> tuple[Parameter, str] | 
 
 
 def _scaled(parameter: Parameter, factor: float) -> Parameter:
-    """A parameter in another unit, `factor` > 0."""
+    """A parameter converted to another unit by `factor` > 0."""
     value, lower, upper, error, identifiable = parameter
     return Parameter(factor * value, factor * lower, factor * upper, factor * error, identifiable)
 
 
 def _ratio(over: Parameter, under: Parameter) -> Parameter:
-    """F_S/F_C with bounds, of independent errors; by logarithms, which keep it positive."""
+    """F_S/F_C with its interval for independent errors; computed by logarithms to stay positive."""
     ratio = over.value / under.value
     up = hypot(log(over.upper / over.value), log(under.value / under.lower))
     down = hypot(log(over.value / over.lower), log(under.upper / under.value))
@@ -395,7 +403,7 @@ def _ratio(over: Parameter, under: Parameter) -> Parameter:
 
 
 def _coefficient(factor: Parameter, bench: Bench, source: str) -> SealParameter:
-    """One factor for all coefficients of rings and wipers."""
+    """The same factor for the friction coefficients of all rings and wipers."""
     stated = {ring.groove.path: float(ring["friction_coefficient"]) for ring in bench.rings}
     stated |= {wiper.path: float(wiper.coefficient) for wiper in bench.wipers}
     shares = {f"{path}friction_coefficient": value for path, value in stated.items()}
@@ -403,13 +411,13 @@ def _coefficient(factor: Parameter, bench: Bench, source: str) -> SealParameter:
 
 
 def _same_for_rings(name: str, parameter: Parameter, bench: Bench, source: str) -> SealParameter:
-    """The same value for every ring."""
+    """A parameter with the same value for every ring."""
     stated = {f"{ring.groove.path}{name}": float(ring[name]) for ring in bench.rings}
     return SealParameter(name, parameter, dict.fromkeys(stated, 1.0), stated, source)
 
 
 def _viscous(parameter: Parameter, bench: Bench, source: str) -> SealParameter:
-    """Distribution of sigma_2 by circumference."""
+    """sigma_2, distributed over the seals by circumference."""
     total = sum(float(ring["diameter"]) for ring in bench.rings)
     rings = {f"{ring.groove.path}viscous_friction": ring for ring in bench.rings}
     return SealParameter(

@@ -1,4 +1,4 @@
-"""Cleaning of a channel: spikes, clipped samples; resolution and noise of its sensor."""
+"""Cleaning of a channel: removes spikes and clipped samples, estimates resolution and noise."""
 
 from __future__ import annotations
 
@@ -9,38 +9,41 @@ import numpy as np
 from ..base.numeric import Array
 
 SPIKE, QUANTA, RANGE = 6.0, 3.0, 1e-3
-"""Least height of a spike over its neighbours' median: in robust standard deviations, in sensor
-steps, and as a share of the channel's range (choices: one normal sample in 5e8 lies as far out;
-rounding alone makes two steps; the usual noise of pressures reaches that share)."""
+"""Smallest height of a spike above the median of its neighbours: in robust standard deviations, in
+sensor steps, and as a share of the channel's range (our choices: one normal sample in 5e8 lies as
+far out; rounding alone makes two steps; the usual noise of pressures reaches that share)."""
 JUMP, BURST, FLANK = 0.7, 0.45, 0.3
-"""Least share of its height by which a spike rises within a sample. `BURST` suffices if the channel
-does not continue outside the spike with `FLANK` of the step at its edge (choices: three adjacent
-stray samples rise by half or more, the top of a triangle as wide as the median's window by a third,
-of a half sine by 0.6)."""
+"""Smallest share of its height by which a spike rises within one sample. `BURST` is sufficient if
+the channel does not continue outside the spike with `FLANK` of the step at its edge (our choices).
+Three adjacent stray samples rise by half or more. The top of a triangle as wide as the median's
+window rises by a third, that of a half sine by 0.6."""
 WINDOW = 5e-3
-"""Half the width of a sample's neighbourhood [s] (a choice: a sixth of a 30 Hz period)."""
+"""Half the width of the neighbourhood of a sample [s] (our choice: a sixth of a 30 Hz period)."""
 SAMPLED = 100_000
-"""Samples used for the spread of a channel (a choice: accurate to 1 %)."""
+"""Number of samples from which the spread of a channel is estimated (our choice: accurate to 1
+%)."""
 LEVELS = 20_000
-"""Samples used for the resolution of a sensor (a choice: several per step of a fine sensor)."""
+"""Number of samples from which the resolution of a sensor is estimated (our choice: several for
+each step of a fine sensor)."""
 CROWD, GARBAGE = 0.15, 0.5
-"""Shares of spikes in two windows above which the other samples are doubtful, and useless (choices:
-with 5 % random strays the second occurs once in 1e10 samples, with 10 % once in 1e6; noise as high
-as the range gives three quarters spikes)."""
+"""Shares of spikes in a window above which the other samples are doubtful (first share) or useless
+(second share; our choices). With 5 % random stray samples the second share is exceeded once in 1e10
+samples, with 10 % once in 1e6. Noise as high as the range gives three quarters of spikes."""
 HELD = 6
-"""Least number of equal samples at an end of the channel's range to count as clipped (a choice: a
-fifth of a 30 Hz period at 1 kHz; the filter removes shorter runs)."""
+"""Number of successive equal samples at an end of the channel's range that count as clipped (our
+choice: a fifth of a 30 Hz period at 1 kHz; the filter removes shorter runs)."""
 FLICKER = 0.6
-"""Noise in sensor steps above which a constant level is no coincidence (a choice: on a true plateau
-two of five samples would leave their step)."""
+"""Noise in sensor steps above which a constant level is no coincidence (our choice: on a true
+plateau two of five samples would then leave their step)."""
 LIVE = 0.2
-"""Least share of samples away from the ends of the range for noise to be judged by them (a choice:
-four times as many as strays)."""
+"""Smallest share of samples away from the ends of the range from which noise is estimated (our
+choice: four times as many as stray samples)."""
 TURNS = 0.3
-"""Share of its steps after which a noisy channel reverses (a choice: half of the 2/3 of white
-noise)."""
+"""Share of its steps at which a channel reverses, above which it counts as noisy (our choice: half
+of the 2/3 of white noise)."""
 ROBUST = 1.4826
-"""Standard deviation of a normal variable over its median deviation, 1/0.67449 [derived]."""
+"""Standard deviation of a normal variable, divided by its median absolute deviation: 1/0.67449
+[derived]."""
 
 
 class Quality(NamedTuple):
@@ -50,29 +53,29 @@ class Quality(NamedTuple):
     spikes: int
     clipped: int
     resolution: float
-    """Resolution of the sensor, SI; negligible if the samples show none."""
+    """Resolution of the sensor, SI; negligibly small if the samples show no steps."""
     noise: float
-    """Standard deviation of a sample that the filter removes, SI."""
+    """Standard deviation of the noise of a sample, SI; the filter removes this noise."""
 
     def told(self, name: str, samples: int) -> list[str]:
-        """Notes on the samples removed from a channel."""
+        """Notes on the samples that were removed from a channel."""
         counts = ((self.missing, "missing"), (self.spikes, "spikes"), (self.clipped, "clipped"))
         return [f"{name}: {n} of {samples} samples are {fault}" for n, fault in counts if n]
 
 
 def clean(values: Array, step: float, *, pressure: bool) -> tuple[Array, Quality]:
-    """A channel without spikes and clipped samples, with its quality.
+    """Remove spikes and clipped samples from a channel; return it with its quality.
 
     Parameters
     ----------
     values : raw samples, NaN where missing
-    step : of time [s]
-    pressure : whether the channel is a pressure: its least value is then not clipping, as a chamber
-        open to the tank stays there
+    step : time step [s]
+    pressure : whether the channel is a pressure. Its smallest value then does not count as clipped,
+        because a chamber open to the tank stays at that value
 
     Returns
     -------
-    the samples, NaN where unreliable, and the quality of the channel
+    the samples, NaN where they are unreliable, and the quality of the channel
     """
     from scipy.ndimage import median_filter  # slow import, rarely used
 
@@ -97,18 +100,19 @@ def clean(values: Array, step: float, *, pressure: bool) -> tuple[Array, Quality
 
 
 def resolution(values: Array) -> float:
-    """Resolution of a sensor: the least gap between recurring levels.
+    """Resolution of a sensor: the smallest gap between levels that occur repeatedly.
 
-    Apply to the running median, as stray samples add levels anywhere. If levels seldom recur, the
-    resolution is the lowest hundredth of the gaps or of the steps from sample to sample, whichever
-    is less.
+    Apply it to the running median, because stray samples add arbitrary levels. If levels seldom
+    recur, the resolution is the lowest hundredth of the gaps, or of the steps from sample to sample
+    if that is smaller.
     """
-    count = min(LEVELS, values.size)  # a random sample of each part, as an even stride could alias
+    # one random sample from each part, because equal intervals could alias
+    count = min(LEVELS, values.size)
     parts = np.arange(count) + np.random.default_rng(0).random(count)
     sample = values[(parts * (values.size / count)).astype(int)]
     levels, counts = np.unique(sample, return_counts=True)
     least = 1e-9 * float(levels[-1] - levels[0])  # smaller differences are rounding
-    counts = np.minimum(counts, 5)  # standstill counts no more than motion
+    counts = np.minimum(counts, 5)  # a long standstill must not count more than motion
     again = counts > 1
     gaps = np.diff(levels[again])
     gaps = gaps[gaps > least]
@@ -122,21 +126,22 @@ def resolution(values: Array) -> float:
 
 
 def _hundredth(values: Array) -> float:
-    """The lowest hundredth of some values; zero without any."""
+    """The value below which a hundredth of the given values lie; zero if none are given."""
     place = values.size // 100
     return float(np.partition(values, place)[place]) if values.size else 0.0
 
 
 def _levels(values: Array) -> tuple[Array, Array]:
-    """Samples at which a channel changes level, and how long it stays."""
+    """Samples at which a channel changes its level, and how many samples the new level lasts."""
     first = np.concatenate([[0], np.flatnonzero(np.diff(values)) + 1])
     return first, np.diff(first, append=values.size)
 
 
 def _live(values: Array) -> Array:
-    """Samples away from the ends of the channel's range, where noise may be cut off.
+    """Flags for samples away from the ends of the channel's range, where noise may be cut off.
 
-    All samples if only few lie away from the ends: the channel is then one level with strays.
+    If only few samples lie away from the ends, all are flagged: the channel is then one level with
+    some stray samples.
     """
     first, length = _levels(values)
     constant = length >= HELD
@@ -149,35 +154,35 @@ def _live(values: Array) -> Array:
 
 
 def _spread(values: Array, live: Array) -> float:
-    """Robust standard deviation of the live samples about zero."""
+    """Robust standard deviation about zero, of the samples flagged in `live`."""
     sample = values[live]
     sample = sample[:: max(1, sample.size // SAMPLED)]
     return ROBUST * float(np.median(np.abs(sample))) if sample.size else 0.0
 
 
 def runs(flags: Array) -> tuple[Array, Array]:
-    """First and one past the last sample of every run of flags."""
+    """Start and end (exclusive) of every run of successive true flags."""
     turns = np.flatnonzero(np.diff(flags.astype(np.int8), prepend=0, append=0))
     return turns[::2], turns[1::2]
 
 
 def _least(values: Array, middle: Array, quantum: float, live: Array) -> float:
-    """Least height of a spike over its neighbours' median."""
+    """Smallest height of a spike above the median of its neighbours."""
     apart = np.abs(values - middle)
     if not np.any(middle != middle[0]) and np.mean(apart > 0) < 0.01:
-        return 0.0  # a constant with a few strays
+        return 0.0  # a constant with a few stray samples
     sample = np.sort(values[:: max(1, values.size // LEVELS)])
     low, high = sample[sample.size // 100], sample[-1 - sample.size // 100]
     return max(SPIKE * _spread(apart, live), QUANTA * quantum, RANGE * float(high - low))
 
 
 def _spikes(values: Array, middle: Array, least: float) -> Array:
-    """Samples far from their neighbours' median that rise more abruptly than any true peak."""
+    """Flags for samples far from their neighbours' median that rise faster than a true peak."""
     apart = np.abs(values - middle)
     out = apart > least
     at = np.flatnonzero(out)
     before, after = np.maximum(at - 2, 0), np.minimum(at + 2, values.size - 1)
-    here = middle[at]  # a neighbour shifts the median by a sample, a reversal flattens it
+    here = middle[at]  # a neighbour shifts the median by one sample, and a reversal flattens it
     passing = np.maximum(np.abs(middle[after] - here), np.abs(middle[before] - here))
     out[at] = apart[at] > least + passing
     for a, b in zip(*_peaks(values, apart, *runs(out)), strict=True):
@@ -186,9 +191,10 @@ def _spikes(values: Array, middle: Array, least: float) -> Array:
 
 
 def _strays(values: Array, spikes: Array, quantum: float, live: Array) -> Array:
-    """Single samples off the straight line through their neighbours, spikes excluded.
+    """Flags for single samples far from the straight line through their neighbours, except spikes.
 
-    A stray h bends the line by -h/2, h, -h/2; a step by h/2, -h/2, a kink once.
+    A stray sample of height h gives the deviations -h/2, h, -h/2 from that line; a step gives h/2,
+    -h/2; a kink gives a single deviation.
     """
     sound = np.flatnonzero(~spikes)
     if sound.size < 5:
@@ -211,10 +217,10 @@ def _strays(values: Array, spikes: Array, quantum: float, live: Array) -> Array:
 
 
 def _garbage(values: Array, spikes: Array, least: float, size: int) -> Array:
-    """Further unreliable samples where spikes are dense.
+    """Flags for further unreliable samples, where spikes are dense.
 
-    In a short group, samples outside the range of the channel before and after, if the channel is
-    calm there. In a long group all samples.
+    In a short group of spikes, samples outside the range of the channel before and after the group
+    are flagged, provided that the channel is calm there. In a long group, all samples are flagged.
     """
     from scipy.ndimage import maximum_filter1d, uniform_filter1d  # slow import, rarely used
 
@@ -230,13 +236,14 @@ def _garbage(values: Array, spikes: Array, least: float, size: int) -> Array:
         outside = (values[a:b] < ends[0] - least) | (values[a:b] > ends[1] + least)
         if np.any(outside & ~spikes[a:b]):
             rough = max(float(np.max(np.abs(np.diff(side, 2)))) for side in (left, right))
-            out[a:b] = outside & (rough <= 2 * least)  # else the channel itself varies fast
+            # if it is not calm, the channel itself varies fast
+            out[a:b] = outside & (rough <= 2 * least)
     core = dense > GARBAGE
     return out | maximum_filter1d(core, wide) if core.any() else out
 
 
 def _peaks(values: Array, apart: Array, first: Array, last: Array) -> tuple[Array, Array]:
-    """Runs of outlying samples that are true peaks."""
+    """Select the runs of outlying samples that are true peaks."""
     if not first.size:
         return first, last
     rise = np.abs(np.diff(values, prepend=values[0], append=values[-1]))
@@ -254,10 +261,11 @@ def _peaks(values: Array, apart: Array, first: Array, last: Array) -> tuple[Arra
 
 
 def _clipped(values: Array, spikes: Array, quantum: float, *, pressure: bool) -> Array:
-    """Samples at the limit of a sensor's range.
+    """Flags for samples at the limit of a sensor's range.
 
-    A channel is clipped if it stays at its highest or lowest level longer than at any other, and
-    its noise rules this out or it reaches the level without slowing down.
+    A channel counts as clipped if it stays at its highest or lowest level longer than at any other
+    level. In addition, its noise must rule out such a stay, or the channel must reach the level
+    without slowing down.
     """
     mask = np.zeros(values.shape, dtype=bool)
     first, length = _levels(values)
@@ -267,7 +275,8 @@ def _clipped(values: Array, spikes: Array, quantum: float, *, pressure: bool) ->
         return mask
     ends = (level[constant].max(),) if pressure else (level[constant].max(), level[constant].min())
     free = ~np.isin(level, [level[constant].min(), level[constant].max()])
-    if length[free].sum() < LIVE * values.size:  # hardly more than two levels: nothing to compare
+    # with hardly more than two levels, no comparison is possible
+    if length[free].sum() < LIVE * values.size:
         return mask
     turns = np.sign(np.diff(values[np.repeat(free, length)]))
     turns = turns[turns != 0]
@@ -279,7 +288,7 @@ def _clipped(values: Array, spikes: Array, quantum: float, *, pressure: bool) ->
         here = constant & (level == end)
         if np.mean(beyond & ~spikes) > 0.005 or length[here].max() < 4 * length[free].max():
             continue
-        longest = float(length[here].max())  # 1e-4: by chance in one record of ten thousand
+        longest = float(length[here].max())  # 1e-4: once in ten thousand records by chance
         chance = values.size * chance_of_stay**longest < 1e-4
         flickers = restless and noise > FLICKER * quantum and chance
         if flickers or _abrupt(values, first[here], length[here], quantum):
@@ -289,14 +298,14 @@ def _clipped(values: Array, spikes: Array, quantum: float, *, pressure: bool) ->
 
 
 def _noise(values: Array, free: Array) -> float:
-    """Standard deviation of white noise; second differences have sqrt 6 times as much."""
+    """Standard deviation of white noise: that of the second differences, divided by sqrt 6."""
     bent = values[2:] - 2 * values[1:-1] + values[:-2]
     bent = bent[free[2:] & free[1:-1] & free[:-2]]
     return ROBUST * float(np.median(np.abs(bent))) / np.sqrt(6) if bent.size else 0.0
 
 
 def _stay(noise: float, quantum: float) -> float:
-    """Probability that a noisy sample stays on its step, P(|n| < q/2)."""
+    """Probability that a noisy sample stays on its sensor step: P(|n| < q/2), noise n, step q."""
     from math import erf
 
     return erf(quantum / (2 * np.sqrt(2) * noise)) if noise > 0 else 1.0
@@ -305,7 +314,7 @@ def _stay(noise: float, quantum: float) -> float:
 def _abrupt(values: Array, first: Array, length: Array, quantum: float) -> bool:
     """Whether a channel reaches or leaves a level without slowing down.
 
-    The level cuts the last step short; of the two before, the later is no smaller.
+    The level cuts the last step short. Of the two steps before, the later must not be smaller.
     """
     arrivals = first[first >= 3]
     departures = (first + length - 1)[first + length + 3 <= values.size]

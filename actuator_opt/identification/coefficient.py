@@ -1,4 +1,4 @@
-"""The friction coefficient of a record, by the contact law of the design."""
+"""The friction coefficient from a record, by the design's contact laws of the rings."""
 
 from __future__ import annotations
 
@@ -14,23 +14,27 @@ from .balance import Sliding
 from .conditioning import ConditionedRecord
 
 WINDOW = 0.1
-"""Averaging time of friction and contact force [s] (a choice: six independent samples at 30 Hz)."""
+"""Time over which friction and contact force are averaged [s] (our choice: six independent samples
+at 30 Hz)."""
 LEAST_SPEED = 1e-3
-"""Least mean speed of a window [m/s] (a choice: ten sensor steps of 10 um show its direction)."""
+"""Smallest mean speed of a usable window [m/s] (our choice: ten sensor steps of 10 um then show the
+direction)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Coefficient:
-    """Median of mu = F_r/N over windows of sliding, SI.
+    """Friction coefficient mu = F_r/N: median over windows of sliding, SI.
+
+    F_r is the friction force, N the normal force of all rings.
 
     Parameters
     ----------
-    value, lower, upper : [-], 95 % bounds of the median
-    contact_force : N, normal force of all rings, median over the windows [N]
-    contact_pressure : N over the rings' contact areas [Pa]
+    value, lower, upper : median, and its 95 % confidence limits [-]
+    contact_force : normal force N of all rings, median over the windows [N]
+    contact_pressure : N divided by the contact areas of the rings [Pa]
     windows : number of windows
     law : contact laws of the rings
-    speeds : lowest and highest mean speed of the windows [m/s]
+    speeds : lowest and highest mean speed of a window [m/s]
     """
 
     value: float
@@ -46,10 +50,11 @@ class Coefficient:
 def coefficient(
     slidings: Sequence[Sliding], motion: ConditionedRecord, bench: Bench
 ) -> Coefficient | str:
-    """The friction coefficient of a record, or the reason for none.
+    """The friction coefficient from a record, or the reason why it is missing.
 
-    mu = F_r/sum f_i pi D_i, f the line loads of the design's contact laws at the chamber pressures.
-    Squeeze and pressure both load the rings, so no pressure difference is needed.
+    mu = F_r/(pi sum f_i D_i), with the friction force F_r and, for each ring i, its diameter D_i
+    and its line load f_i. The line loads follow from the contact laws of the design at the chamber
+    pressures. Both squeeze and pressure load the rings, so no pressure difference is needed.
 
     Parameters
     ----------
@@ -58,7 +63,8 @@ def coefficient(
 
     Returns
     -------
-    median over windows with bounds from the order statistics, or the reason for none
+    median over the windows, with confidence limits from its order statistics; or the reason why it
+    is missing
     """
     rows = np.concatenate([_windows(sliding, motion) for sliding in slidings])
     if rows.shape[0] < 2:
@@ -87,7 +93,10 @@ def coefficient(
 
 
 def _windows(sliding: Sliding, motion: ConditionedRecord) -> Array:
-    """Friction in the direction of motion, both pressures, speed: means of windows (windows, 4)."""
+    """Means over each window, as (windows, 4).
+
+    The columns are friction in the direction of motion, both pressures, and speed.
+    """
     size = max(round(WINDOW / motion.sample_time), 1)
     piece = sliding.piece
     count = piece.time.size // size

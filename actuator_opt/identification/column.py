@@ -1,4 +1,4 @@
-"""One column of a CSV file over time, as input of a simulation."""
+"""Read one column of a CSV file over time, as input of a simulation."""
 
 from __future__ import annotations
 
@@ -11,29 +11,29 @@ from .column_units import NONE, ColumnUnits
 from .record import CHANNELS, column_of, contradicted, converted, header_cells, numbers, read_sheet
 
 FEWEST = 2
-"""Least number of samples of a signal."""
+"""Smallest number of samples of a signal."""
 
 
 def parse_column(
     text: str, header: str, dimension: str, *, name: str, units: ColumnUnits = NONE
 ) -> tuple[Array, Array]:
-    """Time [s] and values [SI] of a column, named by its header with or without its unit.
+    """Time [s] and values [SI] of a column, chosen by its heading with or without the unit.
 
     Missing samples are NaN.
 
     Parameters
     ----------
     text : text of the file
-    header : header of the column; ``"U [V]"`` states the unit of a column ``U`` without a unit
-    dimension : dimension of the quantity, "voltage"
+    header : heading of the column; ``"U [V]"`` also states the unit of a column ``U`` that has none
+    dimension : dimension of the quantity, such as "voltage"
     name : name of the file, for messages
-    units : of columns whose header states none
+    units : units of columns whose heading states none
 
     Raises
     ------
     InputError
-        no such column, no time, no unit or a unit of another dimension, contradictory units, times
-        that do not increase, no samples
+        the column or the time is missing, a unit is missing, contradictory or of another dimension,
+        times do not increase, or there are no samples
     """
     sheet = read_sheet(text, name)
     cells = header_cells(sheet)

@@ -1,4 +1,4 @@
-"""Units of columns whose header states none: SI for all, or by column from a file."""
+"""Units of columns whose heading states none: SI for all, or given column by column."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from ..base.files import read_bytes
 from ..design.yaml_source import MAX_BYTES, decode, parse
 
 SI = "SI"
-"""Word for SI units in every column: m, s, Pa, N, m/s, K."""
+"""Word that means SI units in every column: m, s, Pa, N, m/s, K."""
 _WHAT = "units"
 
 
 @dataclass(frozen=True, slots=True)
 class ColumnUnits:
-    """Units missing from a header; a unit in the header takes precedence.
+    """Units of columns whose heading states none; a unit in the heading takes precedence.
 
     Parameters
     ----------
     stated : unit by name of the column
-    si : whether all other columns without a unit are SI
+    si : whether all other columns without a unit are in SI
     name : source of the units, for messages
     """
 
@@ -34,7 +34,7 @@ class ColumnUnits:
     name: str = _WHAT
 
     def of(self, column: str, dimension: str) -> str:
-        """Unit of a column whose header states none; empty if unknown."""
+        """Unit of a column whose heading states none; empty if unknown."""
         return self.stated.get(column) or (units.BASE[dimension] if self.si else "")
 
 
@@ -42,14 +42,15 @@ NONE = ColumnUnits()
 
 
 def column_units(source: str | Path | Mapping[str, str] | None) -> ColumnUnits:
-    """Units of columns by ``"SI"``, by column, or from a file.
+    """Units of columns from the word ``"SI"``, a mapping by column, or a file.
 
-    A YAML file (``.yaml``, ``.yml``) has lines ``p1: bar``, any other file lines ``p1,bar``: the
-    column's name as in the header, and its unit. Columns that a record lacks are ignored.
+    A YAML file (``.yaml``, ``.yml``) has lines such as ``p1: bar``, any other file has lines such
+    as ``p1,bar``. Both give the name of the column as in its heading, and its unit. Columns that
+    the record does not have are ignored.
 
     Parameters
     ----------
-    source : ``"SI"``, unit by column, path of a file, or None
+    source : ``"SI"``, a unit by column, the path of a file, or None
 
     Returns
     -------
@@ -58,7 +59,7 @@ def column_units(source: str | Path | Mapping[str, str] | None) -> ColumnUnits:
     Raises
     ------
     InputError
-        no such file, a line without column and unit, or a column named twice
+        a file that does not exist, a line without column and unit, or a column given twice
     """
     if source is None:
         return NONE

@@ -1,8 +1,8 @@
-"""Conditioning of a raw record to evenly sampled, filtered motion: gaps, spikes, clipping.
+"""Conditioning of a raw record: even samples, filtered, without gaps, spikes and clipping.
 
-Every channel passes the same zero-phase filter once, so the force balance holds for filtered values
-and gives filtered friction. Velocity and acceleration are central differences of the filtered
-position.
+Every channel passes the same zero-phase filter once. The force balance therefore also holds for the
+filtered values and gives filtered friction. Velocity and acceleration are central differences of
+the filtered position.
 """
 
 from __future__ import annotations
@@ -19,38 +19,42 @@ from .cleaning import ROBUST, Quality, clean, runs
 from .record import CHANNELS, Record
 
 CUTOFF, ORDER = 30.0, 4
-"""Cut-off of the zero-phase Butterworth filter [Huang2017] [Hz], and its order per pass (a choice,
-as the source gives only the cut-off)."""
+"""Cut-off of the zero-phase Butterworth filter [Huang2017] [Hz], and its order in each of two
+passes (our choice, as the source only gives the cut-off)."""
 SLOWEST = 3.0
-"""Least samples per period of the cut-off (a choice: the cut-off is then 2/3 of the Nyquist
-frequency)."""
+"""Smallest number of samples per period of the cut-off (our choice: the cut-off is then 2/3 of the
+Nyquist frequency)."""
 SHORTEST = 6.0
-"""Least length of a section in periods of the cut-off (a choice: without `EDGE` at each end a third
-of it remains)."""
+"""Smallest length of a section, in periods of the cut-off (our choice: a third of it remains
+without `EDGE` at each end)."""
 EDGE = 2.0
-"""Periods of the cut-off at both ends of a section where the filter is inaccurate (a choice: there
-a step response is within 0.2 %)."""
+"""Length at both ends of a section in which the filter is inaccurate, in periods of the cut-off
+(our choice: beyond it a step response is within 0.2 %)."""
 BRIDGE = 5
-"""Successive missing samples that are interpolated linearly; more if they last less than a quarter
-of a period of the cut-off (choices: 5 ms at 1 kHz; a chord of that length misses a sine at a tenth
-of the cut-off by 0.3 %)."""
+"""Number of successive missing samples that are interpolated linearly. More are interpolated if
+they last less than a quarter of a period of the cut-off (our choices: 5 ms at 1 kHz; a chord of
+that length misses a sine at a tenth of the cut-off by 0.3 %)."""
 ORDERS = 10
-"""Highest order of a pass (a choice: above it the filter rings for longer than `EDGE`)."""
+"""Highest order of the filter in a pass (our choice: above it the filter rings for longer than
+`EDGE`)."""
 CROWDED = 3.0
-"""Largest mean over median time step (a choice: even steps then have three times the samples)."""
+"""Largest ratio of mean to median time step (our choice: even steps then have three times the
+samples)."""
 SAMPLED = 100_000
-"""Samples of a section used for its noise (a choice: accurate to 0.3 %)."""
+"""Number of samples of a section from which its noise is estimated (our choice: accurate to 0.3
+%)."""
 LATEST = 0.1
-"""Largest lag that is corrected [s] (a choice: twenty times that of a pressure sensor)."""
+"""Largest lag that is corrected [s] (our choice: twenty times that of a pressure sensor)."""
 NEEDED = ("p1", "p2", "x", "F_L")
-"""Channels whose missing samples split a record."""
+"""Channels that divide a record into sections where their samples are missing."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RecordSection:
-    """An uninterrupted section of a record, evenly sampled, SI; arrays (samples).
+    """An uninterrupted section of a record, evenly sampled, SI; arrays are (samples).
 
-    `channels` are filtered; `sound` excludes the ends where the filter is inaccurate.
+    `channels` are filtered. `sound` selects the samples away from the ends, where the filter is
+    accurate.
     """
 
     time: Array
@@ -67,14 +71,14 @@ class RecordSection:
 
     @property
     def pressures(self) -> tuple[Array, Array]:
-        """Pressures of both chambers; zero at the rod end without a channel p2."""
+        """Pressures of both chambers; without a channel p2 the rod end has zero pressure."""
         first = self["p1"]
         return first, self.channels.get("p2", np.zeros_like(first))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ConditionedRecord:
-    """A conditioned record: its sections, the filter, and notes on conditioning."""
+    """A conditioned record: its sections, the filter, and notes on the conditioning."""
 
     pieces: tuple[RecordSection, ...]
     sample_time: float
@@ -88,7 +92,7 @@ class ConditionedRecord:
 
     @property
     def band(self) -> float:
-        """Share of a sample's white noise that passes the filter, 2 f_c dt, at most 1."""
+        """Share of white noise that passes the filter: 2 f_c dt with the cut-off f_c, at most 1."""
         return min(2 * self.cutoff * self.sample_time, 1.0)
 
     def sections(self, *, cutoff: float, sample_time: float) -> Array:
@@ -99,11 +103,11 @@ class ConditionedRecord:
 
 
 def pass_cutoff(*, cutoff: float, order: int) -> float:
-    """Cut-off of each of two passes whose product is -3 dB at `cutoff`, f_c/(sqrt 2 - 1)^(1/2n).
+    """Cut-off f_c/(sqrt 2 - 1)^(1/2n) of each of two passes that together have -3 dB at f_c.
 
     Parameters
     ----------
-    cutoff : cut-off of both passes together [Hz]
+    cutoff : f_c, cut-off of both passes together [Hz]
     order : n of each pass
 
     Returns
@@ -123,10 +127,11 @@ def pass_cutoff(*, cutoff: float, order: int) -> float:
 
 
 def low_pass(*, cutoff: float, order: int, sample_time: float, compensated: bool) -> Array:
-    """Second-order sections of one pass; both passes together have the exact gain at `cutoff`.
+    """Second-order sections of one pass of the filter; both passes together are exact at `cutoff`.
 
-    The bilinear transform maps f to tan(pi f dt), which the compensated cut-off takes into account.
-    Far below the Nyquist frequency it is f_c/(sqrt 2 - 1)^(1/2n).
+    The bilinear transform maps a frequency f to tan(pi f dt) with the sample time dt. The
+    compensated cut-off takes this into account. Far below the Nyquist frequency it is f_c/(sqrt 2 -
+    1)^(1/2n) for the cut-off f_c and the order n.
     """
     from scipy.signal import butter  # slow import, rarely used
 
@@ -139,7 +144,7 @@ def low_pass(*, cutoff: float, order: int, sample_time: float, compensated: bool
 
 
 def zero_phase(sections: Array, values: Array, *, reach: int) -> Array:
-    """Filter forward and backward along the last axis; `reach` samples are mirrored at the ends."""
+    """Filter forward and backward along the last axis; mirror `reach` samples at the ends."""
     from scipy.signal import sosfiltfilt
 
     length = min(reach, values.shape[-1] - 1)
@@ -155,15 +160,16 @@ def condition(
     pressure_lag: float = 0.0,
     before: ConditionedRecord | None = None,
 ) -> ConditionedRecord:
-    """Evenly sampled, cleaned and filtered sections of a record.
+    """Divide a record into uninterrupted sections, cleaned, evenly sampled and filtered.
 
     Parameters
     ----------
     record : raw record
-    cutoff, order : of the zero-phase Butterworth filter [Hz], the order of each of its two passes
-    compensated : whether both passes together are -3 dB at the cut-off, else -6 dB
+    cutoff, order : cut-off of the zero-phase Butterworth filter [Hz], and order of each of its two
+        passes
+    compensated : whether both passes together have -3 dB at the cut-off; if not, they have -6 dB
     pressure_lag : time lag of the pressures to correct [s]
-    before : the same record with other settings, whose cleaned channels are used
+    before : the same record with other settings, whose cleaned channels are used again
 
     Returns
     -------
@@ -172,7 +178,8 @@ def condition(
     Raises
     ------
     InputError
-        time that does not increase, samples too few or too far apart, or no uninterrupted section
+        times that do not increase, too few samples, samples too far apart, or no uninterrupted
+        section
     """
     _check_settings(record, cutoff, order, pressure_lag)
     if "x" not in record:
@@ -234,7 +241,7 @@ def _timing(steps: Array, step: float, cutoff: float) -> list[str]:
 
 
 def _cleaned(record: Record, step: float) -> tuple[dict[str, Array], dict[str, Quality]]:
-    """Every channel without spikes and clipped samples, with its quality."""
+    """Every channel without its spikes and clipped samples, and the quality of each channel."""
     cleaned: dict[str, Array] = {}
     quality: dict[str, Quality] = {}
     for name in CHANNELS:
@@ -265,7 +272,7 @@ def _check_settings(record: Record, cutoff: float, order: int, lag: float) -> No
 
 
 def _increasing_time(record: Record) -> Array:
-    """The time of every sample, increasing."""
+    """The times of all samples, checked to increase."""
     time = record.time
     if time.size < 2:
         raise record.fault("one sample", "give a record of a second or more")
@@ -285,7 +292,7 @@ def _increasing_time(record: Record) -> Array:
 
 
 def _no_section(record: Record, quality: dict[str, Quality], shortest: float) -> InputError:
-    """The error of a record without an uninterrupted section, with its cause."""
+    """Create the error for a record without an uninterrupted section, with the cause."""
     worst = max(
         (
             (channel.missing + channel.spikes + channel.clipped, name)
@@ -305,7 +312,7 @@ def _no_section(record: Record, quality: dict[str, Quality], shortest: float) ->
 
 
 def _check_sampling(record: Record, time: Array, step: float, cutoff: float) -> None:
-    """Reject a record that the filter cannot handle."""
+    """Reject a record whose sampling does not suit the filter."""
     span, shortest = float(time[-1] - time[0]), SHORTEST / cutoff
     if step * cutoff * SLOWEST > 1:
         most = 1 / (SLOWEST * step)
@@ -323,20 +330,20 @@ def _check_sampling(record: Record, time: Array, step: float, cutoff: float) -> 
 
 
 def _floor(value: float) -> float:
-    """Rounded down to three digits."""
+    """A value rounded down to three digits."""
     unit = 10.0 ** (math.floor(math.log10(value)) - 2)
     return math.floor(value / unit) * unit
 
 
 def _bridged(step: float, cutoff: float) -> int:
-    """Missing samples that are interpolated linearly."""
+    """Number of successive missing samples that are interpolated linearly."""
     return max(BRIDGE, round(0.25 / (cutoff * step)))
 
 
 def _breaks(
     time: Array, channels: dict[str, Array], step: float, cutoff: float
 ) -> list[tuple[int, int]]:
-    """First and one past the last sample of every uninterrupted section."""
+    """Start and end (exclusive) of every uninterrupted section."""
     torn = np.zeros(time.size, dtype=bool)
     longest = _bridged(step, cutoff)
     for name, values in channels.items():
@@ -360,7 +367,7 @@ def _piece(
     sections: Array,
     pressure_lag: float,
 ) -> RecordSection:
-    """One section, resampled at even time steps, filtered and differentiated."""
+    """One section, resampled with even time steps, filtered and differentiated."""
     count = int(np.floor((time[-1] - time[0]) / step + 1e-6)) + 1
     even = time[0] + step * np.arange(count)
     reach = round(3 / (cutoff * step))
@@ -380,7 +387,7 @@ def _piece(
 
 
 def _noise(time: Array, values: Array, name: str, pieces: Sequence[RecordSection]) -> float:
-    """Robust standard deviation of a sample about the filtered channel."""
+    """Robust standard deviation of the samples from the filtered channel."""
     deviations = []
     for piece in pieces:
         if name in piece:
@@ -392,30 +399,30 @@ def _noise(time: Array, values: Array, name: str, pieces: Sequence[RecordSection
 
 
 CUTOFFS = (1 / 3, 1 / 8, 1 / 20)
-"""Lower cut-offs over that of the record (a choice: down to 1.5 Hz, some ten times the frequency of
-a slow test, in steps of 2 to 3)."""
+"""Lower cut-offs, as shares of the record's cut-off (our choice: down to 1.5 Hz, some ten times the
+frequency of a slow test, in steps of 2 to 3)."""
 BENT = 1.5
-"""Largest mean square change of the position by a lower cut-off over that of the sensor's errors (a
-choice: 1 if only errors are removed)."""
+"""Largest mean square change of the position through a lower cut-off, divided by that of the
+sensor's errors (our choice: 1 if only errors are removed)."""
 PADDING = 1.5
-"""Periods of a lower cut-off on either side of a section that affect the filter inside (a choice: a
-step response is within 0.5 % there)."""
+"""Length on either side of a section that affects the filter inside it, in periods of a lower
+cut-off (our choice: a step response is within 0.5 % there)."""
 
 
 def velocities(piece: RecordSection, motion: ConditionedRecord, first: int, last: int) -> Array:
-    """Velocity along a section at the record's cut-off and at lower ones.
+    """Velocity along a section, at the record's cut-off and at lower cut-offs.
 
-    A cut-off that moves the position by more than the sensor's errors is replaced by the next
-    higher one.
+    A lower cut-off that changes the position by more than the sensor's errors is replaced by the
+    next higher cut-off.
 
     Parameters
     ----------
-    piece, motion : section of a conditioned record, and the record
-    first, last : first and one past the last sample of interest
+    piece, motion : a section of a conditioned record, and that record
+    first, last : start and end (exclusive) of the samples of interest
 
     Returns
     -------
-    velocities (cut-offs, samples), that of the record's cut-off first [m/s]
+    velocities (cut-offs, samples), first that at the record's cut-off [m/s]
     """
     step = motion.sample_time
     velocity = piece.velocity[first:last]
@@ -435,10 +442,11 @@ def velocities(piece: RecordSection, motion: ConditionedRecord, first: int, last
 
 
 def position_error(velocity: Array, motion: ConditionedRecord) -> float:
-    """Mean square error of the filtered position along a velocity [m^2].
+    """Mean square error of the filtered position during a motion [m^2].
 
-    The filter passes a share 2 f_c dt of white noise s^2. The error q^2/12 of sensor steps q passes
-    fully if the rod takes longer than 1/f_c for a step; else it counts as white noise [derived].
+    The filter passes a share 2 f_c dt of white noise s^2, with the cut-off f_c and the sample time
+    dt. The error q^2/12 of sensor steps q passes completely if the rod takes longer than 1/f_c for
+    a step; if not, it counts as white noise [derived].
     """
     quality, band = motion.quality["x"], motion.band
     step = quality.resolution**2 / 12

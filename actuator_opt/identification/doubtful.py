@@ -1,4 +1,4 @@
-"""Effects that a record cannot separate: caveats, and wider bounds than the linearised model's."""
+"""Effects that a record cannot separate: notes on them, and wider confidence intervals."""
 
 from __future__ import annotations
 
@@ -12,18 +12,19 @@ from ..base.numeric import Array
 from .points import ALIKE, FrictionPoint
 
 REACH = 1.5
-"""Multiple of the Stribeck speed that a record must reach to separate F_C from sigma_2: there the
-Stribeck part is e^(-1.5^2) = 0.1 of its height at exponent 2 (a choice)."""
+"""Multiple of the Stribeck speed that a record must reach to separate F_C from sigma_2. There the
+Stribeck part has dropped to e^(-1.5^2) = 0.1 of its height, for exponent 2 (our choice)."""
 SPREAD, APART = 0.2, 3.0
-"""Least pressure range that can show an effect: over the highest pressure, and over the pressure
-that overcomes friction alone (choices: effects of pressure then exceed scatter)."""
+"""Smallest pressure range that can show an effect of pressure: as a share of the highest pressure,
+and as a multiple of the pressure that overcomes friction alone (our choices: the effect then
+exceeds the scatter)."""
 UNEQUAL = 2e-3
-"""Relative area error above which it is reported (a choice: below it, seals whose pressure effect
-differs by a fifth between directions look alike)."""
+"""Relative area error above which it is reported (our choice). A smaller error cannot be
+distinguished from seals whose pressure effect differs by a fifth between the directions."""
 MISSED, BEYOND = 0.3, 5.0
-"""Misfit of a curve, as a share of friction and a multiple of errors, above which it is reported
-(choices: the share of an identifiable parameter, `WEAK`; more than errors too small by half
-explain)."""
+"""Misfit of a curve above which it is reported: as a share of the friction and as a multiple of the
+errors (our choices). The share is that of an identifiable parameter, `WEAK`; errors that are too
+small by half do not explain the multiple."""
 SIGNED = ("offset", "pressure_slope")
 """Parameters that may be 0."""
 INSEPARABLE = ("coulomb", "viscous", "stribeck_speed", "exponent")
@@ -31,7 +32,7 @@ INSEPARABLE = ("coulomb", "viscous", "stribeck_speed", "exponent")
 
 
 def unbounded(parameters: Mapping[str, Parameter], names: Iterable[str]) -> dict[str, Parameter]:
-    """Parameters with infinite bounds for those named."""
+    """The parameters; those named get infinite confidence limits."""
     unknown = set(names)
     return {
         name: Parameter(parameter.value, -np.inf, np.inf, np.inf, False)
@@ -44,7 +45,7 @@ def unbounded(parameters: Mapping[str, Parameter], names: Iterable[str]) -> dict
 def widened(
     parameters: Mapping[str, Parameter], errors: Mapping[str, float], quantile: float
 ) -> dict[str, Parameter]:
-    """Parameters with an additional, independent standard error."""
+    """The parameters, with an additional, independent standard error."""
     result = dict(parameters)
     for name, extra in errors.items():
         parameter = result[name]
@@ -57,7 +58,10 @@ def widened(
 
 
 def agreed(parameters: Mapping[str, Parameter], references: Mapping[str, Parameter]) -> list[str]:
-    """Names of parameters within the bounds of references that are identifiable, or may be 0."""
+    """Names of parameters that lie within the intervals of their references.
+
+    Only references that are identifiable, or that may be 0, are compared.
+    """
     known = {
         name: reference
         for name, reference in references.items()
@@ -71,7 +75,7 @@ def agreed(parameters: Mapping[str, Parameter], references: Mapping[str, Paramet
 
 
 class Unequal(NamedTuple):
-    """A force that grows with a chamber's pressure in both directions, which friction cannot."""
+    """A force that grows with a chamber pressure in both directions of motion, unlike friction."""
 
     chamber: int
     share: float
@@ -79,7 +83,10 @@ class Unequal(NamedTuple):
     sure: bool
 
     def says(self, area: float, plunger: bool) -> str:
-        """Describe the error in one line, with the corrected diameter D' = D sqrt(1 - e)."""
+        """One-line note on the error, with the corrected diameter D' = D sqrt(1 - e).
+
+        D is the diameter, e the area error.
+        """
         stated = 1e3 * np.sqrt(4 * area / np.pi)
         diameter = "plunger" if plunger else "bore"
         return (
@@ -91,16 +98,18 @@ class Unequal(NamedTuple):
 
 
 def spread(points: Sequence[FrictionPoint], pressures: Sequence[float], area: float) -> float:
-    """Pressure range over the least range that can show an effect."""
+    """Pressure range, divided by the smallest range that can show an effect."""
     by_friction = APART * max(abs(point.friction) for point in points) / area
     return (max(pressures) - min(pressures)) / max(SPREAD * max(pressures), by_friction, 1.0)
 
 
 def unequal(points: Sequence[FrictionPoint], area: float) -> Unequal | None:
-    """Detect a share of the hydraulic force in the friction: areas or sensors are then wrong.
+    """Detect a share of the hydraulic force in the friction, due to wrong areas or sensors.
 
-    Least squares F = sgn v [f_k + s (p - p_0)] + F_0 + e A p_i, f_k free at every speed: friction
-    is odd in the velocity, the effect of a wrong area or gain is even [derived].
+    Least squares of F = sgn v [f_k + s (p - p_0)] + F_0 + e A p_i. F is the friction, v the
+    velocity, f_k a free friction level for every speed, s the pressure slope at the pressure p
+    against the reference p_0, F_0 an offset, e the error, A the area, p_i the pressure of chamber
+    i. Friction is odd in the velocity; the effect of a wrong area or sensor gain is even [derived].
 
     Parameters
     ----------
@@ -109,7 +118,7 @@ def unequal(points: Sequence[FrictionPoint], area: float) -> Unequal | None:
 
     Returns
     -------
-    the share e with its error; None if no chamber's pressure varies enough in both directions
+    the share e with its error; None if neither chamber's pressure varies enough in both directions
     """
     signs = np.array([np.sign(point.velocity) for point in points])
     directions = [[point for point in points if point.velocity * w > 0] for w in (1, -1)]
@@ -159,11 +168,11 @@ def _groups(speed: Array) -> Array:
 
 
 def hidden(parameters: Mapping[str, Parameter], fastest: float, falls: bool) -> str | None:
-    """Why F_C and sigma_2 cannot be separated, in one line; None if they can.
+    """One-line reason why F_C and sigma_2 cannot be separated; None if they can.
 
     Parameters
     ----------
-    parameters : parameters of a Stribeck curve, or of LuGre
+    parameters : parameters of a Stribeck curve or of a LuGre model
     fastest : highest speed of the record [m/s]
     falls : whether friction at the fastest speed is below that at the slowest
     """
@@ -186,12 +195,12 @@ def hidden(parameters: Mapping[str, Parameter], fastest: float, falls: bool) -> 
 def misled(
     parameters: Mapping[str, Parameter], friction: Array, residuals: Array, errors: Array
 ) -> Iterator[str]:
-    """Yield results that friction alone cannot explain.
+    """Yield notes on results that friction alone cannot explain.
 
     Parameters
     ----------
     parameters : parameters of a Stribeck curve
-    friction, residuals, errors : values at its points [N]
+    friction, residuals, errors : of the curve at its points [N]
     """
     fitted = friction - residuals
     if "offset" in parameters:
@@ -212,7 +221,7 @@ def misled(
 
 
 def ways(parameters: Mapping[str, Parameter], error: Unequal | None) -> Iterator[str]:
-    """Yield limits due to a missing direction, or a difference between directions."""
+    """Yield notes on a missing direction of motion, or on a difference between the directions."""
     if "offset" not in parameters:
         yield "one direction only: a zero error of a sensor counts as friction"
         return

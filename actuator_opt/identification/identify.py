@@ -1,6 +1,6 @@
-"""Identification of friction, damping and models from a test record, with bounds.
+"""Identification of friction, damping and friction models from a test record.
 
-A lag of the pressures is reported if the record shows it, and corrected if possible.
+If the record shows a lag of the pressures, the lag is reported and, if possible, corrected.
 """
 
 from __future__ import annotations
@@ -38,10 +38,10 @@ from .stribeck_fit import StribeckFit, different, fit_stribeck
 from .windows import LAG
 
 LEAST_LAG = 3e-4
-"""Least lag worth correcting [s]."""
+"""Smallest lag of the pressures that is corrected [s]."""
 EARLIEST = 6e-3
-"""Largest plausible lead of the pressures over the position [s] (a choice: filters of a position
-sensor also have a lag, but bristles may look the same)."""
+"""Largest plausible time by which the pressures may be ahead of the position [s] (our choice). The
+filter of a position sensor also causes a lag, but bristles can look the same."""
 STATE = "state --pressure-lag if it is known"
 CANNOT = (
     "the record cannot show whether the pressures lag: raise --cutoff, reverse the rod more "
@@ -50,20 +50,20 @@ CANNOT = (
 
 
 def lag_of(lugre: LuGreFit | str) -> Parameter | None:
-    """The lag of the pressures fitted by a model; None if none was fitted."""
+    """The pressure lag that the LuGre model fitted; None if it fitted no lag."""
     return None if isinstance(lugre, str) else lugre.parameters.get("lag")
 
 
 def lag_to_correct(parameter: Parameter | None) -> tuple[float, str]:
-    """The lag to correct [s], 0 for none, with a note that may be empty.
+    """The pressure lag to correct [s], 0 for none, and a note, which may be empty.
 
-    A lag is corrected if its 95 % bounds lie above zero. A negative lag is not: sigma_0 z + sigma_1
-    dz/dt is sigma_0 z advanced by sigma_1/sigma_0, so micro-damping looks like early pressures. The
-    record only gives the difference of both.
+    A lag is corrected if its 95 % confidence interval lies above zero. A negative lag is not
+    corrected, because damping of the bristles looks like early pressures: sigma_0 z + sigma_1 dz/dt
+    is about sigma_0 z advanced by sigma_1/sigma_0. The record only gives the difference of both.
 
     Parameters
     ----------
-    parameter : the lag fitted with sigma_1 fixed at 0
+    parameter : lag fitted with sigma_1 fixed at 0
     """
     if parameter is None:
         return 0.0, ""
@@ -88,7 +88,10 @@ def lag_to_correct(parameter: Parameter | None) -> tuple[float, str]:
 
 
 def rejected_correction(parameter: Parameter, remaining: Parameter | None) -> str:
-    """Why a lag correction is rejected, as another lag remains; empty if it is accepted."""
+    """Reason why the correction of a lag is rejected: another lag remains.
+
+    Empty if it is accepted.
+    """
     if remaining is None or remaining.lower <= 0 <= remaining.upper:
         return ""
     return (
@@ -99,7 +102,7 @@ def rejected_correction(parameter: Parameter, remaining: Parameter | None) -> st
 
 
 def with_uncertain_damping(lugre: LuGreFit | str) -> LuGreFit | str:
-    """The model of a record of unknown lag: its sigma_1 has no bounds."""
+    """The LuGre model without confidence limits on sigma_1, for a record with an unknown lag."""
     if isinstance(lugre, str):
         return lugre
     doubt = "σ₁ is valid if no pressure lags: a lag τ adds σ₀ τ"
@@ -108,19 +111,20 @@ def with_uncertain_damping(lugre: LuGreFit | str) -> LuGreFit | str:
 
 
 LAWS = {"power_law": fit_power_law, "double_exponential": fit_double_exponential}
-"""Models of the secant damping over speed."""
+"""Laws of the secant damping as a function of speed, with the function that fits each."""
 LEAST_SPEEDS = 3
-"""Different speeds needed for a model of two parameters with a degree of freedom."""
+"""Number of different speeds needed to fit a law of two parameters with a degree of freedom."""
 WARMER = 10.0
-"""Temperature difference above which it is reported [K] (a choice: rubber softens by some per
-cent)."""
+"""Temperature difference above which it is reported [K] (our choice: rubber then softens by a few
+per cent)."""
 OUTSIDE = 0.02
-"""Share of the stroke by which a position may exceed its ends."""
+"""Share of the stroke by which a position may lie outside the stroke."""
 STEPS, NOISES = 2.0, 10.0
-"""Largest apparent travel of a rod at rest: in sensor steps, and in standard deviations of the
-filtered position (a choice: 10 000 normal samples span 8 standard deviations)."""
+"""Largest apparent travel of a rod that counts as at rest: in sensor steps, and in standard
+deviations of the filtered position (our choice: 10 000 normal samples span 8 standard
+deviations)."""
 PACE = 0.05
-"""Share by which a channel v may differ from the slope of x (a choice)."""
+"""Relative difference that is permitted between a channel v and the slope of x (our choice)."""
 
 
 def identify(record: Record, bench: Bench, settings: Settings | None = None) -> Identification:
@@ -128,9 +132,9 @@ def identify(record: Record, bench: Bench, settings: Settings | None = None) -> 
 
     Parameters
     ----------
-    record : with p1, x and F_L (or `load_force`), p2 unless the rod is a plunger
-    bench : the design tested
-    settings : settings of the identification; None for the default
+    record : record with p1, x and F_L (or `load_force`), and p2 unless the rod is a plunger
+    bench : the tested design
+    settings : settings of the identification; None for the defaults
 
     Returns
     -------
@@ -139,8 +143,8 @@ def identify(record: Record, bench: Bench, settings: Settings | None = None) -> 
     Raises
     ------
     InputError
-        a missing channel, a record too short or too slow, wrong signs, no motion, travel beyond the
-        stroke, or an invalid mass or lag
+        a channel is missing; the record is too short or too slow; signs are wrong; the rod does not
+        move or travels beyond the stroke; or a mass or lag is invalid
     """
     settings = settings or Settings()
     _check_channels(record, bench, settings)
@@ -207,7 +211,7 @@ def _check_motion(
     bench: Bench,
     mass: float,
 ) -> None:
-    """Reject a record of a rod at rest, beyond its stroke, or with wrong signs."""
+    """Reject a record if the rod is at rest, moves beyond its stroke, or a sign is wrong."""
     travel = max(float(np.ptp(piece["x"][piece.sound])) for piece in motion.pieces)
     quality = motion.quality["x"]
     noise = quality.noise * np.sqrt(motion.band)
@@ -240,7 +244,7 @@ def _outside(slidings: Sequence[Sliding], bench: Bench) -> list[str]:
 
 
 def _blurred(points: Sequence[FrictionPoint], motion: ConditionedRecord) -> list[str]:
-    """A note if a low cut-off leaves no points."""
+    """A note if the cut-off is so low that no points of steady sliding remain."""
     shortest = 2 * BLURRED / motion.cutoff + LASTING / 2
     if points or shortest <= 2 * LASTING:
         return []
@@ -267,7 +271,8 @@ def _warmth(record: Record, bench: Bench) -> list[str]:
 def _pace(motion: ConditionedRecord) -> list[str]:
     """A note if channel v is not the slope of x.
 
-    v = k dx/dt by least squares, k = sum v x'/sum x'^2, the latter less the noise of x'.
+    The factor k in v = k dx/dt is k = sum v x'/sum x'^2 by least squares. The noise of x' is
+    subtracted from the sum in the denominator.
     """
     pairs = [
         (piece["v"][piece.sound], piece.velocity[piece.sound])
@@ -278,7 +283,7 @@ def _pace(motion: ConditionedRecord) -> list[str]:
         return []
     stated, slopes = (np.concatenate(arrays) for arrays in zip(*pairs, strict=True))
     power = float(np.mean(slopes**2)) - velocity_noise(motion) ** 2
-    if power <= 0.5 * float(np.mean(slopes**2)):  # too close to noise to judge
+    if power <= 0.5 * float(np.mean(slopes**2)):  # the slope of x is too small against its noise
         return []
     slope = float(np.mean(stated * slopes)) / power
     if abs(slope - 1) <= PACE:
@@ -294,7 +299,7 @@ def _models(
     lag_known: bool,
     settling: float = SETTLED,
 ) -> tuple[tuple[FrictionPoint, ...], StribeckFit | str, LuGreFit | str]:
-    """Points of steady sliding, and the models fitted to them."""
+    """Points of steady sliding, with the Stribeck and LuGre models fitted to them."""
     points = steady_points(slidings, motion, settling)
     stribeck = fit_stribeck(points, area)
     lugre = fit_lugre(slidings, motion, points, stribeck, lag_known=lag_known, settling=settling)
@@ -302,7 +307,7 @@ def _models(
 
 
 def _check_channels(record: Record, bench: Bench, settings: Settings) -> None:
-    """Reject a record that lacks a channel of the force balance, or states it twice."""
+    """Reject a record if a channel of the force balance is missing or given twice."""
     bent = ", or --span for a bending test" if "w" in record else ""
     for name, label in (("p1", "pressure of the cap end"), ("x", "position")):
         if name not in record:
@@ -325,7 +330,10 @@ def _check_channels(record: Record, bench: Bench, settings: Settings) -> None:
 
 
 def _mass(record: Record, bench: Bench, settings: Settings) -> float:
-    """Moving mass inside the force sensor [kg]; invalid forces and masses are rejected."""
+    """Moving mass on the actuator's side of the force sensor [kg].
+
+    Reject invalid forces and masses.
+    """
     if settings.mass is not None and not (np.isfinite(settings.mass) and settings.mass >= 0):
         raise record.fault(f"a moving mass of {settings.mass:g} kg", "give 0 kg or more")
     if settings.load_force is not None and not np.isfinite(settings.load_force):
@@ -343,7 +351,7 @@ def _conditioned(
     lag: float,
     before: ConditionedRecord | None,
 ) -> tuple[ConditionedRecord, list[Sliding]]:
-    """The conditioned record and its friction; `before` is the record with another lag."""
+    """Condition the record, compute its friction; `before` is the record with another lag."""
     motion = condition(
         record,
         cutoff=settings.cutoff,
@@ -358,10 +366,13 @@ def _conditioned(
 def _sizes(
     slidings: Sequence[Sliding], motion: ConditionedRecord, settling: float
 ) -> tuple[Mean, float, bool]:
-    """Mean |F_r| in sliding, with bounds from batch means; largest |F_r|; whether the rod slides.
+    """Mean friction |F_r| in sliding, largest |F_r|, and whether the rod slides.
 
-    Until the rod has moved `BENDS` breakaway travels after a reversal or rest it is in pre-sliding,
-    which only counts for the largest value. Without sliding the mean is that of the moving rod.
+    The interval of the mean follows from means of batches.
+
+    After a reversal or rest the rod is in pre-sliding until it has moved `BENDS` breakaway travels.
+    Pre-sliding only counts for the largest value. If the rod never slides, the mean is that of the
+    moving rod.
     """
     distance = BENDS / SETTLING * settling
     moving = any(sliding.moving.any() for sliding in slidings)
@@ -383,7 +394,7 @@ def _sizes(
 
 
 def _fits(points: Sequence[FrictionPoint]) -> dict[str, LawFit | str]:
-    """Fits of the secant damping over speed, weighted by relative errors."""
+    """Fits of the secant damping as a function of speed; relative errors are the weights."""
     speeds = different([point.speed for point in points])
     if len(speeds) < LEAST_SPEEDS:
         reason = (

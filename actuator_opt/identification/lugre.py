@@ -1,7 +1,8 @@
-"""LuGre bristles from reversals.
+"""Fit of a LuGre friction model to a record, from its reversals.
 
-Bristle stiffness, bristle damping and the lag of the pressures are fitted to windows about the
-reversals, together with the Stribeck parameters from the points of steady sliding.
+Bristle stiffness, bristle damping and the lag of the pressures are fitted to sections ('windows')
+around the reversals. The Stribeck parameters are fitted at the same time, also to the points of
+steady sliding.
 """
 
 from __future__ import annotations
@@ -32,36 +33,41 @@ from .stribeck_fit import (
 from .windows import LAG, Windows, no_windows, windows
 
 TRAVELS = (1e-6, 3e-3)
-"""Bristle travels F_S/sigma_0 searched [m] (a choice: nearly two decades either side of 50 um)."""
+"""Range in which the bristle travel F_S/sigma_0 is searched [m] (our choice: nearly two decades on
+either side of 50 um)."""
 DAMPING_TIMES = (1e-6, 0.3)
-"""sigma_1/sigma_0 searched [s] (a choice: from none to the length of a window)."""
+"""Range in which sigma_1/sigma_0 is searched [s] (our choice: from no damping to the length of a
+window)."""
 USUAL = 5e-3
-"""Usual standard deviation of the pressure lag [s], included in bounds if a record does not show
-the lag (a choice: sensors and lines of a test bench, up to 10 ms)."""
+"""Usual standard deviation of the pressure lag [s]. It is included in the confidence intervals if a
+record does not show the lag (our choice: sensors and lines of a test bench have up to 10 ms)."""
 STEP = 1e-4
-"""Relative step of central differences (a choice: error 1e-8)."""
+"""Relative step of the central differences (our choice: gives an error of 1e-8)."""
 SYMBOLS = {"bristle_stiffness": "σ₀", "bristle_damping": "σ₁", "lag": "τ"}
-"""Parameters in addition to those of the Stribeck curve: N/m, N s/m, s."""
+"""Parameters besides those of the Stribeck curve, with their symbols; units N/m, N s/m, s."""
 MODEL = 1e-3
-"""Least scatter of the windows over the largest friction (a choice, as for the points: below it the
-filtered motion limits the model, not noise)."""
+"""Smallest scatter of the windows, as a share of the largest friction (our choice, as for the
+points: below it the filtered motion limits the model, not the noise)."""
 BENDS = 3.0
-"""Breakaway travels that give 95 % of the force, 1 - e^-3; the record must resolve them in time."""
+"""Number of breakaway travels after which 95 % of the force is reached: 1 - e^-3. The record must
+resolve them in time."""
 LATE = 1.5
-"""Factor on the standard error of a lag (a choice, from records of known friction: with 25 kPa of
-noise and steps of 10 um the error of the fitted lag is 1.3 to 1.9 standard errors)."""
+"""Factor on the standard error of a lag (our choice, from records of known friction: with 25 kPa of
+noise and steps of 10 um, the true error is 1.3 to 1.9 standard errors)."""
 NOISY, MISSED = 2.0, 0.02
-"""Largest misfit in the windows: multiple of the noise plus a share of the largest friction (a
-choice, from records of known friction: position steps add up to 3 times the noise)."""
+"""Largest acceptable misfit in the windows: a multiple of the noise plus a share of the largest
+friction (our choice, from records of known friction: position steps add up to 3 times the
+noise)."""
 DETERMINED = 3
-"""Number of parameters that the windows determine: stiffness, lag or damping, level."""
+"""Number of parameters that the windows determine: stiffness, lag or damping, and friction
+level."""
 RCOND = 1e-6
-"""Least ratio of singular values of the slopes (a choice: far above rounding)."""
+"""Smallest ratio of singular values of the slopes (our choice: far above rounding)."""
 ROUNDS = 2
-"""Number of searches, each with windows weighted by their scatter in the last (a choice: the second
-changes the weights by a few per cent)."""
+"""Number of searches; each weights the windows by their scatter in the previous search (our choice:
+the second search changes the weights by only a few per cent)."""
 LOGARITHMIC = ("bristle_stiffness", "bristle_damping", "stribeck_speed")
-"""Parameters searched by logarithm."""
+"""Parameters whose logarithms are searched."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -70,12 +76,12 @@ class LuGreFit:
 
     Parameters
     ----------
-    parameters : fitted, by name: those of the Stribeck curve, `bristle_stiffness`,
-        `bristle_damping` and the pressures' `lag`
+    parameters : fitted parameters by name: those of the Stribeck curve, `bristle_stiffness`,
+        `bristle_damping`, and the `lag` of the pressures
     held : fixed parameters
     count : number of windows
-    misfit : standard deviation of the friction about the model in the windows [N]
-    doubts : unknown parameters and other caveats
+    misfit : standard deviation of measured friction from the model in the windows [N]
+    doubts : unknown parameters, and other reasons to doubt the model
     """
 
     parameters: Mapping[str, Parameter]
@@ -94,7 +100,7 @@ class LuGreFit:
 
 
 def sizes(names: Sequence[str], largest: float, steady: Steady | None) -> Array:
-    """Size of each searched parameter; 1 for a logarithm."""
+    """Typical size of each searched parameter; 1 for a logarithm."""
     speed, change = 1e-3, 1e5
     if steady is not None:
         speed = max(speed, float(np.max(np.abs(steady.velocity))))
@@ -105,13 +111,13 @@ def sizes(names: Sequence[str], largest: float, steady: Steady | None) -> Array:
 
 
 def _rise(static: float) -> dict[str, float]:
-    """Start of the search for a rise of friction towards rest."""
+    """Initial values for the search of a static friction above F_C."""
     speed = float(np.sqrt(SPEEDS[0] * SPEEDS[1]))
     return {"exponent": EXPONENT, "static": static, "stribeck_speed": speed}
 
 
 class LugreProblem:
-    """Residuals of points and windows over the searched parameters."""
+    """Residuals of points and windows as functions of the searched parameters."""
 
     def __init__(
         self,
@@ -122,9 +128,10 @@ class LugreProblem:
         *,
         falling: bool = False,
     ) -> None:
-        """`fixed` are values of parameters that are not searched.
+        """Set up the search; `fixed` are values of parameters that are not searched.
 
-        Without a Stribeck curve the level is constant, or `falling` from F_S to F_C.
+        Without a Stribeck curve the friction level is constant, or falls from F_S to F_C if
+        `falling`.
         """
         self.windows = reversals
         self.steady = None
@@ -154,7 +161,7 @@ class LugreProblem:
         self.sizes = sizes(self.names, self.largest, self.steady)
 
     def _release_static(self, stribeck: StribeckFit) -> None:
-        """Let the windows determine F_S and v_s if the points do not."""
+        """Fit F_S and v_s to the windows if the points do not determine them."""
         static = stribeck.parameters.get("static")
         if self.held.pop("exponent", None) is not None:
             self.begin["exponent"] = EXPONENT
@@ -164,7 +171,7 @@ class LugreProblem:
             self.begin |= _rise(max(self.largest, 1.01 * self.begin["coulomb"]))
 
     def values(self, rows: Array) -> dict[str, Array]:
-        """Parameters (rows,) from searched numbers (rows, searched)."""
+        """Convert searched values (rows, searched) to parameters (rows,)."""
         searched = {}
         for name, column in zip(self.names, rows.T, strict=True):
             searched[name] = np.exp(column) if name in LOGARITHMIC else column
@@ -174,11 +181,11 @@ class LugreProblem:
         return held | searched
 
     def values_at(self, x: Array) -> dict[str, float]:
-        """Parameters from searched numbers (searched,)."""
+        """Convert searched values (searched,) to parameters."""
         return {name: float(column[0]) for name, column in self.values(x[None]).items()}
 
     def residuals(self, rows: Array) -> Array:
-        """Weighted residuals (rows, residuals) of searched numbers (rows, searched)."""
+        """Weighted residuals (rows, residuals) for searched values (rows, searched)."""
         values = self.values(rows)
         misfits = (self.windows.misfit(values) / self.spread).reshape(len(rows), -1)
         if self.steady is None:
@@ -187,11 +194,11 @@ class LugreProblem:
         return np.concatenate([self.steady.residual(steady), misfits], axis=1)
 
     def residuals_at(self, x: Array) -> Array:
-        """Weighted residuals (residuals,) of searched numbers (searched,)."""
+        """Weighted residuals (residuals,) for searched values (searched,)."""
         return self.residuals(x[None])[0]
 
     def slopes(self, x: Array) -> Array:
-        """Derivatives of the residuals by central differences, all in one call."""
+        """Derivatives of the residuals by central differences, computed in a single call."""
         steps = STEP * np.diag(self.sizes)
         residuals = self.residuals(np.concatenate([x + steps, x - steps]))
         return ((residuals[: x.size] - residuals[x.size :]) / (2 * STEP * self.sizes[:, None])).T
@@ -215,7 +222,7 @@ class LugreProblem:
         return np.array([pair[0] for pair in pairs]), np.array([pair[1] for pair in pairs])
 
     def start(self) -> Array:
-        """The best point of a grid of bristle stiffnesses, lags and Stribeck speeds."""
+        """The best point on a grid of bristle stiffnesses, lags and Stribeck speeds."""
         speeds = [self.begin.get("stribeck_speed", SPEEDS[0])]
         if "static" in self.begin and "stribeck_speed" not in self.held:
             speeds = [0.3 * speeds[0], speeds[0], 3 * speeds[0]]
@@ -242,7 +249,7 @@ class LugreProblem:
         return best
 
     def descend(self, x: Array) -> Array:
-        """Least squares within the limits."""
+        """Least-squares solution within the limits."""
         low, high = self.limits()
         span = np.where(np.isfinite(high - low), high - low, self.sizes)
         return least_squares.solve(
@@ -264,11 +271,13 @@ class LugreProblem:
         return max(float(np.sqrt(square)), MODEL * self.largest)
 
     def whitened(self, residuals: Array, slopes: Array) -> Array:
-        """Slopes J' of independent unit residuals with the same information: J'^T J' = cov^-1.
+        """Slopes J' of an equivalent problem with independent unit residuals: J'^T J' = cov^-1.
 
-        cov = H^-1 J^T R J H^-1, H = J^T J, R the covariance of the residuals: points are
-        independent, all lanes have the autocovariance c_k = sum r_t r_(t+k)/n [SeberWild1989]. With
-        J = U S V^T, J' = L^-1 S V^T, L L^T = U^T R U [derived].
+        The covariance is cov = H^-1 J^T R J H^-1 with H = J^T J, the slopes J and the covariance R
+        of the residuals r. Points are independent. Within a window, residuals k samples apart have
+        the covariance c_k = sum r_t r_(t+k)/n of n samples, which is the same for all windows
+        [SeberWild1989]. With J = U S V^T, the result is J' = L^-1 S V^T, where L L^T = U^T R U
+        [derived].
         """
         from scipy.linalg import solve_triangular, toeplitz  # slow import, rarely used
 
@@ -289,10 +298,13 @@ class LugreProblem:
         return solve_triangular(root, singular[:, None] * right, lower=True) / self.sizes
 
     def lane_errors(self, residuals: Array, slopes: Array) -> Array:
-        """Standard errors from independent lanes with any correlation within; zeros for few lanes.
+        """Standard errors from differences between windows; zeros if there are few windows.
 
-        cov = H^-1 sum (J_l^T r_l)(J_l^T r_l)^T H^-1 n/(n - 3) of n lanes [SeberWild1989]. It covers
-        steps of the position sensor, which shift a whole reversal.
+        The windows are independent; any correlation is allowed within a window.
+
+        cov = H^-1 sum (J_l^T r_l)(J_l^T r_l)^T H^-1 n/(n - 3) for n windows l [SeberWild1989], with
+        H, J and r as in `whitened`. It includes the steps of the position sensor, which shift a
+        whole reversal.
         """
         lanes, count = self.windows.judged.shape
         split = residuals.size - lanes * count
@@ -312,7 +324,10 @@ class LugreProblem:
 
     @property
     def missed(self) -> str | None:
-        """Why the windows are unusable, as the model misses them by more than noise; else None."""
+        """Reason why the windows are unusable: the model misses them by more than noise.
+
+        Else None.
+        """
         if self.steady is None or self.spread <= NOISY * self.noise + MISSED * self.largest:
             return None
         return (
@@ -328,7 +343,7 @@ class LugreProblem:
         return BENDS * level / values["bristle_stiffness"]
 
     def changes(self, x: Array, chain: Array, misfit: Array) -> dict[str, float]:
-        """Changes of the parameters if the windows had another misfit [N]."""
+        """Changes of the parameters if the windows had the given misfit [N]."""
         before = self.residuals_at(x)
         weighted = (misfit / self.spread).reshape(-1)
         change = np.zeros_like(before)
@@ -337,7 +352,7 @@ class LugreProblem:
         return dict(zip(self.names, np.abs(changes * self.sizes * chain), strict=True))
 
     def bounded(self, x: Array) -> dict[str, Parameter]:
-        """Parameters with bounds from residuals, lanes and position resolution."""
+        """Parameters with confidence intervals from residuals, windows and position resolution."""
         values = self.values_at(x)
         searched = {name: values[name] for name in self.names}
         chain = np.array([searched[name] if name in LOGARITHMIC else 1.0 for name in self.names])
@@ -379,12 +394,13 @@ class LugreProblem:
         return int(np.sum(np.any(self.windows.judged > 0, axis=-1)))
 
     def _lag_error(self, x: Array, chain: Array, scatter: float) -> float:
-        """Standard error of the lag from scatter, position, velocity and sampling [s].
+        """Standard error of the lag [s], from scatter, position, velocity and sampling.
 
-        Resolution of the position sensor shifts all reversals alike, its white noise each reversal
-        separately. A velocity with a lower cut-off than the pressures starts early, which looks
-        like a lag; the velocity at the record's cut-off shows the difference. Sampling adds dt/sqrt
-        12, as a reversal falls anywhere between two samples.
+        The resolution of the position sensor shifts all reversals alike, its white noise each
+        reversal separately. A velocity with a lower cut-off than the pressures starts too early,
+        which looks like a lag. A fit with the velocity at the record's cut-off shows the
+        difference. Sampling adds dt/sqrt 12 with the time step dt, because a reversal can lie
+        anywhere between two samples.
         """
         values, windows = self.values(x[None]), self.windows
         distance = float(np.hypot(windows.grain, windows.noise / np.sqrt(max(self.used, 1))))
@@ -395,7 +411,7 @@ class LugreProblem:
         )
 
     def _early(self, x: Array) -> float:
-        """Change of the lag with the velocity at the record's cut-off [s]."""
+        """Change of the lag if the velocity at the record's cut-off is used [s]."""
         windows = self.windows
         if np.array_equal(windows.velocity, windows.options[0]):
             return 0.0
@@ -406,7 +422,10 @@ class LugreProblem:
         return change
 
     def solve(self) -> LuGreFit:
-        """Search, weight the windows by their scatter, search again, and compute bounds."""
+        """Search, weight the windows by their scatter, search again.
+
+        Compute confidence intervals.
+        """
         x = self.start()
         for _ in range(ROUNDS):
             self.windows = self.windows.chosen(self.values(x[None]))
@@ -441,19 +460,24 @@ class LugreProblem:
 
 
 BLUR = 40e-3
-"""Longest hidden reversal for which a lag is fitted [s] (a choice: ten usual lags)."""
+"""Longest time for which a reversal may be hidden by the position resolution if a lag is fitted [s]
+(our choice: ten usual lags)."""
 SURER = 10.0
-"""Gain in Akaike information required to prefer a falling level to a constant one (a choice: very
-strong evidence)."""
+"""Gain in Akaike information for which a falling friction level is preferred to a constant level
+(our choice: very strong evidence)."""
 SLID = 0.95
-"""Share of the level that friction must reach for the level to be identifiable (a choice)."""
+"""Share of the friction level that friction must reach for the level to be identifiable (our
+choice)."""
 FAR = 3.0
-"""Multiple of the Stribeck speed that the rod must reach (a choice: at most 5 % of F_S - F_C then
-remain at exponent 1)."""
+"""Multiple of the Stribeck speed that the rod must reach (our choice: at most 5 % of F_S - F_C then
+remain, for exponent 1)."""
 
 
 def settling_distance(lugre: LuGreFit | str) -> float:
-    """Distance after a reversal from which sliding is steady [m], by the bristles if known."""
+    """Distance after a reversal beyond which sliding is steady [m].
+
+    It follows from the bristles if they are known.
+    """
     if isinstance(lugre, str) or not lugre.parameters["bristle_stiffness"].identifiable:
         return SETTLED
     level = max(lugre.values.get("static", 0.0), lugre.values["coulomb"])
@@ -469,24 +493,26 @@ def fit_lugre(
     lag_known: bool,
     settling: float = SETTLED,
 ) -> LuGreFit | str:
-    """The LuGre model of a record, or the reason for none.
+    """Fit a LuGre model to a record; return the reason if it is not possible.
 
-    Least squares over points of steady sliding and windows about reversals, each weighted by its
-    scatter [AaltoThesis] eq. 27-31. Without a Stribeck curve, as in pre-sliding, the windows alone
-    give F_C and the bristles. In stuck contact sigma_0 z + sigma_1 dz/dt is sigma_0 z advanced by
-    sigma_1/sigma_0, which looks like early pressures, so only lag or sigma_1 is fitted.
+    Least squares over points of steady sliding and windows around reversals, each weighted by its
+    scatter [AaltoThesis] eq. 27-31. Without a Stribeck curve, as in pre-sliding, F_C and the
+    bristles are fitted to the windows alone. While the contact sticks, sigma_0 z + sigma_1 dz/dt is
+    about sigma_0 z advanced by sigma_1/sigma_0. This looks like early pressures, so only the lag or
+    only sigma_1 is fitted.
 
     Parameters
     ----------
-    slidings, motion : friction along the record, and its filter
+    slidings, motion : friction along the record, and the conditioned record with its filter
     points : points of steady sliding
-    stribeck : the curve through the points, where the search starts
-    lag_known : fit sigma_1; else fit the lag of the pressures, with sigma_1 fixed at 0
-    settling : distance after a reversal from which sliding is steady [m]
+    stribeck : the curve through the points, where the search starts; or the reason why it is
+        missing
+    lag_known : whether to fit sigma_1; if not, the lag of the pressures is fitted and sigma_1 is 0
+    settling : distance after a reversal beyond which sliding is steady [m]
 
     Returns
     -------
-    the fit, or the reason for none
+    the fit, or the reason why it is missing
     """
     curve = stribeck if isinstance(stribeck, StribeckFit) else None
     reference = 0.0 if curve is None else curve.reference_pressure
@@ -516,7 +542,7 @@ def fit_lugre(
 
 
 def _from_windows(reversals: Windows, fixed: Mapping[str, float]) -> LuGreFit:
-    """The model from windows alone: with a constant friction level, or a level falling from F_S."""
+    """Fit the windows alone, with a friction level that is constant or falls from F_S."""
     fit = LugreProblem(reversals, (), None, fixed).solve()
     slides = fit.misfit + reversals.largest > SLID * fit.values["coulomb"]
     if slides:
@@ -548,14 +574,14 @@ def _from_windows(reversals: Windows, fixed: Mapping[str, float]) -> LuGreFit:
 
 
 def _falling(reversals: Windows, fixed: Mapping[str, float]) -> LuGreFit:
-    """The model from windows alone, with a falling level."""
+    """Fit the windows alone, with a friction level that falls from F_S to F_C."""
     return LugreProblem(reversals, (), None, fixed, falling=True).solve()
 
 
 def _any_exponent(fit: LuGreFit, reversals: Windows, fixed: Mapping[str, float]) -> LuGreFit:
-    """A falling level with bounds that allow for exponents other than the fixed one.
+    """A falling level, with confidence intervals that allow for other exponents than the fixed one.
 
-    Each parameter has the larger uncertainty of both fits, plus their difference.
+    Each parameter gets the larger uncertainty of both fits, plus the difference between them.
     """
     other = _falling(reversals, {"exponent": OTHER, **fixed})
     errors = held_error(fit.parameters, other.values)
@@ -571,7 +597,7 @@ def _any_exponent(fit: LuGreFit, reversals: Windows, fixed: Mapping[str, float])
 def _consistent_with_points(
     fit: LuGreFit, stribeck: StribeckFit, points: Sequence[FrictionPoint]
 ) -> LuGreFit:
-    """The model without bounds on parameters that contradict the points of steady sliding."""
+    """Remove the confidence limits of parameters that contradict the points of steady sliding."""
     level, speed = stribeck.parameters["coulomb"], fit.parameters.get("stribeck_speed")
     doubts = list(fit.doubts)
     parameters = dict(fit.parameters)
@@ -597,7 +623,10 @@ def _unseparated(
     reversals: Windows,
     fixed: Mapping[str, float],
 ) -> LuGreFit:
-    """The model of inseparable F_C and sigma_2: bounds of F_S and sigma_0 allow for sigma_2 = 0."""
+    """Widen the intervals of F_S and sigma_0 to include sigma_2 = 0.
+
+    For a model whose F_C and sigma_2 cannot be separated.
+    """
     held = {"viscous": 0.0, "exponent": EXPONENT, **fixed}
     other = LugreProblem(reversals, points, stribeck, held).solve()
     errors = {

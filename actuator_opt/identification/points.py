@@ -1,4 +1,4 @@
-"""Points of steady sliding: friction over speed and pressure, from plateaus or sweeps."""
+"""Points of steady sliding: friction by speed and pressure, from plateaus or sweeps of speed."""
 
 from __future__ import annotations
 
@@ -12,35 +12,37 @@ from .balance import Sliding
 from .conditioning import ConditionedRecord, velocities
 
 STEADY, FLOOR = 0.04, 2e-5
-"""Speed tolerance of a plateau, relative and in m/s (choices: viscous friction then changes by at
-most that share; two sensor steps of 10 um in a second)."""
+"""Change of speed that is permitted in a plateau, relative and in m/s (our choices: viscous
+friction then changes by at most that share; two sensor steps of 10 um in a second)."""
 LASTING = 0.15
-"""Least duration of a plateau [s]. Its first and last fifth are excluded, also its samples before
-the settling distance if enough others remain (choices: at 30 Hz five independent samples remain;
-the adjacent ramps reach into the fifths)."""
+"""Shortest plateau [s]. Its first and last fifth are excluded. Samples before the settling distance
+are excluded too if enough others remain (our choices: five independent samples remain at 30 Hz; the
+adjacent ramps reach into the fifths)."""
 ALIKE = 0.06
-"""Relative speed difference within which plateaus merge into one point (a choice: more than
-`STEADY`, less than the steps between speeds of a test)."""
+"""Relative difference of speed within which plateaus are merged into one point (our choice: more
+than `STEADY`, less than the steps between the speeds of a test)."""
 PER_DECADE = 8
-"""Points per decade of speed in a sweep (a choice: a third apart, so that several points show a
-Stribeck part that falls within a decade)."""
+"""Number of points per decade of speed in a sweep (our choice: speeds differ by a third, so that
+several points show a Stribeck part that falls within a decade)."""
 BLURRED = 1.0
-"""Periods of the cut-off at both ends of a plateau that the filter mixes with the adjacent ramps (a
-choice: there a step response is within 2 %)."""
+"""Length at both ends of a plateau that the filter mixes with the adjacent ramps, in periods of the
+cut-off (our choice: beyond it a step response is within 2 %)."""
 SETTLED = 5e-4
-"""Distance after a reversal from which sliding is steady [m] (a choice: ten breakaway travels of 50
-um). With known bristles it is `SETTLING` times their breakaway travel, if this is more."""
+"""Distance after a reversal beyond which sliding is steady [m] (our choice: ten breakaway travels
+of 50 um). If the bristles are known, it is `SETTLING` times their breakaway travel, if that is
+more."""
 SLIDES = 2e-4
-"""Least travel of a plateau [m] (a choice: four breakaway travels of 50 um; less may be bristle
-deflection)."""
+"""Smallest travel of a plateau [m] (our choice: four breakaway travels of 50 um; a smaller travel
+may be deflection of bristles)."""
 SETTLING = 8.0
-"""Breakaway travels F_S/sigma_0 after which sliding is steady (a choice: 2 e^-8 is below 0.1 %)."""
+"""Number of breakaway travels F_S/sigma_0 after which sliding is steady (our choice: 2 e^-8 is
+below 0.1 %)."""
 LEVELS = 0.1
-"""Share of the highest pressure within which pressures are one level (a choice: less than the steps
-between loads of a test, more than friction itself changes them by)."""
+"""Range within which pressures count as equal, as a share of the highest pressure (our choice: less
+than the steps between the loads of a test, more than friction itself changes them)."""
 PRIOR = 8
-"""Weight of the record's usual scatter in that of a point, in independent samples (a choice: some
-points have four)."""
+"""Number of independent samples with which the record's usual scatter enters the scatter of a point
+(our choice: some points only have four)."""
 
 Kind = Literal["plateau", "sweep"]
 
@@ -48,9 +50,9 @@ Kind = Literal["plateau", "sweep"]
 class FrictionPoint(NamedTuple):
     """Friction in steady sliding, with the sign of the velocity; SI.
 
-    `error` is the standard error of the friction; `weight` its duration [s]; `pressure` the higher
-    of both chambers, gauge. `spread` is the standard deviation of the velocities in a point of a
-    sweep: where the curve bends, the mean friction is not that of the mean velocity.
+    `error` is the standard error of the friction, `weight` the duration [s], `pressure` the higher
+    chamber pressure (gauge). `spread` is the standard deviation of the velocities in a point of a
+    sweep: where the curve bends, the mean friction is not the friction at the mean velocity.
     """
 
     velocity: float
@@ -65,7 +67,7 @@ class FrictionPoint(NamedTuple):
 
     @property
     def speed(self) -> float:
-        """Absolute velocity [m/s]."""
+        """Absolute value of the velocity [m/s]."""
         return abs(self.velocity)
 
     @property
@@ -77,19 +79,19 @@ class FrictionPoint(NamedTuple):
 def steady_points(
     slidings: Sequence[Sliding], motion: ConditionedRecord, settling: float = SETTLED
 ) -> tuple[FrictionPoint, ...]:
-    """Points of steady sliding: from plateaus if present, else from sweeps through the speeds.
+    """Points of steady sliding: from plateaus if present, or else from sweeps of speed.
 
-    Plateaus are used if they have three speeds or more than 40 % of the moving time.
+    Plateaus are used if they have at least three speeds or last more than 40 % of the moving time.
 
     Parameters
     ----------
-    slidings : friction by section
-    motion : conditioned record, with its filter
-    settling : distance after a reversal from which sliding is steady [m]
+    slidings : friction of each section
+    motion : the conditioned record with its filter
+    settling : distance after a reversal beyond which sliding is steady [m]
 
     Returns
     -------
-    points in order of direction, pressure and speed
+    points, ordered by direction, pressure and speed
     """
     pairs = [pair for sliding in slidings for pair in _plateaus(sliding, motion, settling)]
     moderated = _moderated([point for point, _ in pairs], motion)
@@ -113,14 +115,15 @@ def _ordered(points: Sequence[FrictionPoint]) -> tuple[FrictionPoint, ...]:
 
 
 def independent(count: float, motion: ConditionedRecord) -> float:
-    """Independent samples among `count` filtered ones: 2 f_c per second."""
+    """Number of independent samples among `count` filtered samples, 2 f_c per second."""
     return max(count * motion.band, 1.0)
 
 
 def _moderated(points: Sequence[FrictionPoint], motion: ConditionedRecord) -> list[FrictionPoint]:
-    """Points with scatter shrunk towards the record's median, as few samples are unreliable.
+    """Points with their scatter moved towards the median, as that of few samples is unreliable.
 
-    s^2 = (n_0 s_0^2 + n s_i^2)/(n_0 + n), s_0^2 the median [Smyth2004].
+    The variance is s^2 = (n_0 s_0^2 + n s_i^2)/(n_0 + n) with s_i^2 of the point, n its samples,
+    s_0^2 the median, n_0 = `PRIOR` [Smyth2004].
     """
     if not points:
         return []
@@ -134,7 +137,7 @@ def _moderated(points: Sequence[FrictionPoint], motion: ConditionedRecord) -> li
 def _plateaus(
     sliding: Sliding, motion: ConditionedRecord, settling: float
 ) -> Iterator[tuple[FrictionPoint, float]]:
-    """Points of sections with constant velocity, each with the error by unsettled bristles [N]."""
+    """Points from plateaus of constant velocity, each with its error due to bristles [N]."""
     from scipy.signal import savgol_filter
 
     step = motion.sample_time
@@ -170,17 +173,19 @@ def _plateaus(
 
 
 def _unsettled(friction: float, distance: Array, settling: float) -> float:
-    """Possible error of a mean friction by reversing bristles, 2 F mean e^(-8 d/settling) [N].
+    """Possible error of a mean friction F due to bristles that still reverse [N].
+
+    It is 2 F times the mean of e^(-8 d/settling).
 
     After a reversal friction is F (1 - 2 e^(-d sigma_0/F)) [derived from dz/dt = v (1 - sigma_0
-    z/F)]. The settling distance is `SETTLING` times F/sigma_0; d counts from the start of the
-    plateau.
+    z/F)], where d is the distance from the start of the plateau. The settling distance is
+    `SETTLING` times F/sigma_0.
     """
     return float(2 * abs(friction) * np.mean(np.exp(-SETTLING * np.abs(distance) / settling)))
 
 
 def _point(sliding: Sliding, motion: ConditionedRecord, at: Array, kind: Kind) -> FrictionPoint:
-    """The mean over samples, with a standard error that allows for the filter's correlation."""
+    """Mean over samples; its standard error allows for the correlation due to the filter."""
     piece = sliding.piece
     friction = sliding.friction[at]
     if kind == "plateau":
@@ -202,7 +207,7 @@ def _point(sliding: Sliding, motion: ConditionedRecord, at: Array, kind: Kind) -
 
 
 def _merged(points: Sequence[FrictionPoint]) -> list[FrictionPoint]:
-    """Points of similar velocity and pressure merged, weighted by their duration."""
+    """Merge points of similar velocity and pressure, weighted by their duration."""
     highest = max((point.pressure for point in points), default=0.0)
     groups: list[list[FrictionPoint]] = []
     for point in sorted(points, key=lambda x: x.velocity):
@@ -218,7 +223,7 @@ def _merged(points: Sequence[FrictionPoint]) -> list[FrictionPoint]:
 
 
 def _mean(group: Sequence[FrictionPoint]) -> FrictionPoint:
-    """One point from several of similar velocity and pressure; its error includes their scatter."""
+    """Mean of several points of similar velocity and pressure; its error includes their scatter."""
     if len(group) == 1:
         return group[0]
     weights = np.array([point.weight for point in group])
@@ -237,11 +242,11 @@ def _mean(group: Sequence[FrictionPoint]) -> FrictionPoint:
 def _swept(
     slidings: Sequence[Sliding], motion: ConditionedRecord, settling: float
 ) -> list[FrictionPoint]:
-    """Means over bins of velocity and pressure, with equal weight of rising and falling speed.
+    """Means over ranges of velocity and pressure, with rising and falling speed weighted equally.
 
-    A bin passed only with rising or only with falling speed is left out, as a lag would count as
-    friction there. The velocity is that of the lowest cut-off that the position allows, as the
-    resolution of the position would blur slow bins.
+    A range of velocity that occurs only with rising or only with falling speed is left out, because
+    a lag would count as friction there. The velocity is that at the lowest cut-off that the
+    position allows, because the resolution of the position would blur slow ranges.
     """
     parts = [settled(sliding, settling) for sliding in slidings]
     if not any(at.size for at in parts):
@@ -294,7 +299,7 @@ def _swept(
 
 
 def _common_speeds(at: Array, speed: Array, rising: Array) -> tuple[Array, Array] | None:
-    """Samples of rising and of falling speed, over the speeds that both cover."""
+    """Samples of rising and of falling speed, limited to the speeds that both contain."""
     if rising.all() or not rising.any():
         return None
     low = max(float(speed[rising].min()), float(speed[~rising].min()))
@@ -304,9 +309,9 @@ def _common_speeds(at: Array, speed: Array, rising: Array) -> tuple[Array, Array
 
 
 def _balanced(halves: Sequence[FrictionPoint]) -> FrictionPoint:
-    """One point from rising and falling speed with equal weights, so that a lag cancels.
+    """Mean of the points of rising and falling speed with equal weights, so that a lag cancels.
 
-    It cancels to first order only: a quarter of the difference counts as error (a choice).
+    A lag cancels to first order only, so a quarter of the difference counts as error (our choice).
     """
     numbers = np.mean([point[:5] for point in halves], axis=0)
     by_lag = (halves[0].friction - halves[1].friction) / 4
@@ -319,7 +324,7 @@ def _balanced(halves: Sequence[FrictionPoint]) -> FrictionPoint:
 
 
 def settled(sliding: Sliding, settling: float = SETTLED) -> Array:
-    """Samples after sliding a distance [m] since the last reversal or rest."""
+    """Flags for samples beyond a distance [m] of sliding since the last reversal or rest."""
     piece, moving = sliding.piece, sliding.moving
     way = np.where(moving, np.sign(piece.velocity), 0.0)
     begins = np.flatnonzero(np.diff(way, prepend=0.0) != 0)
@@ -331,9 +336,9 @@ def settled(sliding: Sliding, settling: float = SETTLED) -> Array:
 
 
 def by_pressure(points: Sequence[FrictionPoint]) -> list[list[FrictionPoint]]:
-    """Points of steady sliding by level of pressure, the lowest first.
+    """Groups of points with about equal pressure, the lowest pressure first.
 
-    The pressures of a level differ by at most `LEVELS` times the highest pressure.
+    The pressures in a group differ by at most `LEVELS` times the highest pressure.
     """
     highest = max((point.pressure for point in points), default=0.0)
     groups: list[list[FrictionPoint]] = []

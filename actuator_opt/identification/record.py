@@ -1,4 +1,4 @@
-"""Test records: named columns with units as written by a test bench, converted to SI."""
+"""Test records: files of a test bench with named columns and units, converted to SI."""
 
 from __future__ import annotations
 
@@ -18,29 +18,29 @@ from ..models.fluid import ATMOSPHERIC_PRESSURE
 from .column_units import NONE, ColumnUnits
 
 ABSENT = {"", "-", "--", "na", "n/a", "nan", "-nan", "null", "none", "#n/a", "inf", "-inf", "+inf"}
-"""Cells that mark a missing sample, in lower case."""
+"""Texts of a cell that mark a missing sample, in lower case."""
 _BATCH = 50_000
-"""Lines read at once (a choice: a record of an hour then fits in memory)."""
+"""Number of lines that are read at once (our choice: a record of an hour then fits in memory)."""
 _BINARY = re.compile(r"[\x00-\x08\x0e-\x1f\x7f]")
 _ZIP = b"PK\x03\x04"
 _COMMENT = re.compile(r"\s*#(?!n/a)", re.IGNORECASE)
 _MISREAD = (("Âµ", "µ"), ("Î¼", "µ"), ("Â°", "°"), ("Â²", "²"), ("Â·", "·"))
-"""UTF-8 characters as written by a program that took them for Latin-1."""
+"""UTF-8 characters as they appear if a program read them as Latin-1, each with its correction."""
 
 
 def decode_record(data: bytes, name: str, *, most: int | None = None) -> str:
-    """Text of a file's bytes: UTF-8, UTF-16 with a byte order mark, else the Western code page.
+    """Text of a file's bytes: UTF-8, UTF-16 with a byte order mark, else Windows-1252.
 
     Parameters
     ----------
-    data : of the file
-    name : of the file, for messages
+    data : content of the file
+    name : name of the file, for messages
     most : maximum number of bytes
 
     Raises
     ------
     InputError
-        a workbook or another archive, or a file that is too large
+        a spreadsheet workbook, another archive, or a file that is too large
     """
     if most is not None and len(data) > most:
         message = f"the file is larger than {most / 1e6:.0f} MB"
@@ -59,16 +59,16 @@ def decode_record(data: bytes, name: str, *, most: int | None = None) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """A CSV file as cells.
+    """A CSV file, divided into heading and lines of samples.
 
     Parameters
     ----------
     name : name of the file
-    header, header_line : cells of the header, and its line from 1
-    units : units by column from a separate line below the header; None without that line
-    separator : separator of the columns
+    header, header_line : cells of the heading, and the number of its line, from 1
+    units : units by column from a separate line below the heading; None if there is no such line
+    separator : character that separates the columns
     lines, first : lines of the file, and the index of the first line of samples
-    width : number of columns, including those without a header
+    width : number of columns, including those without a heading
     """
 
     name: str
@@ -82,12 +82,12 @@ class Sheet:
 
 
 def read_sheet(text: str, name: str) -> Sheet:
-    """Header, units and first sample line of a CSV file.
+    """Find the heading, the units and the first line of samples in a CSV file.
 
     Raises
     ------
     InputError
-        no text, no header
+        a file without text or without a heading
     """
     text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
     strange = _BINARY.search(text)
@@ -117,7 +117,7 @@ def read_sheet(text: str, name: str) -> Sheet:
 
 
 def is_number(cell: str) -> bool:
-    """Whether a cell is a number, with a decimal point or comma; nan and inf count."""
+    """Whether a cell is a number with a decimal point or comma; nan and inf are numbers too."""
     try:
         float(cell.strip().replace(",", "."))
     except ValueError:
@@ -126,16 +126,16 @@ def is_number(cell: str) -> bool:
 
 
 def numbers(sheet: Sheet, places: Sequence[int]) -> tuple[Array, Array]:
-    """Some columns of a sheet as numbers (samples, places), NaN where missing.
+    """Some columns of a sheet as numbers (samples, columns), NaN where a sample is missing.
 
     Returns
     -------
-    the numbers, and the line of every sample in the file, from 1
+    the numbers, and the line number of every sample in the file, from 1
 
     Raises
     ------
     InputError
-        a line with too few or too many cells, or a cell of these columns that is not a number
+        a line with too few or too many cells, or a cell in these columns that is not a number
     """
     tables, line_numbers = [np.empty((0, len(places)))], [np.empty(0, dtype=int)]
     for begin in range(sheet.first, len(sheet.lines), _BATCH):
@@ -156,7 +156,7 @@ def _batch(sheet: Sheet, lines: Sequence[str], at: Array, places: Sequence[int])
     for k, place in enumerate(places):
         column = flat[place::count]
         try:
-            if "_" in "".join(column):  # Python alone reads 1_000 as a number
+            if "_" in "".join(column):  # `float` would read 1_000 as a number
                 raise ValueError
             out[:, k] = np.fromiter(map(float, column), float, len(column))
         except ValueError:
@@ -168,7 +168,7 @@ def _batch(sheet: Sheet, lines: Sequence[str], at: Array, places: Sequence[int])
 
 
 def _flat(sheet: Sheet, lines: Sequence[str], at: Array) -> tuple[list[str], int]:
-    """All cells of some lines in sequence, and the number of cells per line."""
+    """All cells of some lines in one list, and the number of cells per line."""
     separator, named = sheet.separator, len(sheet.header)
     count = lines[0].count(separator) + 1
     text = separator.join(lines)
@@ -183,7 +183,7 @@ def _flat(sheet: Sheet, lines: Sequence[str], at: Array) -> tuple[list[str], int
 
 
 def _even(sheet: Sheet, lines: Sequence[str], at: Array) -> Iterator[str]:
-    """Cells of uneven lines, cut or filled to the header's columns."""
+    """Cells of lines with different numbers of cells, cut or filled to the number of columns."""
     named = len(sheet.header)
     for line, number in zip(lines, at.tolist(), strict=True):
         cells = _cells(line, sheet.separator)
@@ -214,7 +214,7 @@ def _number(cell: str, name: str, line: int) -> float:
 
 
 def _skipped(line: str, separator: str = ",") -> bool:
-    """Whether a line has no sample: it is blank, a comment, or has separators only."""
+    """Whether a line contains no sample: it is blank, a comment, or only separators."""
     bare = line.strip(" ,\t\xa0" + separator)
     return not bare or ("#" in line and _COMMENT.match(line) is not None)
 
@@ -227,7 +227,7 @@ def _next(lines: Sequence[str], first: int) -> int:
 
 
 def _commented(lines: Sequence[str], at: int, name: str) -> tuple[int, str, int]:
-    """The header in the last comment above the first sample: its line, text, next line."""
+    """A heading in the last comment above the samples: its line number, text, and the next line."""
     above = [k for k in range(at) if lines[k].strip()]
     if above:
         header = lines[above[-1]].strip().lstrip("#").strip()
@@ -241,7 +241,7 @@ def _commented(lines: Sequence[str], at: int, name: str) -> tuple[int, str, int]
 
 
 def _separator(header: str, following: str) -> str:
-    """The column separator, which splits the header and the next line into as many cells."""
+    """The column separator: it splits the heading and the next line into equally many cells."""
     candidates = [sign for sign in "\t;," if sign in header]
     for sign in candidates:
         if len(_cells(header, sign)) == len(_cells(following, sign)):
@@ -250,18 +250,18 @@ def _separator(header: str, following: str) -> str:
 
 
 def _cells(line: str, separator: str) -> list[str]:
-    """Cells of a line; a separator within double quotes is text."""
+    """Cells of a line; a separator within double quotes does not separate."""
     cells = line.split(separator)
     if '"' in line:
         try:
             cells = next(csv.reader([line], delimiter=separator, skipinitialspace=True), cells)
-        except csv.Error:  # a cell above the length limit
+        except csv.Error:  # a cell longer than the limit of the module csv
             cells = line.split(separator)
     return [cell.strip().strip('"').strip() for cell in cells]
 
 
 def _units_row(line: str, separator: str, count: int) -> list[str] | None:
-    """The units from a separate line, if present."""
+    """Units from a separate line below the heading; None if the line has no units."""
     cells = [cell.strip("[]() ") for cell in _cells(line, separator)]
     while len(cells) > count and not cells[-1]:
         cells.pop()
@@ -274,7 +274,7 @@ def _units_row(line: str, separator: str, count: int) -> list[str] | None:
 
 
 class Channel(NamedTuple):
-    """A quantity of a record: dimension, usual unit, label, alternative names."""
+    """A quantity of a record: dimension, usual unit, label and alternative names."""
 
     dimension: str
     unit: str
@@ -309,23 +309,23 @@ CHANNELS = {
     ),
     "w": Channel("length", "mm", "deflection of a bending test", ("deflection",)),
 }
-"""Channels by their name, as a header writes it: ``t [s]``, ``p1 [bar]``. Pressures are gauge."""
+"""Channels by name, as in a heading such as ``t [s]`` or ``p1 [bar]``. Pressures are gauge."""
 
 _HEADER = re.compile(
     r"(?P<name>.*?)\s*(?:\[(?P<square>[^\[\]]*)\]|\((?P<round>(?:[^()]|\([^()]*\))*)\))\s*"
 )
 _LONGEST = 200
-"""Maximum letters of a header cell with a unit (a choice: longer text is not a header)."""
+"""Longest cell that is searched for a unit, in letters (our choice: longer text is no heading)."""
 _OPTIONAL = ("v", "T")
-"""Channels left out if their unit is unsuitable: a column "Speed [rpm]" is another speed."""
+"""Channels that are ignored if their unit does not fit: a column "Speed [rpm]" is not the rod's."""
 _ABSOLUTE = re.compile(
     r"(?i)(?P<unit>(?:[mkh]?pa|m?bar|psi))[\s_]*\(?(?P<kind>a|abs|absolute|g|gauge)\)?\.?"
 )
 _SIGNS = (("µ", "u"), ("μ", "u"), ("℃", "°C"), ("℉", "°F"), ("º", "°"))
 _SECONDS = {"sec": "s", "secs": "s", "second": "s", "seconds": "s", "msec": "ms"}
 _LARGEST = 1e30
-"""Largest value of a sample, SI; larger values are missing samples, as loggers write 1e38 (a
-choice)."""
+"""Largest value of a sample, SI. Larger values count as missing, because loggers write values such
+as 1e38 for a missing sample (our choice)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -335,11 +335,11 @@ class Record:
     Parameters
     ----------
     time : (samples) [s]
-    channels : by name of `CHANNELS`, without `t` (samples)
+    channels : arrays (samples) by name, as in `CHANNELS` but without `t`
     name : name of the file
-    notes : notes on columns left out and units assumed
-    first_line : first line of samples in the file; None for a record without a file
-    lines : line of every sample in the file, if comments or blank lines lie between
+    notes : notes on columns that are ignored and on units that are assumed
+    first_line : line number of the first sample in the file; None for a record without a file
+    lines : line number of every sample, if comments or blank lines lie between samples
     """
 
     time: Array
@@ -357,17 +357,17 @@ class Record:
 
     @property
     def file_name(self) -> str:
-        """Name of the file without folders, suitable for a page and a design file."""
+        """Name of the file without its folder, as a page and a design file show it."""
         return shown(Path(self.name).name.strip(), 100) or "record"
 
     def line(self, sample: int) -> int | None:
-        """Line of a sample in the file."""
+        """Line number of a sample in the file; None without a file."""
         if self.lines is not None:
             return int(self.lines[sample])
         return None if self.first_line is None else self.first_line + sample
 
     def fault(self, message: str, remedy: str, sample: int | None = None) -> InputError:
-        """An error about this record, with its place."""
+        """Create an error that names this record and, if given, the line of a sample."""
         line = None if sample is None else self.line(sample)
         return InputError(Diagnostic(message, remedy, file=self.name, line=line))
 
@@ -383,31 +383,32 @@ def parse_record(
 ) -> Record:
     """A record from the text of a CSV file.
 
-    The first line that is not a comment names the columns with their units, ``p1 [bar]`` or ``p1
-    (bar)`` or ``p1 / bar``; units may also be in a separate line below. Columns are separated by
-    commas, semicolons or tabs; with the latter two, decimal commas are accepted. Absolute
-    pressures, ``bara`` or ``psi abs``, become gauge by the standard atmosphere, with a note.
+    The first line that is not a comment names the columns with their units: ``p1 [bar]``, ``p1
+    (bar)`` or ``p1 / bar``. The units may also be in a separate line below. Columns are separated
+    by commas, semicolons or tabs; with semicolons or tabs, decimal commas are accepted. Absolute
+    pressures (``bara``, ``psi abs``) are converted to gauge pressures by the standard atmosphere,
+    with a note.
 
     Parameters
     ----------
     text : text of the file
     name : name of the file, for messages
-    columns : header by channel, if it is not a known name; ``"Channel 3 [bar]"`` states the unit of
-        a column ``Channel 3`` without a unit
+    columns : heading by channel, for headings that are not known names; ``"Channel 3 [bar]"`` also
+        states the unit of a column ``Channel 3`` that has none
     channels : channels to read, including ``t``
-    units : units of columns whose header states none
-    needed : channels that must have a unit, beside ``t`` and those of `columns`; other channels
-        without a unit are left out; default: all but ``v`` and ``T``
+    units : units of columns whose heading states none
+    needed : channels that must have a unit, besides ``t`` and those of `columns`. Other channels
+        without a unit are ignored. Default: all channels but ``v`` and ``T``
 
     Returns
     -------
-    the record; notes list columns that are not channels or have no unit
+    the record; its notes list the columns that are no channels or have no unit
 
     Raises
     ------
     InputError
-        no header, an unknown or repeated column, a missing or wrong unit, contradictory units, or a
-        cell that is not a number
+        no heading, an unknown or repeated column, a missing or wrong unit, contradictory units, or
+        a cell that is not a number
     """
     sheet = read_sheet(text, name)
     required = set(channels) - set(_OPTIONAL) if needed is None else set(needed)
@@ -434,14 +435,14 @@ def parse_record(
 
 
 class RecordColumn(NamedTuple):
-    """Column and unit of a channel."""
+    """The column of a channel, with its unit."""
 
     place: int
     unit: units.Unit
     absolute: bool
 
     def values(self, written: Array) -> Array:
-        """SI values, pressures gauge; values that are not finite count as missing."""
+        """Values in SI, pressures as gauge; values that are not finite count as missing."""
         with np.errstate(over="ignore", invalid="ignore"):
             values = np.asarray(self.unit.to_si(written))
             if self.absolute:
@@ -450,12 +451,12 @@ class RecordColumn(NamedTuple):
 
 
 def converted(unit: str, dimension: str, place: int) -> RecordColumn:
-    """A column with a unit as written in a header; raises `UnitError`."""
+    """A column with its unit as written in the heading; an unknown unit raises `UnitError`."""
     return RecordColumn(place, *_unit(unit, dimension))
 
 
 def header_cells(sheet: Sheet) -> list[tuple[str, str]]:
-    """Name and unit of every column; units may be in a separate line."""
+    """Name and unit of every column; the units may be in a separate line below the heading."""
     cells = [_named(cell) for cell in sheet.header]
     if sheet.units is None:
         return cells
@@ -463,7 +464,7 @@ def header_cells(sheet: Sheet) -> list[tuple[str, str]]:
 
 
 def _named(cell: str) -> tuple[str, str]:
-    """Name and unit of a header cell; empty without a unit."""
+    """Name and unit from a cell of the heading; the unit is empty if the cell has none."""
     match = _HEADER.fullmatch(cell) if len(cell) <= _LONGEST else None
     if match is not None:
         return match["name"], (match["square"] or match["round"] or "").strip()
@@ -472,12 +473,12 @@ def _named(cell: str) -> tuple[str, str]:
 
 
 def _plain(name: str) -> str:
-    """A name in lower case, without blanks and symbols."""
+    """A name in lower case, without spaces and symbols."""
     return re.sub(r"[\W_]", "", name).lower()
 
 
 def _unit(text: str, dimension: str) -> tuple[units.Unit, bool]:
-    """The unit in a header, and whether it is an absolute pressure."""
+    """The unit in a heading, and whether it is an absolute pressure."""
     text = " ".join(text.split())
     for sign, plain in _SIGNS:
         text = text.replace(sign, plain)
@@ -505,7 +506,7 @@ def _is_unit(text: str, dimension: str) -> bool:
 
 
 def _channel(name: str, unit: str, channels: Mapping[str, Channel]) -> str | None:
-    """The channel for a name in a header; the unit decides between t and T."""
+    """The channel for a name in a heading; the unit decides between time t and temperature T."""
     plain = _plain(name)
     alike = [c for c, known in channels.items() if plain in (_plain(c), *known.others)]
     fitting = [c for c in alike if _is_unit(unit, channels[c].dimension)]
@@ -517,12 +518,12 @@ def _channel(name: str, unit: str, channels: Mapping[str, Channel]) -> str | Non
 
 
 def column_of(sheet: Sheet, cells: list[tuple[str, str]], header: str) -> tuple[int, str]:
-    """Column of a header named by the caller, and the unit stated with it.
+    """Index of the column that the caller named by its heading, and the unit stated with the name.
 
     Raises
     ------
     LookupError
-        no or several columns of that name, with their number
+        no column or several columns of that name; the message gives their number
     """
     stated_name, unit = _named(header)
     names = [cell[0] for cell in cells]
@@ -547,7 +548,7 @@ def _columns(
     given: ColumnUnits,
     needed: Collection[str],
 ) -> tuple[dict[str, RecordColumn], list[str]]:
-    """Column and unit of every channel; notes on columns left out or read by `given`."""
+    """Column and unit of every channel, and notes on columns ignored or with units from `given`."""
     faults: list[Diagnostic] = []
 
     def fault(message: str, remedy: str, file: str = sheet.name) -> None:
@@ -606,7 +607,7 @@ def _place_by_header(
     channels: Mapping[str, Channel],
     fault: Callable[[str, str], None],
 ) -> None:
-    """Add the channels named by the header to `places`; a channel named twice is an error."""
+    """Add the channels that the heading names to `places`; a channel named twice is an error."""
     taken = set(places.values())
     doubled = set()
     for i, (header, unit) in enumerate(cells):
@@ -633,7 +634,7 @@ def _place_by_header(
 
 
 def _column_notes(sheet: Sheet, used: set[int], unitless: Sequence[str]) -> list[str]:
-    """Notes on columns that are not channels or have no unit."""
+    """Notes on columns that are no channels or have no unit."""
     unused = [cell for k, cell in enumerate(sheet.header) if cell and k not in used]
     notes = [f"columns that are not channels: {_list(unused)}"] if unused else []
     if unitless:
@@ -642,7 +643,7 @@ def _column_notes(sheet: Sheet, used: set[int], unitless: Sequence[str]) -> list
 
 
 def contradicted(column: RecordColumn, name: str, given: ColumnUnits) -> str:
-    """The unit in `given` that contradicts that of a column; empty if they agree."""
+    """Message if `given` states another unit than the heading of a column; empty if they agree."""
     stated = given.stated.get(name, "")
     if not stated:
         return ""
@@ -662,7 +663,7 @@ def _stated_places(
     channels: Mapping[str, Channel],
     fault: Callable[[str, str], None],
 ) -> dict[str, int]:
-    """Columns named by the caller; their units are added to `cells`."""
+    """Columns that the caller named; the units stated with the names are added to `cells`."""
     places: dict[str, int] = {}
     for channel, header in stated.items():
         if channel not in channels:

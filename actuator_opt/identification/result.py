@@ -1,4 +1,4 @@
-"""Results of an identification: friction, coefficient, damping and models, each with bounds."""
+"""Results of an identification: friction, coefficient, damping and friction models."""
 
 from __future__ import annotations
 
@@ -30,13 +30,14 @@ class Settings:
 
     Parameters
     ----------
-    cutoff, order, compensated : of the zero-phase filter
-    mass : moving mass inside the force sensor [kg]; default: rod, piston and fastening, without a
-        force channel also the load
-    load_force : force on the rod if no channel measures it [N]
-    pressure_lag : lag of the pressures [s]; None: fit it to the record
-    bootstrap : number of resamples for the bounds; 0: bounds of the linearised model
-    seed : seed of the resampling
+    cutoff, order, compensated : settings of the zero-phase filter, as for `condition`
+    mass : moving mass on the actuator's side of the force sensor [kg]; default: rod, piston and
+        fastening, and also the load if there is no force channel
+    load_force : force of the load on the rod, if no channel measures it [N]
+    pressure_lag : lag of the pressures [s]; None to fit it to the record
+    bootstrap : number of resamples for the confidence intervals; 0 for intervals of the linearised
+        model
+    seed : seed of the random draws of the resampling
     """
 
     cutoff: float = CUTOFF
@@ -51,7 +52,7 @@ class Settings:
 
 @dataclass(frozen=True, slots=True)
 class Mean:
-    """A mean with its 95 % bounds, SI."""
+    """A mean with its 95 % confidence interval, SI."""
 
     value: float
     lower: float
@@ -60,24 +61,26 @@ class Mean:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Identification(Displayed):
-    """Friction and damping of a test record, SI.
+    """Friction and damping identified from a test record, SI.
 
     Parameters
     ----------
     record, bench, settings : inputs of the identification
-    motion, slidings : conditioned record, and friction along it
-    mass : moving mass used, inside the force sensor [kg]
-    pressure_lag : lag corrected in the pressures [s]
-    lag_seen : lag of the pressures as fitted, before any correction [s]; None if not fitted;
-        infinite bounds if the record does not show it
-    spectrum : effect of the cut-off on motion and noise
-    mean, largest : mean |F_r| in sliding without pre-sliding, and largest |F_r| of the record [N]
-    slides : whether the rod slides; else the mean is that of the whole record
+    motion, slidings : the conditioned record, and the friction along its sections
+    mass : moving mass that was used, on the actuator's side of the force sensor [kg]
+    pressure_lag : lag by which the pressures were corrected [s]
+    lag_seen : lag of the pressures as fitted before any correction [s]; None if not fitted. Its
+        confidence limits are infinite if the record does not show the lag
+    spectrum : spectrum of the motion, which shows how much motion and noise the filter's cut-off
+        removes
+    mean, largest : mean |F_r| in sliding, without pre-sliding, and largest |F_r| of the record [N]
+    slides : whether the rod slides; if not, `mean` is the mean of the whole record
     area : piston area of the cap end [m^2]
     points : points of steady sliding
-    coefficient, stribeck, lugre : results, or the reason for none
-    fits : fits of the secant damping over speed, by name, or the reason for none
-    notes : notes on samples left out, repaired or assumed
+    coefficient, stribeck, lugre : results, each replaced by a text with the reason if it is missing
+    fits : fits of the secant damping as a function of speed by name, or the reason why one is
+        missing
+    notes : notes on samples that were left out, repaired or assumed
     """
 
     record: Record
@@ -101,7 +104,7 @@ class Identification(Displayed):
     notes: tuple[str, ...]
 
     def stiffness_along(self, sliding: Sliding) -> Array:
-        """Stiffness with closed ports at the pressures along a section; NaN beyond the stroke."""
+        """Stiffness with closed ports at the pressures along a section; NaN outside the stroke."""
         piece, bench = sliding.piece, self.bench
         inside = (piece["x"] >= 0) & (piece["x"] <= bench.stroke)
         return np.where(inside, bench.stiffness(piece["x"], *piece.pressures), np.nan)
@@ -113,8 +116,9 @@ class Identification(Displayed):
     def series(self) -> dict[str, Array]:
         """Arrays of quantities over time by name, for the CSV of the result, SI.
 
-        `stiffness` is that with closed ports at the record's pressures, NaN if the position lies
-        beyond the stroke; `growth` is that of the bore radius at the piston seal.
+        `stiffness` is the stiffness with closed ports at the pressures of the record; it is NaN if
+        the position lies outside the stroke. `growth` is the growth of the bore radius at the
+        piston seal.
         """
         pieces = [sliding.piece for sliding in self.slidings]
 
@@ -137,7 +141,7 @@ class Identification(Displayed):
         return columns
 
     def to_dict(self) -> dict[str, Any]:
-        """As plain data for JSON, SI; a missing value is null, with its reason beside it."""
+        """Plain data for JSON, SI; a missing value is null, with its reason beside it."""
         series = self.series()
         return {
             "record": self.record.name,
@@ -180,7 +184,7 @@ class Identification(Displayed):
 
 
 def _coefficient(coefficient: Coefficient | str) -> dict[str, Any]:
-    """The coefficient of friction, or null and the reason."""
+    """Plain data of the friction coefficient; null and the reason if it is missing."""
     if isinstance(coefficient, str):
         return {"mu": None, "mu_why": coefficient}
     return {
@@ -197,7 +201,7 @@ def _coefficient(coefficient: Coefficient | str) -> dict[str, Any]:
 
 
 def _model(name: str, fit: StribeckFit | LuGreFit | str) -> dict[str, Any]:
-    """The parameters of a friction model, or null and the reason."""
+    """Plain data of a friction model's parameters; null and the reason if it is missing."""
     if isinstance(fit, str):
         return {name: None, f"{name}_why": fit}
     return {
@@ -231,6 +235,6 @@ def _fit(fit: LawFit | str) -> dict[str, Any]:
 
 
 def _range(values: Array) -> dict[str, float] | None:
-    """Least and largest value of a quantity over time, or None."""
+    """Smallest and largest value of a quantity over time; None if it has no values."""
     known = values[np.isfinite(values)]
     return {"min": float(known.min()), "max": float(known.max())} if known.size else None

@@ -1,4 +1,4 @@
-"""Straight parts of a loading test: branches of loading and unloading, slopes with bounds."""
+"""Straight part of a loading test: sections of loading and unloading, and their slopes."""
 
 from __future__ import annotations
 
@@ -16,42 +16,49 @@ from .conditioning import ConditionedRecord
 from .record import Record
 
 TERMS = 8
-"""Number of cosines for a long-run variance (a choice: few enough for noise correlated over an
-eighth of a branch, although bounds are then 18 % wider than with known noise)."""
+"""Number of cosines from which the variance of correlated noise is estimated (our choice: few
+enough for noise that is correlated over an eighth of a branch; confidence intervals are 18 % wider
+than for known noise)."""
 PER_TERM = 4
-"""Least degrees of freedom per cosine (a choice: the longest correlation in short records)."""
+"""Smallest number of degrees of freedom per cosine (our choice: limits the length of correlation in
+short records)."""
 MEMORY = 0.99
-"""Largest correlation of neighbouring residuals allowed for (a choice: beyond it the fit takes the
-noise for part of the slope)."""
+"""Largest correlation of neighbouring residuals that is allowed for (our choice: above it the fit
+mistakes noise for a part of the slope)."""
 FEWEST = 5
-"""Least samples of a branch for a slope (a choice: three degrees of freedom)."""
+"""Smallest number of samples in a branch for which a slope is fitted (our choice: three degrees of
+freedom)."""
 OUTSTANDING, PART = 10.0, 0.02
-"""Least height of a spike over the median of five neighbours: in robust standard deviations, and as
-a share of the range (choices: far outside noise, too little to change a slope)."""
+"""Smallest height of a spike above the median of five neighbours: in robust standard deviations,
+and as a share of the range (our choices: far outside noise; smaller spikes do not change a
+slope)."""
 
 SHARES = (0.2, 0.8)
-"""Shares of the highest force for the slope if the test does not reach the strains or the depth is
-unknown (a choice: the toe and the reversal at the top lie outside)."""
+"""Shares of the highest force between which the slope is fitted, if the test does not reach the
+strains or the depth is unknown (our choice: leaves out the toe and the reversal at the top)."""
 BENT = 0.02
-"""Largest change of slope along the straight part (a choice: the chord is then within 1 % of the
+"""Largest change of slope along the straight part (our choice: the chord is then within 1 % of the
 tangents at both ends)."""
 FOLLOWS = 0.3
-"""Least correlation of force and deflection (a choice: it is 0.46 if 90 % of the record is approach
-without force)."""
+"""Smallest correlation of force and deflection (our choice: it is 0.46 if 90 % of the record is
+approach without force)."""
 TOP, BEGUN = 0.9, 0.05
-"""Shares of the highest force: a loading ends at the last sample above the first, as slip or
-failure follows; the search for zero begins at the second (choices: both beyond usual noise)."""
+"""Shares of the highest force. A loading ends at the last sample above the first share, because
+slip or failure follows; the search for zero force begins at the second share (our choices: both are
+beyond usual noise)."""
 BACK = 0.25
-"""Share of the range by which the deflection must return for an unloading, and that lies on either
-side of zero for a specimen bent both ways (choices: both far from noise and from offsets)."""
+"""Share of the range by which the deflection must return to count as an unloading. A specimen
+counts as bent both ways if this share lies on either side of zero (our choices: both are far from
+noise and offsets)."""
 WON = 0.02
-"""Share of its work that a loop may gain by noise and coarse samples (a choice as `BENT`)."""
+"""Share of its work that a loop may gain through noise and coarse samples (our choice, as
+`BENT`)."""
 USUAL = (1e-12, 1e12)
-"""Least and largest range of force [N] and deflection [m] (a choice: far beyond those of any sensor
-and machine)."""
+"""Smallest and largest permitted range of force [N] and deflection [m] (our choice: far beyond any
+sensor and machine)."""
 CUTS = ((0.0, 1.0), (0.25, 1.0), (0.0, 0.75), (0.5, 1.0), (0.25, 0.75), (0.0, 0.5))
-"""Parts of the range, tested in turn until a part is straight (a choice: the longest first, without
-the toe before without the top)."""
+"""Parts of the range that are tested in turn until a part is straight (our choice: the longest part
+first; parts without the toe before parts without the top)."""
 
 
 class DeflectionBranch(NamedTuple):
@@ -62,7 +69,7 @@ class DeflectionBranch(NamedTuple):
 
 
 class Term(NamedTuple):
-    """A polynomial coefficient with its variance and degrees of freedom."""
+    """A polynomial coefficient, with its variance and its degrees of freedom."""
 
     value: float
     variance: float
@@ -81,7 +88,7 @@ def despiked(values: Array) -> Array:
     deviations = np.abs(known_values - middle)
     low, high = np.percentile(middle, (1, 99))
     least = max(OUTSTANDING * ROBUST * float(np.median(deviations)), PART * float(high - low))
-    # the median lags where the channel reverses or ends
+    # the median is inaccurate where the channel reverses or ends
     passing = 2 * maximum_filter1d(np.abs(np.gradient(middle)), 5)
     cleaned = np.array(values, dtype=float)
     cleaned[known] = np.where(deviations > least + passing, np.nan, known_values)
@@ -89,7 +96,7 @@ def despiked(values: Array) -> Array:
 
 
 def branches(deflection: Array, least: float) -> list[DeflectionBranch]:
-    """Sections between reversals after which the deflection returns by `least` or more."""
+    """Sections between reversals at which the deflection returns by `least` or more."""
     values = deflection.tolist()
     turns: list[int] = []
     low = high = way = 0
@@ -111,13 +118,13 @@ def branches(deflection: Array, least: float) -> list[DeflectionBranch]:
 
 
 def term(x: Array, y: Array, degree: int) -> Term:
-    """Coefficient of x^degree of a least-squares polynomial, with correlated noise.
+    """Coefficient of x^degree in a least-squares polynomial, for correlated noise.
 
-    The variance is that of the scores c e at frequency zero: c the column orthogonal to lower
-    powers, e the residuals. It is the mean over the first cosines of the samples in order
-    [Mueller2007], [Lazarus2018], each a degree of freedom of Student's t. The variance lost by the
-    fit is compensated for noise with the correlation of the residuals [derived]; the result is at
-    least that of white noise.
+    The variance is that of the products c e at frequency zero, where c is the column orthogonal to
+    lower powers, and e are the residuals. It is estimated from the first cosines of the samples in
+    order [Mueller2007], [Lazarus2018]. Each cosine is a degree of freedom of Student's t. The fit
+    itself removes some variance; this is compensated for noise with the correlation of the
+    residuals [derived]. The result is at least the variance for white noise.
     """
     scale = float(np.ptp(x)) / 2
     size = (x - np.mean(x)) / scale
@@ -140,10 +147,10 @@ def term(x: Array, y: Array, degree: int) -> Term:
 
 
 def _correlation(residuals: Array, degree: int) -> float:
-    """Correlation of neighbouring residuals, corrected for the loss by the fit of a polynomial.
+    """Correlation of neighbouring residuals, corrected for the effect of fitting a polynomial.
 
-    Fitting a constant lowers it by (1 + 3 r)/n, a trend by (2 + 4 r)/n [MarriottPope1954], and so
-    on by degree.
+    For n samples with the correlation r, fitting a constant lowers it by (1 + 3 r)/n, fitting a
+    line by (2 + 4 r)/n [MarriottPope1954]. Higher degrees continue this series.
     """
     size, power = residuals.size, float(np.sum(residuals**2))
     seen = float(residuals[1:] @ residuals[:-1]) / power if power > 0 else 0.0
@@ -152,7 +159,7 @@ def _correlation(residuals: Array, degree: int) -> float:
 
 
 def _correlated(rows: Array, memory: float) -> Array:
-    """Rows times the correlations memory^|i - j|."""
+    """The rows, multiplied by the matrix of correlations memory^|i - j|."""
     from scipy.signal import lfilter  # slow import, rarely used
 
     ahead = lfilter([1.0], [1.0, -memory], rows, axis=-1)
@@ -161,7 +168,7 @@ def _correlated(rows: Array, memory: float) -> Array:
 
 
 def mean(terms: Sequence[Term]) -> Term:
-    """Mean of independent coefficients; degrees of freedom after Satterthwaite."""
+    """Mean of independent coefficients; its degrees of freedom are by Satterthwaite's formula."""
     variances = np.array([term.variance for term in terms]) / len(terms) ** 2
     variance = float(np.sum(variances))
     parts = float(np.sum(variances**2 / [term.freedom for term in terms]))
@@ -172,8 +179,8 @@ def mean(terms: Sequence[Term]) -> Term:
 def pooled(groups: Sequence[Sequence[Term]]) -> Term:
     """Mean of the means of groups; its variance includes scatter of the members beyond noise.
 
-    An F test at 95 % decides whether they scatter beyond noise. Members with the same index in
-    their groups, loading and unloading of a cycle, are taken as correlated.
+    An F test at 95 % decides whether the members scatter by more than noise. Members with the same
+    index in their groups, such as loading and unloading of a cycle, count as correlated.
     """
     from scipy.special import fdtri  # slow import, rarely used
 
@@ -192,7 +199,7 @@ def pooled(groups: Sequence[Sequence[Term]]) -> Term:
 
 
 class Part(NamedTuple):
-    """Samples of one branch in the straight part."""
+    """The samples of one branch that lie in the straight part."""
 
     deflection: Array
     force: Array
@@ -204,11 +211,11 @@ class Straight(NamedTuple):
 
     Parameters
     ----------
-    parts : samples by branch
-    ends : deflections from zero force at both ends [m]
-    bent : change of slope along the part over the slope
-    unsure : share of `bent` beyond noise
-    cut : whether some of the range is left out
+    parts : samples of each branch
+    ends : deflections at both ends, from zero force [m]
+    bent : change of slope along the part, divided by the slope
+    unsure : the share of `bent` that noise does not explain
+    cut : whether a part of the range is left out
     """
 
     parts: list[Part]
@@ -219,7 +226,7 @@ class Straight(NamedTuple):
 
 
 class Loop:
-    """Force over deflection by branches."""
+    """Force over deflection, divided into branches of loading and unloading."""
 
     def __init__(self, record: Record) -> None:
         self.record = record
@@ -228,7 +235,7 @@ class Loop:
         self.branches = [self._intact(branch) for branch in branches(self.deflection, self.least)]
 
     def _intact(self, branch: DeflectionBranch) -> DeflectionBranch:
-        """A loading branch up to its highest force; slip or failure follows."""
+        """A loading branch up to its highest force, after which slip or failure follows."""
         if not branch.loading:
             return branch
         first, force = branch.samples.start, self.force[branch.samples]
@@ -239,7 +246,7 @@ class Loop:
         )
 
     def cut(self, low: float, high: float, zeros: Sequence[float]) -> list[Part]:
-        """Samples of every branch between two deflections from its zero."""
+        """Samples of every branch between two deflections, measured from its zero."""
         parts = []
         for zero, (samples, loading) in zip(zeros, self.branches, strict=True):
             w, force = self.deflection[samples], self.force[samples]
@@ -248,7 +255,7 @@ class Loop:
         return parts
 
     def begins(self) -> list[float]:
-        """Deflection at which the force of every branch is `BEGUN` of its highest."""
+        """Deflection of every branch at which its force is `BEGUN` of its highest force."""
         deflections = []
         for samples, _ in self.branches:
             force = self.force[samples] - self.floor
@@ -257,7 +264,7 @@ class Loop:
         return deflections
 
     def zeros(self, parts: Sequence[Part]) -> list[float]:
-        """Deflection at which the straight line of every branch meets zero force."""
+        """Deflection of every branch at which its straight line meets zero force."""
         slope = slopes(parts, 1, self.record).value
         if slope <= 0:
             message = "F_L does not grow with w in the straight part"
@@ -270,16 +277,16 @@ class Loop:
         ]
 
     def top(self, zeros: Sequence[float]) -> float:
-        """Largest deflection from zero, median of the branches."""
+        """Largest deflection from zero: the median of the branches."""
         tops = [float(np.max(self.deflection[branch.samples])) for branch in self.branches]
         return float(np.median([a - b for a, b in zip(tops, zeros, strict=True) if isfinite(b)]))
 
     def hysteresis(self) -> float | None:
-        """Work lost over work done on loading, mean of the loops; None if not available.
+        """Work lost, divided by the work done on loading: mean of the loops; None if not available.
 
-        A loop is a loading with the next unloading, else an unloading with the next loading, over
-        the deflections that both cover. The share is the integral of F dw around the loop over the
-        positive part of that integral.
+        A loop is a loading with the next unloading, or else an unloading with the next loading,
+        over the deflections that both cover. The work lost is the integral of F dw around the loop,
+        with force F and deflection w; the work done is the positive part of that integral.
         """
         pairs, shares = list(pairwise(self.branches)), []
         for both in [pair for pair in pairs if pair[0].loading] or pairs:
@@ -298,7 +305,7 @@ class Loop:
 
 
 def slopes(parts: Sequence[Part], degree: int, record: Record) -> Term:
-    """Coefficient of x^degree, mean of loading and unloading; every branch has its own offsets."""
+    """Coefficient of x^degree: mean of loading and unloading; each branch has its own offsets."""
     groups = by_way(parts, degree)
     if not groups:
         most = max((part.deflection.size for part in parts), default=0)
@@ -309,7 +316,7 @@ def slopes(parts: Sequence[Part], degree: int, record: Record) -> Term:
 
 
 def by_way(parts: Sequence[Part], degree: int) -> dict[bool, list[Term]]:
-    """Coefficients of the branches, by direction of loading."""
+    """Coefficients of the branches, separately for loading and unloading."""
     groups: dict[bool, list[Term]] = {}
     for part in parts:
         if part.deflection.size >= FEWEST and np.unique(part.deflection).size > degree + 1:
@@ -318,10 +325,10 @@ def by_way(parts: Sequence[Part], degree: int) -> dict[bool, list[Term]]:
 
 
 def scatter(parts: Sequence[Part]) -> float:
-    """Least 1 - r^2 of force over deflection of the branches.
+    """Smallest scatter 1 - r^2 of force over deflection among the branches.
 
-    It is the relative difference between both regressions: noise of the deflection alone lowers the
-    slope by this share [derived].
+    It is the relative difference between the regressions of force on deflection and of deflection
+    on force. If only the deflection is noisy, the noise lowers the slope by this share [derived].
     """
     shares = [
         1 - float(np.corrcoef(part.deflection, part.force)[0, 1]) ** 2
@@ -333,7 +340,7 @@ def scatter(parts: Sequence[Part]) -> float:
 
 @np.errstate(over="ignore", invalid="ignore")  # an overflow is rejected as an unusual range
 def _channels(record: Record) -> tuple[Array, Array]:
-    """Deflection and force of complete samples, with one sign convention."""
+    """Deflection and force of the complete samples, with positive signs for bending."""
     for name in ("F_L", "w"):
         if name not in record:
             message = f"no column {name}, the {'deflection' if name == 'w' else 'force'}"
@@ -352,7 +359,7 @@ def _channels(record: Record) -> tuple[Array, Array]:
         if not USUAL[0] <= reach <= USUAL[1]:
             message = f"{name} spans {reach:.3g} {'m' if name == 'w' else 'N'}"
             raise record.fault(f"{message}, which no bending test reaches", "check its unit")
-    most = int(np.argmax(np.abs(force - force[0]))) + 1  # before a failure
+    most = int(np.argmax(np.abs(force - force[0]))) + 1  # only samples before a failure
     most = most if most >= 2 * FEWEST else w.size
     follows = float(np.corrcoef(w[:most], force[:most])[0, 1]) if np.ptp(w[:most]) else 0.0
     if follows <= -FOLLOWS:
@@ -365,11 +372,13 @@ def _channels(record: Record) -> tuple[Array, Array]:
 
 
 def _oriented(w: Array, force: Array) -> tuple[Array, Array, float, bool]:
-    """Deflection and force increasing with bending, the force at rest; whether bent both ways.
+    """Deflection and force, increasing with bending.
 
-    With any offsets the specimen is at rest at the start, except in a single pass towards zero
-    force (unloading). If bent both ways it is at rest where both channels are zero at once, else at
-    the start.
+    Also returns the force at rest and whether the specimen is bent both ways.
+
+    Whatever the offsets, the specimen is at rest at the start of the record. The exception is a
+    single pass towards zero force (unloading). If bent both ways, it is at rest where both channels
+    are zero at the same time, or else at the start.
     """
 
     def inside(values: Array, value: float) -> bool:
@@ -394,7 +403,7 @@ def _oriented(w: Array, force: Array) -> tuple[Array, Array, float, bool]:
 
 
 def straight(loop: Loop, zeros: Sequence[float], low: float, high: float) -> Straight:
-    """The longest part of a range with constant slope, else the whole range."""
+    """The longest part of a range with a constant slope; if there is none, the whole range."""
     straights: list[Straight] = []
     for first, last in CUTS:
         ends = low + first * (high - low), low + last * (high - low)
@@ -420,20 +429,22 @@ def straight(loop: Loop, zeros: Sequence[float], low: float, high: float) -> Str
 
 
 SHARE = 0.999
-"""Share of the velocity's power that counts as motion (a choice: 3 % of the velocity is then left
-out)."""
+"""Share of the velocity's power that counts as motion (our choice: leaves out 3 % of the
+velocity)."""
 ABOVE = 4.0
-"""Multiple of the noise above which the velocity's spectrum shows motion (a choice: white noise
-reaches it in one of 55 lines of a single periodogram, hardly ever in the mean of many)."""
+"""Multiple of the noise above which the spectrum of the velocity shows motion (our choice: white
+noise exceeds it in one of 55 lines of a single periodogram, but hardly ever in the mean of
+many)."""
 
 
 class Spectrum(NamedTuple):
-    """Frequencies of a record [Hz].
+    """Frequencies that describe a record [Hz].
 
     Parameters
     ----------
     motion : frequency below which 99.9 % of the velocity's power lies
-    floor : frequency beyond the motion where the position becomes noise; 0 if it does not
+    floor : frequency, above that of the motion, at which the position becomes noise; 0 if it does
+        not
     kept : share of the velocity's power that passes the filter
     """
 
@@ -442,7 +453,7 @@ class Spectrum(NamedTuple):
     kept: float
 
     def says(self, cutoff: float) -> str:
-        """Judge a cut-off [Hz] for the record, in one line."""
+        """One-line judgement of a cut-off [Hz] for the record."""
         if self.motion == 0:
             return "the position shows no motion above its noise"
         if self.motion > cutoff:
@@ -462,8 +473,9 @@ class Spectrum(NamedTuple):
 def spectrum(record: Record, motion: ConditionedRecord) -> Spectrum:
     """Frequencies at which motion ends and noise begins, by Welch's method on the longest section.
 
-    Motion is the velocity's spectrum less that of white noise of the position: (2 sin(pi f
-    dt)/dt)^2 times a level from the upper half of the band.
+    Motion is the spectrum of the velocity, minus that of white noise of the position. At a
+    frequency f the latter is (2 sin(pi f dt)/dt)^2 times a level taken from the upper half of the
+    band; dt is the time step.
 
     Parameters
     ----------
@@ -499,11 +511,11 @@ def spectrum(record: Record, motion: ConditionedRecord) -> Spectrum:
 
 
 def _moves(frequency: Array, power: Array, slope: Array, loud: Array, variance: float) -> Array:
-    """Frequencies at which the excess over white noise is motion.
+    """Flags for frequencies at which the excess over white noise is motion.
 
-    A sensor step q causes lines at v/q with a power of the position up to q^2/(2 pi^2), less than
-    the variance q^2/12 of the steps. Beyond the peak of the motion a line counts if it exceeds that
-    variance.
+    A sensor with the step q causes lines in the spectrum at v/q for the speed v. Their power in the
+    position is up to q^2/(2 pi^2), and less than the variance q^2/12 of the steps. Beyond the peak
+    of the motion, a line counts as motion only if it exceeds that variance.
     """
     place = np.where(loud, power / np.where(slope > 0, slope, 1.0), 0.0)
     peak = int(np.argmax(place))

@@ -1,4 +1,4 @@
-"""The Stribeck curve of measured points: global search, least squares, bounds, caveats."""
+"""Fit of a Stribeck curve to points: global search, least squares, confidence intervals, notes."""
 
 from __future__ import annotations
 
@@ -16,42 +16,48 @@ from .doubtful import INSEPARABLE, hidden, misled, spread, unbounded, unequal, w
 from .points import FrictionPoint
 
 STATIC_MOST = 3.0
-"""Largest F_S over the largest friction measured (a choice: a higher F_S is a guess)."""
+"""Largest F_S, as a multiple of the largest measured friction (our choice: a higher F_S is a
+guess)."""
 SPEEDS, EXPONENTS = (2e-4, 5e-2), (0.5, 2.5)
-"""Search ranges of the Stribeck speed [m/s] and of its exponent (choices: a decade either side of
-the few mm/s of seals; half a unit beyond the 1 and 2 of the usual laws)."""
+"""Ranges in which the Stribeck speed [m/s] and its exponent are searched (our choices: a decade on
+either side of the few mm/s of seals; half a unit beyond the exponents 1 and 2 of the usual
+laws)."""
 EXPONENT = 2.0
-"""Exponent if the points cannot determine it ([MECE5005], [Huang2017] Table 2)."""
+"""Exponent that is used if the points cannot determine it ([MECE5005], [Huang2017] Table 2)."""
 SHARED = 0.85
-"""Least scatter of a sweep's points about the curve over their errors (a choice, from records of
-known friction): the filter correlates neighbouring points, so they look too smooth."""
+"""Smallest scatter of a sweep's points about the curve, as a share of their errors (our choice,
+from records of known friction): the filter correlates neighbouring points, so they look too
+smooth."""
 OTHER = 0.5
-"""Second exponent that bounds allow for if the exponent is fixed: 0.5 to 1 by Bo and Pavelescu, 1
-by Tustin, 2 by others [ArmstrongHelouvry1994]."""
+"""Second exponent that the confidence intervals allow for if the exponent is fixed. Bo and
+Pavelescu use 0.5 to 1, Tustin uses 1, others use 2 [ArmstrongHelouvry1994]."""
 DIFFERENT = 0.05
-"""Relative difference above which speeds count as different (a choice: more than
+"""Relative difference above which two speeds count as different (our choice: more than
 `points.STEADY`)."""
 MODEL = 1e-3
-"""Error of a point over the largest friction, in addition to its scatter (a choice: no curve fits
-better)."""
+"""Error of a point in addition to its scatter, as a share of the largest friction (our choice: no
+curve fits better)."""
 _LEVELS = (("coulomb", "viscous"), ("static", "stribeck_speed"), ("exponent",))
-"""Fitted parameters, in groups that are added in turn."""
+"""Fitted parameters, in groups that are added one after the other."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StribeckFit:
     """A Stribeck curve, SI: F = sgn v [g(v) (1 + (p - p_0) s/F_C) + sigma_2 |v|] + F_0.
 
+    F is the friction, v the velocity, g the Stribeck function from F_S to F_C, p the pressure, p_0
+    a reference pressure, s the pressure slope, sigma_2 the viscous friction, F_0 the offset.
+
     Parameters
     ----------
     parameters : fitted parameters by name
-    held : fixed parameters: exponent 2, no Stribeck part, no offset
-    covariance : of the fitted parameters in their order
-    quantile : Student's t of the bounds
+    held : parameters that are not fitted: exponent 2, no Stribeck part, no offset
+    covariance : covariance of the fitted parameters, in their order
+    quantile : quantile of Student's t for the confidence intervals
     reference_pressure : p_0 [Pa]
-    residuals : measured less fitted [N], by point
-    errors : standard error of each point as weighted [N]
-    doubts : why a parameter was not fitted, or is unknown
+    residuals : measured minus fitted friction of each point [N]
+    errors : standard error of each point, which gives its weight [N]
+    doubts : reasons why a parameter was not fitted or is unknown
     doubted : whether the friction itself is doubtful, because areas or sensors seem wrong
     """
 
@@ -75,16 +81,16 @@ class StribeckFit:
 
     @property
     def scatter(self) -> float:
-        """Standard deviation of the residuals over the points' errors."""
+        """Standard deviation of the residuals, each divided by the error of its point."""
         spare = self.residuals.size - len(self.parameters)
         return float(np.sqrt(np.sum((self.residuals / self.errors) ** 2) / spare))
 
     def predict(self, velocity: Array, pressure: Array) -> Array:
-        """Friction at velocities [m/s] and pressures [Pa]."""
+        """Friction at given velocities [m/s] and pressures [Pa]."""
         return curve(velocity, pressure - self.reference_pressure, **self.values)
 
     def bounds(self, velocity: Array, pressure: Array) -> tuple[Array, Array]:
-        """Lower and upper bound of the curve at velocities and pressures."""
+        """Confidence limits of the curve at given velocities and pressures."""
         names = tuple(self.parameters)
         slopes = _slopes(velocity, pressure - self.reference_pressure, self.values, names)
         with np.errstate(invalid="ignore"):
@@ -107,7 +113,7 @@ def curve(
     pressure_slope: Array = 0.0,
     offset: Array = 0.0,
 ) -> Array:
-    """Friction at velocities away from rest, signed [N]."""
+    """Friction of the curve at velocities other than zero, with the sign of the velocity [N]."""
     speed, way = np.abs(velocity), np.sign(velocity)
     level = friction.stribeck_level(
         speed=speed,
@@ -122,12 +128,13 @@ def curve(
 
 
 def fit_stribeck(points: Sequence[FrictionPoint], area: float) -> StribeckFit | str:
-    """The Stribeck curve through points of steady sliding, or the reason for none.
+    """Fit a Stribeck curve to points of steady sliding; return the reason if it is not possible.
 
-    F_C and sigma_2 are always fitted. F_S and v_s are fitted with five speeds or more if they
-    improve the fit (corrected Akaike information), then with seven speeds the exponent too: an
-    exponent fitted only if it improves the fit would be biased, and F_S with it. An offset is
-    fitted if the rod moves both ways, a pressure effect if the pressure varies by a fifth.
+    F_C and sigma_2 are always fitted. With five different speeds or more, F_S and v_s are fitted if
+    they improve the fit (corrected Akaike information). With seven speeds or more the exponent is
+    then always fitted, because fitting it only if it improves the fit would bias it and F_S. An
+    offset is fitted if the rod moves both ways. A pressure effect is fitted if the pressure varies
+    by a fifth.
 
     Parameters
     ----------
@@ -136,7 +143,7 @@ def fit_stribeck(points: Sequence[FrictionPoint], area: float) -> StribeckFit | 
 
     Returns
     -------
-    the fit, or the reason for none
+    the fit, or the reason why it is missing
     """
     speeds = different([point.speed for point in points])
     if len(speeds) < 2:
@@ -180,7 +187,7 @@ def fit_stribeck(points: Sequence[FrictionPoint], area: float) -> StribeckFit | 
 
 
 def _with_doubts(fit: StribeckFit, points: Sequence[FrictionPoint], area: float) -> StribeckFit:
-    """The fit with doubts about the friction itself: areas, sensors, other influences."""
+    """Add reasons to doubt the friction itself: wrong areas, wrong sensors, other influences."""
     error = unequal(points, area)
     plunger = all(point.pressure_2 == 0 for point in points)
     faults = [] if error is None or not error.sure else [error.says(area, plunger)]
@@ -193,7 +200,7 @@ def _with_doubts(fit: StribeckFit, points: Sequence[FrictionPoint], area: float)
 
 
 def _allowing_exponents(fit: StribeckFit, points: Sequence[FrictionPoint]) -> StribeckFit:
-    """The fit with bounds that allow for another exponent than the fixed one."""
+    """The fit, with confidence intervals that allow for exponents other than the fixed value."""
     names = tuple(name for name in fit.parameters if name != "exponent")
     errors = held_error(fit.parameters, _fit(points, names, OTHER).values)
     return replace(fit, parameters=widened(fit.parameters, errors, fit.quantile))
@@ -209,7 +216,7 @@ def held_error(parameters: Mapping[str, Parameter], other: Mapping[str, float]) 
 
 
 def different(speeds: Sequence[float]) -> list[float]:
-    """Speeds that differ by more than `DIFFERENT`."""
+    """The speeds that differ from each other by more than `DIFFERENT`."""
     distinct: list[float] = []
     for speed in sorted(speeds):
         if not distinct or speed > distinct[-1] * (1 + DIFFERENT):
@@ -218,7 +225,7 @@ def different(speeds: Sequence[float]) -> list[float]:
 
 
 def _further(points: Sequence[FrictionPoint], area: float) -> list[str]:
-    """Offset and pressure effect, if the points can show them."""
+    """Names of offset and pressure effect, if the points can show them."""
     ways = {point.velocity > 0 for point in points}
     names = ["offset"] if len(ways) == 2 else []
     for way in ways:
@@ -229,7 +236,10 @@ def _further(points: Sequence[FrictionPoint], area: float) -> list[str]:
 
 
 class Steady:
-    """Points as arrays, with weights 1/error; the curve is averaged over each point's spread."""
+    """Points as arrays, with weights 1/error.
+
+    The curve is averaged over the spread of speeds in each point.
+    """
 
     def __init__(self, points: Sequence[FrictionPoint], error: Array | None = None) -> None:
         self.velocity = np.array([point.velocity for point in points])
@@ -243,16 +253,16 @@ class Steady:
         self.change = pressure - self.reference
 
     def predict(self, values: Mapping[str, Array]) -> Array:
-        """Friction of the points: mean at v - s and v + s, whose variance is that of the spread."""
+        """Friction of the points: mean of the curve at v - s and v + s, with the spread s."""
         velocities = (self.velocity - self.spread, self.velocity + self.spread)
         return sum(curve(velocity, self.change, **values) for velocity in velocities) / 2
 
     def residual(self, values: Mapping[str, Array]) -> Array:
-        """Fitted less measured, over the error."""
+        """Fitted minus measured friction, divided by the error of each point."""
         return (self.predict(values) - self.friction) / self.error
 
     def slopes(self, values: Mapping[str, float], names: Sequence[str]) -> Array:
-        """Derivatives of the friction by parameters (points, parameters)."""
+        """Derivatives of the friction with respect to parameters (points, parameters)."""
         velocities = (self.velocity - self.spread, self.velocity + self.spread)
         return sum(_slopes(velocity, self.change, values, names) for velocity in velocities) / 2
 
@@ -266,14 +276,14 @@ def _held(names: Sequence[str], coulomb: float, exponent: float) -> dict[str, fl
 
 
 def _fit(points: Sequence[FrictionPoint], names: tuple[str, ...], exponent: float) -> StribeckFit:
-    """Least squares for some parameters, from the best of a grid of speeds and exponents."""
+    """Fit some parameters by least squares, from the best of a grid of speeds and exponents."""
     data = Steady(points)
     start = _search(data, names, exponent)
     scale = _scales(data)
 
     def values(x: Array) -> dict[str, float]:
         parameters = dict(zip(names, x * [scale[name] for name in names], strict=True))
-        if "static" in names:  # searched as the excess over F_C, which keeps F_S >= F_C
+        if "static" in names:  # the excess of F_S over F_C is searched, which ensures F_S >= F_C
             parameters["static"] = parameters["coulomb"] + parameters["static"]
         return _held(names, parameters["coulomb"], exponent) | parameters
 
@@ -315,7 +325,7 @@ def _fit(points: Sequence[FrictionPoint], names: tuple[str, ...], exponent: floa
 
 
 def _limits(names: Sequence[str], scale: Mapping[str, float]) -> tuple[list[float], list[float]]:
-    """Limits of the search, relative to the sizes of the parameters."""
+    """Limits of the search, relative to the typical sizes of the parameters."""
     low = {"coulomb": 1e-6, "static": 0.0, "viscous": 0.0}
     low |= {"stribeck_speed": SPEEDS[0] / scale["stribeck_speed"], "exponent": EXPONENTS[0]}
     high = {"static": STATIC_MOST, "exponent": EXPONENTS[1]}
@@ -342,7 +352,7 @@ def _scales(data: Steady) -> dict[str, float]:
 
 
 def _search(data: Steady, names: Sequence[str], held: float) -> dict[str, float]:
-    """Start values: on a grid of Stribeck speeds and exponents the rest is linear."""
+    """Initial values: a grid of Stribeck speeds and exponents, for which the rest is linear."""
     way, speed = np.sign(data.velocity), np.abs(data.velocity)
     columns = {"coulomb": way, "viscous": data.velocity}
     if "offset" in names:
@@ -380,7 +390,7 @@ def _search(data: Steady, names: Sequence[str], held: float) -> dict[str, float]
 def _slopes(
     velocity: Array, change: Array, values: Mapping[str, float], names: Sequence[str]
 ) -> Array:
-    """Derivatives of the curve by parameters (..., parameters), by complex steps."""
+    """Derivatives of the curve with respect to parameters (..., parameters), by complex steps."""
     columns = []
     for name in names:
         moved = {**values, name: values[name] + 1j * STEP}

@@ -1,4 +1,4 @@
-"""Synthetic test records of known friction, for planning a test or checking a method."""
+"""Synthetic test records with known friction, to plan a test or to check a method."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .record import Record
 
 @dataclass(frozen=True, slots=True)
 class Truth:
-    """Friction of a synthetic cylinder: LuGre with a Stribeck level, SI."""
+    """Friction of a synthetic cylinder, SI: LuGre bristles with a Stribeck curve."""
 
     coulomb: float
     static: float
@@ -25,22 +25,23 @@ class Truth:
     bristle_stiffness: float
     bristle_damping: float
     pressure_slope: float = 0.0
-    """dF_C/dp for the higher chamber pressure; F_S changes in proportion [N/Pa]."""
+    """Increase of F_C per increase of the higher chamber pressure [N/Pa]; F_S changes in
+    proportion."""
     reference_pressure: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class Sensors:
-    """Sensor errors of a synthetic record.
+    """Errors of the sensors of a synthetic record.
 
     Parameters
     ----------
     pressure_range : range of the pressure sensors [Pa]
-    pressure_noise : standard deviation of the pressures over that range
+    pressure_noise : standard deviation of the pressures, as a share of that range
     position_step : resolution of the position sensor [m]
     force_noise : standard deviation of the force [N]
     pressure_lag : time lag of the pressures [s]
-    spikes : share of spikes among the samples, in every channel
+    spikes : share of the samples that are spikes, in every channel
     pressure_offset : zero error of p1 [Pa]
     """
 
@@ -73,17 +74,19 @@ def plateaus(
     rest: float = 0.1,
     longest: float = 3.0,
 ) -> PrescribedMotion:
-    """Constant speeds out and back, each over `travel` or `longest` seconds, with smooth ramps.
+    """Strokes at constant speed out and back, with smooth ramps between them.
+
+    A stroke covers `travel` or, if slow, lasts `longest` seconds.
 
     Parameters
     ----------
-    speeds : [m/s]
-    travel : of an outward stroke [m]
+    speeds : speeds of the strokes [m/s]
+    travel : length of an outward stroke [m]
     begin : initial position [m]
-    step : of time [s]
-    ramp : time from rest to speed, half a cosine [s]
+    step : time step [s]
+    ramp : time from rest to full speed, half a cosine [s]
     rest : time at rest between strokes [s]
-    longest : time of a slow stroke at speed [s]
+    longest : longest time of a stroke at constant speed [s]
 
     Returns
     -------
@@ -99,14 +102,14 @@ def plateaus(
 
 
 def course(velocity: Array, *, begin: float, step: float) -> PrescribedMotion:
-    """The motion of a velocity from an initial position, SI."""
+    """The motion with a given velocity from an initial position, SI."""
     time = step * np.arange(velocity.size)
     distance = np.concatenate([[0.0], np.cumsum((velocity[1:] + velocity[:-1]) / 2) * step])
     return PrescribedMotion(time, begin + distance, velocity, np.gradient(velocity, step))
 
 
 def friction_along(truth: Truth, course: PrescribedMotion, pressure: Array) -> Array:
-    """True friction along a motion at the higher chamber pressures [N]."""
+    """True friction along a motion, for given values of the higher chamber pressure [N]."""
     between = (course.velocity[1:] + course.velocity[:-1]) / 2
     change = (pressure[1:] + pressure[:-1]) / 2 - truth.reference_pressure
     level = friction.stribeck_level(
@@ -137,10 +140,12 @@ def friction_along(truth: Truth, course: PrescribedMotion, pressure: Array) -> A
 def pressures(
     bench: Bench, course: PrescribedMotion, force: Array, *, back_pressure: float, mass: float
 ) -> tuple[Array, Array]:
-    """Chamber pressures that drive a mass against a force [Pa]; the lower is `back_pressure`.
+    """Chamber pressures that drive a mass against a force [Pa].
 
-    The higher pressure and the resulting growth of the bore are solved together. Only p1 pushes a
-    plunger; the load returns it.
+    The lower pressure is `back_pressure`.
+
+    The higher pressure and the growth of the bore that it causes are solved together. In a plunger
+    cylinder only p1 pushes; the load returns the plunger.
     """
     needed = force + mass * course.acceleration
     if bench.plunger:
@@ -169,23 +174,23 @@ def record(
     rng: np.random.Generator | None = None,
     name: str = "synthetic",
 ) -> Record:
-    """Sensor readings of a motion with known friction.
+    """Sensor readings during a motion with known friction.
 
     Parameters
     ----------
     bench : the actuator
     course : its motion
-    friction_force : signed as the velocity (samples) [N]
-    load : on the rod, against extension [N]
-    mass : inside the force sensor [kg]
-    back_pressure : of the chamber that is not driven [Pa]
+    friction_force : friction with the sign of the velocity (samples) [N]
+    load : load on the rod, against extension [N]
+    mass : moving mass on the actuator's side of the force sensor [kg]
+    back_pressure : pressure of the chamber that is not driven [Pa]
     sensors : errors of the sensors; None for perfect sensors
-    rng : of the noise
-    name : of the record
+    rng : random generator of the noise
+    name : name of the record
 
     Returns
     -------
-    the record, with channels p1, p2, x, F_L; without p2 for a plunger
+    the record with channels p1, p2, x, F_L; a plunger has no p2
     """
     load = np.broadcast_to(load, course.time.shape).astype(float)
     p1, p2 = pressures(bench, course, friction_force + load, back_pressure=back_pressure, mass=mass)
@@ -200,7 +205,7 @@ def record(
 def _sensed(
     channels: Mapping[str, Array], time: Array, sensors: Sensors, rng: np.random.Generator
 ) -> dict[str, Array]:
-    """Channels with lag, offset, noise, steps and spikes."""
+    """Channels as the sensors show them: with lag, offset, noise, steps and spikes."""
     readings = dict(channels)
     scatter = {
         "p1": sensors.pressure_noise * sensors.pressure_range,

@@ -1,6 +1,6 @@
-"""Windows of a record about reversals, and the LuGre friction along them.
+"""Sections ('windows') of a record around reversals, and the LuGre friction along them.
 
-The model is integrated along each window and passes the same filter as the record.
+The LuGre model is integrated along each window. Its friction passes the same filter as the record.
 """
 
 from __future__ import annotations
@@ -18,51 +18,59 @@ from .conditioning import SLOWEST, ConditionedRecord, velocities, zero_phase
 from .points import SETTLED, settled
 
 BEFORE, AFTER = 0.1, 0.4
-"""Length of a window before and after the rod reverses or starts [s] (a choice: at 30 Hz 26
-independent samples, most of them after the reversal)."""
+"""Length of a window before and after the rod reverses or starts [s] (our choice: 26 independent
+samples at 30 Hz, most of them after the reversal)."""
 MOST = 24
-"""Largest number of windows, spread over the record (a choice: twice as many would take twice the
-time for bounds 30 % narrower)."""
+"""Largest number of windows, spread over the record (our choice: twice as many take twice the time,
+but only narrow the confidence intervals by 30 %)."""
 LAG = 20e-3
-"""Largest pressure lag searched [s] (a choice: five times that of a usual sensor)."""
+"""Largest pressure lag that is searched for [s] (our choice: five times that of a usual sensor)."""
 PER_PERIOD = 12
-"""Least integration steps per period of the cut-off (a choice: a second-order step has an error of
-(2 pi/12)^2/12 = 2 % at the cut-off itself)."""
+"""Smallest number of integration steps per period of the cut-off (our choice: a second-order step
+then has an error of (2 pi/12)^2/12 = 2 % at the cut-off itself)."""
 SAMPLES, LEFT = 2.0, 0.05
-"""Independent samples that the deflection distance of the bristles must take, and the share of that
-distance that still counts as rest (choices)."""
+"""Number of independent samples that must lie within the deflection distance of the bristles, and
+share of that distance that still counts as rest (our choices)."""
 LEAST = 4
-"""Least independent samples of a window (a choice: one more than stiffness, lag and level)."""
+"""Smallest number of independent samples in a window (our choice: one more than its three unknowns
+stiffness, lag and friction level)."""
 GRAIN = 0.35
-"""Least share of the position error due to resolution that shifts all reversals alike (a choice,
-from records of known friction). Relative to the breakaway travel it is an error of the bristles'
-stiffness; divided by the speed there, an error of the lag."""
+"""Smallest share of the resolution's position error that is assumed to shift all reversals alike
+(our choice, from records of known friction). Divided by the breakaway travel, this error is the
+relative error of the bristle stiffness; divided by the speed there, it is the error of the lag."""
 LASTING = 0.05
-"""Least duration of motion in one direction [s] (a choice: three independent samples at 30 Hz)."""
+"""Shortest motion in one direction that counts [s] (our choice: three independent samples at 30
+Hz)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Windows:
-    """Sections of a record about reversals and starts, SI; arrays (lanes, samples).
+    """Sections of a record around reversals and starts, SI.
+
+    Arrays have a row ('lane') for each window: (lanes, samples).
 
     Parameters
     ----------
-    velocity : velocity of the rod, selected from `options`
-    options : velocities at the record's cut-off and lower ones (cut-offs, lanes, samples)
-    turn : sample at which the rod reverses or starts
-    change : of the pressure from its reference [Pa]
-    hydraulic : hydraulic force, with `margin` more samples at both ends so that it can be shifted
-    resisting : load and inertia force
-    step : between samples [s]
-    sections, reach : filter of the record at this step
-    kept : indices of the samples in use: independent, away from the ends
-    steady : 0 where points of steady sliding give the same information, else 1 (lanes, kept)
-    judged : weights of the samples in use: `steady`, but 0 in windows that are too fast
-    blur : time for which the position resolution hides a reversal, sqrt(2 q/a) [s]
+    velocity : velocity of the rod: for each window, one of the `options`
+    options : velocities at the cut-off of the record and at lower cut-offs (cut-offs, lanes,
+        samples)
+    turn : index of the sample at which the rod reverses or starts
+    change : pressure, minus the reference pressure [Pa]
+    hydraulic : hydraulic force; it has `margin` extra samples at both ends, so that it can be
+        shifted in time
+    resisting : sum of load and inertia force
+    step : time between samples [s]
+    sections, reach : filter of the record, computed for this step
+    kept : indices of the samples in use, which are independent and not at the ends
+    steady : 0 where points of steady sliding already give the same information, else 1 (lanes,
+        kept)
+    judged : weights of the samples in use: `steady`, but 0 in windows in which the rod is too fast
+    blur : time for which the position resolution q hides a reversal with acceleration a: sqrt(2
+        q/a) [s]
     grain : position error due to resolution that shifts all reversals alike [m]
-    noise : position error due to white sensor noise, different in every reversal [m]
-    sample_time : of the record [s]
-    quick : whether all windows are too fast
+    noise : position error due to white sensor noise, independent in every reversal [m]
+    sample_time : sample time of the record [s]
+    quick : whether the rod is too fast in every window
     """
 
     velocity: Array
@@ -86,7 +94,7 @@ class Windows:
 
     @property
     def fastest(self) -> float:
-        """Largest speed in the windows [m/s]."""
+        """Highest speed in the windows [m/s]."""
         return float(np.max(np.abs(self.velocity)))
 
     @property
@@ -95,10 +103,10 @@ class Windows:
         return float(np.max(np.abs(self.measured(np.zeros(1))[..., self.kept])))
 
     def resolved(self, travel: float) -> Windows:
-        """Ignore windows in which the rod takes under `SAMPLES` for a distance after reversal.
+        """Ignore windows whose rod covers `travel` in under `SAMPLES` independent samples.
 
-        There the filter blurs the motion that bends the bristles. If all windows are too fast, all
-        are kept.
+        The filter blurs such fast motion, which bends the bristles. If the rod is too fast
+        everywhere, every window is kept.
         """
         place = np.cumsum(self.velocity, axis=-1) * self.step
         distance = np.abs(place - place[:, self.turn, None])[:, self.turn :]
@@ -109,16 +117,18 @@ class Windows:
         return replace(self, judged=judged if slow.any() else self.steady, quick=not slow.any())
 
     def short(self, distance: float) -> Windows:
-        """Add a distance [m] at the reversal or start, as the position resolution may hide it."""
+        """Add a distance [m] at the reversal or start that the position resolution may hide."""
         velocity = self.velocity.copy()
         way = np.sign(np.sum(velocity[:, self.turn :], axis=-1))
         velocity[:, self.turn] -= way * distance / self.step
         return replace(self, velocity=velocity)
 
     def measured(self, lag: Array) -> Array:
-        """Friction from the hydraulic force `lag` later (rows,) -> (rows, lanes, samples).
+        """Measured friction, with the hydraulic force taken `lag` later.
 
-        Values between samples follow by cubic interpolation.
+        Lags (rows,) give friction (rows, lanes, samples).
+
+        Values between samples are interpolated by cubics.
         """
         count = self.velocity.shape[-1]
         rows = []
@@ -141,9 +151,10 @@ class Windows:
         return np.stack(rows) - self.resisting
 
     def misfit(self, values: Mapping[str, Array]) -> Array:
-        """Model friction less measured friction at samples in use (rows, lanes, kept).
+        """Friction of the model minus measured friction at the samples in use (rows, lanes, kept).
 
-        `values` are parameters (rows,). The model's friction passes the same filter as the record.
+        `values` are the parameters, each as (rows,). The model's friction passes the same filter as
+        the record.
         """
         measured = self.measured(values["lag"])
         model = self._integrated({n: v[:, None, None] for n, v in values.items()}, measured)
@@ -151,10 +162,11 @@ class Windows:
         return (smooth - measured)[..., self.kept] * self.judged
 
     def chosen(self, values: Mapping[str, Array]) -> Windows:
-        """Select for every lane the velocity with which the model fits friction best.
+        """Select for every window the velocity with which the model fits the friction best.
 
-        In slow motion the steps of the position pass the record's filter and look like motion; at a
-        start a lower cut-off blurs the motion. The friction shows which cut-off is better.
+        In slow motion, the steps of the position sensor pass the filter and look like motion. A
+        lower cut-off removes them, but blurs the start of a motion. The friction shows which
+        cut-off is better.
         """
         costs = [
             np.sum(replace(self, velocity=option).misfit(values)[0] ** 2, axis=-1)
@@ -164,9 +176,9 @@ class Windows:
         return replace(self, velocity=self.options[best, np.arange(best.size)])
 
     def _integrated(self, values: Mapping[str, Array], measured: Array) -> Array:
-        """LuGre friction along every window, by the exact step of `models.lugre.lugre_step`.
+        """LuGre friction along every window, in exact steps by `models.lugre.lugre_step`.
 
-        The bristles start with the deflection of the friction measured there.
+        The bristles start with the deflection that gives the friction measured there.
         """
         between = (self.velocity[:, 1:] + self.velocity[:, :-1]) / 2
         change = (self.change[:, 1:] + self.change[:, :-1]) / 2
@@ -203,18 +215,20 @@ def windows(
     slowest: float = np.inf,
     settling: float = SETTLED,
 ) -> Windows | None:
-    """Windows where the rod reverses or starts; without reversals, spread over the record.
+    """Windows at which the rod reverses or starts.
+
+    If it never does, windows spread over the record.
 
     Parameters
     ----------
-    slidings, motion : friction along the record, and its filter
-    reference : pressure from which changes are counted [Pa]
-    slowest : speed above which points of steady sliding cover steady motion [m/s]
-    settling : distance after a reversal from which sliding is steady [m]
+    slidings, motion : friction along the record, and the conditioned record with its filter
+    reference : reference pressure, which is subtracted from the pressures [Pa]
+    slowest : speed above which the points of steady sliding describe the steady motion [m/s]
+    settling : distance after a reversal beyond which sliding is steady [m]
 
     Returns
     -------
-    the windows, or None if the record is too short for any
+    the windows; None if the record is too short for a window
     """
     stride = max(1, int(1 / (PER_PERIOD * motion.cutoff * motion.sample_time)))
     step = stride * motion.sample_time
@@ -262,17 +276,18 @@ def windows(
 
 
 def _independent_samples(motion: ConditionedRecord, step: float, count: int) -> Array:
-    """Independent samples of a window, away from its ends."""
+    """Indices of the independent samples of a window, without those at its ends."""
     edge = round(1 / (motion.cutoff * step))
     apart = max(1, round(1 / (2 * motion.cutoff * step)))
     return np.arange(edge, count - edge, apart)
 
 
 def no_windows(motion: ConditionedRecord) -> str:
-    """Why a record has no windows.
+    """Reason why a record has no windows.
 
-    A window T has (T - 2/f) 2 f = n independent samples: the filter affects 1/f at each end, and
-    2 f samples per second are independent. So f = (n + 4)/2T is the lowest cut-off, n = `LEAST`.
+    A window of duration T has n = (T - 2/f) 2 f independent samples at the cut-off f: the filter
+    disturbs 1/f at each end, and 2 f samples per second are independent. The lowest usable cut-off
+    is thus f = (n + 4)/2T with n = `LEAST`.
     """
     lowest = (LEAST + 4) / (2 * (BEFORE + AFTER))
     if motion.cutoff <= lowest:
@@ -287,10 +302,10 @@ def no_windows(motion: ConditionedRecord) -> str:
 
 
 def _grain(places: Sequence[float], step: float) -> float:
-    """Position error due to resolution that shifts all reversals alike [m].
+    """Position error that shifts all reversals alike, due to the resolution of the sensor [m].
 
-    q/sqrt 12 sqrt(sum n_i^2)/n of n reversals, n_i of them on step i: the errors of different steps
-    are independent [derived].
+    For n reversals, of which n_i lie on sensor step i, it is q/sqrt 12 sqrt(sum n_i^2)/n with the
+    resolution q. The errors of different steps are independent [derived].
     """
     if step == 0:
         return 0.0
@@ -302,7 +317,7 @@ def _grain(places: Sequence[float], step: float) -> float:
 def _lanes(
     slidings: Sequence[Sliding], motion: ConditionedRecord, room: tuple[int, int]
 ) -> list[tuple[Sliding, int]]:
-    """Sections and samples of windows: reversals and starts, or spread over the record."""
+    """Section and sample of each window: at reversals and starts, or spread over the record."""
     places = [
         (sliding, at)
         for sliding in slidings
@@ -323,21 +338,21 @@ def _lanes(
 
 
 def _steady_above(sliding: Sliding, slowest: float, settling: float) -> Array:
-    """Samples of steady sliding above a speed."""
+    """Flags for samples of steady sliding above a speed."""
     mask = np.zeros(sliding.piece.time.size, dtype=bool)
     mask[settled(sliding, settling)] = True
     return mask & (np.abs(sliding.piece.velocity) >= slowest)
 
 
 def _fits(sliding: Sliding, at: int, room: tuple[int, int]) -> bool:
-    """Whether a window about a sample lies within the usable part of the section."""
+    """Whether a window around a sample lies within the usable part of its section."""
     first, last = at - room[0], at + room[1]
     sound = sliding.piece.sound
     return first >= 0 and last < sound.size and bool(sound[first] and sound[last])
 
 
 def _starts_of_motion(sliding: Sliding, motion: ConditionedRecord) -> list[int]:
-    """Samples at which lasting sliding begins, after a reversal or rest."""
+    """Samples at which sliding begins that lasts, after a reversal or rest."""
     way = np.where(sliding.moving, np.sign(sliding.piece.velocity), 0.0)
     begins = np.flatnonzero((way != 0) & (np.diff(way, prepend=0.0) != 0))
     lasting = round(LASTING / motion.sample_time)

@@ -1,4 +1,4 @@
-"""A scenario around a plant as a system of equations."""
+"""Build the system of equations for a scenario and an actuator."""
 
 from __future__ import annotations
 
@@ -24,19 +24,23 @@ PRESSURES = INPUTS["pressure"]
 
 
 def ends_of(scenario: Scenario, plant: Plant) -> str:
-    """Kind of the far end of the lines at the ports."""
+    """Kind of the far end of the lines, such as a valve, a motor or a closed end."""
     if scenario.ends is not None:
         return scenario.ends
     return "valve" if plant.valve is not None else plant.design.ports.end
 
 
 def start_of(scenario: Scenario, plant: Plant, records: Records) -> InitialState:
-    """Initial position and pressures; by default those at which a closed valve holds the load."""
+    """Initial position and pressures.
+
+    By default a closed valve holds the load at these pressures.
+    """
     initial, motor_load, load = scenario.initial, scenario.motor, scenario.load
     place = None if initial.position is None else position_at(initial.position, plant.stroke)
     position = 0.5 * plant.stroke if place is None else float(place)
     areas = plant.area_a, plant.area_b
-    if motor_load is not None:  # volume per radian and torque, in place of area and force
+    # The motor's volume per radian and its torque take the place of area and force.
+    if motor_load is not None:
         areas = 2 * (motor_load.machine.setting * motor_load.machine.displacement / (2 * pi),)
         force = circuit.at_start(motor_load.torque, records)
     else:
@@ -73,9 +77,9 @@ def assemble(
     Parameters
     ----------
     scenario, plant : inputs over time, and the actuator
-    records : columns of the files that signals name
-    gains : of the controller, None without one
-    linear : open the loop at a free variable ``u``, without sticking friction
+    records : columns of the files that the scenario's signals name
+    gains : controller gains; None without a controller
+    linear : open the loop at a free variable ``u`` and omit sticking friction
     """
     circuit = Circuit(
         scenario=scenario,
@@ -96,7 +100,7 @@ def assemble(
 
 
 def _command(circuit: Circuit, measured: Feedback) -> Expression:
-    """Signal to the valve: free, prescribed over time, or from the controller."""
+    """Signal to the valve: a free variable, prescribed over time, or from the controller."""
     system, loop, control = circuit.system, circuit.loop, circuit.scenario.control
     circuit.measured = measured.value
     if circuit.linear:
@@ -113,7 +117,7 @@ def _command(circuit: Circuit, measured: Feedback) -> Expression:
 def _driven(
     circuit: Circuit, valve_signal: Expression, pressures: tuple[Expression, Expression]
 ) -> valve.Port:
-    """Flows of the valve with its supply, at the pressures of its ports."""
+    """Add valve and supply; return the valve's flows at given port pressures."""
     data = circuit.plant.valve
     if data is None:
         message = "the design has no valve"
@@ -219,7 +223,10 @@ def _chambers(
     position: Symbol,
     speed: Symbol,
 ) -> Expression:
-    """Add both chambers with their share of the lines; return the force of their pressures."""
+    """Add both chambers, including the line volumes counted with them.
+
+    Return the pressure force.
+    """
     plant, (a, b) = circuit.plant, sides
     return chambers.cylinder(
         circuit,

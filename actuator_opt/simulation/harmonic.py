@@ -1,7 +1,8 @@
 """Amplitude and phase at one frequency for records with drift, and the dynamic stiffness.
 
-Mean, drift and oscillation are fitted together. Detrending first would remove part of the
-oscillation: up to 6/(pi n)^2 of it over n cycles, 2.4 % over 5, depending on its phase [derived].
+Mean, drift and oscillation are fitted together. Detrending first would remove a part of the
+oscillation that depends on its phase: up to 6/(pi n)^2 of it over n cycles, or 2.4 % over 5 cycles
+[derived].
 """
 
 from __future__ import annotations
@@ -17,24 +18,25 @@ from ..base.numeric import Array
 from .integrate import sampled
 
 FEWEST_SAMPLES = 5
-"""Four unknowns and one more sample, to estimate the scatter."""
+"""Smallest number of samples: four unknowns, and a fifth sample to estimate the scatter."""
 RESOLVED = 1e-12
-"""Share of the largest position below which its oscillation is rounding (a choice)."""
+"""Share of the largest position below which an oscillation counts as rounding (our choice)."""
 
 
 class HarmonicFit(NamedTuple):
     """Fit x(t) = mean + slope (t - t_mid) + Re(amplitude e^(i omega t))."""
 
     mean: float
-    """Mean at the middle of the time."""
+    """Fitted value at the middle of the record, without the oscillation."""
     slope: float
     """Drift per second."""
     amplitude: complex
-    """Phase 0: a cosine that peaks at t = 0."""
+    """Complex amplitude; phase 0 is a cosine that peaks at t = 0."""
     residual: float
-    """Residual standard deviation: root of the squared residuals over n - 4."""
+    """Residual standard deviation: root of the sum of squared residuals divided by n - 4."""
     standard_error: float
-    """Error of each part of the amplitude, for independent residuals; harmonics increase it."""
+    """Standard error of real and imaginary part for independent residuals. Higher harmonics
+    increase it."""
 
 
 def harmonic_fit(*, time: Array, values: Array, frequency: float) -> HarmonicFit:
@@ -42,9 +44,9 @@ def harmonic_fit(*, time: Array, values: Array, frequency: float) -> HarmonicFit
 
     Parameters
     ----------
-    time : (n,) [s], one cycle or more; even steps are not needed
+    time : (n,) [s], one cycle or more; steps may be uneven
     values : (n,)
-    frequency : of the oscillation [Hz]
+    frequency : frequency of the oscillation [Hz]
 
     Returns
     -------
@@ -77,9 +79,9 @@ class DynamicStiffness(NamedTuple):
     """Dynamic stiffness of a record."""
 
     stiffness: complex
-    """Force over position [N/m]; for a positive phase the force leads."""
+    """Force divided by position [N/m]; with a positive phase the force leads."""
     standard_error: float
-    """Standard error of each part [N/m], for independent residuals."""
+    """Standard error of real and imaginary part [N/m], for independent residuals."""
 
 
 def dynamic_stiffness_of_record(
@@ -87,15 +89,15 @@ def dynamic_stiffness_of_record(
 ) -> DynamicStiffness:
     """Dynamic stiffness k = F/x of force and position oscillations at one frequency.
 
-    Both are fitted on the same [1, t, cos wt, sin wt]. The force is positive in the direction of
-    the position: reverse the sign of a load that opposes extension.
+    Both are fitted with the same functions [1, t, cos wt, sin wt]. The force is positive in the
+    direction of the position, so reverse the sign of a load that opposes extension.
 
     Parameters
     ----------
     time : (n,) [s], one cycle or more
     position : (n,) [m]
     force : (n,) on the rod, positive in the direction of the position [N]
-    frequency : of the load [Hz]
+    frequency : frequency of the load [Hz]
 
     Returns
     -------
@@ -103,7 +105,7 @@ def dynamic_stiffness_of_record(
 
     Raises
     ------
-    InputError : as `harmonic_fit`; a position that does not oscillate at the frequency
+    InputError : as for `harmonic_fit`, or a position that does not oscillate at the frequency
 
     Notes
     -----
@@ -136,7 +138,7 @@ def dynamic_stiffness_of_record(
 
 
 def windows(*, time: Array, frequency: float, cycles: int) -> tuple[slice, ...]:
-    """Consecutive slices of a record, each of whole cycles.
+    """Consecutive slices of a record, each with whole cycles.
 
     A window ends before the first sample of the next one; an incomplete window at the end is
     dropped.
@@ -145,7 +147,7 @@ def windows(*, time: Array, frequency: float, cycles: int) -> tuple[slice, ...]:
     ----------
     time : (n,) [s]
     frequency : [Hz]
-    cycles : of one window, 1 or more
+    cycles : number of cycles in a window, 1 or more
 
     Returns
     -------
@@ -174,7 +176,7 @@ def windows(*, time: Array, frequency: float, cycles: int) -> tuple[slice, ...]:
     if count < 1:
         message = f"{t[-1] - t[0]:.3g} s are shorter than {cycles} cycles of {frequency:g} Hz"
         raise InputError(Diagnostic(message, "take fewer cycles"))
-    edges = t[0] + length * np.arange(count + 1) - 1e-3 * step  # edges start a window
+    edges = t[0] + length * np.arange(count + 1) - 1e-3 * step  # each edge is the start of a window
     places = np.searchsorted(t, edges)
     if np.min(np.diff(places)) < FEWEST_SAMPLES:
         message = f"a window of {length:.3g} s holds fewer than {FEWEST_SAMPLES} samples"

@@ -1,12 +1,13 @@
-"""Integration in time, restarted where an input jumps or a switch changes state.
+"""Integration in time, which restarts where an input jumps or a switch changes state.
 
-An integrator returns the states at the samples of a smooth section, or raises `Stuck`. LSODA
-switches between stiff and non-stiff steps and uses the exact Jacobian. Radau checks its results.
+An integrator covers a smooth section. It returns the states at the samples or raises `Stuck`. LSODA
+switches between stiff and non-stiff steps and uses the exact Jacobian. Radau serves as an
+independent check.
 
-CVODES of SUNDIALS through CasADi (extra `fast`) runs without Python code. The graph of a system
-becomes CasADi symbols, with each operation once; CasADi derives the exact Jacobian. No compiler is
-needed. If CVODES fails, another integrator takes over that section or reports why it cannot. A
-servo takes about half of LSODA's time, at the same error.
+CVODES of SUNDIALS is called through CasADi (extra `fast`) and runs without Python code. The
+expressions of a system become CasADi symbols, each operation only once; CasADi derives the exact
+Jacobian. No compiler is needed. If CVODES fails, another integrator takes over that section or
+reports why it cannot. For a servo, CVODES takes about half the time of LSODA at the same error.
 """
 
 from __future__ import annotations
@@ -39,7 +40,8 @@ RELATIVE: Final = {"lsoda": 1e-6, "radau": 1e-8, "cvodes": 1e-7}
 
 
 CHUNK = 200
-"""Samples between checks of the switches (a choice: samples beyond a switch are discarded)."""
+"""Number of samples between two checks of the switches (our choice: samples after a switch change
+are discarded)."""
 
 
 MOST = 100_000
@@ -47,11 +49,12 @@ MOST = 100_000
 
 
 Advance = Callable[[Array, Array, tuple[bool, ...], int], Array]
-"""States (times, states) at the given times, with a maximum number of steps between two."""
+"""Function that returns the states, as (times, states), at given times. Its last argument is the
+maximum number of steps between two times."""
 
 
 class Stuck(Unsolvable):
-    """An integration that failed at a time, near a state."""
+    """An integration that failed; gives the time and the state there."""
 
     def __init__(self, time: float, state: Array, message: str, remedy: str) -> None:
         super().__init__(Diagnostic(f"at {time:.6g} s: {message}", remedy))
@@ -59,7 +62,7 @@ class Stuck(Unsolvable):
 
 
 def _checked(times: Array, states: Array) -> Array:
-    """The given states, if all are finite."""
+    """Return the states if all are finite, else raise an error."""
     bad = ~np.isfinite(states).all(axis=1)
     if bad.any():
         first = int(np.argmax(bad))
@@ -78,7 +81,7 @@ def _reason(error: Exception) -> str:
 
 
 def _longest(compiled: Compiled, times: Array) -> float:
-    """Longest step that resolves a record; 0 without a limit."""
+    """Longest step that still resolves the records among the inputs; 0 for no limit."""
     bends = compiled.bends
     first, last = np.searchsorted(bends, times[0]), np.searchsorted(bends, times[-1], "right")
     if first == last:
@@ -113,7 +116,8 @@ def lsoda(compiled: Compiled, relative: float, evaluations: list[int]) -> Advanc
         if report["message"] != "Integration successful.":
             if max_steps < MOST:
                 raise Stuck(latest[0], latest[1], "no step is small enough", REMEDY)
-            return stiff(times, y, m, max_steps)  # near rest LSODA may miss their stiffness
+            # near rest LSODA may miss that the equations are stiff
+            return stiff(times, y, m, max_steps)
         evaluations[0] += int(report["nfe"][-1])
         return _checked(times, states)
 
@@ -121,7 +125,7 @@ def lsoda(compiled: Compiled, relative: float, evaluations: list[int]) -> Advanc
 
 
 def radau(compiled: Compiled, relative: float, evaluations: list[int]) -> Advance:
-    """Integration by Radau, implicit of order five."""
+    """Integration by Radau, an implicit method of order five."""
     from scipy.integrate import solve_ivp
 
     latest: list[Any] = [0.0, compiled.initial]
@@ -150,19 +154,20 @@ def radau(compiled: Compiled, relative: float, evaluations: list[int]) -> Advanc
 
 
 SHARPER = 0.1
-"""Absolute tolerance relative to the stated one (a choice: gives the measured error of LSODA)."""
+"""Factor on the absolute tolerances for CVODES (our choice: its error then equals that of
+LSODA)."""
 
 
 _EVEN = 1e-8
-"""Relative difference of two steps that counts as rounding."""
+"""Relative difference up to which two sample intervals count as equal."""
 
 
 _BUFFERED = 1
-"""Address of the first buffer in the memory of a CasADi function."""
+"""Index of the first buffer in the memory of a CasADi function."""
 
 
 def library() -> Any:
-    """Import ``casadi``, with a clear message if the extra is not installed.
+    """Import ``casadi``; if the extra is not installed, the error says so.
 
     Raises
     ------
@@ -182,7 +187,7 @@ def translate(outputs: Sequence[Any]) -> tuple[dict[str, Any], list[Any]]:
 
     Parameters
     ----------
-    outputs : expressions of one graph
+    outputs : expressions that share their parts
 
     Returns
     -------
@@ -191,7 +196,7 @@ def translate(outputs: Sequence[Any]) -> tuple[dict[str, Any], list[Any]]:
     Raises
     ------
     InputError
-        a record, which is looked up and has no formula
+        the expressions use a record, which is a table and has no formula
     """
     casadi = library()
     free: dict[str, Any] = {}
@@ -214,7 +219,7 @@ def translate(outputs: Sequence[Any]) -> tuple[dict[str, Any], list[Any]]:
 
 
 def _operation(casadi: Any, op: str, args: Sequence[Any]) -> Any:
-    """An operation by its CasADi code; CasADi's operators are slow, as they check shapes."""
+    """An operation by its CasADi code. CasADi's operators would be slow, as they check shapes."""
     unary, binary = casadi.SX.unary, casadi.SX.binary
     if op == "where":
         condition, yes, no = args
@@ -223,7 +228,8 @@ def _operation(casadi: Any, op: str, args: Sequence[Any]) -> Any:
         return binary(casadi.OP_ADD, on_true, on_false)
     number = getattr(casadi, f"OP_{op.upper()}")
     result = unary(number, *args) if len(args) == 1 else binary(number, *args)
-    if op == "sqrt" or (op == "pow" and 0 < args[1] < 1):  # no slope at zero, as in `symbolic`
+    # the slope at zero is 0, as in `symbolic`
+    if op == "sqrt" or (op == "pow" and 0 < args[1] < 1):
         return binary(casadi.OP_IF_ELSE_ZERO, args[0], result)
     return result
 
@@ -263,7 +269,7 @@ def cvodes(compiled: Compiled, relative: float, evaluations: list[int]) -> Advan
 
 @contextmanager
 def interruptible() -> Iterator[None]:
-    """Preserve Ctrl-C, which CasADi turns into an integration failure."""
+    """Let Ctrl-C stop the program; CasADi would turn it into a failed integration."""
     pressed = False
     before = signal.getsignal(signal.SIGINT)
 
@@ -289,7 +295,7 @@ def interruptible() -> Iterator[None]:
 
 
 class _Integrator:
-    """CVODES over `CHUNK` samples; unused samples have steps of zero length."""
+    """CVODES for a section of `CHUNK` samples; samples that are not needed have a step of zero."""
 
     def __init__(
         self, casadi: Any, equations: dict[str, Any], relative: float, max_steps: int
@@ -324,7 +330,10 @@ class _Integrator:
 
 
 def _equations(casadi: Any, compiled: Compiled) -> dict[str, Any]:
-    """Rates per sample, with states in units of their tolerance, as CVODES takes one for all."""
+    """Rates of the states per sample, in the form that CVODES needs.
+
+    Each state is in units of its tolerance, because CVODES has a single tolerance for all.
+    """
     system, unit = compiled.system, compiled.tolerances
     free, rates = translate([state.rate for state in system.states])
 
@@ -344,7 +353,7 @@ def _equations(casadi: Any, compiled: Compiled) -> dict[str, Any]:
 
 
 def _even(times: Array) -> Iterator[tuple[int, int]]:
-    """First and last sample of every evenly spaced section, at most `CHUNK` steps long."""
+    """First and last sample of every section with equal intervals, at most `CHUNK` steps long."""
     steps = np.diff(times)
     changes = np.flatnonzero(np.abs(np.diff(steps)) > _EVEN * steps[1:]) + 1
     for first, last in zip([0, *changes], [*changes, len(steps)], strict=True):
@@ -353,23 +362,26 @@ def _even(times: Array) -> Iterator[tuple[int, int]]:
 
 
 LOOK = 2e-3
-"""Longest time between two samples of a switch [s] (a choice: half an oil oscillation)."""
+"""Longest time between two checks of a switch [s] (our choice: half the period of a fast oil
+oscillation)."""
 MOST_CHANGES = 20_000
-"""Changes of a switch before a run counts as chattering (a choice)."""
+"""Number of changes of a switch above which it counts as chattering (our choice)."""
 APART = 1e-9
-"""Largest time between instants that count as equal [s] (a choice)."""
+"""Largest difference between times that count as equal [s] (our choice)."""
 FEW = 2_000
-"""Maximum steps between two samples in a first attempt, which may overrun a switch."""
+"""Maximum steps between two samples in a first attempt, which may go past a switch change."""
 TRIES = 12
-"""Maximum number of shorter sections tried to find a switch before the equations fail."""
+"""Number of ever shorter sections in which a switch change is searched for before the integration
+counts as failed."""
 PARTS, LEVELS = 16, 5
-"""Parts of an interval in which a switch may change, and how often a part is divided again."""
+"""Number of parts into which an interval with a suspected switch change is divided, and how many
+times a part is divided again."""
 _LOCATED = 1e-12
 
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """A switch that changed state."""
+    """A change of a switch."""
 
     name: str
     time: float
@@ -378,7 +390,7 @@ class Event:
 
 @dataclass(slots=True)
 class Trajectory:
-    """States at samples; an instant or event has two samples: with the flags before and after."""
+    """States at samples. At a jump there are two samples: with the flags before and after it."""
 
     time: Array
     states: Array
@@ -423,12 +435,12 @@ def integrate(
     duration : simulated time [s]
     sample_time : of the result [s]; the method chooses its own internal steps
     method : "lsoda", "radau" or "cvodes" (extra ``fast``)
-    relative : relative tolerance of a step
+    relative : relative tolerance of a step; None for that of the method
 
     Raises
     ------
     Unsolvable
-        no step is small enough, or a state is not finite
+        the step became too small, or a state is not finite
     InputError
         "cvodes" without CasADi, or with a record
     """
@@ -444,7 +456,7 @@ def integrate(
     for instant in sorted(compiled.instants):
         if stops[-1] + APART < instant < duration - APART:
             stops.append(instant)
-    near = 1e-6 * sample_time / checks  # a sample close to an instant moves to it
+    near = 1e-6 * sample_time / checks  # a sample this close to an input jump is moved to the jump
     t, y = 0.0, compiled.initial.copy()
     m = _flags(compiled, t, y, ())
     for stop in (*stops[1:], duration):
@@ -464,7 +476,7 @@ def integrate(
 
 
 def _flags(compiled: Compiled, t: float, y: Array, before: tuple[bool, ...]) -> tuple[bool, ...]:
-    """Flags at an instant; switches keep their state."""
+    """Flags at a time at which the integration restarts; switches keep their state."""
     instants = tuple(t + APART >= instant for instant in compiled.instants)
     if before:
         return instants + before[len(instants) :]
@@ -473,7 +485,7 @@ def _flags(compiled: Compiled, t: float, y: Array, before: tuple[bool, ...]) -> 
 
 
 def _margins(run: _Run, t: Array, states: Array, m: tuple[bool, ...]) -> tuple[Array, Array]:
-    """Guard of every switch and its rate, (switches, samples)."""
+    """Guard of every switch and its rate of change, each as (switches, samples)."""
     signs = np.where(m[len(run.compiled.instants) :], 1.0, -1.0)[:, None]
     margin = _at_switches(run.compiled, run.compiled.guards, t, states, m) * signs
     return margin, _at_switches(run.compiled, run.compiled.guard_rates, t, states, m) * signs
@@ -486,7 +498,7 @@ def _at_switches(
     states: Array,
     m: tuple[bool, ...],
 ) -> Array:
-    """A function of every switch at samples, (switches, samples)."""
+    """Values of a function of every switch at samples, as (switches, samples)."""
     count = len(compiled.system.switches)
     if not count:
         return np.empty((0, len(t)))
@@ -499,7 +511,7 @@ def _at_switches(
 def _segment(
     run: _Run, times: Array, is_stored: Array, y: Array, m: tuple[bool, ...]
 ) -> tuple[Array, tuple[bool, ...]]:
-    """Integrate over some times without an input jump; only some samples are stored."""
+    """Integrate over times without an input jump; store only the samples marked in `is_stored`."""
     first, last = len(run.compiled.instants), len(times) - 1
     begin, start, store_first = 0, float(times[0]), True
     while begin < last:
@@ -510,7 +522,8 @@ def _segment(
         run.restarts += 1
         tell("simulating", start / run.duration)
         if change is None:
-            stored[-1] &= end == last  # the next section has its first sample
+            # if it ends at a switch change, the next section stores that sample
+            stored[-1] &= end == last
             run.keep(section[stored], sampled_states[stored], m)
             y, start, store_first, begin = (
                 sampled_states[-1],
@@ -534,13 +547,14 @@ def _segment(
 
 
 SwitchChange = tuple[int, float, Array, int]
-"""Sample before the change, its time and states, and the number of the switch."""
+"""Index of the sample before a switch change, time and states of the change, index of the
+switch."""
 
 
 def _section_to_change(
     run: _Run, times: Array, y: Array, m: tuple[bool, ...]
 ) -> tuple[Array, Array, SwitchChange | None]:
-    """States up to the first change of a switch, beyond which the equations may fail."""
+    """States up to the first switch change, after which the present equations may fail."""
     try:
         states = run.advance(times, y, m, FEW)
         return times, states, _first_change(run, times, states, m)
@@ -582,7 +596,7 @@ def _first_change(
 
 
 def _suspects(times: Array, margin: Array, slope: Array) -> Array:
-    """Intervals with a guard crossing at the end, or on the cubic through both ends."""
+    """Intervals in which a guard changes sign: at the end, or on the cubic through both ends."""
     step = np.diff(times)
     (a, b), (c, d) = (
         (margin[:, :-1], margin[:, 1:]), (slope[:, :-1] * step, slope[:, 1:] * step),
@@ -600,7 +614,7 @@ def _suspects(times: Array, margin: Array, slope: Array) -> Array:
 def _change_within(
     run: _Run, span: Array, y: Array, m: tuple[bool, ...], switch: int, level: int = 0
 ) -> tuple[float, Array] | None:
-    """Time and states at which a switch changes within an interval, or None."""
+    """Time and states at which a switch changes within an interval, or None if it does not."""
     from scipy.optimize import brentq
 
     times = np.linspace(span[0], span[1], PARTS + 1)
@@ -635,16 +649,16 @@ METHODS: Final[dict[Method, Callable[[Compiled, float, list[int]], Advance]]] = 
     "lsoda": lsoda, "radau": radau, "cvodes": cvodes,
 }  # fmt: skip
 LAST = 0.1
-"""Final share of a record that counts as steady (a choice)."""
+"""Final share of a record that counts as steady (our choice)."""
 
 
 def sampled(*, time: Array, fewest: int = 2, **channels: Array) -> tuple[np.ndarray, ...]:
-    """Time and channels as arrays of floats, in the order given.
+    """Time and channels as arrays of floats, in the given order.
 
     Parameters
     ----------
-    time : (n,) [s], never decreasing: a jump has two samples at one time
-    fewest : minimum number of samples
+    time : (n,) [s], never decreasing; a jump has two samples at the same time
+    fewest : smallest permitted number of samples
     channels : (n,) each
 
     Returns

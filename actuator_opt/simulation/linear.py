@@ -1,4 +1,4 @@
-"""The linear loop of a circuit: equations about a point, opened at the valve signal."""
+"""Linear model of a circuit about a point, with its loop opened at the valve signal."""
 
 from __future__ import annotations
 
@@ -23,43 +23,46 @@ from .components.circuit import LOOPS, Circuit, Loop, loop_of, steady_value
 from .integrate import LAST, last_mean, sampled
 
 TOUCH = 1e-9
-"""Spool offset from its centre [V], which selects the open pair of edges."""
+"""Small spool offset from its centre [V]; its sign selects which pair of edges is open."""
 SIZE = 1e5
-"""State size relative to its tolerance, as scale for the equation solver (a choice)."""
+"""Size of a state in units of its tolerance, as scale for the equation solver (our choice)."""
 RESTING = 1.0
-"""Rate of a state that counts as zero, in its tolerances per second (a choice)."""
+"""Rate of a state that counts as zero, in tolerances per second (our choice)."""
 PLACES = ("position", "shaft angle")
-"""States that change during steady motion."""
+"""States that change even in steady motion."""
 CREEP = 1e-3
-"""Rate of a growing real pole, relative to the slowest oscillation, that counts as creep (a choice:
-near an equilibrium the load drifts a little)."""
+"""Growth rate of a real pole that counts as slow creep, relative to the slowest oscillation (our
+choice). Near an equilibrium the load may drift a little."""
 STILL = 1e-3
-"""Size of a pole that counts as zero [rad/s] (a choice: a quarter of an hour)."""
+"""Size of a pole that counts as zero [rad/s] (our choice: a time constant of a quarter of an
+hour)."""
 SLOWER = 1e-3
-"""Frequency for a steady rate, relative to the slowest non-zero pole: its square is the error."""
+"""Frequency at which the steady rate is evaluated, relative to the slowest non-zero pole. The
+relative error is the square of this value."""
 ROUNDING = 1e-6
-"""Real part of an oscillating pole, relative to its size, that counts as rounding."""
+"""Real part of an oscillating pole, relative to its size, that counts as rounding error."""
 POINTS = 2000
-"""Frequencies from two decades below the slowest to one above the fastest pole."""
+"""Number of frequencies, from two decades below the slowest pole to one decade above the
+fastest."""
 
 
 @dataclass(frozen=True, slots=True)
 class OpenLoop:
-    """Measured value over signal, L(s) = c (s - T)^-1 b with an upper triangular T.
+    """Transfer function L(s) = c (s - T)^-1 b from signal to measured value; T is upper triangular.
 
-    Poles may coincide: with a leak-free valve, position and common pressure both have a pole at
-    zero.
+    Poles may coincide. With a leak-free valve, both the position and the common pressure of the
+    chambers have a pole at zero.
     """
 
     triangle: Array
     input_gains: Array
-    """b"""
+    """Vector b of the transfer function."""
     output_gains: Array
-    """c"""
+    """Vector c of the transfer function."""
 
     @classmethod
     def of(cls, a: Array, b: Array, c: Array) -> OpenLoop:
-        """Build from x' = a x + b u, y = c x."""
+        """Build the loop from the state equations x' = a x + b u, y = c x."""
         from scipy.linalg import schur
 
         triangle, q = schur(a, output="complex")
@@ -67,11 +70,11 @@ class OpenLoop:
 
     @property
     def poles(self) -> Array:
-        """Eigenvalues of T [rad/s]."""
+        """Poles of the open loop: the eigenvalues of T [rad/s]."""
         return np.diag(self.triangle)
 
     def at(self, omega: Array) -> Array:
-        """L(i omega)."""
+        """Frequency response L(i omega)."""
         s = 1j * np.asarray(omega, dtype=float)
         t, size = self.triangle, len(self.input_gains)
         x = np.zeros((size, *s.shape), dtype=complex)
@@ -83,7 +86,7 @@ class OpenLoop:
 
     @property
     def frequencies(self) -> Array:
-        """Angular frequencies that show every resonance [rad/s]."""
+        """Angular frequencies, dense enough to show every resonance [rad/s]."""
         size = np.abs(self.poles)
         size = size[size > STILL]
         grid = np.geomspace(size.min() / 100, size.max() * 10, POINTS)
@@ -92,28 +95,28 @@ class OpenLoop:
 
     @property
     def unstable(self) -> bool:
-        """Whether a pole grows, other than slow creep."""
+        """Whether the loop has a growing pole, apart from slow creep."""
         return _grow(self.poles)
 
     @property
     def steady_rate(self) -> float:
-        """Steady rate of the measured value per signal, the limit of s L(s) at zero."""
+        """Rate of the measured value in steady state, per signal: the limit of s L(s) at s = 0."""
         size = np.abs(self.poles)
         omega = float(np.min(size[size > STILL])) * SLOWER
         return float((1j * omega * self.at(np.array(omega))).real)
 
 
 class LoopsAtPoint(NamedTuple):
-    """Loops about a point, for both spool directions."""
+    """Open loops about a point, for both spool directions."""
 
     loops: list[OpenLoop]
     held: bool
-    """Whether the valve can hold the load there."""
+    """Whether the valve can hold the load at this point."""
 
 
 @dataclass(frozen=True, slots=True)
 class Linear:
-    """Linearisation of a circuit at any state."""
+    """Linear model of a circuit about any state."""
 
     circuit: Circuit
     names: tuple[str, ...]
@@ -125,7 +128,10 @@ class Linear:
 
     @classmethod
     def of(cls, circuit: Circuit) -> Linear:
-        """Build from a circuit assembled with ``linear=True``; its integrals are left out."""
+        """Build from a circuit assembled with ``linear=True``.
+
+        States that are only integrals are omitted.
+        """
         system = circuit.system
         states = [state for state in system.states if not state.integral]
         symbols = [state.symbol for state in states]
@@ -144,24 +150,25 @@ class Linear:
         )
 
     def loop(self, state: Array, signal: float) -> OpenLoop:
-        """The open loop about a state and a signal."""
+        """The open loop about a given state and signal."""
         size, d = len(state), self.scale
         table = self._table(state, signal)
         a = table[:size, :size] * d / d[:, None]
         return OpenLoop.of(a, table[:size, size] / d, table[size, :size] * d)
 
     def _table(self, state: Array, signal: float) -> Array:
-        """Derivatives of the rates and the measured value by the states and the signal."""
+        """Derivatives of the rates and of the measured value with respect to states and signal."""
         size = len(state) + 1
         flat = self.slopes(0.0, state.tolist(), signal, self.flags)
         return np.array(flat).reshape(size, size)
 
     def about(self, **states: float) -> LoopsAtPoint:
-        """Open loops with the load held by the valve, for both spool directions, at given `states`.
+        """Open loops for both spool directions; the valve holds the load at the given states.
 
-        For the direction in which the spool rests, the loop is that at equilibrium. For the other,
-        and for both without a load, the spool is at its centre, which it passes when the load
-        drifts. If the valve cannot hold the load, the given states are used.
+        Where the spool rests on one side to hold the load, the loop of that direction is taken at
+        equilibrium. For the other direction, and for both directions without a load, the spool is
+        taken at its centre, which it passes when the load drifts. If the valve cannot hold the
+        load, the given states are used.
         """
         at_rest = {name: 0.0 for name in ("speed", "shaft_speed") if self._known(name)}
         centre = self.circuit.centre
@@ -184,16 +191,16 @@ class Linear:
         return LoopsAtPoint(loops, equilibrium is not None)
 
     def steady(self, guess: float, **states: float) -> tuple[Array, float] | None:
-        """State and signal in steady motion, with some states given.
+        """State and signal in steady motion, for some given states.
 
         Parameters
         ----------
         guess : signal near the solution [V]
-        states : by name, SI; default position: that of the start
+        states : by name, SI; the position is that of the start unless given
 
         Returns
         -------
-        None if there is no such state
+        None if no such state exists
         """
         from scipy.optimize import root
 
@@ -222,12 +229,13 @@ class Linear:
             with np.errstate(all="ignore"):
                 solution = root(residual, start, jac=slopes, method="hybr", tol=1e-12)
             remainder = residual(solution.x)
-        except (ArithmeticError, ValueError):  # the equations fail on the way
+        except (ArithmeticError, ValueError):  # no values at some trial point
             return None
-        return point(solution.x) if np.max(np.abs(remainder)) < RESTING else None  # rejects NaN
+        # also rejects NaN
+        return point(solution.x) if np.max(np.abs(remainder)) < RESTING else None
 
     def _guesses(self) -> Iterator[float]:
-        """Offsets of the signal from the centre to start the search for an equilibrium."""
+        """Signals from the centre at which the search for an equilibrium starts."""
         valve = self.circuit.plant.valve
         assert valve is not None
         return (share * valve.signal for share in (0.0, 0.3, -0.3))
@@ -236,7 +244,7 @@ class Linear:
         return name.replace("_", " ") in self.names
 
     def _with(self, states: Mapping[str, float]) -> Array:
-        """The start with some states changed."""
+        """The initial state with some values changed."""
         y = self.initial.copy()
         for name, value in states.items():
             y[self.names.index(name.replace("_", " "))] = value
@@ -245,22 +253,22 @@ class Linear:
 
 @dataclass(frozen=True, slots=True)
 class Ultimate:
-    """Point at which a proportional loop begins to oscillate."""
+    """Ultimate gain of a proportional loop, at which it begins to oscillate, and the period."""
 
     gain: float
     period: float
-    """[s]"""
+    """Period of the oscillation [s]."""
 
 
 def ultimate(loop: OpenLoop) -> Ultimate:
-    """Smallest gain with K L(i omega) = -1; infinite if there is none."""
+    """Smallest gain K with K L(i omega) = -1; infinite if no gain makes the loop oscillate."""
     oscillations = [(-1 / value.real, omega) for omega, value in _crossings(loop, loop.at)]
     gain, omega = min(oscillations, default=(inf, 0.0))
     return Ultimate(gain, 2 * pi / omega if omega > 0 else inf)
 
 
 def _crossings(loop: OpenLoop, response: Callable[[Array], Array]) -> list[tuple[float, complex]]:
-    """Frequencies at which a response is real and negative."""
+    """Frequencies at which a response is real and negative, with the response there."""
     from scipy.optimize import brentq
 
     omega = loop.frequencies
@@ -280,7 +288,10 @@ def _crossings(loop: OpenLoop, response: Callable[[Array], Array]) -> list[tuple
 
 @dataclass(frozen=True, slots=True)
 class ControllerLaw:
-    """C(s) = K [1 + 1/(s T_i) + s T_d/(1 + s T_f)] of a controller."""
+    """Controller C(s) = K [1 + 1/(s T_i) + s T_d/(1 + s T_f)].
+
+    K is the gain, T_i the integral time, T_d the derivative time, T_f the filter time.
+    """
 
     gain: float
     integral_time: float
@@ -288,7 +299,7 @@ class ControllerLaw:
     filter_time: float
 
     def at(self, omega: Array) -> Array:
-        """C(i omega)."""
+        """Frequency response C(i omega)."""
         s = 1j * np.asarray(omega, dtype=float)
         part = 1.0 + self.derivative_time * s / (1 + self.filter_time * s)
         if self.integral_time < inf:
@@ -296,12 +307,13 @@ class ControllerLaw:
         return self.gain * part
 
     def closed(self, loop: OpenLoop) -> Array:
-        """Poles of the closed loop."""
+        """Poles of the loop closed with this controller."""
         size = len(loop.input_gains)
         b, c = loop.input_gains, loop.output_gains
         direct = self.gain * (1 + self.derivative_time / self.filter_time)
         a = np.zeros((size + 2, size + 2), dtype=complex)
-        # u = -K [(1 + T_d/T_f) y + I/T_i - T_d/T_f f], I' = y, f' = (y - f)/T_f
+        # u = -K [(1 + T_d/T_f) y + I/T_i - T_d/T_f f]; I is the integral (I' = y), f the filtered y
+        # (f' = (y - f)/T_f)
         a[:size, :size] = loop.triangle - direct * np.outer(b, c)
         if self.integral_time < inf:
             a[:size, size] = -self.gain / self.integral_time * b
@@ -319,14 +331,15 @@ class LoopMargins:
     """Margins of a loop with its controller."""
 
     gain: float
-    """Factor on the gain at which the loop oscillates: above 1 if it is stable, else below."""
+    """Gain margin: the factor on the gain at which the loop oscillates. Above 1, the loop is
+    stable."""
     phase: float | None
-    """[rad]; None if the loop gain never exceeds one."""
+    """Phase margin [rad]; None if the loop gain never exceeds one."""
     stable: bool
 
 
 def _grow(poles: Array) -> bool:
-    """Whether a pole grows: any oscillating one, or a real one faster than creep."""
+    """Whether any oscillating pole grows, or any real pole grows faster than creep."""
     size = np.abs(poles)
     swings = (np.abs(poles.imag) > 1e-3 * size) & (size > STILL)
     slowest = np.min(size[swings]) if swings.any() else np.max(size)
@@ -335,7 +348,10 @@ def _grow(poles: Array) -> bool:
 
 
 def margins(loop: OpenLoop, law: ControllerLaw) -> LoopMargins:
-    """Gain and phase margin of L(i omega) C(i omega); closed-loop poles decide on stability."""
+    """Gain and phase margin of L(i omega) C(i omega).
+
+    The closed-loop poles decide whether the loop is stable.
+    """
 
     def response(omega: Array) -> Array:
         return loop.at(omega) * law.at(omega)
@@ -359,54 +375,58 @@ def margins(loop: OpenLoop, law: ControllerLaw) -> LoopMargins:
 
 
 def least(loops: Sequence[OpenLoop]) -> tuple[Ultimate, OpenLoop]:
-    """The loop with the lowest ultimate gain; zero for a loop that is unstable when open."""
+    """The loop with the smallest ultimate gain.
+
+    A loop that is unstable when open counts as zero.
+    """
     pairs = [(Ultimate(0.0, inf) if loop.unstable else ultimate(loop), loop) for loop in loops]
     return min(pairs, key=lambda pair: pair[0].gain)
 
 
 MARGIN = {"p": 2.0, "pi": 3.0}
-"""Gain margin of tuning by margins (a choice: a P law gets the design's default, half the ultimate
-gain; an integral part costs phase)."""
+"""Gain margin for tuning by margins (our choice). A P controller gets the design's
+default, which is half the ultimate gain. An integral part costs phase, so its margin is larger."""
 PHASE = radians(60.0)
-"""Phase margin that counts as sufficient (a choice)."""
+"""Phase margin that counts as sufficient (our choice)."""
 MARGIN_SHARE = 0.9
-"""Share of the proportional loop's margins that remains with an integral part (a choice)."""
+"""Share of the proportional loop's margins that must remain with an integral part (our choice)."""
 NO_GAIN = 1e-9
-"""Replacement factor for a zero gain beside an integral or derivative part."""
+"""Factor that replaces a zero proportional gain if there is an integral or derivative part."""
 UNHELD = "the valve cannot hold the load"
 CAUSES = "lower the load or the piston's leakage, raise supply.pressure or the valve's flow"
 
 
 @dataclass(frozen=True, slots=True)
 class Tuned:
-    """The controller's gains and their origin."""
+    """Gains of the controller and how they were obtained."""
 
     gains: ControllerGains
     origin: str
     ultimate: Ultimate
     margins: LoopMargins
-    """Margins of the linear loop, with the scenario's factors on the gains."""
+    """Margins of the linear loop with these gains, including the scenario's factors on them."""
     unit: str
     notes: tuple[str, ...] = ()
     unheld: str = ""
-    """Where the valve cannot hold the load, else empty; the margins are then meaningless."""
+    """Point at which the valve cannot hold the load, as text. If not empty, the margins are
+    meaningless."""
 
 
 def tune(
     scenario: Scenario, plant: Plant, records: Records, *, previous: Tuned | None = None
 ) -> Tuned | None:
-    """Gains of a scenario's controller; those of `previous`, if given, with new margins.
+    """Gains of a scenario's controller; gains of `previous` are kept and only get new margins.
 
-    The linear loop has no sticking friction, and the valve holds the load of the start, whatever
-    pressures the scenario begins with. It is evaluated at the start and at every end of the
-    reference, for both spool directions; a speed loop also at steady speed. The least ultimate gain
-    counts.
+    The linear loop has no sticking friction. The valve holds the initial load, even if the scenario
+    starts at other pressures. The loop is evaluated at the start and at every end of the reference,
+    for both spool directions. A speed loop is also evaluated at steady speed. The smallest ultimate
+    gain is used for tuning.
 
     Raises
     ------
     InputError
-        a law without a tuning rule; a loop that no gain makes oscillate, or that oscillates open;
-        a load that the valve cannot hold
+        a law without a tuning rule; a loop that no gain makes oscillate; a loop that oscillates
+        even when open; a load that the valve cannot hold
     """
     control, loop = scenario.control, loop_of(scenario.control)
     if control is None or loop is None:
@@ -441,7 +461,7 @@ def tune(
     else:
         gains, origin, notes = _gains_by_rule(control, loop, limit, worst)
     factor, integral = control.gain_factor or NO_GAIN, control.integral_factor
-    shaped = ControllerLaw(  # each factor scales its own part, as in `components.valve`
+    shaped = ControllerLaw(  # each factor applies to one part only, as in `components.valve`
         factor * gains.proportional_gain,
         factor / integral * gains.integral_time if integral else inf,
         control.derivative_factor / factor * gains.derivative_time,
@@ -451,7 +471,7 @@ def tune(
 
 
 def _with_held_load(scenario: Scenario) -> Scenario:
-    """The scenario with the initial pressures that hold its load."""
+    """The scenario, but with initial pressures that hold its load."""
     initial = scenario.initial.model_copy(update={"pressure_a": None, "pressure_b": None})
     return scenario.model_copy(update={"initial": initial})
 
@@ -459,7 +479,7 @@ def _with_held_load(scenario: Scenario) -> Scenario:
 def _loops(
     linear: Linear, scenario: Scenario, plant: Plant, control: Controller, loop: Loop
 ) -> tuple[list[OpenLoop], str]:
-    """Open loops at all relevant points, and words for the point where the load cannot be held."""
+    """Open loops at all relevant points, and the point (as text) where the load cannot be held."""
     if loop != "position":
         loops, held = linear.about()
         end = steady_value(getattr(control, loop))
@@ -476,7 +496,7 @@ def _loops(
 
 
 def _places(parts: Sequence[SignalSegment], start: float, stroke: float) -> list[float]:
-    """Start of a position reference, and the end of each of its parts."""
+    """Initial position of a position reference, and the position after each of its parts."""
     places, position = {start}, start
     for segment in sorted(parts, key=lambda segment: segment.start or 0.0):
         position += steady_value([segment])
@@ -485,7 +505,7 @@ def _places(parts: Sequence[SignalSegment], start: float, stroke: float) -> list
 
 
 def _loop_in_motion(linear: Linear, name: str, value: float) -> list[OpenLoop]:
-    """The open loop at a steady speed; empty if the actuator cannot reach it."""
+    """The open loop at a steady speed; empty if the actuator cannot reach that speed."""
     guess = linear.circuit.centre + copysign(1.0, value)
     operating_point = None if value == 0 else linear.steady(guess, **{name: value})
     return [] if operating_point is None else [linear.loop(*operating_point)]
@@ -494,7 +514,7 @@ def _loop_in_motion(linear: Linear, name: str, value: float) -> list[OpenLoop]:
 def _gains_by_rule(
     control: Controller, loop: Loop, limit: Ultimate, worst: OpenLoop
 ) -> tuple[ControllerGains, str, tuple[str, ...]]:
-    """Gains, their origin and notes, from the ultimate point by a tuning rule."""
+    """Gains by a tuning rule for the ultimate gain and period, with their origin and notes."""
     if worst.unstable:
         message = "the open circuit oscillates by itself"
         remedy = "lower speed_feedback and pressure_feedback, or add leakage across the piston"
@@ -538,7 +558,7 @@ def _gains_by_rule(
 
 
 def _integral_time(loop: OpenLoop, law: ControllerLaw, shortest: float, period: float) -> float:
-    """Least integral time, from `shortest` on, that leaves `MARGIN_SHARE` of the margins."""
+    """Smallest integral time, at least `shortest`, that keeps `MARGIN_SHARE` of the margins."""
     proportional = margins(loop, law)
     phase = PHASE if proportional.phase is None else min(MARGIN_SHARE * proportional.phase, PHASE)
     longest = 1e4 * period
@@ -555,26 +575,27 @@ def _integral_time(loop: OpenLoop, law: ControllerLaw, shortest: float, period: 
 
 
 BAND = 0.02
-"""Settling band as a share of the step, the usual 2 %."""
+"""Half width of the settling band, as a share of the step: the usual 2 %."""
 
 
 class StepMetrics(NamedTuple):
-    """Figures of a step response; times count from its first sample."""
+    """Key values of a step response; times count from its first sample."""
 
     rise_time: float | None
-    """From 10 to 90 % of the step [s]; None if it never gets there."""
+    """Time from 10 to 90 % of the step [s]; None if the response does not reach 90 %."""
     settling_time: float | None
-    """Last time outside the band about the target [s]; None if it does not stay inside."""
+    """Time after which the response stays in the band about the target [s]; None if it does not
+    stay there."""
     overshoot: float
     """Excess over the target, as a share of the step; 0 if the target is never reached."""
     steady_state_error: float
-    """Target less the mean of the last tenth, in the response's unit."""
+    """Target minus the mean response over the last tenth of the time, in the response's unit."""
     peak: float
-    """Extreme response in the direction of the step."""
+    """Most extreme response in the direction of the step."""
     peak_time: float
     """Time of the peak [s]."""
     decay: float | None
-    """Next overshoot over the largest one; None without a next one."""
+    """Next overshoot divided by the largest; None if there is no next overshoot."""
 
 
 def step_metrics(
@@ -582,20 +603,20 @@ def step_metrics(
 ) -> StepMetrics:
     """Rise, settling, overshoot and steady-state error of a sampled step response.
 
-    Samples are joined by straight lines. The band and the overshoot are shares of the step about
-    the target, so a response that settles elsewhere has an error but no settling time. It must also
-    stay inside for the last tenth of the record.
+    Samples are joined by straight lines. Band and overshoot refer to the target, as shares of the
+    step. A response that settles elsewhere thus has an error but no settling time. The response
+    must also stay in the band for the last tenth of the record.
 
     Parameters
     ----------
     time : (n,) [s]; the first sample is the instant of the step
     response : (n,)
     start, target : command before and after the step, in the response's unit
-    band : half its width, share of the step [-]
+    band : half width of the settling band, as a share of the step [-]
 
     Returns
     -------
-    figures in seconds, in shares of the step and in the response's unit
+    the key values: times in seconds, shares of the step, and values in the response's unit
 
     Raises
     ------
@@ -638,7 +659,7 @@ def step_metrics(
 
 
 def _time_at(t: np.ndarray, normalised: np.ndarray, level: float) -> float | None:
-    """First time at a level."""
+    """First time at which the response reaches a level; None if it does not."""
     above = np.flatnonzero(normalised >= level)
     if not above.size:
         return None
@@ -653,7 +674,7 @@ def _crossing(t: np.ndarray, values: np.ndarray, at: int, level: float) -> float
 
 
 def _settling_time(t: np.ndarray, error: np.ndarray, band: float) -> float | None:
-    """Last time outside the band, if the rest covers the last tenth."""
+    """Time after which the error stays in the band; None if that is less than the last tenth."""
     beyond = np.flatnonzero(np.abs(error) > band)
     if not beyond.size:
         return 0.0
@@ -665,7 +686,7 @@ def _settling_time(t: np.ndarray, error: np.ndarray, band: float) -> float | Non
 
 
 def _decay(beyond: np.ndarray) -> float | None:
-    """Next overshoot over the first sample, which is the largest one."""
+    """Next overshoot divided by the first sample, which is the largest overshoot."""
     back = np.flatnonzero(beyond < 0)
     if beyond[0] <= 0 or not back.size:
         return None

@@ -27,7 +27,10 @@ from .system import Compiled, System
 
 @dataclass(frozen=True, slots=True)
 class EnergyFlow:
-    """Energy flow across the boundary over the run [J]; inflow is positive."""
+    """Energy that crosses the boundary of the circuit during a simulation [J].
+
+    Inflow is positive.
+    """
 
     name: str
     energy: float
@@ -35,46 +38,46 @@ class EnergyFlow:
 
 @dataclass(frozen=True, slots=True)
 class Balance:
-    """Mass and energy balance of a run, relative to the throughput."""
+    """Errors of the mass and energy balance of a simulation, relative to the throughput."""
 
     mass: float
-    """Largest |content - inflow| of any volume, over its content."""
+    """Largest error of any volume: |content - net inflow|, divided by the content."""
     energy: float
-    """Largest |stored - net inflow|, relative to all energy across the boundary."""
+    """Largest |stored energy - net inflow|, divided by all energy that crosses the boundary."""
     flows: tuple[EnergyFlow, ...]
     stored: tuple[EnergyFlow, ...]
-    """Change of the stored energy."""
+    """Change of each stored energy."""
 
 
 @dataclass(frozen=True, slots=True)
 class Second:
-    """Check by a second integrator on the same equations."""
+    """Comparison with a second integrator that solves the same equations."""
 
     method: str
     max_difference: float
-    """Largest difference of any compared signal, over its span."""
+    """Largest difference of any compared signal, as a share of its span."""
     signal: str
-    """Signal with that difference."""
+    """Signal with the largest difference."""
     time: float
-    """Time of that difference [s]."""
+    """Time of the largest difference [s]."""
     differences: Mapping[str, float]
 
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """Dynamic stiffness in a window of whole cycles along the stroke."""
+    """Dynamic stiffness within a time window of whole cycles."""
 
     time: float
     position: float
-    """Means of time [s] and position [m] in the window."""
+    """Mean position in the window [m]; `time` is the mean time [s]."""
     stiffness: complex
-    """Force over position [N/m]."""
+    """Force divided by position [N/m]."""
     standard_error: float
 
 
 @dataclass(frozen=True, slots=True)
 class HarmonicLoad:
-    """Dynamic stiffness at the frequency of the load."""
+    """Dynamic stiffness at the frequency of the scenario's sinusoidal load."""
 
     frequency: float
     windows: tuple[Window, ...]
@@ -82,7 +85,7 @@ class HarmonicLoad:
 
 @dataclass(frozen=True, slots=True)
 class Servo:
-    """Response of the loop to a step."""
+    """Response of the control loop to a step."""
 
     loop: Loop
     time: float
@@ -94,7 +97,7 @@ class Servo:
 
 @dataclass(frozen=True, slots=True)
 class RequirementResult:
-    """A requirement on the simulation."""
+    """A requirement on the simulation, with its result."""
 
     metric: str
     sense: str
@@ -106,7 +109,7 @@ class RequirementResult:
 
     @property
     def state(self) -> State:
-        """Whether it is missed, met, or met without a reserve."""
+        """Whether the requirement is missed, met, or met without a reserve."""
         if not self.met:
             return "missed"
         return "no_reserve" if without_reserve(self.margin, self.limit) else "met"
@@ -124,8 +127,8 @@ class SignalLabel:
 class Simulation(Displayed):
     """Results of a simulated scenario.
 
-    `time` may contain an instant twice: before and after a jump. `values` are results by the names
-    of `quantities.RESULTS`, None if they do not apply, with the reason in `why`.
+    `time` may contain the same time twice: before and after a jump. `values` are the results by the
+    names of `quantities.RESULTS`. A result that does not apply is None, and `why` gives the reason.
     """
 
     scenario: Scenario
@@ -166,7 +169,7 @@ class Simulation(Displayed):
     __repr__ = __str__
 
     def to_dict(self) -> dict[str, Any]:
-        """As plain data for JSON, SI; without the samples."""
+        """Plain data for JSON, SI; the samples are left out."""
         return {
             "name": self.scenario.name,
             "design": self.plant.design.name,
@@ -276,25 +279,25 @@ def _finite(value: float) -> float | None:
 
 
 RISE = 4
-"""Least number of samples of a rise for reliable results (a choice)."""
+"""Smallest number of samples during the rise for reliable results (our choice)."""
 NOT_HERE = "does not apply to this scenario"
 NO_STEP = "the reference has no step"
 NO_MOTION = "the reference does not move on"
 NO_SINE = "no sinusoidal load acts on the rod"
 NO_STOP = "the piston does not reach a stop"
 EXPECTED = (NOT_HERE, NO_STEP, NO_MOTION, NO_SINE, NO_STOP)
-"""Reasons of missing results that follow from the scenario and need no report."""
+"""Reasons for missing results that are obvious from the scenario and are not reported."""
 _STEP = ("rise_time", "settling_time", "overshoot", "steady_state_ratio")
 
 
 def reference(scenario: Scenario) -> tuple[Loop | None, Sequence[SignalSegment]]:
-    """The loop of a scenario and the parts of its reference."""
+    """The control loop of a scenario and the parts of its reference."""
     loop = loop_of(scenario.control)
     return loop, () if loop is None else getattr(scenario.control, loop)
 
 
 def servo(scenario: Scenario, time: Array, signals: Mapping[str, Array]) -> Servo | None:
-    """Response to the first step of the reference, until it changes again; None without a step."""
+    """Response to the first step of the reference, up to its next change; None without a step."""
     loop, parts = reference(scenario)
     steps = [part for part in parts if part.shape == "step"]
     if loop is None or not steps or not all(SHAPES[part.shape].settles for part in parts):
@@ -303,13 +306,13 @@ def servo(scenario: Scenario, time: Array, signals: Mapping[str, Array]) -> Serv
     moving_parts = [part for part in parts if SHAPES[part.shape].moves_on]
     if any(
         part.start <= first.start < (part.end or 0.0) for part in moving_parts
-    ):  # no constant target
+    ):  # the target is not constant
         return None
     changes = [t for part in parts for t in (part.start, part.end) if t is not None]
     end = min((t for t in changes if t > first.start), default=scenario.duration)
     value = signals[loop]
     inside = np.flatnonzero((time >= first.start) & (time <= end))
-    if first.start > 0 and inside.size:  # the instant appears twice
+    if first.start > 0 and inside.size:  # the time of the step occurs twice
         inside = inside[time[inside] > first.start]
         inside = np.concatenate(([inside[0] - 1], inside)) if inside.size else inside
     if inside.size < 3:
@@ -326,7 +329,7 @@ def servo(scenario: Scenario, time: Array, signals: Mapping[str, Array]) -> Serv
 def harmonic_load(
     scenario: Scenario, time: Array, signals: Mapping[str, Array]
 ) -> tuple[HarmonicLoad | None, str]:
-    """Dynamic stiffness along the stroke under a sinusoidal load, or the reason for none."""
+    """Dynamic stiffness along the stroke under a sinusoidal load, or why it is missing."""
     if "position" not in signals:
         return None, NO_SINE
     load = scenario.load
@@ -368,7 +371,7 @@ def _window(time: Array, position: Array, force: Array, frequency: float) -> Win
 
 
 def _step_results(step: Servo, spacing: float) -> tuple[dict[str, float | None], dict[str, str]]:
-    """Step response results at a sample spacing [s], and reasons for missing ones."""
+    """Step response results at a sample spacing [s], and reasons for the missing ones."""
     metrics = step.metrics
     error = abs(metrics.steady_state_error) / abs(step.target - step.start)
     if metrics.rise_time is not None and metrics.rise_time < RISE * spacing:
@@ -398,7 +401,7 @@ def values(
     still: str,
     records: Records,
 ) -> tuple[dict[str, float | None], dict[str, str]]:
-    """Every result of `quantities.RESULTS`, None with a reason if it does not apply."""
+    """Every result of `quantities.RESULTS`; one that does not apply is None, with a reason."""
     results: dict[str, float | None] = dict.fromkeys(RESULTS)
     why = dict.fromkeys(RESULTS, NOT_HERE)
     why |= dict.fromkeys(_STEP, NO_STEP)
@@ -444,7 +447,7 @@ def values(
 
 
 def _settled_from(parts: Sequence[SignalSegment], duration: float) -> float:
-    """Time after one period of the slowest sine; the start of the reference without a sine."""
+    """Time after one period of the slowest sine; without a sine, the start of the reference."""
     tones = frequencies(parts)
     begin = min(part.start for part in parts)
     return min(begin + (1 / min(tones) if tones else 0.0), 0.9 * duration)
@@ -453,7 +456,7 @@ def _settled_from(parts: Sequence[SignalSegment], duration: float) -> float:
 def _drift(
     scenario: Scenario, records: Records, time: Array, signals: Mapping[str, Array]
 ) -> float | None:
-    """Mean speed over the last tenth, if nothing commands motion."""
+    """Mean speed over the last tenth of the time; None if a motion is commanded."""
     begin = (1 - LAST) * scenario.duration
     loop, parts = reference(scenario)
     load = scenario.load
@@ -489,7 +492,7 @@ def requirements(
                 continue
             value = results.get(metric)
             if value is None and metric == "stop_speed" and sense == "max":
-                value = 0.0  # no stop is reached
+                value = 0.0  # the piston reaches no end stop
             if value is None:
                 rows.append(
                     RequirementResult(metric, sense, bound, None, None, False, why.get(metric, ""))
@@ -502,7 +505,7 @@ def requirements(
 
 
 def balance(circuit: Circuit, run: Trajectory) -> Balance:
-    """Mass and energy balance of a run; contents and energies are functions of its states."""
+    """Mass and energy balance of a simulation, evaluated from its states."""
     audit, system = circuit.audit, circuit.system
     at = {state.symbol.index: k for k, state in enumerate(system.states)}
 
@@ -533,7 +536,7 @@ def balance(circuit: Circuit, run: Trajectory) -> Balance:
 
 
 def _values(system: System, expressions: list[object], run: Trajectory) -> list[Array]:
-    """Expressions of the states at every sample."""
+    """Values of expressions of the states at every sample."""
     unpack = system.unpack([state.symbol for state in system.states], "y")
     values = vectorised("stored", "t, y, m", unpack, expressions)(
         run.time, run.states, tuple(run.flags)
@@ -542,13 +545,14 @@ def _values(system: System, expressions: list[object], run: Trajectory) -> list[
 
 
 EXPLAINING = ("position", "speed", "shaft_speed", "pressure_a", "pressure_b", "pressure_supply")
-"""Signals that help to explain a failure."""
+"""Signals that help to explain a failed integration."""
 OUT = 0.1
-"""Overrun of the stroke, as a share of it, beyond which the stops have failed (a choice)."""
+"""Travel past the end of the stroke, as a share of the stroke, above which the end stops have
+failed (our choice)."""
 
 
 def failed(stuck: Stuck, compiled: Compiled, plant: Plant) -> Unsolvable:
-    """The failure with the actuator's state at that time, and the most likely remedy."""
+    """Error for a failed integration: the actuator's state at that time and the likely remedy."""
     flags = np.zeros((len(compiled.system.flags), 1), dtype=bool)
     signals = compiled.signals(np.array([stuck.time]), stuck.state[:, None], list(flags))
     words = [
@@ -563,7 +567,7 @@ def failed(stuck: Stuck, compiled: Compiled, plant: Plant) -> Unsolvable:
 
 
 def _outside(signals: Mapping[str, Array], plant: Plant) -> str:
-    """Remedy for a piston that has left its stroke; empty otherwise."""
+    """Remedy if the piston has left its stroke; empty if it has not."""
     if "position" not in signals:
         return ""
     position = float(signals["position"][0])

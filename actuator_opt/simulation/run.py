@@ -29,22 +29,23 @@ from .result import Second, SignalLabel, Simulation
 from .system import Compiled
 
 SECOND: Final[dict[Method, Method]] = {"lsoda": "radau", "cvodes": "radau", "radau": "lsoda"}
-"""Second integrator for each method."""
+"""The second integrator that checks each method."""
 COMPARED = (
     "position", "speed", "pressure_a", "pressure_b", "shaft_speed", "shaft_angle", "spool",
     "flow_a", "flow_b",
 )  # fmt: skip
-"""Signals compared between the two integrators."""
+"""Signals that are compared between the two integrators."""
 TORN = -0.8e5
-"""Gauge pressure below which cavitation is reported [Pa] (a choice: air is released before)."""
+"""Gauge pressure below which cavitation is reported [Pa] (our choice: air is released at higher
+pressures already)."""
 COARSE = 1e-3
-"""Sample time above which oil pressure peaks may be missed [s] (a choice: at 125 Hz, an eighth of a
-period)."""
+"""Sample time above which peaks of the oil pressure may be missed [s] (our choice: an eighth of a
+period at 125 Hz)."""
 SETTLED = 0.02
-"""Relative difference of a pump line's initial pressure from equilibrium that is reported (a
-choice)."""
+"""Relative difference between the initial pressure of a pump line and its equilibrium above which
+it is reported (our choice)."""
 WARN_PLANE = 0.02
-"""Fit error of friction over pressure that is reported."""
+"""Error of the friction plane fitted over the pressures above which it is reported."""
 
 
 def simulate(
@@ -61,16 +62,16 @@ def simulate(
     ----------
     scenario : inputs over time
     subject : the design, with the values that the scenario sets
-    records : columns of the files that its signals name
-    verify : integrate again by another method and compare
-    method : of the integration
+    records : columns of the files that the scenario's signals name
+    verify : integrate again by another method and compare the results
+    method : integration method
 
     Raises
     ------
     InputError
         a missing valve or gain, or a law without a tuning rule
     Unsolvable
-        the integration fails; gives the time
+        the integration fails; the message gives the time
     """
     begin = perf_counter()
     files = {} if records is None else records
@@ -93,7 +94,10 @@ def run(
     spec: str = "",
     begin: float | None = None,
 ) -> Simulation:
-    """Simulate a scenario around a plant with known gains; parameters as `simulate`."""
+    """Simulate a scenario for a plant and known gains.
+
+    The other parameters are as in `simulate`.
+    """
     begin = perf_counter() if begin is None else begin
     circuit = assemble(scenario, actuator, records, None if tuned is None else tuned.gains)
     compiled = circuit.system.compiled()
@@ -145,7 +149,7 @@ def _checked_by(
     signals: dict[str, Array],
     method: Method,
 ) -> Second:
-    """Integrate again by another method; differences are relative to each signal's span."""
+    """Integrate again by another method; each difference is relative to the signal's span."""
     other = integrate(compiled, duration=scenario.duration, sample_time=step, method=method)
     again = compiled.signals(other.time, other.states, other.flags)
     grid, at = _single_instants(first.time)
@@ -168,7 +172,7 @@ def _checked_by(
 
 
 def _single_instants(time: Array) -> tuple[Array, Array]:
-    """Times that occur once, and their samples; jumps, which have two samples, are left out."""
+    """Times that occur once, and their indices; jumps, which have two samples, are left out."""
     instants, first, count = np.unique(time, return_index=True, return_counts=True)
     single = count == 1
     return instants[single], first[single]
@@ -177,7 +181,7 @@ def _single_instants(time: Array) -> tuple[Array, Array]:
 def _notes(
     circuit: Circuit, tuned: Tuned | None, signals: Mapping[str, Array], step: float
 ) -> tuple[str, ...]:
-    """Notes on a run for its reader."""
+    """Notes on a simulation for its reader."""
     scenario, actuator = circuit.scenario, circuit.plant
     return (
         *recorded_notes(scenario, circuit.records),
@@ -192,7 +196,7 @@ def _notes(
 
 
 def _controller_notes(tuned: Tuned | None) -> Iterator[str]:
-    """Notes of the tuning, and a loop without valid margins or stability."""
+    """Notes of the tuning, and a note if the loop is unstable or has no valid margins."""
     if tuned is None:
         return
     yield from tuned.notes
@@ -206,7 +210,7 @@ def _controller_notes(tuned: Tuned | None) -> Iterator[str]:
 
 
 def _simplifications(scenario: Scenario, actuator: Plant) -> Iterator[str]:
-    """Friction and port accumulators that the simulation simplifies."""
+    """Notes on simplified friction and on port accumulators, which the simulation leaves out."""
     friction, seals = scenario.friction, actuator.seals
     if friction.coulomb is None and friction.model != "none" and scenario.motor is None:
         error = max(seals.coulomb.error, seals.static.error)
@@ -223,7 +227,7 @@ def _simplifications(scenario: Scenario, actuator: Plant) -> Iterator[str]:
 
 
 def _limits(scenario: Scenario, actuator: Plant, signals: Mapping[str, Array]) -> Iterator[str]:
-    """Cavitation, excess pressure and an overrun load cylinder, which the equations ignore."""
+    """Notes on cavitation, excess pressure and load cylinder travel, which nothing limits."""
     where = "chamber" if scenario.motor is None else "pipe"
     for name in ("pressure_a", "pressure_b"):
         if name not in signals:
@@ -246,7 +250,7 @@ def _limits(scenario: Scenario, actuator: Plant, signals: Mapping[str, Array]) -
 
 
 def _coarse_samples(step: float, signals: Mapping[str, Array]) -> Iterator[str]:
-    """Sample times that may miss a peak."""
+    """A note if the sample time is so long that the samples may miss a peak."""
     if step > COARSE and "pressure_a" in signals:
         yield (
             f"peaks and step results are taken from samples, {1e3 * step:.3g} ms apart: "
@@ -255,7 +259,7 @@ def _coarse_samples(step: float, signals: Mapping[str, Array]) -> Iterator[str]:
 
 
 def _pump_not_in_equilibrium(scenario: Scenario, actuator: Plant) -> Iterator[str]:
-    """A pump that does not start in equilibrium with its relief valve."""
+    """A note on a pump whose initial pressure is not in equilibrium with its relief valve."""
     from scipy.optimize import brentq
 
     unit = scenario.supply
@@ -272,7 +276,7 @@ def _pump_not_in_equilibrium(scenario: Scenario, actuator: Plant) -> Iterator[st
         )
         return float(relieved) - flow
 
-    over = float(brentq(excess_flow, 0.0, 2 * relief.override))  # includes the pump, as checked
+    over = float(brentq(excess_flow, 0.0, 2 * relief.override))  # `excess_flow` includes the pump
     initial = actuator.supply_pressure
     equilibrium = actuator.return_pressure + relief.pressure + over
     if abs(equilibrium - initial) > SETTLED * initial:
@@ -283,7 +287,7 @@ def _pump_not_in_equilibrium(scenario: Scenario, actuator: Plant) -> Iterator[st
 
 
 def _reference_outside_stroke(actuator: Plant, signals: Mapping[str, Array]) -> Iterator[str]:
-    """A reference outside the stroke."""
+    """A note on a reference outside the stroke."""
     if "reference" not in signals or "position" not in signals:
         return
     reference = signals["reference"]
@@ -298,7 +302,7 @@ def _reference_outside_stroke(actuator: Plant, signals: Mapping[str, Array]) -> 
 
 
 def spec_of(subject: PreparedDesign, scenario: Scenario) -> str:
-    """Hash of everything that affects the result."""
+    """Hash of all inputs that affect the result."""
     content = json.dumps(scenario.model_dump(mode="json"), sort_keys=True, default=str)
     text = spec_hash(subject) + content
     return hashlib.sha256(text.encode()).hexdigest()[:16]

@@ -1,8 +1,8 @@
-"""Sensitivity of a scenario's results to its parameters: central differences, ranked.
+"""Sensitivity of a scenario's results to its parameters: central differences, ranked by effect.
 
-The controller keeps its gains; only parameters of `control` change them. A change refers to 1 % of
-the parameter, or 1 K for a temperature. Each difference is repeated with half the step; if both
-disagree, noise or a jump dominates, and the value is marked.
+The controller keeps its gains, unless a parameter of `control` itself is changed. An effect refers
+to a change of 1 % in the parameter, or of 1 K in a temperature. Each difference is computed again
+with half the step. If the two disagree, noise or a jump dominates, and the value is marked.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ from .result import Simulation
 from .run import run
 
 STEP = 0.02
-"""Relative step of a parameter (a choice: well above the error of a run)."""
+"""Relative step of a parameter (our choice: well above the error of a run)."""
 AGREE = 0.1
-"""Relative tolerance between the differences with the whole and half the step."""
+"""Relative difference up to which the results with the whole and with half the step agree."""
 NOTHING = 0.05
-"""Change of a result, in per cent for 1 %, that counts as zero (a choice)."""
+"""Change of a result, in per cent per 1 % of a parameter, that counts as zero (our choice)."""
 DESIGN = (
     "fluid.air_content", "fluid.temperature", "supply.pressure", "supply.return_pressure",
     "cylinder.bore", "rod.outer_diameter", "cylinder.dead_volume_a", "cylinder.dead_volume_b",
@@ -43,9 +43,9 @@ DESIGN = (
     "valve.leakage_flow", "valve.natural_frequency", "valve.damping_ratio", "control.gain",
     "load.mass", "load.inertia",
 )  # fmt: skip
-"""Numbers of a design that are varied by default."""
+"""Values of a design that are varied by default."""
 LEAST = {"hold_drift": 1e-7, "overshoot": 1e-5, "steady_state_ratio": 1e-5, "following_error": 1e-7}
-"""Results below this are rounding [SI] (a choice)."""
+"""Values of results below which they count as rounding [SI] (our choice)."""
 _TIMES = ("start", "end", "phase", "frequency")
 _APART = ("duration", "sample_time", "requirements", "analysis", "set")
 
@@ -55,16 +55,16 @@ class Effect:
     """Effect of a 1 % change of a parameter (1 K for a temperature)."""
 
     percent: float | None
-    """Change of the result, per cent; None if the result is zero."""
+    """Change of the result in per cent; None if the result is zero."""
     change: float
     """Change of the result [SI]."""
     reliable: bool
-    """Whether half the step agrees within 10 %, or the result does not change with either step."""
+    """Whether the effect with half the step agrees within 10 %, or both steps have no effect."""
 
 
 @dataclass(frozen=True, slots=True)
 class ParameterEffects:
-    """A parameter with its effects."""
+    """A parameter with its effects on all results."""
 
     path: str
     origin: Literal["design", "scenario"]
@@ -72,7 +72,7 @@ class ParameterEffects:
     value: float
     unit: Literal["1 %", "1 K"]
     effects: Mapping[str, Effect]
-    """Effects by result."""
+    """Effects by name of the result."""
 
     @property
     def largest(self) -> float:
@@ -87,14 +87,14 @@ class ParameterEffects:
 
 @dataclass(frozen=True, slots=True)
 class Sensitivities(Displayed):
-    """All parameters, the most effective first."""
+    """Effects of all parameters, in order of decreasing effect."""
 
     name: str
     results: Mapping[str, float]
-    """Results of the unchanged scenario."""
+    """Results of the unchanged scenario, by name."""
     parameters: tuple[ParameterEffects, ...]
     skipped: Mapping[str, str]
-    """Parameters that failed, with the reason."""
+    """Parameters whose simulation failed, with the reason."""
     step: float
     runs: int
     seconds: float
@@ -144,17 +144,17 @@ def sensitivities(
     Parameters
     ----------
     scenario, subject : inputs over time, and the design
-    names : PATHs of design or scenario; default: `DESIGN` and the numbers that the scenario states
+    names : PATHs in design or scenario; default: `DESIGN` and all numbers that the scenario states
     step : relative step of a parameter
-    results : names of `quantities.RESULTS`; default: all that the scenario has
+    results : names of `quantities.RESULTS`; default: all results of the scenario
     records : columns of the files that the scenario's signals name
 
     Raises
     ------
     InputError
-        a PATH that is not a number, a result that does not exist, a step that is not positive
+        a PATH that is not a number, an unknown result, or a step that is not positive
     Unsolvable
-        the scenario itself fails
+        the simulation of the unchanged scenario fails
     """
     begin = perf_counter()
     if not 0 < step < 0.5:
@@ -186,7 +186,7 @@ def sensitivities(
 
 
 def _results(base: Simulation, requested: Sequence[str] | None) -> dict[str, float]:
-    """Results that have a value."""
+    """The requested results, as far as they have a value."""
     for name in requested or ():
         if name not in RESULTS:
             raise InputError(Diagnostic(f"{name}: no such result", remedy(name, RESULTS)))
@@ -197,7 +197,7 @@ def _results(base: Simulation, requested: Sequence[str] | None) -> dict[str, flo
 
 @dataclass(frozen=True, slots=True)
 class _Target:
-    """A number of the design or of the scenario."""
+    """A number of the design or of the scenario that is varied."""
 
     path: str
     loc: Loc
@@ -207,17 +207,17 @@ class _Target:
 
     @property
     def amount(self) -> float:
-        """1 % of its value; 1 K for a temperature."""
+        """Change to which effects refer: 1 % of the value, or 1 K for a temperature."""
         return 1.0 if _absolute(self.quantity) else 0.01 * abs(self.value)
 
 
 _Slope: TypeAlias = tuple[float | None, float]
-"""Change of a result per unit of a parameter: in per cent, and in SI."""
+"""Change of a result per unit of a parameter: in per cent of the result, and in SI."""
 
 
 @dataclass(slots=True)
 class _Bench:
-    """A scenario around a design, for runs with other numbers."""
+    """A scenario and a design, simulated with changed numbers."""
 
     scenario: Scenario
     subject: PreparedDesign
@@ -227,11 +227,11 @@ class _Bench:
 
     @classmethod
     def of(cls, scenario: Scenario, subject: PreparedDesign, records: Records) -> _Bench:
-        """Build with the present gains."""
+        """Build with the controller gains of the unchanged scenario."""
         return cls(scenario, subject, records, tune(scenario, plant(subject), records))
 
     def base(self) -> Simulation:
-        """The unchanged scenario."""
+        """Simulation of the unchanged scenario."""
         self.runs += 1
         return run(self.scenario, plant(self.subject), self.records, self.tuned)
 
@@ -249,7 +249,7 @@ class _Bench:
             yield self._target(paths.spell(loc, self.scenario))
 
     def _target(self, name: str) -> _Target:
-        """A number by its PATH: the scenario's, else the design's."""
+        """The number with this PATH: in the scenario, else in the design."""
         design = self.subject.design
         try:
             resolved = paths.resolve(name, self.scenario, RESULTS, Scenario)
@@ -267,7 +267,7 @@ class _Bench:
     def parameter(
         self, target: _Target, reference: Mapping[str, float], step: float
     ) -> ParameterEffects:
-        """Effects of one parameter: two runs, and two more where something changes."""
+        """Effects of one parameter: two simulations, and two more if a result changes."""
         full_step = self._slopes(target, reference, step)
         moving = {name for name, slope in full_step.items() if _moves(slope, _least(name, step))}
         half_step = self._slopes(target, reference, 0.5 * step) if moving else full_step
@@ -285,7 +285,7 @@ class _Bench:
     def _slopes(
         self, target: _Target, reference: Mapping[str, float], step: float
     ) -> dict[str, _Slope]:
-        """Change of the results per unit of a parameter, where both sides have them."""
+        """Change of the results per unit of a parameter, where both simulations have a result."""
         units = step / 0.01
         high, low = (
             self._values(target, target.value + sign * units * target.amount) for sign in (1, -1)
@@ -301,7 +301,7 @@ class _Bench:
         return slopes
 
     def _values(self, target: _Target, value: float) -> Mapping[str, float | None]:
-        """Results with another value of a parameter."""
+        """Results with a changed value of a parameter."""
         self.runs += 1
         scenario, subject = self.scenario, self.subject
         if target.origin == "scenario":
@@ -318,18 +318,18 @@ class _Bench:
 
 
 def _least(name: str, step: float) -> float:
-    """Change of a result per unit of a parameter that counts as rounding [SI]."""
+    """Change of a result per unit of a parameter below which it counts as rounding [SI]."""
     return LEAST.get(name, 0.0) * 0.01 / step
 
 
 def _moves(slope: _Slope, least: float) -> bool:
-    """Whether a result changes by more than rounding."""
+    """Whether the change of a result exceeds rounding."""
     percent, change = slope
     return abs(change) > least if percent is None else abs(percent) > NOTHING
 
 
 def _same(slope: _Slope, other: _Slope, least: float) -> bool:
-    """Whether two differences agree, or are both zero."""
+    """Whether two changes per unit agree, or are both zero."""
     if not (_moves(slope, least) or _moves(other, least)):
         return True
     index = 1 if slope[0] is None else 0
@@ -338,12 +338,12 @@ def _same(slope: _Slope, other: _Slope, least: float) -> bool:
 
 
 def _absolute(quantity: Quantity) -> bool:
-    """Whether a quantity has an offset zero, so that relative changes are meaningless."""
+    """Whether a quantity has an arbitrary zero, so that relative changes are meaningless."""
     return quantity.dimension == "temperature"
 
 
 def _put(node: Any, loc: Loc, value: float) -> Any:
-    """A section with another number at a location."""
+    """A section of a file with another number at a location."""
     key, remaining_path = loc[0], loc[1:]
     old = child(node, key)
     new: Any = _put(old, remaining_path, value) if remaining_path else value
@@ -355,7 +355,7 @@ def _put(node: Any, loc: Loc, value: float) -> Any:
 
 
 def _stated(node: Any, loc: Loc) -> bool:
-    """Whether a file states the value at a location, as opposed to a default."""
+    """Whether a file states the value at a location; if not, it is a default."""
     for key in loc:
         if isinstance(key, str) and key not in node.model_fields_set:
             return False

@@ -2,8 +2,8 @@
 
 Components add states, rates and signals as expressions of the same symbols. They call the
 models of `actuator_opt.models` with these symbols, so the simulation has no formulas of its own.
-Jumps are flags that are constant between restarts: an instant of an input, or a switch that follows
-the sign of a guard.
+Jumps are represented by flags, which are constant between two restarts of the integration. A flag
+is true after a given time, or it is a switch: true while an expression, its guard, is positive.
 """
 
 from __future__ import annotations
@@ -22,13 +22,15 @@ from ..base.symbolic import Expression, Graph, Namespace, Symbol, function, jaco
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 
 LOOSE = 1e-4
-"""Tolerance of an integral relative to its scale (a choice): the states control the steps."""
+"""Tolerance of an integral relative to its scale (our choice: the other states determine the step
+size)."""
 PRESSURE = 1.0
 """Error tolerance of a pressure [Pa]."""
 EMPTY = -40.0
-"""Least pressure state, relative to the atmosphere's; the distance to vacuum is rounding there."""
+"""Smallest value of a pressure state, in units of the atmospheric pressure. Below it, the distance
+to vacuum is lost in rounding."""
 VACUUM = 1e-6
-"""Least absolute initial pressure, relative to the atmosphere's."""
+"""Smallest absolute initial pressure, in units of the atmospheric pressure."""
 
 
 @dataclass(slots=True)
@@ -41,12 +43,12 @@ class SystemState:
     tolerance: float
     rate: Expression = 0.0
     integral: bool = False
-    """Whether it is a pure integral, on which nothing depends."""
+    """Whether the state is only an integral for the results, on which no other equation depends."""
 
 
 @dataclass(frozen=True, slots=True)
 class Switch:
-    """A flag that is true while its guard is positive."""
+    """A flag that is true while an expression, its guard, is positive."""
 
     name: str
     flag: str
@@ -55,7 +57,7 @@ class Switch:
 
 @dataclass(frozen=True, slots=True)
 class Instant:
-    """A flag that is true after an instant."""
+    """A flag that is true after a given time."""
 
     flag: str
     time: float
@@ -73,7 +75,7 @@ class Signal:
 
 @dataclass(slots=True)
 class System:
-    """Equations under construction; `compiled` returns them as functions."""
+    """A system of equations under construction; `compiled` returns its functions."""
 
     graph: Graph = field(default_factory=Graph)
     states: list[SystemState] = field(default_factory=list)
@@ -81,11 +83,12 @@ class System:
     instants: list[Instant] = field(default_factory=list)
     signals: list[Signal] = field(default_factory=list)
     pressure_states: dict[int, Symbol] = field(default_factory=dict)
-    """States that represent pressures, by index of the pressure's symbol."""
+    """States behind the pressures, by index of the pressure's symbol."""
     bends: list[float] = field(default_factory=list)
-    """Instants at which a record changes its slope; no step is longer than the interval."""
+    """Times at which a record changes its slope. No integration step is longer than the interval
+    between them."""
     notes: list[str] = field(default_factory=list)
-    """Notes for the reader of the result: choices and simplifications that had an effect."""
+    """Notes for the reader of the result: assumptions and simplifications that had an effect."""
 
     @property
     def time(self) -> Symbol:
@@ -93,7 +96,7 @@ class System:
         return self.graph.variable("t")
 
     def state(self, name: str, initial: float, *, tolerance: float) -> Symbol:
-        """Add a state; `rate` gives it its equation."""
+        """Add a state; its equation is set by `rate`."""
         symbol = self.graph.variable(f"y_{len(self.states)}")
         self.states.append(SystemState(name, symbol, float(initial), tolerance))
         return symbol
@@ -101,9 +104,9 @@ class System:
     def pressure(self, name: str, initial: float) -> Symbol:
         """Add a gauge pressure as a state that cannot fall below vacuum.
 
-        The state s is the pressure p above zero and s = p_a ln(1 + p/p_a) below, with p_a the
-        atmospheric pressure. An error of s is relative to the distance from vacuum, and s has no
-        lower end.
+        The state s is defined by s = p for p above zero, and by s = p_a ln(1 + p/p_a) below zero. p
+        is the gauge pressure, p_a the atmospheric pressure. An error of s is then relative to the
+        distance from vacuum, and s has no lower limit.
         """
         air = ATMOSPHERIC_PRESSURE
         clipped = max(float(initial), (VACUUM - 1) * air)
@@ -123,13 +126,16 @@ class System:
         next(s for s in self.states if s.symbol is symbol).rate = rate
 
     def integral(self, name: str, rate: Expression, *, scale: float) -> Symbol:
-        """Add the integral of an expression over time, from zero; it does not control the steps."""
+        """Add the integral of an expression over time, from zero.
+
+        Its error does not limit the steps.
+        """
         symbol = self.state(name, 0.0, tolerance=LOOSE * scale)
         self.states[-1].rate, self.states[-1].integral = rate, True
         return symbol
 
     def after(self, time: float) -> Any:
-        """A flag that is true after an instant; the integration restarts there."""
+        """A flag that is true after a given time; the integration restarts then."""
         if time <= 0:
             return True
         existing = next((instant for instant in self.instants if instant.time == time), None)
@@ -139,7 +145,10 @@ class System:
         return self.graph.flag(existing.flag)
 
     def switch(self, name: str, guard: Expression) -> Symbol:
-        """A flag that is true while the guard is positive; its changes are located in time."""
+        """A flag that is true while the guard is positive.
+
+        The times of its changes are computed.
+        """
         flag = f"s_{len(self.switches)}"
         self.switches.append(Switch(name, flag, guard))
         return self.graph.flag(flag)
@@ -151,13 +160,13 @@ class System:
 
     @property
     def flags(self) -> list[str]:
-        """Names of the flags, those of the instants first."""
+        """Names of the flags: first those that depend on time, then the switches."""
         return [instant.flag for instant in self.instants] + [
             switch.flag for switch in self.switches
         ]
 
     def unpack(self, symbols: Sequence[Symbol], states: str) -> dict[str, str]:
-        """Generated code that reads the states from an argument, and the flags from ``m``."""
+        """Generate code that reads states from the argument `states`, and flags from ``m``."""
         names = ", ".join(str(symbol.args[0]) for symbol in symbols)
         flags = ", ".join(self.flags)
         return ({f"{names},": states} if names else {}) | ({f"{flags},": "m"} if flags else {})
@@ -171,7 +180,7 @@ class System:
 class Compiled:
     """Functions of a system: ``f(t, y, m)`` with a vector y and a tuple m of flags.
 
-    Flags come in the order of `instants`, then `switches`.
+    Flags are ordered as `instants`, followed by `switches`.
     """
 
     system: System
@@ -181,18 +190,18 @@ class Compiled:
     guards: Callable[[Array, Array, tuple[Array, ...]], list[Array]]
     """Guards of all switches at many samples: y is (states, samples)."""
     guard_rates: Callable[[Array, Array, tuple[Array, ...]], list[Array]]
-    """Rates of the guards."""
+    """Time derivatives of the guards."""
     signal_values: Callable[[Array, Array, tuple[Array, ...]], list[Array]]
-    """The signals, at many samples."""
+    """Values of all signals at many samples."""
     initial: Array
     tolerances: Array
     instants: tuple[float, ...]
     bends: Array
-    """Instants at which a record changes its slope, without repetition."""
+    """Times at which a record changes its slope, each only once."""
 
     @classmethod
     def of(cls, system: System) -> Compiled:
-        """Trace, differentiate, generate code and compile."""
+        """Build the functions: differentiate the expressions, generate code and compile it."""
         symbols = [state.symbol for state in system.states]
         rates = [state.rate for state in system.states]
         scalar, many = (system.unpack(symbols, states) for states in ("y.tolist()", "y"))
@@ -224,7 +233,7 @@ class Compiled:
         )
 
     def signals(self, t: Array, y: Array, m: Sequence[Array]) -> dict[str, Array]:
-        """Every signal at samples: y (states, samples), a row of m for every flag."""
+        """Values of every signal at samples; y is (states, samples), m has a row for every flag."""
         with np.errstate(all="ignore"):
             values = self.signal_values(t, y, tuple(m))
         return {
@@ -234,12 +243,12 @@ class Compiled:
 
 
 def _below(state: Symbol) -> Expression:
-    """A pressure's state below zero, down to vacuum."""
+    """Gauge pressure below zero, down to vacuum, from its state."""
     return clip(state, EMPTY * ATMOSPHERIC_PRESSURE, 0.0)
 
 
 def _guard_rates(system: System) -> list[Expression]:
-    """Rates of the guards along the solution."""
+    """Time derivatives of the guards along the solution."""
     symbols, rates = [state.symbol for state in system.states], [s.rate for s in system.states]
     rates_of_guards = []
     for row in jacobian([switch.guard for switch in system.switches], [*symbols, system.time]):

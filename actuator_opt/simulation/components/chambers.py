@@ -1,8 +1,8 @@
-"""Volumes of oil at one pressure, and the components at their ports.
+"""Oil volumes, each at a single pressure, and the components connected to them.
 
-A volume has its rate, mass and elastic energy. Components: the line of a chamber (one-way valve,
-line, far end), a hydraulic motor between two pipes by the Wilson model, and a load cylinder with
-its own valve, which loads the rod on a test bench.
+Every volume adds its pressure rate, mass and elastic energy. The components are: the line of a
+chamber (one-way valve, line and far end); a hydraulic motor between two pipes, by the Wilson model;
+and a load cylinder with its own valve, which loads the rod on a test bench.
 """
 
 from __future__ import annotations
@@ -27,16 +27,18 @@ from . import valve
 from .circuit import Circuit
 
 DEEPEST = -12.0
-"""Travel into a stop, relative to half the dead volume's length, at which 6e-6 of it remains (a
-choice)."""
+"""Deepest travel into an end stop, divided by half the length of the dead volume (our choice). Of
+that half of the dead volume, 6e-6 then remains."""
 FLOOR = 1e-6
-"""Lower limit of the absolute pressure in the laws of oil and air [Pa], against rounding only."""
+"""Lower limit of the absolute pressure in the formulas for oil and air [Pa], to guard against
+rounding."""
 LEAST_DEAD = 0.5e-3
-"""Least length of a dead volume [m] (a choice): without any, a chamber would have no compliance."""
+"""Smallest length of a dead volume [m] (our choice). Without any dead volume, a chamber at its end
+stop would have no compliance."""
 
 
 class Volumes(NamedTuple):
-    """The oil law at a pressure."""
+    """Oil properties at a pressure."""
 
     ratio: Expression
     modulus: Expression
@@ -46,7 +48,7 @@ class Volumes(NamedTuple):
 def oil_at(oil: Oil, pressure: Expression) -> Volumes:
     """Density ratio, bulk modulus and energy density at a pressure above vacuum.
 
-    Oil with (almost) no air forms a cavity below atmospheric pressure, which limits the vacuum.
+    A cavity forms below atmospheric pressure if the oil has almost no air. This limits the vacuum.
     """
     limited = maximum(pressure, FLOOR - ATMOSPHERIC_PRESSURE)
     mixed = Volumes(
@@ -77,7 +79,7 @@ def node(
     volume: float,
     wall: float = 0.0,
 ) -> None:
-    """Add a rigid volume with an elastic wall; its pressure follows the net inflow."""
+    """Add a rigid volume with an elastic wall; its pressure changes with the net inflow."""
     law = oil_at(circuit.plant.oil, pressure)
     total_volume = volume + wall * pressure
     circuit.system.rate(
@@ -102,7 +104,10 @@ def _content(
     inflow: Expression,
     scale: float,
 ) -> None:
-    """Add mass and energy of a volume to the audit; the inflow carries its elastic energy."""
+    """Add mass and energy of a volume to the balance.
+
+    Its inflow brings the oil's elastic energy.
+    """
     system, audit = circuit.system, circuit.audit
     mass = system.integral(f"inflow of {name}", law.ratio * inflow, scale=1e-3 * scale)
     audit.mass.append((name, law.ratio * volume, mass))
@@ -112,10 +117,10 @@ def _content(
 
 
 def _left(travel: Expression, film: float) -> tuple[Expression, Expression]:
-    """Length of the oil column less that of the dead volume, and its slope over the travel.
+    """Length of the oil column without the dead volume, and its slope over the travel.
 
-    It equals the travel, also beyond the stop. Once half the dead volume is used up, the piston
-    touches the end over a growing area, so the remaining volume shrinks more slowly.
+    The length equals the travel, also into the end stop. Once half the dead volume is used up, the
+    piston touches the end over a growing area, so the remaining volume shrinks more slowly.
     """
     half = 0.5 * film
     depth = clip((travel + half) / half, DEEPEST, 0.0)
@@ -144,10 +149,13 @@ def cylinder(
 ) -> Expression:
     """Add both chambers of a cylinder, coupled by walls and rod; return their force [N].
 
-    V_A = A_A x + V_0A + W_AA p_A + W_AB p_B, V_B = A_B (s - x) + V_0B + W_BB p_B + W_AB p_A, W(x)
-    of the walls plus f a a^T of rod and mount with a = (A_A, -A_B). The force on the piston is a^T
-    p + p^T W' p/2, from the work of the walls. A pressure given as a number is prescribed: its port
-    supplies the flow for volume, walls and leakage. Deep in a stop x is that of `_left`.
+    Volume of chamber A: V_A = A_A x + V_0A + W_AA p_A + W_AB p_B. Volume of chamber B: V_B = A_B (s
+    - x) + V_0B + W_BB p_B + W_AB p_A. A are the areas, x is the position, s the stroke, V_0 the
+    dead volumes, p the pressures. W(x) is the compliance of the walls plus f a a^T for rod and
+    mount, with the flexibility f and a = (A_A, -A_B). The force on the piston is a^T p + p^T W'
+    p/2, which follows from the work of the walls. A pressure given as a number is prescribed: its
+    port then supplies the flow for volume, walls and leakage. Deep in an end stop, x is replaced by
+    the length of `_left`.
     """
     oil, beyond = circuit.plant.oil, stroke - position
     w_a = walls.a0 + walls.a1 * position + flexibility * area_a * area_a
@@ -191,7 +199,10 @@ def _set_pressures(
     coupling: Expression,
     net: tuple[Expression, Expression],
 ) -> None:
-    """Set the rates of two coupled pressures; the port of a prescribed pressure supplies flow."""
+    """Set the rates of two coupled pressures.
+
+    A port at prescribed pressure supplies the flow instead.
+    """
     (c_a, c_b), (net_a, net_b) = capacities, net
     is_state_a, is_state_b = (isinstance(pressure, Symbol) for pressure in pressures)
     det = c_a * c_b - (coupling * coupling if is_state_a and is_state_b else 0.0)
@@ -208,7 +219,7 @@ def _set_pressures(
 
 
 def dead_volume(circuit: Circuit, volume: float, area: float, chamber: str) -> float:
-    """Dead volume of a chamber, at least `LEAST_DEAD` times its area."""
+    """Dead volume of a chamber, at least `LEAST_DEAD` times the area."""
     least = LEAST_DEAD * area
     if volume >= least:
         return volume
@@ -222,7 +233,10 @@ PREFIX = "load_"
 
 
 def push(circuit: Circuit, stated: LoadCylinder, *, position: Symbol, speed: Symbol) -> Expression:
-    """Force of the load cylinder on the rod, outwards [N]; both rods move together."""
+    """Force with which the load cylinder pushes the rod outwards [N].
+
+    Its rod moves with the actuator's.
+    """
     system = circuit.system
     area = float(forces.annulus_area(bore=stated.bore, rod_diameter=stated.rod_diameter))
     middle = 0.5 * (stated.supply_pressure + stated.return_pressure)
@@ -272,7 +286,7 @@ def push(circuit: Circuit, stated: LoadCylinder, *, position: Symbol, speed: Sym
 
 
 def _data(load_cylinder: LoadCylinder, viscosity: float) -> ValveData:
-    """Valve of the load cylinder, with the oil of the design."""
+    """Data of the load cylinder's valve, with the oil of the design."""
     valve_data = load_cylinder.valve
     tank_drop = (
         valve_data.leakage_drop
@@ -306,14 +320,14 @@ ANGLE = 1e-9
 
 
 class Shaft(NamedTuple):
-    """States of the shaft."""
+    """Speed and angle of the motor shaft, as states."""
 
     angle: Symbol
     speed: Symbol
 
 
 def shaft(system: System) -> Shaft:
-    """The shaft at rest."""
+    """Add the states of the motor shaft, which starts at rest."""
     return Shaft(
         system.state("shaft angle", 0.0, tolerance=ANGLE),
         system.state("shaft speed", 0.0, tolerance=SPEED),
@@ -329,7 +343,7 @@ def turn(
     inflow_a: Expression,
     inflow_b: Expression,
 ) -> None:
-    """Add pipes, motor and load; a linear circuit omits Coulomb friction."""
+    """Add pipes, motor and load of the motor; a linear circuit omits Coulomb friction."""
     system, motor = circuit.system, circuit.scenario.motor
     assert motor is not None
     angle, speed = shaft_states
@@ -374,33 +388,34 @@ FLOW = 1e-12
 
 
 LEAST_NODE = 1e-6
-"""Volume behind a throttle if the design states none (a choice: 1 ml of fittings)."""
+"""Volume behind a throttle for a design that states none (our choice: 1 ml of fittings)."""
 
 
 REDUCING_FLOW = 20 / 60000
-"""Largest flow of the reducing valve [m^3/s] (a choice: a pilot-operated valve of size 6)."""
+"""Largest flow of the reducing valve [m^3/s] (our choice: a pilot-operated valve of size 6)."""
 
 
 class ChamberPort(NamedTuple):
-    """A chamber with its port."""
+    """States of a chamber and of its line."""
 
     name: Chamber
     pressure: Expression
     """Pressure of the chamber."""
     end: Expression
-    """Pressure at the far end, at the valve or reducing valve."""
+    """Pressure at the far end of the line, next to the valve or reducing valve."""
     lumped: float
-    """Line volume counted with the chamber; `lumped_wall` is its wall compliance."""
+    """Line volume that is added to the chamber; `lumped_wall` is the compliance of that line's
+    wall."""
     lumped_wall: float
     line: Symbol | None
     outer: Expression | None
-    """Pressure behind the throttle."""
+    """Pressure between the throttle and the line; None without a throttle."""
 
 
 def side(circuit: Circuit, name: Chamber, ends: str, start: float) -> ChamberPort:
-    """States of a chamber and of its line.
+    """Add the states of a chamber and of its line.
 
-    A line has inertia if flow passes through it; behind closed ends it is only volume.
+    The oil in a line has inertia if it flows; if the far end is closed, the line only adds volume.
     """
     system, data = circuit.system, circuit.plant.lines[name]
     throttled = circuit.plant.throttle is not None
@@ -429,7 +444,10 @@ def side(circuit: Circuit, name: Chamber, ends: str, start: float) -> ChamberPor
 def connect(
     circuit: Circuit, port: ChamberPort, ends: str, feed: Expression, *, end_pressure: float
 ) -> Expression:
-    """Flow into the chamber; `feed` and `end_pressure` are flow and pressure at the far end."""
+    """Flow into the chamber.
+
+    `feed` is the flow, `end_pressure` the pressure at the line's far end.
+    """
     feed = FEEDS[ends](circuit, port, feed, end_pressure)
     if port.line is not None:
         feed = _through_line(circuit, port, port.line, feed)
@@ -441,7 +459,7 @@ def connect(
 def _through_line(
     circuit: Circuit, port: ChamberPort, flow: Symbol, feed: Expression
 ) -> Expression:
-    """Flow of the line towards the chamber."""
+    """Flow from the line into the chamber."""
     data, word = circuit.plant.lines[port.name], port.name.upper()
     inner = port.pressure if port.outer is None else port.outer
     drop = data.resistance * flow
@@ -461,7 +479,7 @@ def _through_line(
 def _through_throttle(
     circuit: Circuit, port: ChamberPort, outer: Expression, feed: Expression
 ) -> Expression:
-    """Flow of the one-way valve out of the chamber."""
+    """Flow out of the chamber through the one-way valve and its throttle."""
     word = port.name.upper()
     assert circuit.plant.throttle is not None
     drop = port.pressure - outer
@@ -483,7 +501,7 @@ def _through_throttle(
 def _far(
     circuit: Circuit, port: ChamberPort, name: str, pressure: Symbol, inflow: Expression
 ) -> None:
-    """Add the volume at the far end, which is half of the line if there is a throttle."""
+    """Add the volume at the far end of the line; with a throttle, this is half the line."""
     data = circuit.plant.lines[port.name]
     share = 0.5 if port.outer is not None and port.line is not None else 1.0
     if share * data.far_volume < LEAST_NODE:
@@ -535,7 +553,7 @@ def _reducing(
 def _from_valve(
     circuit: Circuit, port: ChamberPort, feed: Expression, end_pressure: float
 ) -> Expression:
-    """Flow from the valve, or zero."""
+    """Flow from the valve into the line; zero if the far end is closed."""
     return feed
 
 
@@ -555,4 +573,4 @@ FEEDS = per_kind(
         "reducing_valve": _reducing,
     },
 )
-"""Flow into the line for every kind of end."""
+"""Function for the flow into the line, for every kind of far end."""

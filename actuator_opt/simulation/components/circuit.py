@@ -1,7 +1,7 @@
 """A circuit under construction: data shared by its parts, its signals, its reference quantities.
 
-A signal over time is the sum of its parts, split where they jump. A controller refers to position
-or speed, of the piston or of a motor shaft.
+A signal over time is a sum of parts, each of which is split where it jumps. A controller follows a
+reference for the position or the speed of the piston or of a motor shaft.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from ..system import System
 
 @dataclass(frozen=True, slots=True)
 class _Clock:
-    """Time of a system for signal shapes (`Clock` of `design.scenario.kinds`)."""
+    """Time of a system, as the `Clock` that signal shapes expect (`design.scenario.kinds`)."""
 
     system: System
 
@@ -46,7 +46,7 @@ class _Clock:
 
 
 def signal(system: System, parts: Sequence[SignalSegment], records: Records) -> Expression:
-    """The sum of the parts at the system's time; zero without parts."""
+    """Sum of the parts of a signal at the system's time; zero if the signal has no parts."""
     total: Expression = 0.0
     for part in parts:
         total = total + SHAPES[part.shape].course(_Clock(system), part, records)
@@ -54,7 +54,7 @@ def signal(system: System, parts: Sequence[SignalSegment], records: Records) -> 
 
 
 def _between(time: Array, values: Array) -> Callable[[Any], Any]:
-    """Linear between samples, constant outside."""
+    """Function of time that is linear between the samples and constant outside them."""
 
     def at(moment: Any) -> Any:
         values_at = np.interp(moment, time, values)
@@ -64,7 +64,7 @@ def _between(time: Array, values: Array) -> Callable[[Any], Any]:
 
 
 def _slope(time: Array, values: Array) -> Callable[[Any], Any]:
-    """Slope between samples, zero outside."""
+    """Slope of `_between` over time: constant between two samples, zero outside them."""
     run = np.diff(time)
     rise = np.divide(np.diff(values), run, out=np.zeros(len(run)), where=run > 0)
     steps = np.concatenate(([0.0], rise, [0.0]))
@@ -77,7 +77,7 @@ def _slope(time: Array, values: Array) -> Callable[[Any], Any]:
 
 
 def _bends(time: Array, values: Array) -> list[float]:
-    """Samples at which the slope changes, first and last included."""
+    """Times at which the slope changes, including the first and the last sample."""
     rise, run = np.diff(values, prepend=values[:1], append=values[-1:]), np.diff(time)
     run = np.concatenate(([1.0], run, [1.0]))
     slope = np.divide(rise, run, out=np.full(len(rise), np.inf), where=run > 0)
@@ -91,7 +91,7 @@ def rate(system: System, expression: Expression) -> Expression:
 
 
 def steady_value(parts: Sequence[SignalSegment]) -> float:
-    """Final value of a signal: the parts that persist."""
+    """Final value of a signal: the sum of the parts that do not end."""
     return sum(height(part) for part in parts if SHAPES[part.shape].lasts)
 
 
@@ -101,7 +101,7 @@ def at_start(parts: Sequence[SignalSegment], records: Records) -> float:
 
 
 def acts_after(part: SignalSegment, moment: float, records: Records) -> bool:
-    """Whether a part of a signal changes after an instant."""
+    """Whether a part of a signal still changes after a moment [s]."""
     return SHAPES[part.shape].changes_after(part, moment, records)
 
 
@@ -118,14 +118,14 @@ Loop = Literal["position", "speed", "shaft_speed", "shaft_angle"]
 
 
 class Followed(NamedTuple):
-    """The quantity a loop controls."""
+    """The quantity that a control loop controls."""
 
     words: str
     quantity: Quantity
     unit: str
-    """Unit of the loop's gain."""
+    """Unit of the controller gain."""
     typical: float
-    """A typical error, for tolerances (SI)."""
+    """A typical control error (SI), from which tolerances are derived."""
 
 
 def _followed(words: str, quantity: Quantity, gain: str, typical: float) -> Followed:
@@ -142,23 +142,24 @@ LOOPS: dict[Loop, Followed] = {
         "shaft angle", SCENARIOS["shaft_angle_value"], "shaft_angle_gain", 1.0
     ),
 }
-"""Every loop, by the name of its reference and its signal."""
+"""Control loops, by the name of the quantity that the reference sets."""
 
 
 def loop_of(control: Controller | None) -> Loop | None:
-    """The loop that a reference closes, or None."""
+    """The control loop that the controller's reference belongs to; None without a controller."""
     if control is None:
         return None
     return next((name for name in LOOPS if getattr(control, name)), None)
 
 
 FLOW = 1e-4
-"""Flow whose power at supply pressure scales energies [m^3/s], 6 l/min (a choice)."""
+"""Flow [m^3/s] that, times the supply pressure, gives the power to which energy tolerances refer: 6
+l/min (our choice)."""
 
 
 @dataclass(frozen=True, slots=True)
 class InitialState:
-    """Initial state of a run."""
+    """Position and chamber pressures at the start of a simulation."""
 
     position: float
     pressure_a: float
@@ -167,19 +168,21 @@ class InitialState:
 
 @dataclass(slots=True)
 class Audit:
-    """Terms of a run's balance."""
+    """Terms of the mass and energy balance of a simulation."""
 
     mass: list[tuple[str, Expression, Symbol]] = field(default_factory=list)
-    """Name, content at reference density [m^3], and the integral of the inflow."""
+    """Name of a volume, its oil content at reference density [m^3], and the integral of its
+    inflow."""
     stored: list[tuple[str, Expression]] = field(default_factory=list)
-    """Energy as a function of the states [J]."""
+    """Name of an energy store, and its energy as a function of the states [J]."""
     flows: list[tuple[str, Symbol, bool]] = field(default_factory=list)
-    """Energy that entered (True) or left [J]."""
+    """Name of an energy flow, its integral [J], and whether it enters the circuit (True) or leaves
+    it."""
 
 
 @dataclass(slots=True)
 class Circuit:
-    """A system of equations with the data for its parts, balance and results."""
+    """A system of equations, with the data that its parts, its balance and its results need."""
 
     scenario: Scenario
     plant: Plant
@@ -188,22 +191,26 @@ class Circuit:
     gains: ControllerGains | None = None
     loop: Loop | None = None
     linear: bool = False
-    """Whether the loop is opened at a free variable ``u``, without sticking friction."""
+    """Whether the loop is opened at a free variable ``u``, which replaces the valve signal.
+    Friction then does not stick."""
     system: System = field(default_factory=System)
     audit: Audit = field(default_factory=Audit)
     measured: Expression = 0.0
-    """Measured value of the loop."""
+    """Measured value of the controlled quantity."""
     centre: float = 0.0
     """Valve signal that centres the spool [V]."""
 
     def scenario_signal(self, parts: Sequence[SignalSegment]) -> Expression:
-        """A signal of the scenario over time."""
+        """A signal of the scenario as a function of time."""
         return signal(self.system, parts, self.records)
 
     def energy_port(
         self, name: str, power: Expression, *, state: str = "", into: bool = False
     ) -> None:
-        """Add an energy flow, out of or `into` the circuit; `state` names its integral."""
+        """Add an energy flow that leaves the circuit, or enters it with `into`.
+
+        `state` names its integral.
+        """
         scale = self.plant.supply_pressure * FLOW
         work = self.system.integral(state or name, power, scale=scale)
         self.audit.flows.append((name, work, into))

@@ -1,6 +1,7 @@
 """Motion of the rod: mass, end stops, cushions, load, joint, external machine, seal friction.
 
-Seal friction follows the LuGre law, a smooth Stribeck curve, or is viscous only.
+Seal friction is modelled in one of three ways: by the LuGre law, by a smooth Stribeck curve, or as
+viscous only.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ _FORCE = SCENARIOS["force_value"]
 
 
 def stops(circuit: Circuit, position: Symbol, speed: Symbol) -> Expression:
-    """Force of the end stops; contact is located in time, as the force jumps."""
+    """Force of the end stops. It jumps at contact, so the time of contact is computed exactly."""
     system, plant = circuit.system, circuit.plant
     damping = end_stop.stop_damping(
         stiffness=plant.stop_stiffness,
@@ -39,7 +40,10 @@ def stops(circuit: Circuit, position: Symbol, speed: Symbol) -> Expression:
 
 
 def cushions(circuit: Circuit, position: Symbol, speed: Symbol) -> Expression:
-    """Force of the oil throttled by the cushion spears, on the whole area of each chamber."""
+    """Force of the oil that the cushion spears throttle.
+
+    It acts on the whole area of each chamber.
+    """
     plant, cushion = circuit.plant, circuit.scenario.stops.cushion
     if cushion is None:
         return 0.0
@@ -130,7 +134,7 @@ def move(
 
 
 def _joint(circuit: Circuit, position: Symbol, speed: Symbol) -> tuple[Expression, Expression]:
-    """Mass at the rod including the joint, and the force of the joint's torque and inertia."""
+    """Mass at the rod, with that of the joint, and force due to the joint's torque and inertia."""
     system, plant = circuit.system, circuit.plant
     joint = plant.joint(position)
     assert joint is not None
@@ -146,20 +150,20 @@ def _joint(circuit: Circuit, position: Symbol, speed: Symbol) -> tuple[Expressio
 
 
 LEAST = 1e-3
-"""Least friction level [N]: bristles need a positive one."""
+"""Smallest friction force [N]; the bristles of the LuGre law need a positive force."""
 
 
 SMOOTHING = 0.05
-"""Width of the zero crossing, relative to the Stribeck speed (a choice)."""
+"""Width of the smooth change of sign at zero speed, relative to the Stribeck speed (our choice)."""
 
 
 LONE_SPEED = 1e-3
-"""Stribeck speed if friction does not depend on speed [m/s]."""
+"""Stribeck speed for friction that does not depend on speed [m/s]."""
 
 
 @dataclass(frozen=True, slots=True)
 class FrictionCurve:
-    """Friction over speed and chamber pressures."""
+    """Seal friction as a function of speed and chamber pressures."""
 
     coulomb: Plane
     static: Plane
@@ -172,7 +176,10 @@ class FrictionCurve:
 
 
 def law(plant: Plant, stated: Stated, start: InitialState) -> FrictionCurve:
-    """Friction of the design, or of the scenario; bristle stiffness at the initial pressures."""
+    """Friction of the scenario, else of the design.
+
+    The bristle stiffness is for the initial pressures.
+    """
     seals, pressures = plant.seals, (start.pressure_a, start.pressure_b)
     coulomb, static = seals.coulomb, seals.static
     speed = seals.stribeck_speed
@@ -220,7 +227,7 @@ def resist(
     pressure_a: Expression,
     pressure_b: Expression,
 ) -> Expression:
-    """Friction force on the piston, with the sign of the speed [N]."""
+    """Friction force on the piston; it has the sign of the speed [N]."""
     if circuit.linear:
         return _viscous(circuit, curve, speed, pressure_a, pressure_b)
     return FORCES[circuit.scenario.friction.model](circuit, curve, speed, pressure_a, pressure_b)
@@ -301,4 +308,4 @@ def _lugre(
 
 
 FORCES = per_kind(FRICTIONS, {"lugre": _lugre, "stribeck": _stribeck, "none": _viscous})
-"""Force for every seal friction law."""
+"""Function for the friction force, for every friction law of the seals."""

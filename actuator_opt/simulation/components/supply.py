@@ -1,4 +1,4 @@
-"""Supply of the valve: constant pressure, or a pump with its line."""
+"""Supply of the valve: constant pressure, or a pump with its supply line."""
 
 from __future__ import annotations
 
@@ -13,15 +13,16 @@ from .chambers import node
 from .circuit import Circuit
 
 RATE_BAND = 1e-3
-"""Share of the largest flow over which the swash plate stops at its ends (a choice)."""
+"""Distance from the ends of the swash plate's range, as a share of the largest flow, over which the
+plate is slowed to a stop (our choice)."""
 AWAKE = 0.1
-"""Initial share of the largest flow in an equilibrium search (a choice: at an end the plate has no
-rate)."""
+"""Pump flow at which an equilibrium search starts, as a share of the largest flow (our choice). At
+an end of its range the swash plate has zero rate, so a search cannot start there."""
 
 
 @dataclass(slots=True)
 class SupplyBuilder:
-    """Supply under construction: its pressures come first, the flow to the valve later."""
+    """Supply under construction: `of` creates its pressures, `feed` later connects the valve."""
 
     circuit: Circuit
     pressure: Expression
@@ -31,7 +32,10 @@ class SupplyBuilder:
 
     @classmethod
     def of(cls, circuit: Circuit) -> SupplyBuilder:
-        """Create the pressures; a pipe separates those of pump and valve."""
+        """Create the pressures at pump and valve.
+
+        They differ if a line lies between pump and valve.
+        """
         stated, system = circuit.scenario.supply, circuit.system
         unit: Expression = circuit.plant.supply_pressure
         if SUPPLIES[stated.type].pumps:
@@ -42,7 +46,10 @@ class SupplyBuilder:
         return cls(circuit, port, unit)
 
     def feed(self, demand: Expression, tank: Expression) -> None:
-        """Add the equations of the supply for the flow to the valve; `tank` is the return flow."""
+        """Add the equations of the supply.
+
+        `demand` is the flow to the valve, `tank` the return flow.
+        """
         circuit = self.circuit
         circuit.energy_port(
             "return line", circuit.plant.return_pressure * tank, state="return work"
@@ -57,7 +64,10 @@ class SupplyBuilder:
             circuit.energy_port("supply", self.unit * taken, state="supply work", into=True)
 
     def _through_line(self, demand: Expression) -> Expression:
-        """Flow from the pump into the supply pipe; its elastic volume is at the valve."""
+        """Flow from the pump into the supply line.
+
+        The elastic volume of the line is at the valve.
+        """
         circuit, line = self.circuit, self.circuit.scenario.supply.line
         if line is None:
             return demand
@@ -100,7 +110,7 @@ class SupplyBuilder:
         node(circuit, "supply line", pressure, inflow=inflow, volume=unit.volume)
 
     def _accumulator(self) -> Expression:
-        """Flow into the accumulator on the line."""
+        """Flow into the accumulator on the supply line."""
         circuit, stated = self.circuit, self.circuit.scenario.supply.accumulator
         if stated is None:
             return 0.0
@@ -191,8 +201,8 @@ DELIVERIES = per_kind(
     {name: kind for name, kind in SUPPLIES.items() if kind.pumps},
     {"fixed_pump": _fixed_pump, "controlled_pump": _controlled_pump},
 )
-"""Flow for every kind of pump."""
+"""Function for the pump flow, for every kind of pump."""
 
 NECK = 5e-3
-"""Bore and length of the neck of an accumulator on the supply line (a choice): 5 mm both."""
+"""Bore and length of the neck of an accumulator on the supply line, both 5 mm (our choice)."""
 _FLOW = SCENARIOS["flow_value"]

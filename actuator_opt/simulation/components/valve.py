@@ -1,6 +1,7 @@
 """The proportional valve (spool and four edges) and its controller.
 
-The controller is P, PI or PID on the error, with inner loops and limits of value and rate.
+The controller acts on the control error by a P, PI or PID law. It can have inner feedback loops,
+and limits on its output and on the output's rate of change.
 """
 
 from __future__ import annotations
@@ -31,7 +32,10 @@ class Port(NamedTuple):
 
 
 def spool(circuit: Circuit, data: ValveData, command: Expression, prefix: str = "") -> Expression:
-    """Spool position for a command, in volts; `prefix` prefixes the names of its signals."""
+    """Spool position for a command, both in volts.
+
+    `prefix` starts the names of the added signals.
+    """
     system = circuit.system
     opening = system.state(f"{prefix}spool", 0.0, tolerance=SPOOL)
     speed = system.state(f"{prefix}spool rate", 0.0, tolerance=SPOOL * 6 * data.natural_frequency)
@@ -65,7 +69,10 @@ def edges(
     pressure_b: Expression,
     prefix: str = "",
 ) -> Port:
-    """Flows through the four edges, and their losses."""
+    """Flows through the four edges of the spool.
+
+    Add the energy that they dissipate to the balance.
+    """
     flows = valve.valve_flows(
         signal=opening - data.offset,
         rated_coefficient=data.rated,
@@ -100,12 +107,13 @@ _FLOW = SCENARIOS["flow_value"]
 
 
 HOLD_BAND = 1e-3
-"""Share of the full signal over which the integral part stops before the limit (a choice). The
-integral is frozen while the signal is saturated and the error would increase it."""
+"""Distance from the signal limit, as a share of the full signal, over which integration fades out
+(our choice). Integration stops while the signal is at its limit and the error would drive it
+further."""
 
 
 RATE_TIME = 1e-4
-"""Time lag of a rate-limited signal [s] (a choice)."""
+"""Time lag of a rate-limited signal [s] (our choice)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,12 +124,12 @@ class Feedback:
     """Measured value of the loop: position, speed, shaft speed or angle."""
     speed: Expression
     load_pressure: Expression
-    """Load pressure: pressure force over area A [Pa]."""
+    """Load pressure: pressure force on the piston, divided by area A [Pa]."""
     load_pressure_start: float = 0.0
 
 
 def inner(circuit: Circuit, valve_signal: Expression, measured: Feedback) -> Expression:
-    """Valve signal less the inner loops: speed, and changes of the load pressure."""
+    """Valve signal minus the inner feedback of the speed and of changes in load pressure."""
     system, control = circuit.system, circuit.scenario.control
     if control is None:
         return valve_signal
@@ -139,7 +147,10 @@ def inner(circuit: Circuit, valve_signal: Expression, measured: Feedback) -> Exp
 def command(
     circuit: Circuit, reference: Expression, measured: Feedback, scale: float
 ) -> Expression:
-    """Signal to the valve; `scale` is a typical control error, for tolerances."""
+    """Signal to the valve.
+
+    `scale` is a typical control error, from which tolerances are derived.
+    """
     system, control, gains = circuit.system, circuit.scenario.control, circuit.gains
     assert control is not None
     assert gains is not None

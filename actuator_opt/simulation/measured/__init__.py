@@ -1,4 +1,4 @@
-"""Comparison of measured records with simulations: residuals, and fitted parameters with bounds."""
+"""Comparison of measured records with simulations: residuals, and fitted model parameters."""
 
 from .fit import Fit, fit
 from .parameters import PARAMETERS

@@ -1,6 +1,7 @@
 """Fit parameters of a design to a measured record: least squares over whole simulations.
 
-Residuals and slopes come from the simulation; the bounds of the parameters follow from them.
+Residuals and their slopes come from simulations. The confidence intervals of the parameters follow
+from both.
 """
 
 from __future__ import annotations
@@ -42,71 +43,80 @@ from .record import (
 )
 
 MOST: Final = 4000
-"""Maximum number of samples of a channel in a fit (a choice: denser records are thinned)."""
+"""Largest number of samples of a channel used in a fit (our choice). Of a denser record, only every
+n-th sample is used."""
 
 
 FINE, LONGEST = 2, 5e-4
-"""Simulation samples per record sample, and the longest time between two of them [s] (choices:
-cubic interpolation follows a 200 Hz oscillation within 0.2 %)."""
+"""Simulation samples per record sample, and the longest time between two simulation samples [s]
+(our choices: cubic interpolation then follows a 200 Hz oscillation within 0.2 %)."""
 
 
 RELATIVE: Final = 1e-8
-"""Tolerance of an integration step, tight because slopes are differences of two runs."""
+"""Relative tolerance of an integration step; it is tight because slopes are small differences of
+two simulations."""
 
 
 STEPS: Final = (1e-3, 0.1)
-"""Least and largest slope step relative to a parameter's size (choices: far above integration
-errors, yet local). Between them, the step changes the residuals by their noise."""
+"""Smallest and largest step for a slope, relative to the size of the parameter (our choices: far
+above integration errors, yet local). Between them, the step is chosen so that the residuals change
+by as much as their noise."""
 
 
 FIRST: Final = 1e-2
-"""The first slope step (a choice)."""
+"""The first step for a slope, relative to the size of the parameter (our choice)."""
 
 
 GUESSES: Final = (1 / 3, 3.0)
-"""Factors on each start tried before the search (a choice)."""
+"""Factors on each initial value that are tried before the search (our choice)."""
 
 
 ASTRAY: Final = 5.0
-"""Residual relative to noise above which another start is tried (a choice)."""
+"""Residual, relative to the noise, above which the search is repeated from another start (our
+choice)."""
 
 
 MARGIN: Final = 0.02
-"""Half the search range about the best trial lag, relative to the simulated time (a choice)."""
+"""Half the range in which a lag is searched around the best trial lag, as a share of the simulated
+time (our choice)."""
 
 
 LAGS: Final = 801
-"""Trial lags before the search (a choice)."""
+"""Number of trial lags before the search (our choice)."""
 
 
 FAR: Final = 10.0
-"""Residual of a failed run, relative to the largest of the first run (a choice)."""
+"""Residual assigned to a failed simulation, relative to the largest of the first simulation (our
+choice)."""
 
 
 PASSES: Final = 40
-"""Maximum steps of a search (a choice)."""
+"""Largest number of steps in a search (our choice)."""
 
 
 ROUNDS: Final = 4
-"""Maximum searches with new weights (a choice)."""
+"""Largest number of searches, each with new weights (our choice)."""
 
 
 SETTLED: Final = 0.1
-"""Relative change of the weights that counts as converged (a choice)."""
+"""Relative change of the weights below which they count as converged (our choice)."""
 
 
 ROUGH, SHARP = 1e-4, 1e-8
-"""Relative change of cost and step that ends a search, intermediate and final (choices)."""
+"""Relative change of the cost and of the step that ends a search: for intermediate searches and for
+the final search (our choices)."""
 
 
 class RecordFitProblem:
-    """Weighted residuals as a function of the searched values (logarithms of positive parameters).
+    """Weighted residuals as a function of the searched values.
+
+    The searched value of a positive parameter is its logarithm.
 
     Parameters
     ----------
-    scenario, plant, records, tuned : of the simulation
-    measured : on the scenario's time
-    parameters : searched parameters
+    scenario, plant, records, tuned : inputs of the simulation
+    measured : record, on the time axis of the scenario
+    parameters : the parameters to fit
     """
 
     def __init__(
@@ -164,11 +174,14 @@ class RecordFitProblem:
         return scenario, plant
 
     def lag(self, x: Array) -> float:
-        """Time lag of the record [s]."""
+        """Time lag between record and simulation [s]."""
         return 0.0 if self.lag_index is None else float(x[self.lag_index])
 
     def _simulated(self, x: Array) -> tuple[Array, Mapping[str, Array]]:
-        """Time and signals; the last run is cached, as a lag does not change it."""
+        """Time and signals of a simulation.
+
+        The last result is kept, as a lag does not change it.
+        """
         searched = np.array(x, dtype=float)
         if self.lag_index is not None:
             searched[self.lag_index] = 0.0
@@ -192,7 +205,7 @@ class RecordFitProblem:
         return trajectory.time, signals
 
     def differences(self, x: Array) -> dict[str, Array]:
-        """Simulated less measured, by channel."""
+        """Simulated minus measured values, by channel."""
         time, signals = self._simulated(x)
         lag = self.lag(x)
         return {
@@ -200,7 +213,7 @@ class RecordFitProblem:
         }
 
     def residuals(self, x: Array) -> Array:
-        """Weighted residuals; very large ones if the run fails."""
+        """Weighted residuals; very large if the simulation fails."""
         try:
             differences = self.differences(x)
         except Unsolvable:
@@ -212,7 +225,7 @@ class RecordFitProblem:
         )
 
     def slopes(self, x: Array, steps: Array) -> Array:
-        """Derivatives of the residuals by central differences, within the range."""
+        """Derivatives of the residuals by central differences, within the permitted range."""
         columns = []
         for k, step in enumerate(steps):
             up, down = x.copy(), x.copy()
@@ -221,7 +234,10 @@ class RecordFitProblem:
         return np.stack(columns, axis=1)
 
     def search_slopes(self, x: Array) -> Array:
-        """One-sided differences; the next steps follow from these slopes."""
+        """Derivatives of the residuals by one-sided differences.
+
+        They also determine the next steps.
+        """
         residuals, columns = self.residuals(x), []
         for k, step in enumerate(self.steps):
             row = x.copy()
@@ -233,9 +249,10 @@ class RecordFitProblem:
         return slopes
 
     def solve(self) -> Array:
-        """The best values, from trial starts, a search and a final precise search.
+        """Best values: try several starts, search, then search again with a tight tolerance.
 
-        If the model misses the record by far, the search restarts once from the initial values.
+        If the residuals stay far above the noise, the search is repeated once from the initial
+        values.
         """
         guess = self._best_guess(self.start)
         x = self._reweighted(guess)
@@ -246,7 +263,10 @@ class RecordFitProblem:
         return self._least_squares(x, SHARP)
 
     def _reweighted(self, x: Array) -> Array:
-        """Least squares with each channel weighted by its residual, until the weights converge."""
+        """Repeat least squares until the weights converge.
+
+        A channel's weight follows its residual.
+        """
         self._weigh(x)
         for _ in range(ROUNDS):
             x = self._least_squares(x, ROUGH)
@@ -259,14 +279,14 @@ class RecordFitProblem:
         return x
 
     def levels(self, x: Array) -> dict[str, float]:
-        """Root mean square residual of every channel, at least its noise."""
+        """Root mean square residual of every channel; at least the noise of its sensor."""
         return {
             name: max(self.noise[name], float(np.sqrt(np.mean(difference**2))))
             for name, difference in self.differences(x).items()
         }
 
     def _misses(self, x: Array) -> bool:
-        """Whether some channel has residuals far above its noise."""
+        """Whether any channel has residuals far above its noise."""
         return any(level > ASTRAY * self.noise[name] for name, level in self.levels(x).items())
 
     def _weigh(self, x: Array) -> None:
@@ -274,7 +294,7 @@ class RecordFitProblem:
         self.weights = {name: 1 / level for name, level in self.levels(x).items()}
 
     def _likelihood_cost(self, x: Array) -> float:
-        """Negative log-likelihood: logarithm of the residuals, over all samples."""
+        """Negative log-likelihood: sum over all samples of the logarithm of the residual level."""
         try:
             levels = self.levels(x)
         except Unsolvable:
@@ -284,7 +304,7 @@ class RecordFitProblem:
     def _overlapping(
         self, measured: AlignedRecord, signals: Mapping[str, Array]
     ) -> dict[str, tuple[Array, Array]]:
-        """The part of a record that overlaps the run at every searched lag."""
+        """Samples of a record that lie within the simulated time at every searched lag."""
         duration = self.scenario.duration
         if self.lag_index is None:
             return inside(measured, signals, duration, 0.0)
@@ -305,7 +325,7 @@ class RecordFitProblem:
         return overlap
 
     def _aligned(self, measured: AlignedRecord, signals: Mapping[str, Array]) -> float:
-        """Most likely lag at the initial values, over the samples that overlap."""
+        """Most likely lag at the initial values, from the samples within the simulated time."""
         assert self.lag_index is not None
         time, _ = self._simulated(self.start)
         lags = np.linspace(self.low[self.lag_index], self.high[self.lag_index], LAGS)
@@ -325,7 +345,7 @@ class RecordFitProblem:
         return float(lags[int(np.argmin(np.where(enough, cost, np.inf)))])
 
     def _best_guess(self, x: Array) -> Array:
-        """Initial values of positive parameters, improved by trial factors one after the other."""
+        """Improve the initial values: apply the best trial factor to each parameter in turn."""
         best, least = x, self._likelihood_cost(x)
         for k, parameter in enumerate(self.parameters):
             for factor in GUESSES if parameter.positive else ():
@@ -336,7 +356,7 @@ class RecordFitProblem:
         return best
 
     def _least_squares(self, x: Array, tolerance: float) -> Array:
-        """Solution of the least squares within the range."""
+        """Least-squares solution within the permitted range."""
         return least_squares.solve(
             self.residuals,
             x,
@@ -355,7 +375,7 @@ def _scaled(entry: FitParameter, value: float) -> float:
 
 
 def _step(spacing: float, duration: float) -> float:
-    """Time between samples of a run: a whole fraction of the record's, unless too fine."""
+    """Time between simulation samples: a whole fraction of the record's, unless too short."""
     longest = max(min(spacing / FINE, LONGEST), duration / (FINE * MOST))
     return spacing / ceil(spacing / longest) if longest < spacing else longest
 
@@ -363,7 +383,7 @@ def _step(spacing: float, duration: float) -> float:
 def _thinning_notes(
     all_samples: Mapping[str, tuple[Array, Array]], used: Mapping[str, tuple[Array, Array]]
 ) -> Iterator[str]:
-    """Notes on channels that the fit thins."""
+    """Notes on the channels of which only every n-th sample is used."""
     steps: dict[int, list[str]] = {}
     for name, (time, _) in all_samples.items():
         steps.setdefault(_every(time), []).append(name)
@@ -377,32 +397,33 @@ def _every(time: Array) -> int:
 
 
 def _thinned(time: Array, values: Array) -> tuple[Array, Array]:
-    """Every n-th sample, at most `MOST` in total."""
+    """Every n-th sample, so that at most `MOST` remain."""
     step = _every(time)
     return time[::step], values[::step]
 
 
 STEADIEST: Final = 0.97
-"""Largest correlation of neighbouring samples used for the bandwidth, as is usual."""
+"""Largest correlation between neighbouring samples that enters the bandwidth; the usual limit."""
 
 
 WHOLE: Final = 4
-"""Least number of bandwidths in a record (a choice)."""
+"""Smallest permitted length of a record, in bandwidths (our choice)."""
 
 
 ORDERS: Final = 10
-"""Highest order of an autoregression of residuals (a choice)."""
+"""Highest order of the autoregression of the residuals (our choice)."""
 
 
 def bounds(problem: RecordFitProblem, x: Array) -> FittedParameters:
-    """Covariance of the fitted values from the residuals.
+    """Covariance of the fitted values, estimated from the residuals.
 
-    cov = H^-1 S H^-1, H = J^T J, S the covariance of J^T r. S is the largest of three estimates:
-    independent residuals; channels as autoregressions, each of the order by Akaike's criterion;
-    and, for intermittent misfit, the sum of J^T r r^T J over times and lags within a bandwidth,
-    with Bartlett's weights (Newey and West; bandwidth by Andrews' rule), all channels of an instant
-    together. The degrees of freedom follow from that window, 3 n/(2 m) - p. The slopes are secants
-    over a standard error.
+    The covariance is H^-1 S H^-1 with H = J^T J, the slopes J, the residuals r and the covariance S
+    of J^T r. S is the largest of three estimates. The first assumes independent residuals. The
+    second treats each channel as an autoregression, with its order by Akaike's criterion. The third
+    covers intermittent misfit: the sum of J^T r r^T J over times and over lags within a bandwidth,
+    with Bartlett's weights (Newey and West) and all channels of a time together. The bandwidth
+    follows Andrews' rule. With n samples in time, p parameters and the bandwidth m, the degrees of
+    freedom are 3 n/(2 m) - p. The slopes are differences across one standard error.
     """
     residuals = problem.residuals(x)
     variance = float(np.sum(residuals**2)) / max(residuals.size - x.size, 1)
@@ -429,14 +450,14 @@ def bounds(problem: RecordFitProblem, x: Array) -> FittedParameters:
 
 
 def _larger(first: Array, second: Array) -> Array:
-    """A covariance at least as large as both: the first plus the excess of the second."""
+    """A covariance at least as large as both: the first, plus the excess of the second."""
     values, axes = np.linalg.eigh(second - first)
     covariance: Array = first + (axes * np.maximum(values, 0.0)) @ axes.T
     return covariance
 
 
 def _by_time(problem: RecordFitProblem, rows: Array) -> Array:
-    """Rows of samples, summed per instant, in the order of time."""
+    """Rows of samples, summed over the channels at each time, in the order of time."""
     times = np.concatenate([t for t, _ in problem.used.values()])
     instants, instant = np.unique(times, return_inverse=True)
     sums = np.zeros((instants.size, rows.shape[1]))
@@ -445,7 +466,7 @@ def _by_time(problem: RecordFitProblem, rows: Array) -> Array:
 
 
 def _bandwidth(moments: Array) -> float:
-    """Bandwidth in samples by Andrews' rule, from correlations of neighbouring moments."""
+    """Bandwidth in samples, by Andrews' rule from the correlation of neighbouring samples."""
     before, after = moments[:-1], moments[1:]
     power = np.maximum(np.sum(before**2, axis=0), 1e-300)
     rho = np.clip(np.sum(before * after, axis=0) / power, -STEADIEST, STEADIEST)
@@ -457,7 +478,7 @@ def _bandwidth(moments: Array) -> float:
 
 
 def _summed(moments: Array, width: float) -> Array:
-    """Sum of products of moments within a bandwidth, with weights that fall to zero."""
+    """Sum of products of samples within a bandwidth; the weights fall to zero at its end."""
     total: Array = moments.T @ moments
     for k in range(1, min(int(np.ceil(width)), moments.shape[0])):
         product = moments[:-k].T @ moments[k:]
@@ -466,7 +487,7 @@ def _summed(moments: Array, width: float) -> Array:
 
 
 def _coloured(problem: RecordFitProblem, outputs: Array, residuals: Array) -> Array:
-    """Covariance of U^T r with every channel's residuals as an autoregression."""
+    """Covariance of U^T r, the residuals r of every channel being an autoregression."""
     from scipy.linalg import matmul_toeplitz  # slow import, rarely used
 
     total = np.zeros((outputs.shape[1], outputs.shape[1]))
@@ -479,7 +500,7 @@ def _coloured(problem: RecordFitProblem, outputs: Array, residuals: Array) -> Ar
 
 
 def _autocovariance(residuals: Array) -> Array:
-    """Autocovariance of the best autoregression of some residuals, by Levinson's recursion."""
+    """Autocovariance of the best autoregression of residuals, by Levinson's recursion."""
     count = residuals.size
     orders = min(ORDERS, count // 4)
     lags = (
@@ -504,13 +525,16 @@ def _autocovariance(residuals: Array) -> Array:
 
 
 MISFIT: Final = 2.0
-"""Residual relative to noise above which the model misses the record (a choice)."""
+"""Residual, relative to the noise, above which the model does not explain the record (our
+choice)."""
 WORSE: Final = 1.05
-"""Residual relative to that before the fit above which the fit is worse (a choice)."""
+"""Ratio of the residuals after and before the fit above which the fit counts as worse (our
+choice)."""
 ALIKE: Final = 0.9
-"""Correlation above which two parameters are reported as inseparable (a choice)."""
+"""Correlation above which two parameters are reported as not separable (our choice)."""
 EDGE: Final = 0.01
-"""Share of a parameter's range within which it counts as at the end (a choice)."""
+"""Distance from the end of a parameter's range, as a share of the range, within which the parameter
+counts as at its end (our choice)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -520,7 +544,7 @@ class Fitted:
     entry: FitParameter
     parameter: Parameter
     at_bound: Literal["lower", "upper"] | None
-    """The end of its range, if it is there."""
+    """The end of the permitted range at which the parameter lies; None if it lies inside."""
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data for JSON, SI."""
@@ -536,17 +560,17 @@ class Fitted:
 
 @dataclass(frozen=True, slots=True)
 class Fit:
-    """Parameters fitted to a record.
+    """Result of a fit to a record.
 
     Parameters
     ----------
-    scenario, plant : with the fitted parameters
-    parameters : by name
-    correlations : of the errors of two parameters, by their names
-    before, after : the record against the simulation with the first and the fitted values, the
-        first with the best lag if a lag is fitted
-    doubts : reasons for doubt that the numbers do not show
-    runs, seconds : number of runs, and time taken
+    scenario, plant : inputs with the fitted parameters
+    parameters : fitted parameters by name
+    correlations : between the errors of two parameters, by their names
+    before, after : comparisons of the record with the simulation at the initial and at the fitted
+        values. If a lag is fitted, the best lag is used in both
+    doubts : reasons to doubt the result that its numbers do not show
+    runs, seconds : number of simulations, and computing time
     """
 
     scenario: Scenario
@@ -561,7 +585,7 @@ class Fit:
 
     @property
     def missed(self) -> tuple[str, ...]:
-        """Channels with residuals above their noise, for which the model is incomplete."""
+        """Channels with residuals above their noise; the model does not explain them completely."""
         return tuple(name for name, x in self.after.residuals.items() if _is_missed(x))
 
     @property
@@ -600,24 +624,24 @@ def fit(
 ) -> Fit:
     """Fit named parameters of a design or scenario to a measured record.
 
-    Least squares over all channels, each weighted by its sensor noise (`record.noise`), then by its
-    residuals if larger. Bounds are 95 %, from the slopes at the solution and from residuals
-    correlated over time.
+    The fit is by least squares over all channels. Each channel is weighted by its sensor noise
+    (`record.noise`), or by its residuals if they are larger. Confidence intervals are 95 %. They
+    follow from the slopes at the solution and account for residuals that are correlated over time.
 
     Parameters
     ----------
     scenario, plant : the measured system, as far as known
     records : columns of the files that the scenario's signals name
-    measured : on the scenario's time
-    names : of `parameters.PARAMETERS`, and "lag"
-    tuned : gains of the controller, which the fit leaves alone; default: as the scenario says
-    verify, method : of the simulation with the fitted values, as `simulation.simulate`
+    measured : record, on the time axis of the scenario
+    names : parameters to fit, of `parameters.PARAMETERS` or "lag"
+    tuned : controller gains, which the fit does not change; default: as in the scenario
+    verify, method : as for `simulation.simulate`, for the simulation with the fitted values
     spec : hash of the scenario and its design
 
     Raises
     ------
     InputError
-        no such parameter, one without effect, or no overlap with the record
+        an unknown parameter, a parameter without effect, or no overlap with the record
     Unsolvable
         the simulation fails at the initial values
     """
@@ -662,10 +686,10 @@ def fit(
 def _natural(
     fit_parameter: FitParameter, fitted_parameters: FittedParameters, problem: RecordFitProblem
 ) -> Parameter:
-    """A parameter in its own unit from the searched value.
+    """Convert a searched value to the parameter, in its own unit.
 
-    Bounds apply to the parameter itself, not to its logarithm, as the effect of an air content or a
-    leakage is proportional. No bound is below zero.
+    The confidence interval is that of the parameter itself, not of its logarithm: the effect of an
+    air content or a leakage is proportional to its value. The interval does not extend below zero.
     """
     x = fitted_parameters.parameters[fit_parameter.name]
     half = x.upper - x.value
@@ -689,7 +713,7 @@ def _edge(problem: RecordFitProblem, x: Array, k: int) -> Literal["lower", "uppe
 
 
 def _correlations(fitted_parameters: FittedParameters) -> dict[tuple[str, str], float]:
-    """Correlations between the errors of bounded parameters."""
+    """Correlations between the errors of the parameters that have a confidence interval."""
     correlations = {}
     for (i, first), (k, second) in combinations(enumerate(fitted_parameters.parameters), 2):
         size = np.sqrt(fitted_parameters.covariance[i, i] * fitted_parameters.covariance[k, k])
@@ -701,7 +725,7 @@ def _correlations(fitted_parameters: FittedParameters) -> dict[tuple[str, str], 
 
 
 def _unidentified(fitted: Mapping[str, Fitted]) -> Iterator[str]:
-    """Parameters that are not identified, and why."""
+    """Messages on parameters that the record does not determine, with the reason."""
     for name, parameter in fitted.items():
         quantity, value, side = parameter.entry.quantity, parameter.parameter, parameter.at_bound
         if side is not None:
@@ -727,7 +751,7 @@ def _unidentified(fitted: Mapping[str, Fitted]) -> Iterator[str]:
 def _inseparable(
     fitted: Mapping[str, Fitted], correlations: Mapping[tuple[str, str], float]
 ) -> Iterator[str]:
-    """Parameters that the fit cannot separate."""
+    """Messages on parameters whose effects the fit cannot separate."""
     pairs = [
         f"{first} with {second} ({value:.2f})"
         for (first, second), value in correlations.items()
@@ -742,12 +766,12 @@ def _inseparable(
 
 
 def _is_missed(residual: ChannelResidual) -> bool:
-    """Whether the residual of a channel that moves exceeds its noise."""
+    """Whether a channel that changes during the record has a residual above its noise."""
     return residual.span > 0 and residual.rms > MISFIT * residual.noise
 
 
 def _misfits(after: Overlay, before: Overlay) -> Iterator[str]:
-    """Channels with residuals above the noise."""
+    """Messages on channels whose residuals exceed the noise."""
     misfits = []
     for name, channel in after.residuals.items():
         if not _is_missed(channel):

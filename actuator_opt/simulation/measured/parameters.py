@@ -1,4 +1,4 @@
-"""Parameters that can be fitted to a measured record: definition, start and range."""
+"""Parameters that can be fitted to a measured record: definition, initial value and range."""
 
 from __future__ import annotations
 
@@ -18,19 +18,20 @@ Case: TypeAlias = tuple[Scenario, Plant]
 Put: TypeAlias = Callable[[Scenario, Plant, float], Case]
 
 SMALL = 0.01
-"""A small share of the full signal or of the supply pressure's force (a choice). Initial value of a
-friction that the design does not state, and accuracy needed of an offset."""
+"""Share of a full value that counts as small (our choice). It is used for the initial value of a
+friction that the design does not state, and for the accuracy to which an offset must be known."""
 BLEED = 1e-6 / 60 / 1e5
-"""Initial leakage for a design without any (a choice): 1 ml/min/bar [m^3/s/Pa]."""
+"""Initial leakage for a design that states none (our choice): 1 ml/min/bar [m^3/s/Pa]."""
 RISE = 1.5
-"""Initial ratio of breakaway to Coulomb friction for a design with equal values (a choice)."""
+"""Initial ratio of static to Coulomb friction for a design in which both are equal (our choice)."""
 LATEST = 0.2
-"""Largest lag of a record relative to the simulated time (a choice: a manually started logger)."""
+"""Largest lag of a record, as a share of the simulated time (our choice: a logger started by
+hand)."""
 
 
 @dataclass(frozen=True, slots=True)
 class FitParameter:
-    """A parameter: definition, start and range of the search, and how it is applied, SI."""
+    """A parameter: definition, initial value, range of the search and how it is applied, SI."""
 
     name: str
     quantity: Quantity
@@ -38,9 +39,10 @@ class FitParameter:
     lower: float
     upper: float
     positive: bool
-    """Whether its logarithm is searched."""
+    """Whether the search uses the logarithm of the parameter."""
     near: float
-    """Half width of the bounds that is acceptable even about 0, for signed parameters."""
+    """Half width of the confidence interval that is acceptable even for a value near 0. It applies
+    to parameters that may be negative."""
     put: Put
 
 
@@ -50,7 +52,7 @@ def entries(names: Sequence[str], scenario: Scenario, plant: Plant) -> tuple[Fit
     Raises
     ------
     InputError
-        no name, an unknown or repeated one, or one without effect in this scenario
+        no name, an unknown or repeated name, or a parameter without effect in this scenario
     """
     known = (*PARAMETERS, "lag")
     faults = []
@@ -73,7 +75,7 @@ def entries(names: Sequence[str], scenario: Scenario, plant: Plant) -> tuple[Fit
 
 
 def _idle(name: str, scenario: Scenario, plant: Plant) -> str | None:
-    """Reason why a parameter has no effect here, or None."""
+    """Reason why a parameter has no effect in this scenario, or None."""
     on_bench, motor = scenario.held_ports is not None, scenario.motor is not None
     if name in VALVE:
         if plant.valve is None:
@@ -115,7 +117,7 @@ def _entry(name: str, scenario: Scenario, plant: Plant) -> FitParameter:
 
 
 def _force(plant: Plant) -> float:
-    """Force of the supply pressure."""
+    """Force of the supply pressure on the piston."""
     return plant.supply_pressure * plant.area_a
 
 
@@ -188,13 +190,16 @@ def _leakage(scenario: Scenario, plant: Plant) -> FitParameter:
 
 
 def _level(plane: Plane, scenario: Scenario, plant: Plant) -> float:
-    """Friction of a plane at the initial pressures."""
+    """Friction at the initial pressures, for friction given as a plane over both pressures."""
     initial = start_of(scenario, plant, {})
     return float(plane.at(initial.pressure_a, initial.pressure_b))
 
 
 def _scaled(plane: Plane, scenario: Scenario, plant: Plant, value: float) -> Plane:
-    """A plane scaled to another level at the start; its shape over the pressures stays."""
+    """A friction plane scaled to another friction at the initial pressures.
+
+    Its shape stays the same.
+    """
     level = _level(plane, scenario, plant)
     if level <= 0:
         return Plane(value)
@@ -275,7 +280,7 @@ def _viscous(scenario: Scenario, plant: Plant) -> FitParameter:
     start = friction.viscous
     if start is None:
         start = 0.0 if friction.coulomb is not None else plant.seals.viscous
-    size = _force(plant)  # at 1 m/s
+    size = _force(plant)  # the friction coefficient that gives this force at 1 m/s
     quantity = INPUTS["viscous_friction"]
     return _positive("viscous", quantity, start or SMALL * size, 1e-6 * size, 10 * size, put)
 
@@ -345,5 +350,5 @@ PARAMETERS: dict[str, Callable[[Scenario, Plant], FitParameter]] = {
     "dead_volume_b": _dead("b"),
     "load_offset": _offset,
 }
-"""Parameters by name, without `lag`, which shifts the record. Friction keeps its shape over
-the pressures: `coulomb` and `static` are its levels at the start."""
+"""Parameters by name. `lag`, which shifts the record, is not among them. Fitting friction keeps its
+dependence on the pressures: `coulomb` and `static` are the friction at the initial pressures."""

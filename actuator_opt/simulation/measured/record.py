@@ -1,4 +1,4 @@
-"""A measured record overlaid on a simulation in time, with residuals."""
+"""Comparison of a measured record with a simulation in time: overlay and residuals."""
 
 from __future__ import annotations
 
@@ -35,14 +35,16 @@ SIGNALS = {
 }  # fmt: skip
 """The simulated signal that each channel measures."""
 FEWEST = 10
-"""Least number of samples for a usable channel (a choice)."""
+"""Least number of samples for a usable channel (our choice)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AlignedRecord:
-    """A measured record on the scenario's time: signals by name, each (time [s], values [SI]).
+    """A measured record on the time axis of the scenario.
 
-    Channels may have different sample rates, late starts and gaps; times increase.
+    Signals are stored by name, each as (time [s], values [SI]).
+
+    Channels may have different sample rates, start late or have gaps; their times increase.
     """
 
     channels: Mapping[str, tuple[Array, Array]]
@@ -56,7 +58,7 @@ class AlignedRecord:
         Raises
         ------
         InputError
-            a sample without time, times that do not increase, no channel that a simulation has
+            a sample without time, times that do not increase, or no channel that a simulation has
         """
         time = _rising(record)
         channels: dict[str, tuple[Array, Array]] = {}
@@ -89,7 +91,7 @@ class AlignedRecord:
         return cls(channels, record.name, tuple(notes))
 
     def fault(self, message: str, remedy: str) -> InputError:
-        """An error about this record."""
+        """Create an error that names this record."""
         return InputError(Diagnostic(message, remedy, file=self.name))
 
 
@@ -100,19 +102,19 @@ def parse_measured(
     columns: Mapping[str, str] | None = None,
     units: ColumnUnits = NONE,
 ) -> AlignedRecord:
-    """A measured record from the text of a CSV file, columns as in `COLUMNS`.
+    """A measured record from the text of a CSV file, with columns as in `COLUMNS`.
 
     Parameters
     ----------
-    text : of the file
-    name : of the file, for messages
-    columns : header by channel, if the names are not known: ``{"p1": "Channel 3 [bar]"}``
-    units : of columns whose header states none
+    text : content of the file
+    name : name of the file, for messages
+    columns : column heading by channel, for other headings: ``{"p1": "Channel 3 [bar]"}``
+    units : units of columns whose heading states none
 
     Raises
     ------
     InputError
-        as `identification.parse_record`; no channel that a simulation has
+        as for `identification.parse_record`, or no channel that a simulation has
     """
     record = parse_record(
         text, name=name, columns=columns, channels=COLUMNS, units=units, needed=SIGNALS
@@ -125,7 +127,7 @@ def parse_measured(
 
 
 def named(names: Collection[str], all_names: Collection[str]) -> str:
-    """Name some channels, or "all channels"."""
+    """The names of some channels as text, or "all channels"."""
     return ", ".join(names) if len(names) < max(len(all_names), 2) else "all channels"
 
 
@@ -144,21 +146,24 @@ def _rising(record: Record) -> Array:
 
 
 FINEST = 1e-4
-"""Least noise of a sensor relative to the span of its record (a choice: no sensor is better)."""
+"""Smallest noise of a sensor, as a share of the span of its record (our choice: no sensor is
+better)."""
 ORDERS = (3, 6)
-"""Difference orders for estimating noise (a choice: the higher one tolerates a faster signal)."""
+"""Orders of the differences that estimate noise (our choice: a higher order tolerates a faster
+signal)."""
 ROBUST = 1.4826
-"""Ratio of standard deviation to median absolute deviation of a normal distribution."""
+"""Standard deviation of a normal distribution, divided by its median absolute deviation."""
 APART = 0.02
-"""Largest offset at the start that is not reported, as a share of a channel's span (a choice)."""
+"""Difference at the start that is tolerated without a message, as a share of the channel's span
+(our choice)."""
 BEYOND = 5.0
-"""Largest offset at the start that is not reported, in standard deviations of the noise (a
-choice)."""
+"""Difference at the start that is tolerated without a message, in standard deviations of the noise
+(our choice)."""
 BESIDE = 2.0
-"""Plausible multiple of stroke or proof pressure in a record (a choice: bar and MPa differ by a
-factor of ten)."""
+"""Largest plausible position and pressure in a record, as multiples of stroke and proof pressure
+(our choice: bar and MPa differ by a factor of ten)."""
 STARTS = ("position", "pressure_a", "pressure_b")
-"""Signals with an initial value in the scenario."""
+"""Signals whose initial value is set by the scenario."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,17 +175,17 @@ class ChannelResidual:
     largest: float
     """Largest |measured - simulated|."""
     time: float
-    """Time of that difference [s]."""
+    """Time of the largest difference [s]."""
     bias: float
     """Mean difference."""
     span: float
     """Span of the measured values over the same samples."""
     noise: float
-    """Standard deviation of the sensor's noise, by `noise`."""
+    """Standard deviation of the sensor noise, estimated by `noise`."""
 
     @property
     def relative(self) -> float | None:
-        """Root mean square over the span; None for a constant channel."""
+        """Root mean square residual as a share of the span; None for a constant channel."""
         return self.rms / self.span if self.span > 0 else None
 
     def to_dict(self, label: SignalLabel) -> dict[str, Any]:
@@ -201,7 +206,7 @@ class ChannelResidual:
 
 @dataclass(frozen=True, slots=True)
 class Overlay:
-    """A measured record overlaid on a simulation."""
+    """A measured record together with the simulation, and their differences."""
 
     measured: AlignedRecord
     simulation: Simulation
@@ -225,11 +230,11 @@ class Overlay:
 
 
 def overlay(simulation: Simulation, measured: AlignedRecord, *, lag: float = 0.0) -> Overlay:
-    """Overlay a record on a simulation, with the residuals of every channel.
+    """Compare a record with a simulation; compute the residuals of every channel.
 
     Parameters
     ----------
-    simulation, measured : on the same time
+    simulation, measured : both on the same time axis
     lag : time lag of the record [s]
 
     Raises
@@ -261,7 +266,7 @@ def overlay(simulation: Simulation, measured: AlignedRecord, *, lag: float = 0.0
 def inside(
     measured: AlignedRecord, signals: Mapping[str, Any], duration: float, lag: float
 ) -> dict[str, tuple[Array, Array]]:
-    """The samples of a record within a run, for simulated signals.
+    """The samples of a record that lie within the simulated time, for the simulated signals.
 
     Raises
     ------
@@ -292,9 +297,10 @@ def inside(
 
 
 class SimulatedSignal:
-    """A simulated signal at any time: cubic, split at jumps, constant beyond its ends.
+    """A simulated signal as a function of time: cubic between samples and split at jumps.
 
-    Slopes come from the parabola through a sample and its neighbours on the same side of a jump.
+    Beyond its ends the signal is constant. Its slopes come from the parabola through a sample and
+    its neighbours on the same side of a jump.
     """
 
     def __init__(self, time: Array, values: Array) -> None:
@@ -313,7 +319,7 @@ class SimulatedSignal:
         self.slopes[finishes + 1] = 2 * rise[finishes] - middle[finishes]
 
     def __call__(self, moment: Array) -> Array:
-        """Values at the given times; at a jump the value after it."""
+        """Values at given times; at a jump, the value after it."""
         t, y, m = self.time, self.values, self.slopes
         right = np.clip(np.searchsorted(t, moment, side="right"), 1, t.size - 1)
         left = right - 1
@@ -327,7 +333,8 @@ class SimulatedSignal:
 def beside(moment: Array, measured: Array, time: Array, values: Array) -> Array:
     """A simulated signal at measured samples.
 
-    Close to a jump the simulated value may be that of either side, or any value between.
+    Close to a jump, any value between those before and after the jump may apply. The value nearest
+    to the measured value is used.
     """
     simulated = SimulatedSignal(time, values)(moment)
     half = 0.5 * float(np.median(np.diff(moment)))
@@ -355,9 +362,10 @@ def residual(time: Array, measured: Array, simulated: Array) -> ChannelResidual:
 def noise(values: Array) -> float:
     """Standard deviation of a sensor's noise, from differences of neighbouring samples.
 
-    The median size of differences of order n, whose variance is (2n)!/n!^2 times that of a sample,
-    ignores jumps and any signal that is smooth over n + 1 samples; the least over `ORDERS` counts.
-    Sensor resolution counts as step/sqrt(12). The result is at least `FINEST` of the span.
+    Differences of order n have a variance of (2n)!/n!^2 times that of a sample. Their median size
+    is not affected by jumps, nor by a signal that is smooth over n + 1 samples. The smallest
+    estimate of the `ORDERS` is used. The resolution of a sensor counts as step/sqrt(12). The result
+    is at least `FINEST` of the span.
 
     Parameters
     ----------
@@ -365,7 +373,7 @@ def noise(values: Array) -> float:
 
     Notes
     -----
-    Noise smoothed by a filter is taken as signal.
+    Noise that a filter has smoothed is mistaken for signal.
     """
     span = float(np.ptp(values))
     steps = np.abs(np.diff(values))
@@ -380,7 +388,7 @@ def noise(values: Array) -> float:
 def _partial_overlaps(
     samples: Mapping[str, tuple[Array, Array]], measured: AlignedRecord, duration: float, lag: float
 ) -> Iterator[str]:
-    """Channels that cover less or more time than the run."""
+    """Messages on channels that start or end at other times than the simulation."""
     spans: dict[tuple[str, str], list[str]] = {}
     for name in samples:
         time = measured.channels[name][0] - lag
@@ -399,7 +407,7 @@ def _partial_overlaps(
 def _coarse_sampling(
     simulation: Simulation, samples: Mapping[str, tuple[Array, Array]]
 ) -> Iterator[str]:
-    """Whether the simulation is sampled more coarsely than the record."""
+    """Messages on channels that the simulation samples more coarsely than the record does."""
     simulated_step = float(np.median(np.diff(simulation.time)))
     record_step = min(float(np.median(np.diff(t))) for t, _ in samples.values())
     if simulated_step > WIDE * record_step:
@@ -415,7 +423,7 @@ def _initial_values(
     residuals: Mapping[str, ChannelResidual],
     lag: float,
 ) -> Iterator[str]:
-    """Channels whose initial value differs from the scenario's."""
+    """Messages on channels whose initial value differs from that of the scenario."""
     for name in STARTS:
         if name not in samples:
             continue
@@ -436,7 +444,7 @@ def _initial_values(
 def _implausible(
     simulation: Simulation, samples: Mapping[str, tuple[Array, Array]]
 ) -> Iterator[str]:
-    """Positions and pressures outside the plausible range, which suggests a wrong unit or zero."""
+    """Messages on implausible positions and pressures, which suggest a wrong unit or zero point."""
     plant = simulation.plant
     for name, low, high, limit_name in (
         ("position", 0.0, plant.stroke, "the stroke"),

@@ -1,9 +1,9 @@
-"""Small simulated experiments that measure the figures of the linear tier, with separate runs.
+"""Small simulated experiments that measure what the linear models ('linear tier') predict.
 
-A stand holds the design at a position under a force. Plant, friction, valve, supply and stops are
-those of the scenario; each experiment has its excitation and its loop. Amplitudes are small against
-stroke, signal and pressure. They are stated with every figure, as friction makes figures depend on
-them.
+A test stand holds the design at a position under a constant force. Plant, friction, valve, supply
+and end stops are those of the scenario; each experiment adds its own excitation and control loop.
+Amplitudes are small compared with stroke, signal and pressure. Every result states its amplitude,
+because friction makes results depend on it.
 """
 
 from __future__ import annotations
@@ -38,30 +38,30 @@ from ..harmonic import dynamic_stiffness_of_record, harmonic_fit
 from ..integrate import integrate
 
 RELATIVE = 1e-7
-"""Relative tolerance of a step at full amplitude; it falls with the amplitude."""
+"""Relative tolerance of an integration step at full amplitude; it falls with the amplitude."""
 FINEST = 1e-9
-"""Least relative tolerance of a step: 0.1 nm beside a position of 100 mm."""
+"""Smallest relative tolerance of an integration step: 0.1 nm for a position of 100 mm."""
 SETTLED = 3.0
-"""Periods of the bandwidth after which a loop is at rest (a choice: e^(-6 pi) remains)."""
+"""Time until a loop is at rest, in periods of its bandwidth (our choice: e^(-6 pi) remains)."""
 
 
 @dataclass(slots=True)
 class RunCounter:
-    """Counts the runs."""
+    """Counts the simulations."""
 
     runs: int = 0
 
 
 @dataclass(frozen=True, slots=True)
 class RunRecord:
-    """Signals of a run, and its final states by name."""
+    """Signals of a simulation over time, and its final states by name."""
 
     time: Array
     signals: Mapping[str, Array]
     last: Mapping[str, float]
 
     def within(self, begin: float, end: float = inf) -> RunRecord:
-        """The samples between two times; an instant with two samples keeps the later."""
+        """Samples between two times; of two samples at the same time, only the later is kept."""
         later = np.append(np.diff(self.time) > 0, True)
         chosen = (self.time >= begin) & (self.time <= end) & later
         signals = {name: values[chosen] for name, values in self.signals.items()}
@@ -70,18 +70,18 @@ class RunRecord:
 
 @dataclass(frozen=True, slots=True)
 class Facts:
-    """Evidence from a record for the causes of a difference."""
+    """Facts from a simulation that explain a difference between linear and measured values."""
 
     swing: float
     """Amplitude of the position without drift [m]."""
     travel: float
     """Bristle travel before the seals slip [m]; 0 without sticking friction."""
     saturated: float
-    """Share of the time with the valve's signal at its limit."""
+    """Share of the time in which the valve signal is at its limit."""
     spool: tuple[float, float] | None
-    """Least and largest position of the spool [V]."""
+    """Smallest and largest position of the spool [V]."""
     pressures: tuple[float, float]
-    """Means of the chambers A and B [Pa]."""
+    """Mean pressures of chambers A and B [Pa]."""
     pulse: float
     """Amplitude of the pressure in chamber A [Pa]."""
     lowest: float
@@ -92,7 +92,7 @@ class Facts:
 
 @dataclass(frozen=True, slots=True)
 class ExperimentResult:
-    """Results of an experiment; a missing result is None, with the reason in `why`."""
+    """Results of an experiment; a missing result is None, and `why` gives the reason."""
 
     values: Mapping[str, float | None]
     how: str
@@ -102,7 +102,7 @@ class ExperimentResult:
 
 @dataclass(frozen=True, slots=True)
 class Stand:
-    """A plant at a position, with chamber pressures in balance with a constant force."""
+    """A plant held at a position, with chamber pressures that balance a constant force."""
 
     plant: Plant
     scenario: Scenario
@@ -110,23 +110,23 @@ class Stand:
     pressure_a: float
     pressure_b: float
     gain: float = 0.0
-    """Gain of the design's proportional position loop [V/m]; 0 without one."""
+    """Gain of the design's proportional position loop [V/m]; 0 if it has no such loop."""
     steady_gain: float = 0.0
-    """Gain at which the loop comes to rest, even if it oscillates at `gain` [V/m]."""
+    """A lower gain, at which the loop comes to rest even if it oscillates at `gain` [V/m]."""
     bandwidth: float = 1.0
-    """Expected bandwidth of the loop, which sets its time to rest [Hz]."""
+    """Expected bandwidth of the loop, which determines how long it takes to come to rest [Hz]."""
     scale: float = 1.0
     """Factor on all amplitudes."""
     tally: RunCounter = field(default_factory=RunCounter)
     rest_states: dict[str, float] = field(default_factory=dict)
-    """Equilibrium states of the loop, once computed."""
+    """Equilibrium states of the loop; empty until they are computed."""
 
     def with_changes(self, **changes: Any) -> Stand:
-        """A copy with some changes, whose equilibrium is not computed yet."""
+        """Copy the stand with some changes; its equilibrium is computed again when needed."""
         return replace(self, rest_states={}, **changes)
 
     def frictionless(self) -> Stand:
-        """A copy without sticking friction."""
+        """Copy the stand without sticking friction."""
         frictionless = self.scenario.friction.model_copy(update={"model": "none"})
         return self.with_changes(
             scenario=self.scenario.model_copy(update={"friction": frictionless})
@@ -134,12 +134,12 @@ class Stand:
 
     @property
     def force(self) -> float:
-        """External force that balances the pressures [N], positive against extension."""
+        """External force that balances the chamber pressures [N], positive against extension."""
         return self.pressure_a * self.plant.area_a - self.pressure_b * self.plant.area_b
 
     @property
     def full_force(self) -> float:
-        """Force of the supply pressure on the whole piston [N]."""
+        """Force of the supply pressure on the whole piston area [N]."""
         return self.plant.supply_pressure * self.plant.area_a
 
     def run(
@@ -154,17 +154,17 @@ class Stand:
         force: Sequence[ForceSignal] = (),
         start: Mapping[str, float] | None = None,
     ) -> RunRecord:
-        """A run: closed with a gain, or open with terminated ports.
+        """Simulate with a position loop if `gain` is given, else without a loop.
 
         Parameters
         ----------
         duration, sample_time : [s]
-        gain : of a proportional position loop [V/m]; None: no loop
-        ends : termination of the ports; None: the valve
-        signal : of the valve without a loop [V]
-        reference : relative to the stand's position
-        force : in addition to the balancing one
-        start : states by name that replace those of the stand
+        gain : of a proportional position loop [V/m]; None for no loop
+        ends : kind of the lines' far ends; None for the valve
+        signal : constant valve signal if there is no loop [V]
+        reference : relative to the position of the stand
+        force : added to the force that balances the pressures
+        start : initial states by name, in place of those of the stand
         """
         self.tally.runs += 1
         scenario = self.scenario.model_copy(
@@ -215,15 +215,17 @@ class Stand:
 
     @property
     def opening(self) -> float:
-        """Rest position of the spool, from its centre [V]; positive extends."""
+        """Distance of the spool from its centre at rest [V]; positive extends."""
         assert self.plant.valve is not None
         return self.rest()["spool"] - self.plant.valve.offset
 
     def rest(self) -> Mapping[str, float]:
-        """States in which the loop holds the force at the stand's position; computed once.
+        """States at rest with the loop holding the force at the stand's position.
 
-        The valve feeds its own leakage and the piston's. The first run, at mid-stroke, measures the
-        resulting error, and the second one compensates it.
+        Computed only once.
+
+        The valve must supply its own leakage and the piston's, which causes a position error. A
+        first simulation, at mid-stroke, measures this error; a second compensates it.
         """
         if not self.rest_states:
             duration = SETTLED / self.bandwidth * self.gain / self.steady_gain
@@ -244,7 +246,10 @@ class Stand:
     def held(
         self, *, ends: str, duration: float, sample_time: float, force: Sequence[ForceSignal] = ()
     ) -> RunRecord:
-        """A run with terminated ports; a valve stays where it held the force."""
+        """Simulate with fixed kinds of far ends and no loop.
+
+        A valve keeps the signal that held the force.
+        """
         if ends != "valve" or not self.steady_gain:
             return self.run(duration=duration, sample_time=sample_time, ends=ends, force=force)
         state = self.rest()
@@ -265,7 +270,10 @@ class Stand:
         reference: Sequence[PositionSignal] = (),
         force: Sequence[ForceSignal] = (),
     ) -> RunRecord:
-        """A closed-loop run from rest; a shift of the reference keeps the signal from jumping."""
+        """Simulate the closed loop from rest.
+
+        Shift the reference so that the signal does not jump.
+        """
         state = self.rest()
         shift = state["position"] + state["spool"] / gain - self.position
         hold = PositionSignal(shape="constant", value=shift)
@@ -279,7 +287,7 @@ class Stand:
         )
 
     def facts(self, record: RunRecord) -> Facts:
-        """Evidence from a record for the causes of a difference."""
+        """Collect facts from a simulation that explain a difference from the linear values."""
         t, signals = record.time, record.signals
         position = signals["position"]
         straight = np.polynomial.polynomial.polyfit(t - t[0], position, 1)
@@ -307,84 +315,91 @@ class Stand:
 
 
 STROKE_SHARE = 0.05
-"""Amplitude of a sine relative to the stroke (a choice: small)."""
+"""Amplitude of a sinusoidal reference, relative to the stroke (our choice: small)."""
 SIGNAL_SHARE = 0.5
-"""Largest share of the valve's full signal that a sine may use (a choice: never saturated)."""
+"""Largest share of the valve's full signal that a sine may use (our choice: it never saturates)."""
 FORCE_SHARE = 0.05
-"""Size of a push or a force oscillation, relative to supply pressure times area (a choice:
+"""Size of a force step or force oscillation, relative to supply pressure times area (our choice:
 small)."""
 SAMPLES = 40
-"""Samples per period."""
+"""Samples per period of an oscillation."""
 FITTED = 4.0
-"""Periods of a sine in one fit."""
+"""Number of periods of a sine that are fitted together."""
 STEADY = 0.01
-"""Change of the open loop between fits that counts as steady (a choice)."""
+"""Relative change of the open loop between two fits below which the sine counts as steady (our
+choice)."""
 LONGEST = 100.0
-"""Periods after which a sine is accepted even if not steady."""
+"""Number of periods after which a sine is evaluated even if it is not steady."""
 HALF = 1 / sqrt(2)
 """Amplitude ratio at -3 dB."""
 EXACT = 2e-3
-"""Relative tolerance of a search."""
+"""Relative tolerance of a search, such as that for the bandwidth."""
 MOST = 16.0
-"""Factor on a linear figure within which the nonlinear one is searched (a choice)."""
+"""Largest factor between a linear value and the nonlinear value that is searched for (our
+choice)."""
 LASTING = 1e-3
-"""Decay per period below which an oscillation counts as sustained (a choice)."""
+"""Relative decay per period below which an oscillation counts as sustained (our choice)."""
 FIRST, EARLY, LATE = (0.0, 4.0), (8.0, 12.0), (18.0, 22.0)
-"""Windows after a push, in periods, that are compared for growth or decay."""
+"""Windows after a force step, in periods; their amplitudes are compared for growth or decay."""
 UNEVEN = 2.0
-"""Ratio of half-period lengths above which the motion is not a decay (a choice)."""
+"""Ratio of half-period lengths above which a motion does not count as a decaying oscillation (our
+choice)."""
 FADED = 0.01
-"""Share of the first amplitude below which a decay is not evaluated (a choice)."""
+"""Amplitude below which a decay is not evaluated further, as a share of the first (our choice)."""
 SWINGS = 8.0
-"""Periods over which a decay is evaluated (a choice: leakage shifts closed chambers meanwhile)."""
+"""Number of periods over which a decay is evaluated (our choice: leakage shifts closed chambers if
+it takes longer)."""
 RINGING = 20.0
-"""Periods of a resonance after which its oscillation has died out (a choice)."""
+"""Number of periods after which the oscillation of a resonance has died out (our choice)."""
 SHAPED = 0.6
-"""Frequency relative to the resonance up to which a force is applied in parts (a choice)."""
+"""Frequency, relative to the resonance, up to which a force is applied in several parts (our
+choice)."""
 BESIDE = (0.7, 1.0, 1.4)
-"""Factors on a linear crossover between which the nonlinear crossover is searched."""
+"""Factors on a linear crossover frequency, between which the nonlinear crossover is searched
+for."""
 SLIDING = (0.9, 1.0, 1.1)
 STICKING = (0.8, 0.9, 1.0, 1.1, 1.22, 1.35, 1.5)
-"""Factors on a resonance; bristles of sticking seals raise it, as they add stiffness."""
+"""Factors on a resonance frequency that are searched for crossovers. Sticking seals raise the
+resonance, because their bristles add stiffness."""
 HOW_PHASE = "position over error of the closed loop, at unit gain"
 Loop = Callable[[float], complex]
-"""Open loop of the linear tier over frequency [Hz], its gain included."""
+"""Open loop of the linear models as a function of frequency [Hz], including the controller gain."""
 
 
 class Sine(NamedTuple):
-    """Complex ratios of the fundamentals in a closed loop."""
+    """Complex amplitude ratios at the excitation frequency, measured in a closed loop."""
 
     closed: complex
-    """Position over reference."""
+    """Position divided by reference."""
     opened: complex
-    """Position over error: the describing function of the open loop."""
+    """Position divided by control error: the describing function of the open loop."""
     distortion: float
-    """Residual of the position relative to the amplitude of its fundamental."""
+    """Residual of the position, relative to its amplitude at the excitation frequency."""
     record: RunRecord
 
 
 def _inset(stand: Stand, clearance: float) -> Stand:
-    """The stand with a clearance to both ends of the stroke."""
+    """The stand, moved so that it has a clearance to both ends of the stroke."""
     clearance = min(clearance, 0.45 * stand.plant.stroke)
     place = min(max(stand.position, clearance), stand.plant.stroke - clearance)
     return stand if place == stand.position else stand.with_changes(position=place)
 
 
 def placed(stand: Stand) -> Stand:
-    """The stand moved off the stroke ends by the amplitude of the experiments."""
+    """The stand, moved away from the stroke ends by the amplitude of the experiments."""
     return _inset(stand, 1.5 * STROKE_SHARE * stand.plant.stroke * stand.scale)
 
 
 def held_place(stand: Stand) -> Stand:
-    """The stand moved off the stroke ends by the creep of a held piston (2 % of the stroke)."""
+    """The stand, moved off the stroke ends by the creep of a held piston (2 % of the stroke)."""
     return _inset(stand, 0.02 * stand.plant.stroke)
 
 
 def amplitude(stand: Stand, frequency: float, opened: complex) -> float:
-    """Amplitude of a reference [m]; `opened` is the open loop expected by the linear tier.
+    """Amplitude of a reference [m]; `opened` is the open loop that the linear models predict.
 
-    5 % of the stroke, limited to half the valve's signal for the expected error and to a tenth of
-    the supply pressure for the expected inertia force.
+    The amplitude is 5 % of the stroke or less. The expected error may use half the valve's signal,
+    the expected inertia force a tenth of the supply pressure.
     """
     plant = stand.plant
     assert plant.valve is not None
@@ -397,7 +412,10 @@ def amplitude(stand: Stand, frequency: float, opened: complex) -> float:
 
 
 def sine(stand: Stand, frequency: float, size: float, cycles: float) -> Sine:
-    """The loop following a sine, evaluated after some cycles, or later if not steady yet."""
+    """Simulate the loop following a sine.
+
+    Evaluate it after some cycles, later if it is not steady yet.
+    """
     part = PositionSignal(shape="sine", value=size, frequency=frequency)
     while True:
         record = stand.closed(
@@ -416,7 +434,7 @@ def sine(stand: Stand, frequency: float, size: float, cycles: float) -> Sine:
 
 
 def _fitted(record: RunRecord, frequency: float) -> Sine:
-    """Ratios of a record of whole cycles."""
+    """Complex amplitude ratios of a simulation that contains whole cycles."""
     reference, position, error = (
         harmonic_fit(time=record.time, values=record.signals[name], frequency=frequency)
         for name in ("reference", "position", "error")
@@ -431,7 +449,7 @@ def _fitted(record: RunRecord, frequency: float) -> Sine:
 
 
 def bandwidth(stand: Stand, expected: float, loop: Loop) -> ExperimentResult:
-    """Frequency at which the closed loop's fundamental falls to -3 dB, by secants."""
+    """Frequency at which the closed loop's response falls to -3 dB, found by secant steps."""
     size = amplitude(stand, expected, loop(expected))
     how = f"sine of {1e3 * size:.3g} mm"
     sines: list[Sine] = []
@@ -456,9 +474,9 @@ def _no_sine(response: Sine) -> str:
 
 
 def _root(function: Callable[[float], float], slope: float) -> float | None:
-    """Zero of a function of a logarithmic ratio, from 0 on, by secant steps up to 0.5.
+    """Zero of a function of a logarithmic ratio, by secant steps of up to 0.5 from 0.
 
-    None without convergence in ten steps.
+    Returns None if ten steps do not converge.
     """
     x, y = 0.0, function(0.0)
     for _ in range(10):
@@ -477,11 +495,12 @@ def _root(function: Callable[[float], float], slope: float) -> float | None:
 def phase_margin(
     stand: Stand, crossovers: Sequence[float], resonances: Sequence[float], loop: Loop
 ) -> ExperimentResult:
-    """Least phase margin over the crossovers, from error and position of the closed loop.
+    """Smallest phase margin at the crossovers, from error and position in the closed loop.
 
-    L = position/error of the fundamentals; where |L| is one, the margin is |pi + arg L|. The loop
-    stays closed, so friction and saturation act as in service. Crossovers are searched near the
-    linear ones and near the resonances, which sticking seals raise.
+    L is the position divided by the control error, both at the excitation frequency. Where |L| is
+    one, the margin is |pi + arg L|. The loop stays closed, so friction and saturation act as in
+    service. Crossovers are searched for near the linear crossovers and near the resonances, which
+    sticking seals raise.
     """
     from scipy.optimize import brentq
 
@@ -522,7 +541,10 @@ def phase_margin(
 
 
 def ultimate_gain(stand: Stand, expected: float, frequency: float) -> ExperimentResult:
-    """Gain above which oscillations after a push persist, searched from the linear one."""
+    """Gain above which oscillations after a force step persist.
+
+    The search starts at the linear value.
+    """
     from scipy.optimize import brentq
 
     push = FORCE_SHARE * stand.full_force * stand.scale
@@ -554,9 +576,10 @@ def ultimate_gain(stand: Stand, expected: float, frequency: float) -> Experiment
 
 
 def _growth(stand: Stand, gain: float, frequency: float, push: float) -> tuple[float, RunRecord]:
-    """Growth of the speed oscillation per period, and the record of its early window.
+    """Growth of the speed oscillation per period, and the signals of its early window.
 
-    An oscillation larger at the end than just after the push is sustained, however irregular.
+    An oscillation that is larger at the end than just after the force step counts as sustained,
+    even if it is irregular.
     """
     period = 1 / frequency
     record = stand.closed(
@@ -576,10 +599,10 @@ def _growth(stand: Stand, gain: float, frequency: float, push: float) -> tuple[f
 def dynamic_stiffness(
     stand: Stand, ends: str, frequency: float, resonance: float
 ) -> ExperimentResult:
-    """Stiffness under a sinusoidal force at the rod, with terminated ports.
+    """Stiffness against a sinusoidal force on the rod, without a control loop.
 
-    Below the resonance the force starts in three parts of 1, 2, 1 quarters, half a resonance period
-    apart, so that the transients cancel.
+    Below the resonance the force starts in three parts (1/4, 1/2, 1/4 of it), half a resonance
+    period apart. Their transients then cancel.
     """
     settle, cycles, wait = RINGING / resonance, 10.0, 0.5 / resonance
     shares = (0.25, 0.5, 0.25) if frequency < SHAPED * resonance else (1.0,)
@@ -613,10 +636,12 @@ def dynamic_stiffness(
 
 
 def decay(stand: Stand, ends: str, resonance: float) -> ExperimentResult:
-    """Natural frequency and damping ratio after a step of force, with terminated ports.
+    """Natural frequency and damping ratio after a step of force, without a control loop.
 
-    From successive extremes of the speed with spans D_i: zeta from the logarithmic decrement
-    ln(D_0/D_n)/n over half periods, down to a hundredth; f = f_d/sqrt(1 - zeta^2).
+    D_i are the differences between successive extremes of the speed, n is their number down to a
+    hundredth of the first. The damping ratio zeta follows from the logarithmic decrement
+    ln(D_0/D_n)/n per half period. The natural frequency is f = f_d/sqrt(1 - zeta^2), with the
+    measured frequency f_d.
     """
     push = FORCE_SHARE * stand.full_force * stand.scale
     record = stand.held(
@@ -650,7 +675,7 @@ def decay(stand: Stand, ends: str, resonance: float) -> ExperimentResult:
 
 
 def _extremes(time: Array, values: Array) -> tuple[Array, Array]:
-    """Times and values of the extremes, by parabolas through three samples."""
+    """Times and values of the extremes, from parabolas through three samples each."""
     rising = np.diff(values) > 0
     at = np.flatnonzero(rising[1:] != rising[:-1]) + 1
     before, peak, after = values[at - 1], values[at], values[at + 1]
@@ -662,29 +687,30 @@ def _extremes(time: Array, values: Array) -> tuple[Array, Array]:
 
 WEAKEST = "weakest position"
 STEADY_STEP = 0.4
-"""Gain relative to the ultimate gain that brings an oscillating loop to rest (a choice)."""
+"""Gain, relative to the ultimate gain, that is used to bring an oscillating loop to rest (our
+choice)."""
 SLOW = 0.05
-"""Bandwidth relative to the resonance if the bandwidth of the loop is unknown (a choice)."""
+"""Bandwidth assumed for a loop of unknown bandwidth, relative to the resonance (our choice)."""
 PEAK = 0.5
-"""Magnitude above which an open-loop resonance may cause a crossover (a choice)."""
+"""Magnitude of the open loop above which a resonance may cause a crossover (our choice)."""
 
 
 class Spot(NamedTuple):
-    """Point at which a figure of the linear tier is worst."""
+    """Load case, position and spool direction at which a metric of the linear models is worst."""
 
     case: int
     position: float
     extending: bool | None
-    """Direction of the spool; None if irrelevant."""
+    """Whether the spool is on the extending side; None if the direction has no effect."""
     words: str
 
 
 class LoopFigures(NamedTuple):
-    """Figures of the position loop for one spool direction."""
+    """Metrics of the position loop for one spool direction."""
 
     ultimate_gain: float
     frequency: float
-    """Frequency of oscillation there [Hz]."""
+    """Frequency of the oscillation at the ultimate gain [Hz]."""
     phase_margin: float
     bandwidth: float
 
@@ -698,11 +724,11 @@ class LinearTier:
 
     @classmethod
     def of(cls, subject: PreparedDesign) -> LinearTier:
-        """Build from an evaluation of the models."""
+        """Build the linear models from an evaluation of the design."""
         return cls(subject, compute(subject, subject.values()))
 
     def spot(self, row: Requirement) -> Spot:
-        """The governing load case and position of a requirement."""
+        """The load case and position at which a requirement has its worst value."""
         cases = self.subject.cases
         case = cases.index(row.case) if row.case in cases else 0
         place = row.place or WEAKEST
@@ -726,7 +752,7 @@ class LinearTier:
         return plant(replace(subject, design=design, films=films))
 
     def stand(self, scenario: Scenario, spot: Spot, tally: RunCounter, scale: float) -> Stand:
-        """The design held at a spot, with the pressures of the load case."""
+        """The design on a test stand at a worst-case point, with pressures of the load case."""
         actuator = self.plant(spot.case)
         state = self.done.state
         stand = Stand(
@@ -757,7 +783,7 @@ class LinearTier:
         return of_case(self.done.computed.metrics["position_gain"][""], case)
 
     def figures(self, case: int, position: float, extending: bool) -> LoopFigures:
-        """Figures of the position loop, with margins at the design's gain."""
+        """Metrics of the position loop; the margins are those at the design's gain."""
         open_loop, gain = self._open_loop(position, extending), self._gain(case)
         limit = loop.ultimate_gain(loop=open_loop)
         margins = loop.margins(loop=open_loop, gain=gain)
@@ -771,7 +797,7 @@ class LinearTier:
     def response(
         self, case: int, position: float, extending: bool
     ) -> Callable[[float | Array], Array]:
-        """The open loop over frequency [Hz], its gain included."""
+        """The open loop as a function of frequency [Hz], including the controller gain."""
         open_loop, gain = self._open_loop(position, extending), self._gain(case)
 
         def at(frequency: float | Array) -> Array:
@@ -805,7 +831,7 @@ class LinearTier:
         return of_case(self.done.motion.closed_frequency(np.array([[position]])), case)
 
     def held(self, case: int, position: float) -> dict[str, float]:
-        """Figures of the actuator with held ports: oscillation and dynamic stiffness."""
+        """Natural oscillation and dynamic stiffness of the actuator, without its position loop."""
         place = np.array([[position]])
         motion = self.done.motion
         model = motion.model(place)
@@ -824,32 +850,35 @@ class LinearTier:
         }
 
     def closed(self, metric: str, case: int, position: float, extending: bool) -> float:
-        """A figure of the closed loop for one spool direction."""
+        """A metric of the closed loop for one spool direction."""
         figures = self.figures(case, position, extending)
         if metric == "gain_margin":
             return figures.ultimate_gain / self._gain(case)
         return float(getattr(figures, metric))
 
     def stated(self, case: int) -> tuple[float, float]:
-        """Chamber pressures assumed by the linear tier [Pa]."""
+        """Chamber pressures that the linear models assume [Pa]."""
         state = self.done.state
         return of_case(state.holding_a, case), of_case(state.holding_b, case)
 
     def unsimulated(self) -> str:
-        """Parts of the design that no experiment covers; empty if none."""
+        """Text that names the parts of the design that no experiment covers.
+
+        Empty if there are none.
+        """
         if self.subject.design.ports.accumulators:
             return "accumulators at the ports are not simulated"
         return ""
 
 
 MANY = 9.0
-"""Relative change from which a factor is clearer than per cent (a choice)."""
+"""Relative change above which it is reported as a factor instead of per cent (our choice)."""
 STILL = 0.01
-"""Spool motion, as a share of its opening, that counts as held (a choice)."""
+"""Motion of the spool, as a share of its opening, up to which it counts as still (our choice)."""
 
 
 def relative_difference(value: float | None, other: float | None) -> float | None:
-    """Relative difference of a value from another, or None.
+    """Relative difference of `value` from `other`; None if it cannot be computed.
 
     >>> relative_difference(1.5, 2.0), relative_difference(None, 2.0)
     (-0.25, None)
@@ -862,7 +891,7 @@ def relative_difference(value: float | None, other: float | None) -> float | Non
 
 
 def relative_change(share: float) -> str:
-    """A relative change in per cent.
+    """A relative change as text: in per cent, or as a factor if it is large.
 
     >>> [relative_change(share) for share in (0.031, -0.5, 19.0, -1.2)]
     ['+3.1 %', '-50 %', 'x 20', 'changes its sign']
@@ -875,7 +904,7 @@ def relative_change(share: float) -> str:
 
 
 def evidence(facts: Facts | None, cause: str) -> str:
-    """Evidence for a cause, as words: friction, or the size of the oscillation."""
+    """Evidence, as text, that friction or the size of the oscillation causes a difference."""
     if facts is None:
         return "no record"
     if cause == "friction":
@@ -900,7 +929,7 @@ def _seals(facts: Facts) -> str:
 
 
 def operating_point(facts: Facts | None, assumed: tuple[float, float]) -> str:
-    """Operating point of a record in words, with the pressures assumed by the linear tier."""
+    """Operating point of a simulation, as text, with the pressures of the linear models."""
     if facts is None:
         return "no record"
     (a, b), (taken_a, taken_b) = (

@@ -1,9 +1,10 @@
-"""Verification of a design's dynamic requirements in time, with the error of the linear tier.
+"""Verification of dynamic requirements by simulation, with the error of the linear models.
 
-Each dynamic requirement has its own small experiment on the scenario's equations, where the linear
-tier is worst. If both differ, it is repeated without sticking friction, and then with small
-amplitudes. The change by each step is the share of friction, of the amplitude, and of the operating
-point.
+The requirements of a design are evaluated with linear models (the 'linear tier'). Here each dynamic
+requirement is measured in its own small simulated experiment, where the linear value is worst. It
+uses the scenario's equations. If measured and linear values differ, the experiment is repeated
+without sticking friction, then also with small amplitudes. The change by each step shows how much
+friction and amplitude contribute; the rest is due to the operating point.
 """
 
 from __future__ import annotations
@@ -45,44 +46,45 @@ HELD = ("dynamic_stiffness", "dynamic_phase", "damping_ratio", "natural_frequenc
 DYNAMIC: Final = (*LOOPS, *HELD)
 """Metrics of a design that an experiment can measure."""
 SMALL = 0.02
-"""Amplitude relative to the experiment's that counts as small (a choice)."""
+"""Amplitude that counts as small, relative to that of the normal experiment (our choice)."""
 AGREE = 0.02
-"""Difference below which no reason is given (a choice)."""
+"""Relative difference between both tiers up to which no reason is given (our choice)."""
 CENTRED = 1e-3
-"""Share of the full signal within which a spool counts as centred (a choice)."""
+"""Distance from its centre, as a share of the full signal, within which a spool counts as centred
+(our choice)."""
 TOLERANCE = 1e-6
-"""A margin of -TOLERANCE or more counts as met, as in an evaluation."""
+"""A requirement counts as met if its margin is -TOLERANCE or more, as in an evaluation."""
 
 
 @dataclass(frozen=True, slots=True)
 class VerifiedRequirement:
-    """A requirement in both tiers, SI."""
+    """A requirement with its values from the linear models and from the simulation, SI."""
 
     origin: Literal["design", "scenario"]
     metric: str
     sense: str
     limit: float
     stated: float | None
-    """Value of the evaluation: the linear tier at its worst."""
+    """Value of the evaluation: the worst value of the linear models."""
     linear: float | None
-    """Value of the linear tier at the experiment's position and spool direction."""
+    """Value of the linear models at the experiment's position and spool direction."""
     value: float | None
-    """Value in time."""
+    """Value measured in the simulation."""
     difference: float | None
     """Relative difference of `value` from `linear`."""
     met: bool
     where: str = ""
     how: str = ""
-    """The experiment, with its amplitude."""
+    """Description of the experiment, with its amplitude."""
     why: str = ""
-    """Cause of the difference, or the reason for a missing value."""
+    """Cause of the difference, or the reason why a value is missing."""
     shares: Mapping[str, float] = field(default_factory=dict)
-    """Relative change due to friction, amplitude and operating point."""
+    """Relative changes of the value due to friction, amplitude and operating point."""
 
 
 @dataclass(frozen=True, slots=True)
 class Verification(Displayed):
-    """All requirements of a design and a scenario, verified in time."""
+    """All requirements of a design and of a scenario, verified by simulation."""
 
     name: str
     rows: tuple[VerifiedRequirement, ...]
@@ -94,11 +96,11 @@ class Verification(Displayed):
 
     @property
     def met(self) -> bool:
-        """Whether all requirements are met in time."""
+        """Whether the simulation meets all requirements."""
         return all(row.met for row in self.rows)
 
     def to_dict(self) -> dict[str, Any]:
-        """As plain data for JSON, SI; None for a value that is not finite."""
+        """Plain data for JSON, SI; a value that is not finite is None."""
         rows = [
             {name: _plain(getattr(row, name)) for name in VerifiedRequirement.__dataclass_fields__}
             for row in self.rows
@@ -127,7 +129,7 @@ def verify(
     result: Simulation | None = None,
     scale: float = 1.0,
 ) -> Verification:
-    """Verify every dynamic requirement of a design and of a scenario in time.
+    """Verify every dynamic requirement of a design and of a scenario by simulation.
 
     Parameters
     ----------
@@ -140,9 +142,9 @@ def verify(
     Raises
     ------
     InputError
-        as `run.simulate`
+        as for `run.simulate`
     Unsolvable
-        an integration fails
+        an integration in time fails
     """
     begin = perf_counter()
     counter = RunCounter()
@@ -195,7 +197,7 @@ def _notes(scenario: Scenario, any_requirement: bool) -> tuple[str, ...]:
 
 
 def _left_out(load: ScenarioLoad) -> str:
-    """Parts of the scenario's load that the experiments omit."""
+    """Names of the parts of the scenario's load that the experiments omit."""
     parts = {
         "force of the load": any(part.shape == "record" or part.value for part in load.force),
         "torque on the joint": any(part.shape == "record" or part.value for part in load.torque),
@@ -209,7 +211,7 @@ def _left_out(load: ScenarioLoad) -> str:
 
 @dataclass(slots=True)
 class _Bench:
-    """Completed experiments; two requirements may share one."""
+    """The experiments run so far; requirements that need the same experiment share its result."""
 
     scenario: Scenario
     tier: LinearTier
@@ -219,7 +221,7 @@ class _Bench:
     made: dict[tuple[str, Spot, bool, bool], ExperimentResult] = field(default_factory=dict)
 
     def row(self, requirement: Requirement) -> VerifiedRequirement:
-        """One requirement of the design in both tiers."""
+        """Compare one requirement of the design with the linear value and the measured value."""
         spot = self.tier.spot(requirement)
         why = self._impossible(requirement.metric, spot)
         full = ExperimentResult({}, "", why=why) if why else self.measured(requirement.metric, spot)
@@ -253,7 +255,7 @@ class _Bench:
         )
 
     def _by_friction(self, requirement: Requirement, spot: Spot, value: float | None) -> list[str]:
-        """A warning if a requirement is met only because the seals stick."""
+        """A warning if the requirement is met only because the seals stick."""
         if self.scenario.friction.model == "none":
             return []
         frictionless = self.measured(requirement.metric, spot, frictionless=True).values.get(
@@ -291,7 +293,7 @@ class _Bench:
         return ""
 
     def stand(self, spot: Spot) -> Stand:
-        """The design at a spot."""
+        """The simulated test stand of a design at a worst-case point of the linear models."""
         if spot not in self.stands:
             self.stands[spot] = self.tier.stand(self.scenario, spot, self.tally, self.scale)
         return self.stands[spot]
@@ -303,7 +305,7 @@ class _Bench:
     def measured(
         self, metric: str, spot: Spot, *, frictionless: bool = False, small: bool = False
     ) -> ExperimentResult:
-        """The experiment that measures a metric."""
+        """Result of the experiment that measures a metric; run it if needed."""
         name = _EXPERIMENTS[metric]
         key = name, spot, frictionless, small
         if key not in self.made:
@@ -347,14 +349,17 @@ class _Bench:
         return ExperimentResult(values, swinging.how, swinging.facts, swinging.why)
 
     def _way(self, spot: Spot, stand: Stand) -> bool:
-        """Whether the spool rests on the extending side; if centred, as in the linear tier."""
+        """Whether the spool rests on the extending side.
+
+        A centred spool counts as in the linear models.
+        """
         assert stand.plant.valve is not None
         if abs(stand.opening) < CENTRED * stand.plant.valve.signal:
             return bool(spot.extending)
         return stand.opening > 0
 
     def linear(self, metric: str, spot: Spot) -> float:
-        """The linear tier at the position of an experiment, for its spool direction."""
+        """Value of the linear models for the position and spool direction of an experiment."""
         stand = self._placed(metric, spot)
         if metric in HELD:
             return self.tier.held(spot.case, stand.position)[metric]
@@ -364,7 +369,7 @@ class _Bench:
     def _reasons(
         self, metric: str, spot: Spot, full: ExperimentResult
     ) -> tuple[dict[str, float], list[str]]:
-        """Shares of friction, amplitude and operating point in a difference, with the evidence."""
+        """Shares of friction, amplitude and operating point in a difference, with evidence."""
         steps = [("size of the swing", self.measured(metric, spot, frictionless=True, small=True))]
         if self.scenario.friction.model != "none":
             steps.insert(0, ("friction", self.measured(metric, spot, frictionless=True)))
@@ -389,7 +394,7 @@ class _Bench:
         return shares, reasons
 
     def _compared(self, metric: str, spot: Spot) -> str:
-        """Words for the point at which the linear tier is compared, if not its worst."""
+        """Text that states the point of comparison, if it is not the linear models' worst point."""
         stand = self._placed(metric, spot)
         words = f"compared at {1e3 * stand.position:.3g} mm"
         if metric in HELD:
