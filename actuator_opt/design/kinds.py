@@ -207,7 +207,7 @@ class Fraction:
 
 
 class PositionKind(ValueKind):
-    """``worst``, a length from the cap end, or a fraction of the stroke (``50 %``)."""
+    """Position: ``worst``, a length from the cap end, or a fraction of the stroke (``50 %``)."""
 
     help = "piston position from the cap end: worst, a length, or a share of the stroke (50 %)"
     example = "50 %"

@@ -310,7 +310,7 @@ def _entry_faults(item: Mapping[str, Any]) -> Iterator[_EntryFault]:
 
 
 def _diagnostic(document: Document, loc: Loc, fault: _EntryFault, first_loc: Loc) -> Diagnostic:
-    """A fault of the compact entry at `loc`, whose first layer is now at `first_loc`."""
+    """Diagnostic for the compact entry at `loc`, expanded into layers from `first_loc` on."""
     at = (*loc, fault.key)
     span = document.keys.get(at) if fault.at_key else document.values.get(at)
     if fault.offset is not None:

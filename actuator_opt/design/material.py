@@ -116,7 +116,7 @@ class Property:
         return tuple(value for _, value in self.points)
 
     def at(self, argument: Array, *, value: Array | None = None) -> Array:
-        """Linear interpolation of the table, constant beyond its ends; the value if not tabulated.
+        """Interpolate the table linearly, constant beyond its ends; `value` if there is no table.
 
         Parameters
         ----------
@@ -204,7 +204,7 @@ class Material:
         return replace(self, properties=properties)
 
     def completed(self) -> dict[str, Property]:
-        """Stated properties and the derived ply constants, marked ``derived``."""
+        """Stated properties, and ply constants derived from them (marked ``derived``)."""
         properties = dict(self.properties)
         if self.kind not in ROLES["structural"]:
             return properties
@@ -301,7 +301,9 @@ def compliance_determinant(constants: Mapping[str, float]) -> float:
 def allowable_factor(
     numbers: Mapping[str, Array], name: str, *, basis: str, temperature: Array, wet: bool = False
 ) -> Array:
-    """Remaining share of a strength: temperature x moisture x basis x process knock-down.
+    """Share of a strength that remains after all knock-downs, as their product.
+
+    The knock-downs are for temperature, moisture, basis and process.
 
     The temperature factor falls linearly from 1 at 23 degC to the stated knock-down at
     `knockdown_temperature` and beyond, but not below 0.05; a missing knock-down is 1.
@@ -379,7 +381,7 @@ def _needs(laws: Kinds[Any], law: str | None) -> tuple[str, ...]:
 
 
 FASTEST = 10.0
-"""Largest decay of an exponential between neighbouring points: beyond it only one point counts."""
+"""Largest decay exponent between neighbouring points: beyond it, only one point has an effect."""
 
 LARGEST_POWER = 300.0
 """Largest exponent when an amplitude is extrapolated to zero speed; it avoids overflow."""
@@ -572,7 +574,7 @@ def assess(
 
 
 def _slopes(law: Callable[..., Array], values: Mapping[str, float], speed: Array) -> Array:
-    """Derivatives of the law by its parameters, (..., parameters), by complex steps."""
+    """Derivatives of the law for each of its parameters, (..., parameters), by complex steps."""
     speed = np.asarray(speed, dtype=float)
     columns = []
     for name, value in values.items():
@@ -650,7 +652,7 @@ def _projected(
 def _distinct_starts(
     starts: Sequence[tuple[float, ...]], costs: list[float], count: int = 6
 ) -> Array:
-    """Starts of least cost that differ from each other by more than a third in a rate."""
+    """Starting points of least cost that differ by more than a third in some rate."""
     chosen: list[tuple[float, ...]] = []
     for k in np.argsort(costs):
         start = np.array(starts[k])
@@ -664,7 +666,7 @@ def _distinct_starts(
 def _points(
     speed: Array, damping: Array, weights: Array | None, *, parameters: int
 ) -> tuple[Array, Array, Array]:
-    """Points in order of speed, as arrays; raises a one-line error if unusable."""
+    """Sort the points by speed, as arrays; raise a one-line error if they are unusable."""
     v, b = (np.atleast_1d(np.asarray(values, dtype=float)) for values in (speed, damping))
     w = np.ones(v.shape) if weights is None else np.atleast_1d(np.asarray(weights, dtype=float))
     if v.ndim != 1 or v.shape != b.shape or v.shape != w.shape:

@@ -50,7 +50,7 @@ class Line(Section):
 
 
 class Valve(Section):
-    """A proportional or servo valve with four edges, linear in the signal."""
+    """A proportional or servo valve with four control edges that open linearly with the signal."""
 
     rated_flow: Annotated[float, Of("rated_flow", "flow through one metering edge at full signal")]
     rated_drop: Annotated[
@@ -77,7 +77,7 @@ class Valve(Section):
 
 
 class Throttle(Section):
-    """One-way flow-control valves that throttle the outflow; linear about the flow of each case."""
+    """One-way flow-control valves that throttle the outflow, linearised for each load case."""
 
     area: Annotated[float, Of("orifice_area", "area of the fully open needle")]
     opening: Annotated[float, Of("opening", "opening of the needle")] = 1.0
@@ -99,7 +99,7 @@ class ReducingValve(Section):
 
 
 class Accumulator(Section):
-    """A gas accumulator on the line of one chamber; the gas has fluid.polytropic_index."""
+    """A gas accumulator on the line of one chamber; fluid.polytropic_index applies to its gas."""
 
     chamber: choices.Chamber
     gas_volume: Annotated[float, Of("gas_volume", "gas volume at the precharge")]
@@ -127,7 +127,7 @@ class PositionLoop(Section):
 
 
 class Linkage(Section):
-    """Two pivots about a joint axis with the actuator between them; angles grow as it extends."""
+    """Two pivots around a joint axis, joined by the actuator; angles grow as it extends."""
 
     base_radius: Annotated[float, Of("pivot_radius", "distance from joint axis to fixed pivot")]
     crank_radius: Annotated[float, Of("pivot_radius", "distance from joint axis to crank pin")]
@@ -154,7 +154,7 @@ def closed_length(
 
 
 class Variable(Section):
-    """Bounds and start (SI) of a dimension that the optimiser varies; in the file, units by PATH.
+    """Bounds and start (SI) of a dimension that the optimiser varies.
 
     It varies continuously, or takes the `sizes` of a series or a list, or multiples of `step`.
     """
@@ -236,7 +236,7 @@ class Supply(Section):
 
 
 class Environment(Section):
-    """Environmental temperatures (trapped oil, thermal mismatch, service limits)."""
+    """Environmental temperatures, for trapped oil, thermal mismatch and service limits."""
 
     temperature_min: Annotated[float, Of("temperature", "lowest temperature of the actuator")]
     temperature_max: Annotated[float, Of("temperature", "highest temperature of the actuator")]
@@ -547,7 +547,7 @@ class Limit(Section):
 
 
 class Objective(Section):
-    """A metric, or several with weights (each divided by its value in the original design)."""
+    """Metric to optimise, or several with weights, each divided by its value in the design."""
 
     minimise: Annotated[str | dict[str, float] | None, ObjectiveKind()] = None
     maximise: Annotated[str | dict[str, float] | None, ObjectiveKind()] = None
