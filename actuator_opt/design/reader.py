@@ -68,7 +68,7 @@ class FileSource:
         return self.document.text
 
     def diagnostic(self, path: str, message: str, remedy: str = "") -> Diagnostic:
-        """A fault of the value at a PATH; for a PATH that the file lacks, at its block."""
+        """Diagnostic for the value at a PATH; it points at the block if the file lacks the PATH."""
         try:
             loc = resolve(path, self.document.data, self.metrics, self.root).loc
         except ValueFault:

@@ -260,7 +260,7 @@ def _at_loc(loc: Loc, size_faults: Iterable[SizeFault]) -> Iterator[Fault]:
 
 
 def profiles(view: FileView) -> Iterator[Fault]:
-    """Stated contact pressures: positions increase from 0, one stress each, sorted by pressure."""
+    """Check that profiles have positions rising from 0, a stress for each, and rising pressures."""
     for loc in elements(view):
         last = -1.0
         for index, _ in enumerate(view.items(*loc, "contact")):

@@ -506,7 +506,7 @@ class _WholePlies(SizeSeries):
         return path.removesuffix("thickness") + "angle"
 
     def _singly(self, view: FileView, path: str, angle: float | None) -> bool:
-        """Whether plies count singly: not balanced, or at 0 or 90 degrees."""
+        """Whether a layer may have an odd number of plies: not balanced, or at 0 or 90 degrees."""
         balanced = view.flag(*self._loc(path), "balanced")
         return balanced is False or (angle is not None and along(angle))
 

@@ -202,7 +202,7 @@ class Properties(Protocol):
 
 
 class FileView:
-    """A tree in SI, read by dotted keys, with the defaults of the model; None if unusable."""
+    """Read values of a tree in SI, with the model's defaults; None for unusable values."""
 
     def __init__(self, tree: Any, root: type[Section] = Design) -> None:
         self.tree = tree
@@ -239,7 +239,7 @@ class FileView:
 def without_effect(
     view: FileView, loc: Loc, keys: Iterable[str], where: str, remedy: str = "remove the line"
 ) -> Iterator[Fault]:
-    """A fault for each of these keys below a place that the file states."""
+    """Yield a fault for each of these keys, below a location, that the file states in vain."""
     for key in keys:
         if view.has(*loc, key):
             yield Fault((*loc, key), f"without effect {where}", remedy, at_key=True)

@@ -68,7 +68,7 @@ def _read(loc: tuple[str, str], entry: dict[str, Any], target: Target) -> Iterat
 def _fit(
     loc: tuple[str, str], entry: dict[str, Any], target: Target, tree: dict[str, Any]
 ) -> Iterator[Fault]:
-    """The keys suit the distribution, the bounds include the value, samples stay in range."""
+    """Check that keys suit the distribution, bounds include the value, and samples are in range."""
     shape = entry.get("distribution", "uniform" if "tolerance" in entry else None)
     if shape is None:
         yield Fault((*loc, "distribution"), "missing", 'add e.g. "distribution: normal"')

@@ -73,7 +73,7 @@ def barrel_model(view: FileView) -> Iterator[Fault]:
 
 
 def autofrettage(view: FileView) -> Iterator[Fault]:
-    """The liner yields above the supply pressure, inside layers that contain it."""
+    """Check that autofrettage has a liner that yields above supply pressure, and outer layers."""
     loc = ("barrel", "autofrettage_pressure")
     pressure, supply = view.number(*loc), view.number("supply", "pressure")
     if pressure is None:
@@ -93,7 +93,7 @@ def autofrettage(view: FileView) -> Iterator[Fault]:
 
 
 def laminated_rod(view: FileView) -> Iterator[Fault]:
-    """The bore of a laminated rod follows from its layers; fittings need both."""
+    """Check that a laminated rod states no bore, and that only a laminated rod has fittings."""
     layers = len(view.items("rod", "layup"))
     if not layers:
         if view.has("rod", "fitting"):
@@ -257,7 +257,7 @@ def keys(view: FileView) -> Iterator[Fault]:
 
 
 def _unused(view: FileView, joint: Joint) -> Iterator[Fault]:
-    """Keys that neither the joint nor an alternative among the choices uses, except defaults."""
+    """Keys that are used neither by the joint nor by a joint among the choices, except defaults."""
     alternatives = [JOINTS.get(name) for name in view.items("choices", ".".join(_TYPE))]
     used = _keys(candidate for candidate in (joint, *alternatives) if candidate is not None)
     for name, entry in entries(Retention).items():

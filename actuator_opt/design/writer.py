@@ -68,7 +68,7 @@ def exact_text(value: float, quantity: Quantity | None, unit: str | None = None)
 
 
 def _candidates(value: float, unit: units.Unit) -> Iterator[str]:
-    """Texts in a unit for an SI value and its nearest neighbours, shortest first."""
+    """Texts in a unit for an SI value, shortest first, then for neighbouring numbers."""
     low = high = unit.from_si(value)
     for digits in (6, 9, 12, 15, 16, 17):
         yield f"{low:.{digits}g}"
@@ -109,7 +109,7 @@ _TABLES = (("variables",), ("requirements",), ("measured",), ("uncertainty",))
 
 
 class _CannotEdit(Exception):
-    """The text does not match the design's structure (flow style, removed blocks, plies)."""
+    """The text cannot be edited: flow style, removed blocks, changed number of plies."""
 
 
 class _Edit(NamedTuple):
@@ -243,7 +243,7 @@ def _lines(node: dict[str, Any], loc: Loc, writer: _Leaves, indent: str) -> Iter
 
 
 def _edited_text(design: Design, document: Document | None, metrics: Mapping[str, Quantity]) -> str:
-    """The document's text with the design's values; empty if not editable."""
+    """Replace values in the document's text by those of the design; empty if impossible."""
     try:
         text = "" if document is None else _edited(design, document, metrics)
     except _CannotEdit:

@@ -43,7 +43,7 @@ _START = {
 
 
 class NodeSpan(NamedTuple):
-    """Place of a node: line and column from 1, and its characters ``text[start:end]``."""
+    """Location of a node: line and column, both from 1, and its characters ``text[start:end]``."""
 
     line: int
     column: int
