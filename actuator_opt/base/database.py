@@ -94,7 +94,7 @@ class Checksums:
         return checksum.digest()
 
     def fits(self, key: Any, numbers: Any, failure: Any, checksum: Any) -> bool:
-        """Whether a stored row is intact: numbers, or the reason for a failed design."""
+        """Whether a stored row (numbers, or the reason for a failure) matches its checksum."""
         if not isinstance(key, bytes):
             return False
         if numbers is None:
@@ -360,7 +360,7 @@ class Reader:
             message = f"study {number} is damaged"
             raise refused(self.path, message, "run the sweep again with --store")
         stated = self._columns(columns)
-        count = "SELECT count(*) FROM rows NOT INDEXED WHERE study = ?"  # a damaged index may lack rows
+        count = "SELECT count(*) FROM rows NOT INDEXED WHERE study = ?"  # it may lack rows
         rows = self.connection.execute(count, (number,)).fetchone()[0]
         if not rows:
             raise refused(self.path, f"study {number} has no rows yet", "run its sweep first")

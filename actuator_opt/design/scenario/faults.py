@@ -402,7 +402,7 @@ def motor(view: FileView) -> Iterator[Fault]:
 
 def held_ports(view: FileView) -> Iterator[Fault]:
     """Check that no load is stated if the valve has held ports."""
-    if not view.has("held_ports") or view.has("motor"):  # stating both is reported as a separate fault
+    if not view.has("held_ports") or view.has("motor"):  # both: a separate fault
         return
     where, idle = "with held ports", ("control", "stops", "friction", "initial")
     yield from without_effect(view, (), idle, where, "remove it, or remove held_ports")
