@@ -97,7 +97,7 @@ class Parameter(NamedTuple):
 
     @property
     def verdict(self) -> Verdict:
-        """Identifiable; weakly identifiable while the bounds exclude a change of sign; else not."""
+        """Verdict on a parameter: it is weakly identifiable if the bounds at least exclude zero."""
         if self.identifiable:
             return "identifiable"
         signed = self.lower > 0 or self.upper < 0

@@ -65,8 +65,8 @@ def cubic_roots(square: np.ndarray, slope: np.ndarray, constant: np.ndarray) -> 
 def _outer_root(square: np.ndarray, slope: np.ndarray, constant: np.ndarray) -> np.ndarray:
     """The outer real root of each cubic, found by Newton's steps from outside.
 
-    At a triple root, slope and value are only rounding errors; steps therefore never pass the
-    inflection point.
+    At a triple root, slope and value are only rounding errors, so steps stop at the inflection
+    point.
     """
     x = inflection = square * (-1 / 3)
     value, rise = _value(x, square, slope, constant)

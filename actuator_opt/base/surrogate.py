@@ -73,7 +73,7 @@ class SurrogateAxis:
         return np.stack(rows[: self.terms], axis=-1)
 
     def basis_slope(self, value: Array) -> Array:
-        """Derivatives of the polynomials (..., terms) by the logarithm of the input."""
+        """Derivatives of the polynomials (..., terms) for the logarithm of the input."""
         x = self._coordinate(value)
         second = [np.ones_like(x), 2 * x]  # U_k; T_k' = k U_(k-1)
         while len(second) < self.terms:

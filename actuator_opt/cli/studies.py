@@ -1,4 +1,4 @@
-"""Studies of a single design: `uncertainty`, `seal` and `simulate`."""
+"""Commands that study a single design: `uncertainty`, `seal` and `simulate`."""
 
 from __future__ import annotations
 

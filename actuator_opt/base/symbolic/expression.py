@@ -139,7 +139,7 @@ def _hull(*values: float) -> Bounds:
 
 
 def _of_choice(condition: Any, yes: Any, no: Any) -> Bounds:
-    """Bounds of a choice; a value compared with the other branch is limited by it."""
+    """Bounds of a choice; if its condition compares the branches, it is a minimum or maximum."""
     (a, b), (c, d) = bounds_of(yes), bounds_of(no)
     if getattr(condition, "op", None) in ("lt", "le"):
         less, more = condition.args
@@ -592,7 +592,7 @@ def _scaled(factor: Any) -> Callable[..., Any]:
 
 
 def _steep(value: Any) -> Any:
-    """Value of a root for its slope formula: infinite at zero, so that the slope there is zero."""
+    """Replace a zero root by infinity, so that the slope formula, 1/(2 root), gives zero."""
     return choose(less(0.0, value), value, math.inf)
 
 
@@ -683,7 +683,7 @@ def _compiled(
     ]
     lines += _lines(nodes, outputs, known, many)
     source = f"def {name}({arguments}):\n" + "\n".join(lines)
-    exec(compile(source, f"<{name}>", "exec"), scope)  # the text is generated, and contains only operations and numbers
+    exec(compile(source, f"<{name}>", "exec"), scope)  # generated text, no input
     compiled: Callable[..., Any] = scope[name]
     return compiled
 
@@ -691,7 +691,7 @@ def _compiled(
 def _lines(
     nodes: Sequence[Symbol], outputs: Sequence[Any], known: Mapping[Symbol, str], many: bool
 ) -> list[str]:
-    """A line for every node that is used twice or nested deeply, then the return."""
+    """Write a line for every node that is used twice or nested deeply, then the return line."""
     uses: dict[int, int] = {}
     for node in nodes:
         for operand in node.operands:
