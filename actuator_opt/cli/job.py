@@ -89,7 +89,7 @@ class Job:
         return read(self.design, set=self.set, plugins=self.plugins or ())
 
     def run(self, verb: Callable[..., _T], *inputs: object, **options: Any) -> _T:
-        """Run a verb, on the design by default, and show its progress on a terminal."""
+        """Call a library function, by default with the design; show its progress on a terminal."""
         with nullcontext() if self.quiet else streams.watching():
             return verb(*(inputs or (self.actuator,)), **options)
 
@@ -201,7 +201,7 @@ _SILENT = ("--json", "--report", "--all-pages", "--quiet", "-q", "--no-record", 
 
 
 def command_line() -> str:
-    """The command line without options that do not change the result: same input, same bytes."""
+    """The command line, without options that do not affect the result."""
     import shlex
 
     words, skip = ["actuator-opt"], False

@@ -53,7 +53,7 @@ def interrupted() -> bool:
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C. A plain KeyboardInterrupt through an `exec` would make Python exit by signal."""
+    """Raised on Ctrl-C: a KeyboardInterrupt inside `exec` would make Python exit by signal."""
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:

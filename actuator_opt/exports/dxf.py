@@ -78,7 +78,7 @@ def _clear(middle: float, half: float, lines: Sequence[float]) -> bool:
 
 
 def _middle(length: Length, paper: DrawingSizes, lines: Sequence[float]) -> tuple[float, bool]:
-    """Centre of a text over its own dimension line, else beside it, clear of all lines."""
+    """Centre of a text: on its own dimension line if it fits, else beside it and off all lines."""
     half, pad = paper.width(length.text) / 2, 0.5 * paper.letter
     centre = (length.start + length.end) / 2
     inner = [x for x in lines if length.start < x < length.end]
@@ -128,7 +128,8 @@ def rows(lengths: Sequence[Length], paper: DrawingSizes) -> list[Placed]:
 LAYER = "dimensions"
 STYLE = "TRUE"
 _COLOUR, _BY_LAYER, _BLACK_OR_WHITE = 153, 256, 7
-"""Colours: grey lines are readable on black and on white; text is drawn in black or white."""
+"""Colour numbers of DXF: dimension lines (readable on black and white), colour of the layer, and
+black or white in contrast to the background."""
 _SMALLEST = 1e-6
 """Shorter lengths (mm) are not dimensioned."""
 
@@ -323,7 +324,7 @@ _SCALES = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0)
 _METAL = ((45.0, 1.5), (135.0, 1.5), (45.0, 0.9), (135.0, 0.9), (30.0, 2.0), (150.0, 2.0))
 _COMPOSITE = ((60.0, 0.8), (120.0, 0.8), (75.0, 1.1), (105.0, 1.1))
 _POLYMER = ((15.0, 1.2),)
-"""Hatches: angle and spacing (mm of paper) of each set of lines."""
+"""Hatches (angle, spacing in mm of paper), assigned to materials in order of appearance."""
 
 _COLOURS = (7, 23, 142, 94, 6, 42, 134, 200, 54, 213, 233, 74)
 """Colours of the layers, by part: each is visible on black and white (7 adapts itself)."""

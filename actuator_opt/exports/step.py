@@ -294,7 +294,7 @@ class Records:
         return self.shared(f"AXIS2_PLACEMENT_3D('',{origin},{axis},{zero})")
 
     def place(self, at: tuple[float, float, float]) -> str:
-        """A frame moved but not rotated, which all CAD readers interpret alike."""
+        """Add a coordinate system, moved but not rotated; all CAD readers interpret it alike."""
         axis, zero = self.direction(0.0, 0.0, 1.0), self.direction(1.0, 0.0)
         return self.shared(f"AXIS2_PLACEMENT_3D('',{self.point(*at)},{axis},{zero})")
 
@@ -335,7 +335,7 @@ class _Skin:
         return r.add(f"EDGE_LOOP('',{listed(sides)})")
 
     def face(self, start: Point, end: Point) -> str:
-        """The face that an edge of the section sweeps; the material is left of the edge."""
+        """Add the face that an edge of the section sweeps; material is to the left of the edge."""
         r = self.records
         rims = [(self.circles[c], c is end, c[1]) for c in (start, end) if c in self.circles]
         if start[0] == end[0]:  # the larger rim is the face's outer boundary
