@@ -224,7 +224,7 @@ def field(study: Study) -> Field:
     room = np.where(tolerated.any(axis=(1, 2)), TOLERANCE, 0.0)
     margins += room[:, None, None]
     cut_away = _cut_away(study, margins)
-    margins[:, failed & ~cut_away] = np.nan  # for a negative wall, keep the margins of its dimensions
+    margins[:, failed & ~cut_away] = np.nan  # negative walls keep margins
     failed |= cut_away
     rows = np.stack([chunk.rows.numbers for chunk in chunks])
     thinned = any(len(value) > FINEST for value in values)

@@ -136,7 +136,7 @@ class Screen:
         return scores
 
     def bounded_objective(self, numbers: Array, limit: Array) -> Array:
-        """Return the objective, (n,) or one for all: infinite where it is above `limit`."""
+        """Return the objective, (n,) or one value for all designs: infinite if above `limit`."""
         arrays = self.library
         with np.errstate(all="ignore"):
             objective, *others = self.objective(numbers)
