@@ -554,7 +554,7 @@ class Objective(Section):
 
     @property
     def aim(self) -> Sense:
-        """"min" if small values are better, "max" if large values are."""
+        """Sense of the objective: "min" if small values are better, "max" if large values are."""
         return "max" if self.minimise is None else "min"
 
     @property

@@ -94,7 +94,7 @@ def _columns(explored: Explored) -> list[dict[str, Any]]:
         quantity = quantity_of(column.name, study.design)
         values = quantity.to_display(numbers[:, k])
         columns.append(_column(column.name, column.name, quantity.unit, np.asarray(values)))
-    percent = np.round(100 * numbers[:, -3], 9) + 0.0  # the axis shall not show rounding errors of zero
+    percent = np.round(100 * numbers[:, -3], 9) + 0.0  # drop rounding errors around zero
     margin = _column("least_margin", "least margin of all", "%", percent)
     columns.append(margin | {"better": MORE_IS_BETTER})
     for k, name in enumerate(study.metrics, count):

@@ -285,7 +285,7 @@ def _computed(
         yield from on_cluster(scheduler, study, _chunk, tasks)
         return
     remaining = iter(tasks)
-    count = workers or (1 if "jax" in sys.modules else os.cpu_count() or 1)  # never fork with threads
+    count = workers or (1 if "jax" in sys.modules else os.cpu_count() or 1)  # no fork with threads
     count = min(count, chunks)  # all workers start at once, even without work
     if workers is None or count == 1:
         yield from _local_chunks(study, chunks, remaining, patient=count == 1)

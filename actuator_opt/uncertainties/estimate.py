@@ -93,7 +93,7 @@ def half_width(values: Vector) -> float:
 
 
 def _student(count: int) -> float:
-    """Return half the 95 % interval of a mean, divided by the standard deviation of the values."""
+    """Return half the 95 % interval of a mean, divided by the values' standard deviation."""
     from scipy.special import stdtrit
 
     return float(stdtrit(count - 1, (1 + LEVEL) / 2)) / float(np.sqrt(count))
@@ -178,7 +178,11 @@ def indices(outputs: Outputs, dimension: int, *, rows: int, seed: int) -> Indice
 def _replicate_moments(
     outputs: Outputs, points: Vector, dimension: int, replicate: int
 ) -> tuple[Vector, int]:
-    """Return V_i, V_Ti and V (2 d + 1, k) of one randomisation, and the number of dropped rows."""
+    """Return the variances of one randomisation, and the number of dropped rows.
+
+    The variances (2 d + 1, k) are the first-order and total parts of each input, then the variance
+    of each output.
+    """
     first, second = points[:dimension], points[dimension:]
     a, b = outputs(first), outputs(second)
     mixed: list[Vector] = []

@@ -353,7 +353,7 @@ def _stacked(arrays: Sequence[Vector], count: int) -> Vector:
 
 
 def _margin(limit: MetricLimit, computed: MetricArrays, numbers: Values, count: int) -> Vector:
-    """Return the least margin of a limit over cases and places (n,); NaN without a value."""
+    """Return the least margin of a limit (n,) over load cases and locations; NaN if unknown."""
     least = np.full(count, np.inf)
     has_value = False
     for row in rows_of(limit, computed, numbers):

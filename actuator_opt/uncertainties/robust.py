@@ -229,7 +229,7 @@ class _RobustSearch:
     def _keep(
         self, optimisation: Optimisation, draws: _DesignDraws, reserves: dict[str, float]
     ) -> None:
-        """Keep the better design: first by its yield, then by its objective."""
+        """Keep this design if its yield is better than before, or its objective at equal yield."""
         sign = -1.0 if optimisation.design.objective.maximise is not None else 1.0
 
         def rank(candidate: Optimisation, draws: _DesignDraws) -> tuple[float, float]:
