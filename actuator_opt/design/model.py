@@ -109,7 +109,7 @@ class Accumulator(Section):
 
 
 class Ports(Section):
-    """What closes both lines while the load excites the actuator, with the position loop open."""
+    """Components at the ends of both lines while the load excites the actuator, without control."""
 
     end: choices.End = "closed"
     throttle: Throttle | None = None

@@ -272,7 +272,7 @@ def put(tree: dict[str, Any], target: Target, value: object) -> None:
     Raises
     ------
     ValueFault
-        if a single value is found where a block is needed
+        if a block is needed at a PATH that has a single value
     """
     node: Any = tree
     for depth, key in enumerate(target.loc):

@@ -286,7 +286,7 @@ class Controller(Section):
 
 
 class Analysis(Section):
-    """How the signals are evaluated."""
+    """Settings for the evaluation of the signals."""
 
     window_cycles: Annotated[
         float, Of("cycles_per_window", "sine cycles per window of the dynamic stiffness")
