@@ -71,8 +71,8 @@ class Spread:
 
     Parameters
     ----------
-    kind : ``cv``: standard deviation over mean; ``tolerance``: half width over value; ``factor``:
-        largest over nominal value, equal to nominal over smallest value
+    kind : ``cv`` (standard deviation divided by mean), ``tolerance`` (half width divided by value)
+        or ``factor`` (largest divided by nominal value, equal to nominal divided by smallest value)
     size : relative, or the factor
     """
 
@@ -345,7 +345,7 @@ def bulk_modulus_law(stated: str | None, properties: Container[str]) -> str:
 
 
 def viscosity_law(stated: str | None, properties: Container[str]) -> str:
-    """Law of viscosity over pressure: as stated; else Roelands if its coefficient is known."""
+    """Law of how viscosity rises with pressure: as stated; else Roelands if its data are known."""
     return stated or ("roelands" if "pressure_viscosity" in properties else "none")
 
 
@@ -534,7 +534,7 @@ def assess(
     law : function B(speed, values), safe under a complex step
     values : least-squares parameters by name, SI
     speed, damping, weights : the points
-    least : scales of parameters that may be near 0: changes that visibly change the curve; the
+    least : scales of parameters that may be near 0, large enough to change the curve visibly; the
         scale of another parameter is its value
     doubts : reasons for parameters that the search already left undetermined
 

@@ -113,7 +113,7 @@ class Gland:
 
     @property
     def squeeze(self) -> float:
-        """Nominal squeeze over section."""
+        """Nominal squeeze, as a share of the section."""
         return 1 - self.depth / self.section
 
     @property

@@ -161,7 +161,7 @@ class Study:
         return self._joined(first, parts, len(scores), keep)
 
     def _scores(self, points: SweepPoints, limit: float) -> Array:
-        """Return each point's estimated objective: infinite if ruled out, -inf if unknown."""
+        """Return each point's estimated objective: infinite if excluded, -inf if unknown."""
         scores = np.full(len(points.variant), -np.inf)
         apart = self.designs.apart
         varied = [k for k, axis in enumerate(self.plan.numeric) if axis.path not in apart]

@@ -27,7 +27,7 @@ from .inputs import TOLERANCE, UncertainModel, inputs, read_by_models
 from .study import draw
 
 Search = Callable[[PreparedDesign, bool], Optimisation]
-"""Function that finds an ordinary optimum of a design; the flag requests the limits' prices."""
+"""Function that finds an ordinary optimum of a design; the flag requests what each limit costs."""
 
 LEAST, MOST = 0.5, 0.9999
 """Range of probabilities that a user may request."""
@@ -241,7 +241,7 @@ class _RobustSearch:
             self.best, self.draws, self.reserves = optimisation, draws, reserves
 
     def result(self) -> Optimisation:
-        """Return the final design with prices, verified with independent draws."""
+        """Return the final design, with the cost of each limit, verified by independent draws."""
         optimisation, reserves, draws = self._last()
         if self.ordinary.choices is not None:
             choices = self.ordinary.choices
