@@ -1,4 +1,4 @@
-"""Limits of the numbers that commands accept, and the figures of a sweep by name."""
+"""Limits of numbers in command options, and names of the figures of a sweep."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ class IntegerRange(NamedTuple):
 
 
 STARTS = IntegerRange(1, 1000)
-"""Number of local searches."""
+"""Allowed number of local searches."""
 
 
 CHECKS = IntegerRange(0, 100)
-"""Number of full searches for a front."""
+"""Allowed number of full searches that check a front."""
 
 
 SEED = IntegerRange(0, 2**32 - 1)
-"""Seeds that every generator accepts: NLopt's is an unsigned long, which may have 32 bits."""
+"""Seeds that every random generator accepts; NLopt's seed may have only 32 bits."""
 
 
 FRONT = IntegerRange(3, 2000)
-"""Number of designs on a front."""
+"""Allowed number of designs on a front."""
 
 
 SWEEP_FIGURES = ("parallel", "scatter", "contour", "ucurves")

@@ -1,12 +1,13 @@
-"""SQLite database of a sweep: rows of numbers, each under the hash of its inputs.
+"""SQLite database of a sweep: rows of numbers, each stored under the hash of its inputs.
 
-Every chunk is one transaction: a process killed at any moment leaves whole chunks and nothing
-else. Each row is stored once, whichever process computes it.
+Every chunk is written in one transaction, so a process killed at any moment leaves only whole
+chunks. Each row is stored once, whichever process computes it.
 
-Every row has a checksum of its study, its key and its numbers; a row that fails it is ignored.
-The checksum covers a row, not a chunk, since another sweep groups the same rows differently.
-It is BLAKE2b, as for the keys: a faster cyclic redundancy check misses one change in 2^32. It
-guards against damage, not against forgery: who edits a row can also write its checksum.
+Every row has a checksum of its study, its key and its numbers; rows with a wrong checksum are
+ignored. The checksum covers a row, not a chunk, since another sweep groups the same rows
+differently. The hash is BLAKE2b, as for the keys; a cyclic redundancy check is faster but misses
+one change in 2^32. It guards against damage, not against forgery: anyone who edits a row can also
+write its checksum.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ from .files import make_private, read_bytes
 from .numeric import Array
 
 FORMAT = 2
-"""Version of the tables below. Rows of format 1 have no checksums and are not trusted."""
+"""Version of the tables below. Rows of format 1 have no checksums and are refused."""
 
 BUSY = 60.0
 """Seconds to wait while another process writes."""
@@ -39,13 +40,13 @@ KEYS_PER_QUERY = 500
 """Keys per query; SQLite accepts at least 999 parameters."""
 
 TABLES = frozenset({"meta", "studies", "rows"})
-"""Tables that identify a database of this program."""
+"""Names of the tables by which a database of this program is recognised."""
 
 PAUSE = 0.01
 """Seconds between two attempts to open a file that another process is opening."""
 
 CHECK = 8
-"""Bytes of a checksum: one damage in 2^64 goes unnoticed."""
+"""Bytes of a checksum: of 2^64 damaged rows, one goes unnoticed."""
 
 _PUT = "INSERT OR REPLACE INTO rows (study, key, numbers, failure, checksum) VALUES (?, ?, ?, ?, ?)"
 _TABLES = """
@@ -65,14 +66,14 @@ CREATE TABLE IF NOT EXISTS texts (
 
 
 class NumberColumn(NamedTuple):
-    """A number of a row: name and SI unit."""
+    """A column of numbers: name and SI unit."""
 
     name: str
     unit: str
 
 
 class StoredNumbers(NamedTuple):
-    """Numbers (n, columns) of several keys; NaN and a reason where a design failed."""
+    """Stored numbers (n, columns) of several keys; a failed design has NaN and a reason."""
 
     numbers: Array
     failures: dict[int, str]
@@ -93,7 +94,7 @@ class Checksums:
         return checksum.digest()
 
     def fits(self, key: Any, numbers: Any, failure: Any, checksum: Any) -> bool:
-        """Whether a stored row is intact: numbers, or the reason for a failed design."""
+        """Whether a stored row (numbers, or the reason for a failure) matches its checksum."""
         if not isinstance(key, bytes):
             return False
         if numbers is None:
@@ -112,14 +113,14 @@ class Database:
         self.width, self.checksums = width, Checksums(study, width)
 
     def missing(self, keys: Sequence[bytes]) -> tuple[list[int], int]:
-        """Indices of the keys without an intact row, and how many of their rows are damaged."""
+        """Indices of the keys without an intact row, and how many of them have a damaged row."""
         known = self._known(keys)
         sound = [key for key, row in known.items() if row is not None]
         lacking = set(keys).difference(sound)
         return [k for k, key in enumerate(keys) if key in lacking], len(known) - len(sound)
 
     def known(self, keys: Sequence[bytes]) -> dict[int, tuple[Array | None, str | None]]:
-        """Rows already stored, by the index of their key; damaged rows are left out."""
+        """Rows already stored, by the index of their key; damaged rows are omitted."""
         rows = self._known(keys)
         stored: dict[int, tuple[Array | None, str | None]] = {}
         for k, key in enumerate(keys):
@@ -130,7 +131,7 @@ class Database:
         return stored
 
     def _known(self, keys: Sequence[bytes]) -> dict[bytes, tuple[bytes | None, str | None] | None]:
-        """Numbers and failure reasons of stored rows by key; None for damaged rows."""
+        """Numbers and failure reason of every stored row by key; None for damaged rows."""
         probe = "SELECT 1 FROM rows WHERE study = ? LIMIT 1"
         if self.connection.execute(probe, (self.number,)).fetchone() is None:
             return {}
@@ -178,7 +179,7 @@ def opened(
     ----------
     path : file; created if missing
     study : hash of the design and its varied inputs
-    name, design : name and design of the study, for readers of the file
+    name, design : name and design of the study, for people who inspect the file
     columns : columns of its rows
     version : version of the models; rows of different versions are never mixed
     texts : PATHs with their text values (materials, ...); rows store only the key of a text
@@ -186,7 +187,7 @@ def opened(
     Raises
     ------
     InputError
-        not a database of sweeps, another version, or not writable
+        if it is no database of sweeps, has another version, or is not writable
     """
     make_private(path)
     with _diagnosed(path):
@@ -206,7 +207,7 @@ def opened(
 def _study_number(
     connection: sqlite3.Connection, path: Path, study: tuple[str, str, str, str]
 ) -> int:
-    """Index of a study (hash, name, design, columns); the study is added if missing."""
+    """Index of a study (hash, name, design, columns); add the study if it is missing."""
     hashed, *description = study
     with connection:
         connection.execute(
@@ -216,7 +217,7 @@ def _study_number(
         )
     select = "SELECT id, name, design, columns, checksum FROM studies WHERE hash = ?"
     row = connection.execute(select, (hashed,)).fetchone()
-    if row is None:  # its index is damaged
+    if row is None:  # the index of the table is damaged
         raise damaged(path)
     number, *stored, checksum = row
     if checksum != study_checksum(hashed, *stored):
@@ -257,9 +258,9 @@ def _prepare(connection: sqlite3.Connection, path: Path, version: str) -> None:
     connection.execute("PRAGMA synchronous = NORMAL")
     connection.execute(
         "PRAGMA cache_size = -65536"
-    )  # KiB: the index of keys, which come in no order
+    )  # KiB: holds the index of keys, which arrive in random order
     with connection:
-        connection.execute("BEGIN IMMEDIATE")  # all tables or none
+        connection.execute("BEGIN IMMEDIATE")  # create all tables or none
         for statement in _TABLES.split(";"):
             connection.execute(statement)
         if not tables:
@@ -269,7 +270,7 @@ def _prepare(connection: sqlite3.Connection, path: Path, version: str) -> None:
 
 
 def require_version(connection: sqlite3.Connection, path: Path, version: str, remedy: str) -> None:
-    """Refuse another format, and rows of other models."""
+    """Refuse a database of another format, or with rows of other model versions."""
     meta = dict(connection.execute("SELECT key, value FROM meta"))
     if meta.get("format") != str(FORMAT):
         message = f"has the format {meta.get('format')}, not {FORMAT}"
@@ -318,7 +319,7 @@ _SELECT = "SELECT key, numbers, failure, checksum FROM rows WHERE study = ?"
 
 
 class StoredRows(NamedTuple):
-    """Stored rows of one study; `texts` lists the text values they may use, by PATH."""
+    """Stored rows of one study; `texts` lists the text values that rows may have, by PATH."""
 
     number: int
     hash: str
@@ -344,7 +345,7 @@ class Reader:
         Raises
         ------
         InputError
-            no such study, or the study has no rows
+            if there is no such study, or it has no rows
         """
         select = "SELECT id, hash, name, design, columns, checksum FROM studies ORDER BY id"
         studies = self.connection.execute(select).fetchall()
@@ -359,7 +360,7 @@ class Reader:
             message = f"study {number} is damaged"
             raise refused(self.path, message, "run the sweep again with --store")
         stated = self._columns(columns)
-        count = "SELECT count(*) FROM rows NOT INDEXED WHERE study = ?"  # an index may lack rows
+        count = "SELECT count(*) FROM rows NOT INDEXED WHERE study = ?"  # it may lack rows
         rows = self.connection.execute(count, (number,)).fetchone()[0]
         if not rows:
             raise refused(self.path, f"study {number} has no rows yet", "run its sweep first")
@@ -380,7 +381,7 @@ class Reader:
         Raises
         ------
         InputError
-            no study has this hash
+            if no study has this hash
         """
         row = self.connection.execute("SELECT id FROM studies WHERE hash = ?", (hashed,)).fetchone()
         if row is None:
@@ -410,10 +411,10 @@ class Reader:
         return texts_by_path
 
     def rows(self, study: StoredRows) -> Iterator[tuple[list[bytes], Array]]:
-        """Keys and numbers of the successful rows, in batches, ordered by key.
+        """Yield keys and numbers of the successful rows, in batches, ordered by key.
 
-        Keys are hashes: every n-th row gives an even sample of the study. Damaged rows are left
-        out.
+        Keys are hashes, so every n-th row gives an even sample of the study. Damaged rows are
+        omitted.
         """
         select = f"{_SELECT} AND failure IS NULL ORDER BY key"
         cursor = self.connection.execute(select, (study.number,))
@@ -436,7 +437,7 @@ def reading(path: Path, version: str) -> Iterator[Reader]:
     Raises
     ------
     InputError
-        no such file, another format, rows of other models, or not readable
+        if the file is missing or unreadable, or has another format or other model versions
     """
     kinds = (".db", ".sqlite", ".sqlite3")
     if read_bytes(path, most=len(MAGIC), kinds=kinds, what="database of sweeps") != MAGIC:
@@ -459,7 +460,7 @@ def reading(path: Path, version: str) -> Iterator[Reader]:
 
 
 def _connected(path: Path) -> sqlite3.Connection:
-    """A read-only connection; immutable where no lock file can be created beside the database."""
+    """Connect read-only; as immutable if no lock file can be created beside the database."""
     name = f"file:{quote(os.fsencode(path.resolve()))}?mode=ro"
     connection = sqlite3.connect(name, uri=True, timeout=BUSY)
     try:

@@ -1,4 +1,4 @@
-"""Errors of the program, one line each: place, fault, remedy.
+"""Errors of the program, each in one line: location, fault, remedy.
 
 Every failure that a user can cause is a `UsageError` (exit 2), an `InputError` (exit 3) or an
 `Unsolvable` (exit 4); any other exception is a fault of the program (exit 70). These errors carry
@@ -18,7 +18,7 @@ from .dataclass import dataclass
 
 
 def closest(word: str, names: Iterable[str]) -> str | None:
-    """The most similar name: equal but for case, else with the fewest edits.
+    """The most similar name: equal apart from upper and lower case, else with the fewest edits.
 
     >>> closest("Bore", ["stroke", "bore"])
     'bore'
@@ -53,7 +53,7 @@ def remedy(word: str, names: Iterable[str], limit: int = 12) -> str:
 
 
 CONTROLS = r"\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff"
-"""Characters, as in a regular expression, that move the cursor or reverse the text direction."""
+"""Characters that move the cursor or reverse the text direction, for a regular expression."""
 _CONTROL = rf"\r(?!\n)|(?!\r)[{CONTROLS}]"
 
 
@@ -94,7 +94,7 @@ def article(words: str) -> str:
 
 
 _LONGEST = 400
-"""Characters of a file name that a message shows."""
+"""Largest number of characters of a file name that a message shows."""
 
 
 class ExitCode(IntEnum):
@@ -124,13 +124,13 @@ EXIT_CODES = {
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One fault of an input, with its place and its remedy.
+    """One fault of an input, with its location and its remedy.
 
     Parameters
     ----------
     message : what is wrong, without a final full stop
     remedy : what to do about it
-    file, line, column : place in the source, 1-based; None without source text
+    file, line, column : location in the source, counted from 1; None without source text
     path : PATH of the value inside the design (``barrel.layup[1].thickness``)
     source : the source line, shown above the caret
     """
@@ -163,9 +163,9 @@ class Diagnostic:
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """A fault with its place in the tree of a file; `at_key` marks the key instead of the value.
+    """A fault at a location in a file's tree; `at_key` marks the key instead of the value.
 
-    A missing key has the place it would have; the message then points at its block.
+    For a missing key, this is where the key would be; the message then points at its block.
     """
 
     loc: tuple[str | int, ...]
@@ -209,11 +209,11 @@ EXTRAS = {"ezdxf": ("DXF", "cad"), "openpyxl": ("XLSX", "excel"), "pyarrow": ("P
 
 
 def library(name: str) -> Any:
-    """Import a module of an optional library; a one-line error where it is not installed.
+    """Import a module of an optional library; raise a one-line error if it is not installed.
 
     Raises
     ------
-    ActuatorError : not installed
+    ActuatorError : if the library is not installed
     """
     try:
         return import_module(name)

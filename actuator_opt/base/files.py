@@ -1,4 +1,4 @@
-"""Locating and writing files: data shipped in the wheel or in a checkout, and the user's files."""
+"""Find data shipped in the wheel or in a checkout; read and write the user's files."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ _CREATE = (
     os.O_WRONLY
     | os.O_CREAT
     | os.O_EXCL
-    | getattr(os, "O_NOFOLLOW", 0)  # not available on every system
+    | getattr(os, "O_NOFOLLOW", 0)  # this module is not available on every system
     | getattr(os, "O_BINARY", 0)
 )
 _PRIVATE = 0o600
 """Permissions of private files."""
 DIGITS = 19
-"""Most digits of a whole number in JSON: counts, seeds and times have fewer."""
+"""Largest number of digits of a whole number in JSON; counts, seeds and times have fewer."""
 
 
 def data_folder(name: str, *, package: Path = _PACKAGE) -> Path:
@@ -44,7 +44,8 @@ def data_folder(name: str, *, package: Path = _PACKAGE) -> Path:
     Notes
     -----
     A wheel carries the folder as ``_data/NAME`` inside the package. A folder beside the package
-    is used only where ``pyproject.toml`` shows a checkout: site-packages may contain an unrelated
+    is used only if a ``pyproject.toml`` shows that it is a checkout: site-packages may contain an
+    unrelated
     ``materials``. Plain paths are used because importing ``importlib.resources`` takes longer than
     reading the files.
     """
@@ -70,7 +71,7 @@ def read_bytes(source: str | Path, *, most: int, kinds: tuple[str, ...], what: s
 
     Raises
     ------
-    InputError : the file is missing, a folder, or not readable
+    InputError : if the file is missing, a folder, or not readable
     """
     path, name = Path(source), str(source)
     if name == "-":
@@ -114,7 +115,7 @@ def read_json(text: bytes | str) -> object:
 
     Raises
     ------
-    ValueError : not JSON, or nested too deeply
+    ValueError : if it is no JSON, or nested too deeply
     """
     import json
 
@@ -138,11 +139,11 @@ def _finite(text: str) -> float:
 
 
 def require_writable(path: Path) -> None:
-    """Refuse an unwritable file before the work that would fill it.
+    """Refuse an unwritable file before its content is computed.
 
     Raises
     ------
-    InputError : it is a folder or "-", its folder is missing, or permission is denied
+    InputError : if it is a folder or "-", its folder is missing, or permission is denied
     """
     with writing(path):
         reason = _unwritable_file(path)
@@ -167,7 +168,7 @@ def _unwritable_file(path: Path) -> str:
 
 
 def require_folder(folder: Path) -> None:
-    """Refuse a folder that cannot be created or written, before the work that would fill it.
+    """Refuse a folder that cannot be created or written, before its files are computed.
 
     Raises
     ------
@@ -193,11 +194,11 @@ def _nearest(folder: Path) -> Path:
 
 
 def require_apart(target: Path, *sources: str) -> None:
-    """Refuse to overwrite a file that is read.
+    """Refuse to overwrite a file that the command reads.
 
     Raises
     ------
-    InputError : the target is one of the sources, or a link to it
+    InputError : if the target is one of the sources, or a link to it
     """
     for source in sources:
         with contextlib.suppress(OSError, ValueError):
@@ -207,7 +208,7 @@ def require_apart(target: Path, *sources: str) -> None:
 
 
 def write_text(path: Path, text: str) -> Path:
-    """Write a text file atomically: to a temporary file, then renamed; no partial file on failure.
+    """Write a text to a temporary file, then rename it; a failure leaves no partial file.
 
     A symbolic link is kept: its target is written.
     """
@@ -218,11 +219,11 @@ def write_text(path: Path, text: str) -> Path:
 
 @contextlib.contextmanager
 def aside(path: Path) -> Iterator[TextIO]:
-    """Temporary text file for piecewise writing; renamed to its final name once complete.
+    """Open a temporary text file for writing in pieces; rename it once complete.
 
     Raises
     ------
-    InputError : not writable; no partial file is left
+    InputError : if it cannot be written; no partial file remains
     """
     with _part(path) as part, open(part, "w", encoding="utf-8", closefd=False) as stream:
         yield stream
@@ -230,14 +231,14 @@ def aside(path: Path) -> Iterator[TextIO]:
 
 @contextlib.contextmanager
 def aside_bytes(path: Path) -> Iterator[BinaryIO]:
-    """As `aside`, for bytes."""
+    """Like `aside`, for bytes."""
     with _part(path) as part, open(part, "wb", closefd=False) as stream:
         yield stream
 
 
 @contextlib.contextmanager
 def _part(path: Path) -> Iterator[int]:
-    """Descriptor of a temporary file: renamed once complete, otherwise deleted."""
+    """Open a temporary file; rename it once complete, otherwise delete it."""
     path = path.resolve() if path.is_symlink() else path
     if path.exists() and not path.is_file():
         message = "is a folder" if path.is_dir() else "is not a regular file"
@@ -250,14 +251,14 @@ def _part(path: Path) -> Iterator[int]:
 
 @contextlib.contextmanager
 def private_part(folder: Path) -> Iterator[tuple[FileIO, Path]]:
-    """A new private file in a folder, open for writing; deleted afterwards unless renamed.
+    """Open a new private file in a folder for writing; delete it afterwards unless renamed.
 
     Only the user can read it, its name cannot be guessed, and it is never an existing file or
     link: in a shared folder, others can neither read nor redirect the content.
 
     Raises
     ------
-    OSError : it cannot be created
+    OSError : if it cannot be created
     """
     part = folder / f".{os.urandom(16).hex()}.part"
     file = FileIO(os.open(part, _CREATE, _PRIVATE), "w")
@@ -271,7 +272,7 @@ def private_part(folder: Path) -> Iterator[tuple[FileIO, Path]]:
 
 def make_private(path: Path) -> None:
     """Create an empty private file if none exists; a symbolic link is kept."""
-    with contextlib.suppress(OSError):  # opening it reports the error
+    with contextlib.suppress(OSError):  # the error is reported when the file is opened
         os.close(os.open(os.path.realpath(path), _CREATE, _PRIVATE))
 
 
@@ -296,7 +297,7 @@ def writing(path: Path, remedy: str = "choose another file or folder") -> Iterat
 
 
 def write_all(folder: Path, contents: Mapping[str, bytes], *, what: str = "the report") -> None:
-    """Write all files of a folder to temporary files, then rename them: all or none.
+    """Write all files of a folder or none: first to temporary files, which are then renamed.
 
     Parameters
     ----------
@@ -306,7 +307,7 @@ def write_all(folder: Path, contents: Mapping[str, bytes], *, what: str = "the r
 
     Raises
     ------
-    InputError : the folder is not writable, or a folder has a file's name
+    InputError : if the folder is not writable, or a folder has the name of a file
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -330,7 +331,7 @@ def write_all(folder: Path, contents: Mapping[str, bytes], *, what: str = "the r
 
 
 def unwritable(folder: Path) -> str:
-    """Why a folder cannot be written, found by a trial; "" if it can.
+    """Why a folder cannot be written, found by writing a trial file; "" if it can.
 
     For a missing folder, its nearest existing parent is tested.
     """

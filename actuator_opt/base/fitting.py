@@ -1,6 +1,6 @@
-"""Least squares within bounds, with confidence bounds and a verdict for each parameter.
+"""Least-squares fits within limits, with confidence bounds and a verdict for each parameter.
 
-`relaxed` refits many small problems at once, each from its own start, as for resamples.
+`relaxed` solves many small problems at once, each from its own start; resampling uses it.
 """
 
 from __future__ import annotations
@@ -14,25 +14,28 @@ import numpy as np
 from .numeric import Array
 
 FIRM, LIGHT, HEAVY = 1e-4, 1e-12, 1e8
-"""First, least and greatest damping of a step over the curvature (a choice, as Marquardt's)."""
+"""First, smallest and largest damping of a step, relative to the curvature (our choice)."""
 CONFIDENCE = 0.95
 """Confidence level of the bounds."""
 NORMAL = 1.959964
-"""Half width of a `CONFIDENCE` interval of a normal distribution in standard errors."""
+"""Half width of a `CONFIDENCE` interval of a normal distribution, in standard errors."""
 WEAK = 0.3
-"""A parameter is identifiable if its bounds lie within this share of its value."""
+"""A parameter is identifiable if its confidence bounds deviate by at most this share of its
+value."""
 ROUNDING = 1e-6
-"""Bounds within this share of a parameter's size are close enough, even for an exponent of 0."""
+"""Confidence bounds that deviate by at most this share of a parameter's scale are always close
+enough, even around an exponent of 0."""
 RANK = 1e-7
-"""Least ratio of singular values: below it a double-precision residual cannot resolve a step."""
+"""Smallest usable ratio of singular values: below it, a step is lost in double-precision rounding
+of the residuals."""
 SEEN = 1e-4
-"""Largest share of a parameter's step in directions that the points do not resolve."""
+"""Largest share that a parameter may have in directions that the points do not determine."""
 
 Verdict = Literal["identifiable", "weakly identifiable", "not identifiable"]
 
 
 class Minimum(NamedTuple):
-    """Minimum of a sum of squares: parameters, and half the sum."""
+    """Minimum of a sum of squares: parameters `x`, and `cost`, which is half the sum."""
 
     x: Array
     cost: float
@@ -56,13 +59,13 @@ def solve(
     Parameters
     ----------
     residuals : weighted residuals (points,) of parameters (n,)
-    start : initial parameters (n,), moved inside the bounds
-    bounds : lower and upper bounds (n,); may be infinite
+    start : initial parameters (n,); they are moved inside the limits
+    bounds : lower and upper limits (n,); may be infinite
     slopes : Jacobian of the residuals (points, n); default: central differences
     sizes : scales of the parameters (n,); default: from the Jacobian
-    room : least distance of the start from the bounds, since the method starts inside them
-    cost_tolerance, step_tolerance, slope_tolerance : convergence limits of the relative change of
-        the sum, the relative step and the scaled gradient
+    room : smallest distance of the start from the limits, since the method must start between them
+    cost_tolerance, step_tolerance, slope_tolerance : tolerances for convergence: relative change of
+        the sum, relative step, scaled gradient
     most : largest number of evaluations; default: 100 per parameter
     """
     from scipy.optimize import least_squares  # slow to import, rarely needed
@@ -83,18 +86,18 @@ def solve(
 
 
 class Parameter(NamedTuple):
-    """A fitted value with its confidence bounds, SI; infinite bounds where it is undetermined."""
+    """A fitted value with its confidence bounds, SI; the bounds are infinite if undetermined."""
 
     value: float
     lower: float
     upper: float
     standard_error: float
     identifiable: bool
-    """Whether the bounds lie within 30 % of the value."""
+    """Whether the confidence bounds lie within 30 % of the value."""
 
     @property
     def verdict(self) -> Verdict:
-        """Identifiable; weakly identifiable while the bounds exclude a change of sign; else not."""
+        """Verdict on a parameter: it is weakly identifiable if the bounds at least exclude zero."""
         if self.identifiable:
             return "identifiable"
         signed = self.lower > 0 or self.upper < 0
@@ -112,7 +115,7 @@ class Parameter(NamedTuple):
 
 
 def rated(value: float, lower: float, upper: float, standard_error: float) -> Parameter:
-    """A value with its bounds and verdict: identifiable within `WEAK` of the value."""
+    """Rate a value by its bounds: it is identifiable if they lie within `WEAK` of the value."""
     near = max(value - lower, upper - value) <= WEAK * abs(value)
     return Parameter(value, lower, upper, standard_error, bool(near))
 
@@ -124,7 +127,7 @@ class FittedParameters(NamedTuple):
     covariance: Array
     rank: int
     quantile: float
-    """Student's t of the bounds; infinite without degrees of freedom."""
+    """Student's t for the confidence bounds; infinite without degrees of freedom."""
 
 
 def quantile(spare: float) -> float:
@@ -142,17 +145,18 @@ def known(
     *,
     spare: float | None = None,
 ) -> FittedParameters:
-    """Bounds of the linearised model with Student's t [SeberWild1989].
+    """Confidence bounds from the linearised model and Student's t [SeberWild1989].
 
-    Covariance s^2 (J^T J)^-1, s^2 = sum r^2/(n - p), in the directions that the points resolve; a
-    parameter with a component outside them is undetermined.
+    The covariance is s^2 (J^T J)^-1 with s^2 = sum r^2/(n - p), for the slopes J and residuals r of
+    n points and p parameters. It covers only directions that the points determine; a parameter with
+    a component in another direction is undetermined.
 
     Parameters
     ----------
     values : least-squares parameters by name
     slopes : Jacobian of the weighted model (points, parameters)
     residuals : weighted residuals (points)
-    sizes : relevant step of each parameter (parameters): its size, or more where it may be 0
+    sizes : scale of each parameter (parameters): its value, or more if it may be 0
     spare : degrees of freedom; default: n - p
 
     Returns
@@ -187,15 +191,15 @@ def known(
 
 
 SETTLED = 1e-6
-"""Least relative cost reduction of a step to continue (a choice: with 100 residuals the remaining
-error is a hundredth of a standard error)."""
+"""The search continues while a step reduces the cost by more than this share (our choice: with 100
+residuals, the remaining error is a hundredth of a standard error)."""
 LOST = 1e3
-"""Damping above which a problem without progress is abandoned (a choice: steps are then a
+"""A problem without progress is abandoned above this damping (our choice: steps are then a
 thousandth of the undamped step)."""
 
 
 class FitSearch(NamedTuple):
-    """Names of the searched numbers, with their limits."""
+    """Names of the numbers to search, with their limits."""
 
     names: tuple[str, ...]
     low: Array
@@ -211,16 +215,17 @@ def relaxed(
 ) -> tuple[Array, Array]:
     """Solve many least-squares problems at once, each from its own start, within limits.
 
-    Takes Levenberg-Marquardt steps. A number at a limit stays there while the cost would push it
-    beyond.
+    The search takes Levenberg-Marquardt steps. A number at a limit stays there while a lower cost
+    would lie beyond it.
 
     Parameters
     ----------
-    misfit : residuals of rows (rows, residuals), for the problems with the given indices
-    slopes : derivatives at rows (rows or 1, residuals, searched)
+    misfit : function for residuals (rows, residuals) at rows, for the problems with the given
+        indices
+    slopes : function for their derivatives at rows (rows or 1, residuals, searched)
     rows : start of each problem (problems, searched)
-    search : limits
-    steps : maximum number
+    search : names and limits of the searched numbers
+    steps : largest number of steps
 
     Returns
     -------

@@ -1,7 +1,7 @@
-"""Registry of kinds, such as seal types and friction laws: choices that a design file names.
+"""Registries of kinds (such as seal types and friction laws) that a design file names.
 
 Each kind is one module with one frozen dataclass; the registry lists them. Choices, help, JSON
-Schema, faults and tests read the registry, so a kind is named nowhere else.
+Schema, faults and tests read the registry, so no other code names a kind.
 """
 
 from __future__ import annotations
@@ -78,8 +78,8 @@ def kinds(what: str, *entries: K) -> Kinds[K]:
     Raises
     ------
     ValueError
-        duplicate name, name not a lower-case word, or a field that is None, empty text or not a
-        function against its annotation
+        if a name is duplicate or no lower-case word, or a field is None, empty, or no function
+        although annotated as one
 
     Examples
     --------
@@ -105,12 +105,12 @@ def kinds_in(what: str, package: str, name: str, *modules: str) -> Kinds[Any]:
     ----------
     what : common noun of the kinds, singular
     package : package of the modules
-    name : attribute of each module that is its kind
-    modules : modules in listing order; each has the name of its kind
+    name : name of the attribute that contains a module's kind
+    modules : modules in listing order; each module is named like its kind
 
     Raises
     ------
-    ValueError : as `kinds`; or a module without a kind, or with a kind of another name
+    ValueError : as for `kinds`, or if a module has no kind, or a kind of another name
     """
     entries = []
     for module in modules:
@@ -124,11 +124,11 @@ def kinds_in(what: str, package: str, name: str, *modules: str) -> Kinds[Any]:
 
 
 def per_kind(registry: Mapping[str, Any], functions: Mapping[str, V]) -> Mapping[str, V]:
-    """Data that a higher layer adds to every kind of a registry: exactly one entry each.
+    """Check data that another package adds to a registry: exactly one entry for each kind.
 
     Raises
     ------
-    ValueError : a kind without an entry, or an entry without a kind
+    ValueError : if a kind has no entry, or an entry has no kind
 
     Examples
     --------

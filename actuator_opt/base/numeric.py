@@ -1,9 +1,9 @@
 """Small numerical helpers for all models.
 
 Models accept floats, NumPy arrays, arrays of any array-API namespace, and complex numbers: the
-derivative of a model is its imaginary part under a tiny imaginary step [Squire1998]. These
-functions replace NumPy functions that are silently wrong for complex input or refuse it; every
-comparison uses real parts.
+derivative of a model is the imaginary part of its result for a tiny imaginary step [Squire1998].
+These functions replace NumPy functions that are silently wrong for complex input or refuse it;
+all comparisons use real parts.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ Array: TypeAlias = Any
 _PLAIN = (float, int, complex, np.generic)
 
 STEP = 1e-30
-"""Imaginary step of the complex-step derivative: so small that its error is O(1e-60)."""
+"""Imaginary step of the complex-step derivative; its error is of the order of 1e-60."""
 
 
 def namespace(*values: Array) -> Any:
-    """Array-API namespace of the arguments: NumPy unless an array has another."""
+    """Array-API namespace of the arguments: NumPy, unless an array belongs to another library."""
     for value in values:
         if type(value) is not np.ndarray and not isinstance(value, _PLAIN):
             return value.__array_namespace__()
@@ -43,7 +43,7 @@ def real(value: Array) -> Array:
 
 def where(condition: Array, yes: Array, no: Array) -> Array:
     """Elementwise choice; `condition` must come from real parts."""
-    if type(condition) is np.ndarray:  # the common case, kept fast: models call this most
+    if type(condition) is np.ndarray:  # the common case must be fast: models call it most often
         choice: Any = np.where(condition, yes, no)
         return choice.item() if choice.dtype.hasobject else choice  # a traced value is a scalar
     if isinstance(condition, (bool, np.bool_)):
@@ -67,12 +67,12 @@ def minimum(first: Array, second: Array) -> Array:
 
 
 def clip(value: Array, lower: Array, upper: Array) -> Array:
-    """`value` limited to [lower, upper]; for physical limits only, never to hide a fault."""
+    """Limit `value` to [lower, upper]; for physical limits only, never to hide a fault."""
     return minimum(maximum(value, lower), upper)
 
 
 def positive(value: Array) -> Array:
-    """`value` where its real part is positive, else NaN: guards a domain without raising."""
+    """`value` if its real part is positive, else NaN; it marks invalid input without an error."""
     return where(real(value) > 0, value, np.nan)
 
 
@@ -131,13 +131,13 @@ def together(values: Sequence[Array], axis: int = 0) -> Array:
     xp = namespace(*values)
     if len({value.shape for value in values}) > 1:
         values = xp.broadcast_arrays(*values)
-    if xp is np and axis == 0:  # the same as stack, in a third of the time for a few designs
+    if xp is np and axis == 0:  # equal to `stack`, but takes a third of the time for a few designs
         return np.array(values)
     return xp.stack(values, axis=axis)
 
 
 def stacked(rows: Sequence[Sequence[Array]]) -> list[Array]:
-    """Layer values as an array (layers, ...), broadcast to a common batch shape."""
+    """Stack the values of layers into an array (layers, ...), broadcast to a common batch shape."""
     xp = namespace(*(value for row in rows for value in row))
     result = []
     for row in rows:
@@ -150,7 +150,7 @@ def stacked(rows: Sequence[Sequence[Array]]) -> list[Array]:
 
 
 def lifted(value: Array, dims: int) -> Array:
-    """A layer array (layers, ...) with its batch axis moved to the last of `dims` batch axes."""
+    """Reshape a layer array (layers, ...) so that its batch axis is the last of `dims` axes."""
     missing = dims + 1 - value.ndim
     if missing <= 0:
         return value
@@ -167,7 +167,7 @@ _SIZE = re.compile(
     r"|depth|height|land|engagement|clearance|tolerance|roughness|travel|area|volume"
     r"|second_moments?|wetted_(?:back|front))(?:_[ab12])?"
 )
-"""Names of lengths, areas, volumes and second moments, which are never negative."""
+"""Pattern of argument names for lengths, areas, volumes and second moments: never negative."""
 _RATE = re.compile(r".*_per_.*")
 PAIRS = (
     ("outer_radius", "inner_radius"),
@@ -177,22 +177,22 @@ PAIRS = (
     ("radius", "hole_radius"),
     ("edge_radius", "hub_radius"),
 )
-"""Pairs of a larger and a smaller size: walls have a thickness, rods leave an annulus."""
+"""Pairs of arguments of which the first is larger, as walls have a thickness and annuli an area."""
 
 
 def sizes(function: Callable[..., object]) -> tuple[str, ...]:
-    """Arguments of a function that are sizes, by name."""
+    """Arguments of a function that are sizes, judged by their names."""
     code = function.__code__
     names = code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]
     return tuple(name for name in names if _SIZE.fullmatch(name) and not _RATE.fullmatch(name))
 
 
 def geometry(function: Callable[P, T]) -> Callable[P, T]:
-    """Make a model return NaN where a size is negative or an inner size is not the smaller.
+    """Make a model return NaN if a size is negative, or an inner size is not below the outer.
 
-    Other elements of an array keep their values. The thicknesses of `layers` are checked too.
-    Symbols and arrays of other libraries than NumPy are not checked: they are traced once for many
-    values, which the checks and limits of the design keep possible.
+    Of an array, only the impossible elements become NaN. The thicknesses of `layers` are checked
+    too. Symbols, and arrays of libraries other than NumPy, are not checked: the model is traced
+    once for many values, and the limits of the design exclude impossible values.
     """
     names = sizes(function)
     pairs = [pair for pair in PAIRS if pair[0] in names and pair[1] in names]
@@ -225,7 +225,7 @@ def geometry(function: Callable[P, T]) -> Callable[P, T]:
 
 
 def _possible(value: Any) -> bool:
-    """Whether no value of a size is negative; the common case, kept fast."""
+    """Whether no value of a size is negative; fast, as this is the common case."""
     if isinstance(value, float):
         return not value < 0
     if type(value) is np.ndarray and value.dtype.kind in "fc":
@@ -234,7 +234,7 @@ def _possible(value: Any) -> bool:
 
 
 def _checked(value: Any) -> tuple[Any, Any]:
-    """A size, or several, with NaN for negative values; and a mask of these values."""
+    """Replace negative values of a size, or several, by NaN; return also a mask of these values."""
     if not isinstance(value, tuple | list):
         return _masked(real(value) < 0, value)
     elements = [_checked(element) for element in value]
@@ -243,7 +243,7 @@ def _checked(value: Any) -> tuple[Any, Any]:
 
 
 def _masked(impossible: Any, value: Any) -> tuple[Any, Any]:
-    """A value with NaN where it is impossible, and a mask of these; symbols are unchanged."""
+    """Replace impossible values by NaN; return also their mask. Symbols are unchanged."""
     if impossible is False:
         return value, False
     if impossible is True:
@@ -256,7 +256,7 @@ def _masked(impossible: Any, value: Any) -> tuple[Any, Any]:
 
 
 def _with_nan(result: Any, impossible: Any) -> Any:
-    """A result with NaN for each number whose geometry is impossible."""
+    """Replace the results for impossible geometries by NaN."""
     if isinstance(result, tuple | list):
         parts = [_with_nan(part, impossible) for part in result]
         return type(result)(*parts) if hasattr(result, "_fields") else type(result)(parts)

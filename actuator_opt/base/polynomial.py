@@ -1,7 +1,7 @@
 """Real polynomials in s as tuples of coefficients, lowest power first.
 
-Coefficients are floats or arrays that broadcast. A coefficient that is the number 0 costs
-nothing, so one formula serves circuits with and without a line or a valve. Everything but `roots`
+Coefficients are floats or arrays that broadcast. Terms with a coefficient that is the number 0 are
+skipped, so one formula serves circuits with and without a line or a valve. Everything but `roots`
 is plain arithmetic and works under a complex step. For the same reason, frequency responses have
 separate real and imaginary parts.
 """
@@ -15,11 +15,13 @@ import numpy as np
 from .numeric import Array, namespace, real
 
 BEYOND = 1.324718
-"""Root of x^3 = x + 1: scales the distance to a start point beyond all roots but one."""
+"""Root of x^3 = x + 1; a factor for the distance from which Newton's steps start, beyond the outer
+root."""
 SHY = 1 + 1e-15
-"""Divisor of a Newton step: keeps it on its side of the root despite rounding."""
+"""Divisor of a Newton step, so that rounding does not carry it past the root."""
 MOST = 120
-"""Number of steps for a triple root: each step covers a third of the distance."""
+"""Largest number of Newton steps: enough for a triple root, where a step covers a third of the
+distance."""
 
 
 def cubic_roots(square: np.ndarray, slope: np.ndarray, constant: np.ndarray) -> np.ndarray:
@@ -61,9 +63,10 @@ def cubic_roots(square: np.ndarray, slope: np.ndarray, constant: np.ndarray) -> 
 
 
 def _outer_root(square: np.ndarray, slope: np.ndarray, constant: np.ndarray) -> np.ndarray:
-    """A real root of each cubic: the outer root on the far side of the inflection point.
+    """The outer real root of each cubic, found by Newton's steps from outside.
 
-    At a triple root, slope and value are rounding errors only: no step passes the inflection.
+    At a triple root, slope and value are only rounding errors, so steps stop at the inflection
+    point.
     """
     x = inflection = square * (-1 / 3)
     value, rise = _value(x, square, slope, constant)
@@ -98,14 +101,14 @@ Polynomial: TypeAlias = tuple[Array, ...]
 
 
 class Parts(NamedTuple):
-    """A complex number as two parts, each real or with a complex step."""
+    """A complex number as two separate parts, each of which may carry a complex step."""
 
     real: Array
     imaginary: Array
 
     @property
     def complex(self) -> Array:
-        """As a complex number; any complex step is dropped."""
+        """Convert to a complex number; any complex step is dropped."""
         return self.real + 1j * self.imaginary
 
 
@@ -114,7 +117,7 @@ def _vanishes(coefficient: Array) -> bool:
 
 
 def trimmed(polynomial: Polynomial) -> Polynomial:
-    """The polynomial without leading coefficients that are the number 0."""
+    """Drop leading coefficients that are the number 0."""
     size = len(polynomial)
     while size and _vanishes(polynomial[size - 1]):
         size -= 1
@@ -180,7 +183,7 @@ def at_frequency(polynomial: Polynomial, angular_frequency: Array) -> Parts:
 
 
 def even_and_odd(polynomial: Polynomial) -> tuple[Polynomial, Polynomial]:
-    """P(i omega) = E(w) + i omega O(w) with w = omega^2: E and O as polynomials in w."""
+    """Split P(i omega) = E(w) + i omega O(w) into polynomials E and O in w = omega^2."""
     signs = (1.0, -1.0)
     even = tuple(signs[k % 2] * c for k, c in enumerate(polynomial[0::2]))
     odd = tuple(signs[k % 2] * c for k, c in enumerate(polynomial[1::2]))
@@ -188,7 +191,7 @@ def even_and_odd(polynomial: Polynomial) -> tuple[Polynomial, Polynomial]:
 
 
 def square_of_magnitude(polynomial: Polynomial) -> Polynomial:
-    """|P(i omega)|^2 as a polynomial in w = omega^2: E^2 + w O^2.
+    """|P(i omega)|^2 = E^2 + w O^2, as a polynomial in w = omega^2 (see `even_and_odd`).
 
     >>> square_of_magnitude((1.0, 2.0))
     (1.0, 4.0)
@@ -198,7 +201,7 @@ def square_of_magnitude(polynomial: Polynomial) -> Polynomial:
 
 
 def roots(polynomial: Polynomial) -> np.ndarray:
-    """All roots, (..., degree) complex: eigenvalues of the scaled companion matrix, or a cubic's.
+    """All roots, (..., degree) complex: by formula for cubics, else companion-matrix eigenvalues.
 
     Only real parts of the coefficients are used. Equal neighbours along the last axis (copies of a
     design under a complex step) are solved once. A zero leading coefficient in an array gives a
@@ -220,7 +223,7 @@ def roots(polynomial: Polynomial) -> np.ndarray:
 
 
 def _scaled_roots(coefficients: np.ndarray) -> np.ndarray:
-    """Roots of polynomials (..., degree + 1), with the variable scaled to mean magnitude 1."""
+    """Roots of polynomials (..., degree + 1), computed with roots scaled to mean magnitude 1."""
     degree = coefficients.shape[-1] - 1
     lead = coefficients[..., -1]
     with np.errstate(all="ignore"):
@@ -248,7 +251,10 @@ def _scaled_roots(coefficients: np.ndarray) -> np.ndarray:
 
 
 def root_motion(polynomial: Polynomial, root: Array) -> Array:
-    """Complex step of a simple root due to those of the coefficients: -dP(root)/P'(root)."""
+    """Complex step of a simple root that follows from the complex steps of the coefficients.
+
+    It is -dP(root)/P'(root), with the complex step dP of the polynomial's value.
+    """
     change: Array = 0.0
     slope: Array = 0.0
     for power in range(len(polynomial) - 1, -1, -1):
@@ -260,7 +266,7 @@ def root_motion(polynomial: Polynomial, root: Array) -> Array:
 
 
 def positive_root(polynomial: Polynomial, start: Array) -> Array:
-    """A real root near `start`, refined by Newton; carries the complex step of the coefficients.
+    """A real root near `start`, refined by Newton's method, with the complex step that follows.
 
     The last Newton step uses the arithmetic of the coefficients: by the implicit-function theorem
     the root gets its exact derivative. For a constant, which has no root, `start` is returned.

@@ -1,4 +1,4 @@
-"""Progress of long computations, reported to a watching function if there is one."""
+"""Progress of long computations, reported to a function if one is registered."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from contextvars import ContextVar
 from typing import TypeVar
 
 Watch = Callable[[str, float | None], None]
-"""Receives the current task and its completed share, 0 to 1, or None if unknown."""
+"""Function that receives the current task and its completed share (0 to 1, None if unknown)."""
 _watch: ContextVar[Watch | None] = ContextVar("watch", default=None)
 _One = TypeVar("_One")
 
@@ -32,7 +32,7 @@ def tell(what: str, share: float | None = None) -> None:
 
 @contextmanager
 def whole(what: str, share: float | None = None) -> Iterator[None]:
-    """A task reported as a whole: reports from inside are suppressed."""
+    """Report a task as a whole; reports from inside it are suppressed."""
     tell(what, share)
     with watched(None):
         yield

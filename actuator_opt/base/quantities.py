@@ -1,6 +1,6 @@
-"""All quantities, each declared once: name, symbol, dimension, display unit, range, label.
+"""Table of all quantities: name, symbol, dimension, display unit, range, label.
 
-The parser, help, tables, JSON, reports and the JSON Schema all read this table. `INPUTS` are the
+Parser, help, tables, JSON, reports and JSON Schema all read this table. `INPUTS` are the
 quantities of design and material files. Computed quantities are in `metrics.table`.
 """
 
@@ -12,13 +12,13 @@ from . import units
 from .dataclass import dataclass
 
 Sense = Literal["min", "max"]
-"""Senses: limits of at least or at most; the smallest or largest of several values."""
+"""Sense of a limit (at least, at most) or of a worst value (smallest, largest)."""
 
 INFINITY = float("inf")
 
 
 def short(value: float, digits: int = 4, *, full: bool = False) -> str:
-    """A number with this many digits; with `full`, trailing zeros are kept.
+    """Text of a number with this many digits; with `full`, trailing zeros are kept.
 
     >>> short(20000.0), short(7.9, 3), short(7.9, 3, full=True)
     ('20000', '7.9', '7.90')
@@ -33,7 +33,8 @@ def short(value: float, digits: int = 4, *, full: bool = False) -> str:
 class Quantity:
     """A named physical quantity; limits in SI, `lower` and `upper` included.
 
-    `worst` states which value of a metric over load cases and places is the worst.
+    `worst` states whether the smallest or largest value of a metric, over load cases and locations,
+    is the worst.
     """
 
     name: str
@@ -226,7 +227,7 @@ RECORDS = _table("""
  pressure_lag         | tau    | time        | ms     | -100  | 100    | time by which the pressures come late
  span                 | L      | length      | mm     | 1     | 20000  | span between the supports
 """)
-"""Settings of a test record; only forces and times are signed."""
+"""Quantities of a test record's settings; only forces and times may be negative."""
 
 SCENARIOS = _table("""
  duration             | T      | time        | s      | 1e-5  | 100000 | simulated time
@@ -271,7 +272,7 @@ SCENARIOS = _table("""
  damping_factor       | -      | ratio       | -      | 0     | 10     | damping of a stop over sqrt(K m)
  cycles_per_window    | n      | count       | -      | 1     | 1000   | cycles in a window
 """)
-"""Inputs of a scenario beyond its design; only coordinates of signals are signed."""
+"""Inputs of a scenario, in addition to its design; only coordinates of signals may be negative."""
 
 RESULTS = _table("""
  rise_time            | t_r    | time        | ms     | | | time from 10 to 90 % of the step
@@ -289,4 +290,4 @@ RESULTS = _table("""
  dynamic_stiffness    | k_dyn  | stiffness   | kN/mm  | | | dynamic stiffness at the frequency of the load
  dynamic_phase        | phi    | angle       | deg    | -180 | 180 | phase by which the force leads
 """)
-"""Results of a simulation, which the requirements of a scenario name."""
+"""Results of a simulation, which the requirements of a scenario can name."""

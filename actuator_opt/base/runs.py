@@ -1,9 +1,8 @@
 """Records of runs: one file each in the user's folder, written completely or not at all.
 
-A record is a file of two lines of JSON: a short head for lists, and the body. Each line ends with
-the checksum of its preceding text, which reveals damage. The checksum is no signature: who
-writes a record can also write its checksum. This module does not interpret runs, and deletes only
-on request.
+A record is a file of two lines of JSON: a short head for lists, and the body. Each line ends with a
+checksum of its text, which reveals damage. The checksum is no signature: anyone who writes a record
+can also write its checksum. This module does not interpret runs, and deletes only on request.
 """
 
 from __future__ import annotations
@@ -21,14 +20,15 @@ from .errors import Diagnostic, InputError, shown
 from .files import private_part, read_json
 
 FOLDER, SWITCH = "ACTUATOR_OPT_RUNS", "ACTUATOR_OPT_NO_RECORD"
-"""Environment variables: folder of the records, and a switch that disables them (not "0")."""
+"""Environment variables: folder of the records, and a switch that disables records unless "0"."""
 FORMAT = 2
-"""Version of the files; newer files are refused by name. Format 1 has no checksums."""
+"""Version of the files; newer versions are refused with an explanation. Format 1 has no
+checksums."""
 SUFFIX = ".run"
 _ID = re.compile(r"[0-9]{8}-[0-9]{6}-[0-9a-f]{6}")
 _BEGINNING = re.compile(r"[0-9]{4,8}(-[0-9]{0,6}(-[0-9a-f]{0,6})?)?")
 _MOST = 200_000_000
-"""Largest size of a record in bytes: far above that of any run."""
+"""Largest size of a record in bytes, far above the size of any run."""
 _HEAD = 4_000_000
 """Largest size of the first line in bytes: twice the longest command line."""
 _SEAL = "blake2b"
@@ -49,11 +49,11 @@ class StoredRun:
 
 
 def folder() -> Path | None:
-    """Folder of the records: ACTUATOR_OPT_RUNS, else the user's data folder; None: disabled.
+    """Folder of the records: ACTUATOR_OPT_RUNS, else the user's data folder; None if disabled.
 
     Raises
     ------
-    InputError : it names the home folder of an unknown user
+    InputError : if the variable names the home folder of an unknown user
     """
     if os.environ.get(SWITCH, "") not in ("", "0"):
         return None
@@ -68,7 +68,7 @@ def folder() -> Path | None:
 
 
 def _data() -> Path:
-    """Data folder of the user by the convention of the system."""
+    """Data folder of the user, by the conventions of the operating system."""
     if sys.platform == "win32":
         local = os.environ.get("LOCALAPPDATA", "")
         return Path(local) if local else Path.home() / "AppData" / "Local"
@@ -91,7 +91,7 @@ def write(place: Path, started: str, head: Mapping[str, Any], body: Mapping[str,
 
     Raises
     ------
-    InputError : not writable; no file is left
+    InputError : if it is not writable; no file remains
     """
     from .tables import encoded
 
@@ -120,7 +120,7 @@ def _random(size: int) -> str:
 
 
 def _claim(part: Path, path: Path) -> None:
-    """Rename a written file; FileExistsError if the name is taken."""
+    """Rename a written file; raise FileExistsError if the name is in use."""
     try:
         os.link(part, path)
     except FileExistsError:
@@ -132,7 +132,7 @@ def _claim(part: Path, path: Path) -> None:
 
 
 def entries(place: Path) -> tuple[list[StoredRun], list[Diagnostic]]:
-    """Records of a folder, newest first, and the faults of unreadable records."""
+    """List the records of a folder, newest first, and the faults of unreadable records."""
     runs: list[tuple[int, str, StoredRun]] = []
     faults = []
     try:
@@ -168,11 +168,11 @@ def is_record(path: Path) -> bool:
 
 
 def _parsed(line: bytes, path: Path, *, sealed: bool = False) -> tuple[dict[str, Any], bool]:
-    """A line of a record as an object, and whether its checksum is intact.
+    """Parse a line of a record; return the object, and whether the line has a correct checksum.
 
     Raises
     ------
-    InputError : not an object, wrong checksum, or the checksum is missing although `sealed`
+    InputError : if it is no object, its checksum is wrong, or missing although `sealed`
     """
     line = line.rstrip()
     try:
@@ -191,7 +191,7 @@ def _parsed(line: bytes, path: Path, *, sealed: bool = False) -> tuple[dict[str,
 
 
 def _sealed(line: bytes) -> bytes:
-    """A line of JSON with its checksum as the last key of the object."""
+    """Add the checksum to a line of JSON, as the last key of its object."""
     import hashlib
 
     checksum = hashlib.blake2b(line, digest_size=16).hexdigest()
@@ -205,7 +205,7 @@ def _bare(line: bytes) -> bytes:
 
 
 def is_name(text: str) -> bool:
-    """Whether a text names a run and not an existing design file."""
+    """Whether a text names a run, as opposed to an existing design file."""
     if Path(text).suffix == SUFFIX:
         return True
     named = text == "last" or _BEGINNING.fullmatch(text) is not None
@@ -213,11 +213,11 @@ def is_name(text: str) -> bool:
 
 
 def find(place: Path | None, name: str) -> Path:
-    """File of a record: by id, beginning of an id, ``last``, or path.
+    """Find the file of a record by its id, the beginning of its id, ``last``, or a path.
 
     Raises
     ------
-    InputError : no match, or several matches
+    InputError : if there is no match, or several
     """
     path = Path(name)
     if path.suffix == SUFFIX or os.sep in name:
@@ -257,7 +257,7 @@ def read(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
 
     Raises
     ------
-    InputError : no such file, not a record, damaged, or of a newer format
+    InputError : if the file is missing, no record, damaged, or of a newer format
     """
     from .files import read_bytes
 
@@ -278,7 +278,7 @@ def delete(path: Path) -> bool:
 
     Raises
     ------
-    InputError : it cannot be deleted
+    InputError : if it cannot be deleted
     """
     try:
         path.unlink()

@@ -1,8 +1,8 @@
-"""A costly smooth function as a Chebyshev polynomial in a box, with its own derivative.
+"""Approximate a costly smooth function by a Chebyshev polynomial in a box, with derivatives.
 
-Inputs with an extent in the box are axes of a tensor of Chebyshev polynomials [Boyd2001]; the
-other inputs enter to first order, by the slopes that the function returns. Evaluation is plain
-arithmetic and supports complex steps.
+Inputs with a range are axes of a tensor of Chebyshev polynomials [Boyd2001]. Other inputs have a
+first-order effect, by the slopes that the function returns. Evaluation is plain arithmetic and
+supports complex steps.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ class Interpolation:
     Parameters
     ----------
     values : outputs (m,)
-    slopes : derivatives of the outputs (m,) by the logarithm of inputs; those of axes are unused,
-        and an input that is neither here nor an axis has no effect
+    slopes : derivatives of the outputs (m,) with respect to the logarithm of each input; slopes for
+        axes are ignored, and an input that is neither listed nor an axis has no effect
     why : reason for a failed evaluation; values and slopes are then unused
     """
 
@@ -37,7 +37,7 @@ class Interpolation:
 
 @dataclass(frozen=True, slots=True)
 class SurrogateAxis:
-    """An axis of the polynomial in the logarithm of an input: 0 < lower < upper, and its nodes.
+    """An axis of the polynomial: the logarithm of an input, with 0 < lower < upper.
 
     With `hermite` the fit also matches the slopes along the axis, with twice as many terms.
     """
@@ -66,7 +66,7 @@ class SurrogateAxis:
         return (2 * np.log(limited) - low - high) / (high - low)
 
     def basis(self, value: Array) -> Array:
-        """Chebyshev polynomials (..., terms) at an input, limited to the axis."""
+        """Values of the Chebyshev polynomials (..., terms) at an input, limited to the axis."""
         x = self._coordinate(value)
         rows = [np.ones_like(x), x]
         while len(rows) < self.terms:
@@ -74,7 +74,7 @@ class SurrogateAxis:
         return np.stack(rows[: self.terms], axis=-1)
 
     def basis_slope(self, value: Array) -> Array:
-        """Derivatives of the polynomials (..., terms) by the logarithm of the input."""
+        """Derivatives of the polynomials (..., terms) for the logarithm of the input."""
         x = self._coordinate(value)
         second = [np.ones_like(x), 2 * x]  # U_k; T_k' = k U_(k-1)
         while len(second) < self.terms:
@@ -89,15 +89,15 @@ class SurrogateAxis:
 
 @dataclass(frozen=True, slots=True)
 class Surrogate:
-    """Polynomial of several outputs.
+    """Polynomial approximation of several outputs.
 
     Parameters
     ----------
     axes : inputs with an extent
     base : reference value of every input
     coefficients : (terms of axis 1, terms of axis 2, ..., outputs, 1 + first-order inputs)
-    linear : inputs that enter to the first order
-    failed : reasons of failed points, which are left out of the fit
+    linear : inputs with a first-order effect
+    failed : reasons of failed points, which the fit omits
     """
 
     axes: tuple[SurrogateAxis, ...]
@@ -109,7 +109,7 @@ class Surrogate:
     def __call__(self, inputs: Mapping[str, Array], slope: str | None = None) -> Array:
         """Outputs (m, ...) at inputs that broadcast; missing inputs have their base value.
 
-        With `slope`, derivatives by the logarithm of that axis instead.
+        With `slope`, return derivatives with respect to the logarithm of that axis instead.
         """
         point = {name: np.asarray(inputs.get(name, value)) for name, value in self.base.items()}
         names = [axis.name for axis in self.axes] + list(self.linear)
@@ -145,7 +145,7 @@ def surrogate(
     base : reference values of all inputs, positive
     axes : inputs with an extent
 
-    Failed points are left out and the others fitted by least squares; the fit is refused if more
+    Failed points are omitted and the others fitted by least squares. There is no surrogate if more
     than a tenth of the points failed.
     """
     points, results, failed = [], [], []
@@ -182,7 +182,7 @@ def _fitted(
     values: Sequence[np.ndarray],
     results: Sequence[Interpolation],
 ) -> np.ndarray:
-    """Coefficients (terms of every axis, outputs) that match the values, and slopes if given."""
+    """Fit the coefficients (terms of every axis, outputs) to the values, and slopes if given."""
     rows, targets = [_basis(axes, points)], [np.array(values)]
     for axis in axes:
         if axis.hermite:
@@ -195,7 +195,7 @@ def _fitted(
 def _basis(
     axes: Sequence[SurrogateAxis], points: Sequence[Mapping[str, float]], slope: str = ""
 ) -> np.ndarray:
-    """Products of the polynomials at points (points, all terms); their slopes along an axis."""
+    """Products of the polynomials at points, (points, all terms), or their slopes along an axis."""
     matrix = np.ones((len(points), 1))
     for axis in axes:
         along = axis.basis_slope if axis.name == slope else axis.basis

@@ -1,6 +1,6 @@
-"""Plain text tables with columns padded to their widest cell; results shown in a notebook.
+"""Plain text tables with aligned columns; JSON text; results shown in a notebook.
 
-In a notebook a result is shown as its page.
+A notebook shows a result as its page.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from .errors import Diagnostic, InputError
 
 
 def aligned(rows: Sequence[Sequence[str]], *, right: Sequence[int] = ()) -> str:
-    """Rows of cells as lines of aligned columns; columns named in `right` are right-aligned.
+    """Join rows of cells into lines with aligned columns; `right` lists right-aligned columns.
 
     >>> print(aligned([["bore", "25"], ["rod", "9.5"]], right=[1]))
     bore   25
@@ -32,7 +32,7 @@ def aligned(rows: Sequence[Sequence[str]], *, right: Sequence[int] = ()) -> str:
 
 
 LOST = "not_finite"
-"""Key that lists the numbers of an object that are null because they are not finite."""
+"""Key under which an object lists its numbers that are null because they are not finite."""
 
 
 def encoded(data: Mapping[str, Any], **style: Any) -> str:
@@ -45,7 +45,7 @@ def encoded(data: Mapping[str, Any], **style: Any) -> str:
 
     Raises
     ------
-    InputError : nested too deeply
+    InputError : if the data are nested too deeply
 
     Notes
     -----
@@ -83,15 +83,15 @@ _RENDERERS: list[Callable[[object], str]] = []
 
 
 def show_by(renderer: Callable[[object], str]) -> None:
-    """Show results by a function that turns a result into a piece of HTML."""
+    """Register the function that turns a result into HTML."""
     _RENDERERS[:] = [renderer]
 
 
 class Displayed:
-    """A result that a notebook shows as its page."""
+    """Base class of results that a notebook shows as their page."""
 
     __slots__ = ()
 
     def _repr_html_(self) -> str | None:
-        """The page as HTML; None where nothing has been loaded that can render it."""
+        """The page as HTML; None if no function for it is registered."""
         return _RENDERERS[0](self) if _RENDERERS else None

@@ -1,4 +1,4 @@
-"""Units: conversion between text with a unit and SI. Knows no field names (see `quantities`)."""
+"""Units: conversion between text with a unit and SI (names of fields are in `quantities`)."""
 
 from __future__ import annotations
 
@@ -189,7 +189,7 @@ _OFFSETS = {"degC": 273.15, "°C": 273.15, "degF": 459.67 * 5 / 9, "°F": 459.67
 _INVERSES = {float(f"1e-{n}"): float(f"1e{n}") for n in range(1, 16)}
 
 _DECIMAL_DIGITS = 12
-"""Scales of at most this many characters are exact decimals (1e-2, 0.0254, 101325)."""
+"""Scales with at most this many characters are exact decimals (1e-2, 0.0254, 101325)."""
 
 _SYNONYMS = (("**", "^"), ("²", "^2"), ("³", "^3"), ("·", "*"), ("⋅", "*"), ("⁻¹", "^-1"))
 
@@ -227,7 +227,7 @@ class Unit:
     def from_si(self, value: float) -> float:
         """Value in this unit from an SI value."""
         inverse = _INVERSES.get(self.scale)
-        moved = value - self.offset  # not in place: the caller may own the array
+        moved = value - self.offset  # never in place, as the caller may use the array
         return moved / self.scale if inverse is None else moved * inverse
 
 
@@ -247,7 +247,7 @@ def units_of(dimension: str) -> tuple[str, ...]:
 
 
 def unit(name: str, dimension: str) -> Unit:
-    """The unit `name` of `dimension`; raises `UnitError` with the actual meaning of the name."""
+    """Find the unit `name` of `dimension`; otherwise, `UnitError` states what the name means."""
     table = _SCALES[dimension]
     for candidate in (name.strip(), _normalise(name)):
         if candidate in table:

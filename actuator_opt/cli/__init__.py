@@ -1,8 +1,8 @@
-"""The command line: read arguments, call the library, print. No physics."""
+"""The command line: read arguments, call the library, print. It contains no physics."""
 
 try:
     from .app import command_line, main
-except KeyboardInterrupt:  # before any command that could be interrupted
+except KeyboardInterrupt:  # set before any command that could be interrupted
     import sys
 
     print("interrupted", file=sys.stderr)

@@ -1,7 +1,8 @@
 """The command line: its commands and their exit codes.
 
-stdout has data, stderr has messages; ``--json`` prints one SI object, including faults. Only the
-module of the given command is imported, and heavy modules only inside the commands that need them.
+Data are printed to stdout and messages to stderr; ``--json`` prints one object in SI, also for
+faults. Only the module of the given command is imported, and heavy modules only inside the commands
+that need them.
 """
 
 from __future__ import annotations
@@ -46,7 +47,7 @@ COMMANDS = {
 """All commands in the order of the help, each with the module of its function."""
 
 HIDDEN = {"optimize"}
-"""Alternative spellings, which the help does not list."""
+"""Alternative spellings of commands, which the help does not list."""
 
 
 def _main(
@@ -70,7 +71,7 @@ def _leave(code: ExitCode | None, **options: object) -> None:
 
 
 def command_line(arguments: Sequence[str] = ()) -> Any:
-    """The command line, with ``--debug`` for every command.
+    """Build the command line, with the option ``--debug`` for every command.
 
     If the first argument names a command, only this command is imported, to save time.
     """
@@ -122,7 +123,7 @@ def _exit_code() -> int:
     try:
         command = command_line(sys.argv[1:])
         code: int = command(prog_name="actuator-opt", standalone_mode=False) or ExitCode.MET
-        if code == ExitCode.INTERRUPTED:  # how typer reports Ctrl-C
+        if code == ExitCode.INTERRUPTED:  # typer reports Ctrl-C in this way
             raise KeyboardInterrupt
     except ActuatorError as error:
         code = streams.faults(error.diagnostics, error.exit_code)
@@ -132,20 +133,20 @@ def _exit_code() -> int:
         code = leaving.code if isinstance(leaving.code, int) else ExitCode.FAULT
         if code == ExitCode.INTERRUPTED:  # already reported by the command
             return code
-    if streams.interrupted():  # noticed, but the exception was lost
+    if streams.interrupted():  # Ctrl-C was noticed, but the exception was lost
         raise KeyboardInterrupt
     return code
 
 
 def main() -> None:
-    """Run the command line; every fault gives a line and an exit code, never a traceback."""
+    """Run the command line; every fault gives a one-line message and an exit code, no traceback."""
     streams.prepare()
     try:
         code = _exit_code()
     except KeyboardInterrupt:
         code = streams.faults([Diagnostic("interrupted")], ExitCode.INTERRUPTED)
     except Exception as error:
-        if streams.interrupted():  # the interrupt caused the exception
+        if streams.interrupted():  # the interruption caused the exception
             code = streams.faults([Diagnostic("interrupted")], ExitCode.INTERRUPTED)
         else:
             code = streams.faults(*streams.unexpected(error))

@@ -1,4 +1,4 @@
-"""Designs: `init`, `check`, `evaluate`, `report`, `compare`, `export`, `schema`."""
+"""Commands for designs: `init`, `check`, `evaluate`, `report`, `compare`, `export`, `schema`."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def init(
 def _start_text(
     source: str | None, scenario: str | None, out: Path | None, title: dict[str, str]
 ) -> str:
-    """Start file of a design, or of a scenario for the file `out`; `title` has its name, if any."""
+    """Text of a start file for a design, or for a scenario in the file `out`, with its `title`."""
     from ..design import read_design
     from ..design.kinds import ValueFault
     from ..design.scenario.reader import scenario_text
@@ -189,14 +189,14 @@ def report(
     recorded = run_store.is_name(design)
     result: Any = _restored(job) if recorded else job.run(verbs.evaluate, seed=seed)
     files = job.run(job.written, result)
-    if not files:  # a front without designs
+    if not files:  # the front has no designs
         streams.err(result.result.sentence)
     job.answer(lambda: {"files": files}, files=files)
     return verbs.exit_code(result)
 
 
 def _restored(job: Job) -> Restored:
-    """A recorded run; deviations of the present models from it are printed."""
+    """Restore a recorded run; print where the present models give other results."""
     from .. import api as verbs
 
     if job.sets:

@@ -1,4 +1,4 @@
-"""A command from its arguments to its exit code: check, read, run, write, answer, record."""
+"""Run a command from its arguments to its exit code: read, compute, write, print, record."""
 
 from __future__ import annotations
 
@@ -21,25 +21,26 @@ if TYPE_CHECKING:
 
 _T = TypeVar("_T")
 Files = Sequence[Mapping[str, Any]]
-"""Files as in JSON, each with its `path`."""
+"""Files as listed in the JSON answer, each with its `path`."""
 
 
 @dataclass
 class Job:
-    """Input, output and answer of a command.
+    """A command: its input files, its output files and its printed answer.
 
-    Outputs that cannot be written are refused before any computation.
+    The command refuses outputs that cannot be written before it computes anything.
 
     Parameters
     ----------
-    design : its file
+    design : file of the design
     others : further input files
-    sets, plugins : of the design
+    sets, plugins : changed values (``--set``) and plug-ins of the design
     csv, write : files to write; neither may be an input file, except that `write` may be the design
-    report : whether to write the report to `out`, with `date`, as `format`; `all_pages` as images
+    report : whether to write the report to `out`, with `date`, as `format`; with `all_pages`,
+        images of all pages
     as_json, quiet : form of the answer
     record : whether to record the run
-    paper : keywords that only this report has
+    paper : keyword arguments that only this report has
     """
 
     design: str = ""
@@ -76,20 +77,20 @@ class Job:
 
     @property
     def set(self) -> list[tuple[str, str]]:
-        """``--set`` options as PATH and value."""
+        """The ``--set`` options, as pairs of PATH and value."""
         from ..design import split_assignment
 
         return [split_assignment(text) for text in self.sets or ()]
 
     @cached_property
     def actuator(self) -> Actuator:
-        """The design, with ``--set`` and ``--plugin``."""
+        """Read the design, with ``--set`` and ``--plugin``."""
         from ..api import read
 
         return read(self.design, set=self.set, plugins=self.plugins or ())
 
     def run(self, verb: Callable[..., _T], *inputs: object, **options: Any) -> _T:
-        """Run a verb, on the design by default, and show its progress on a terminal."""
+        """Call a library function, by default with the design; show its progress on a terminal."""
         with nullcontext() if self.quiet else streams.watching():
             return verb(*(inputs or (self.actuator,)), **options)
 
@@ -102,15 +103,16 @@ class Job:
         faults: Sequence[Diagnostic] = (),
         **also: Any,
     ) -> ExitCode:
-        """Write, show and record a result; returns the exit code.
+        """Write, print and record a result; return the exit code.
 
         Parameters
         ----------
-        result : result of a verb
+        result : result of the command
         files : files already written, listed in the answer
-        saved : the same, but not listed in JSON
+        saved : further files already written, but not listed in JSON
         faults : failed outputs
-        also : further results by their key in JSON, shown below the first; None: no result
+        also : further results by their key in JSON, printed below the first; None if a result is
+            missing
         """
         from ..api import results
 
@@ -136,7 +138,7 @@ class Job:
         return next(filter(None, map(results.exit_code, shown)), ExitCode.MET)
 
     def written(self, result: object, **also: Any) -> list[dict[str, Any]]:
-        """Write the requested CSV and report."""
+        """Write the CSV file and the report, if requested."""
         from .. import api as verbs
         from ..api import results
 
@@ -153,7 +155,7 @@ class Job:
         return [file.to_dict() for file in files]
 
     def keep(self, result: object, **more: Any) -> None:
-        """Record the run of a result; a failure only prints a line."""
+        """Record the run that gave a result; a failure only prints a message."""
         from ..api import results
 
         try:
@@ -164,7 +166,7 @@ class Job:
             streams.err(f"the run was not recorded: {fault}")
 
     def _origin(self) -> dict[str, Any]:
-        """Origin of the result."""
+        """Origin of the result: command line, design and date."""
         actuator = self.__dict__.get("actuator")  # None if the command read no design
         return {"actuator": actuator, "command": command_line(), "date": self.date}
 
@@ -196,11 +198,11 @@ _TARGETS = ("--out", "--write", "--csv", "--parquet", "--format")
 """Options of output files and folders."""
 
 _SILENT = ("--json", "--report", "--all-pages", "--quiet", "-q", "--no-record", "--debug")
-"""Flags that change no result."""
+"""Flags that do not affect the result."""
 
 
 def command_line() -> str:
-    """The command line without options that do not change the result: same input, same bytes."""
+    """The command line, without options that do not affect the result."""
     import shlex
 
     words, skip = ["actuator-opt"], False

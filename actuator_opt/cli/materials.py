@@ -1,4 +1,4 @@
-"""The commands of `actuator-opt materials`: library data with their sources."""
+"""Commands of `actuator-opt materials`, which show library data with their sources."""
 
 from __future__ import annotations
 

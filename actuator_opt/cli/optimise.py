@@ -63,7 +63,7 @@ def optimise(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Find the best design, price its limits, write the report."""
+    """Find the best design and what each limit costs; write the report."""
     from .. import api as verbs
 
     job = Job(
@@ -102,7 +102,7 @@ optimize = optimise
 
 
 def _scenario(file: str, actuator: Actuator) -> Trial:
-    """Scenario to verify the best design in; it must fit this design."""
+    """Read the scenario in which the best design is verified; it must suit the design."""
     from .. import api as verbs
 
     trial = verbs.read_scenario(file)
@@ -111,7 +111,7 @@ def _scenario(file: str, actuator: Actuator) -> Trial:
 
 
 def _unsaved(result: Optimisation, write: Path) -> Diagnostic | None:
-    """The fault if there is no best design to save."""
+    """Fault if there is no best design that `--write` could save."""
     from .. import api as verbs
 
     if verbs.exit_code(result) == ExitCode.MET or result.status == "interrupted":

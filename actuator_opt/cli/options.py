@@ -135,7 +135,7 @@ REPORTS = Path("reports")
 
 
 def quantity_of(option: str, text: str | None, quantity: Quantity) -> float | None:
-    """SI number of an option in the unit of its quantity."""
+    """Convert an option's text, with a unit of its quantity, to SI."""
     from ..design.kinds import ValueFault, read_quantity
 
     if text is None:

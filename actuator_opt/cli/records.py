@@ -1,4 +1,4 @@
-"""Test-bench records: `identify` and `calibrate`."""
+"""Commands for test-bench records: `identify` and `calibrate`."""
 
 from __future__ import annotations
 
@@ -246,7 +246,7 @@ _OPTIONS = {
     "load_force": "--load-force",
     "pressure_lag": "--pressure-lag",
 }
-"""Options of the settings by name."""
+"""Command-line option of each setting."""
 
 
 def _settings(
@@ -257,7 +257,7 @@ def _settings(
     load_force: str | None,
     pressure_lag: str | None,
 ) -> dict[str, Any]:
-    """Stated settings of the identification, SI."""
+    """Settings of the identification that the options state, SI."""
     settings = {
         "cutoff": quantity_of("--cutoff", cutoff, RECORDS["cutoff"]),
         "order": order,

@@ -1,4 +1,4 @@
-"""Recorded runs: the commands of `runs`, and `rerun` of a report."""
+"""Commands for recorded runs: those of `runs`, and `rerun` of a report."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def list_runs(
 
 
 def _no_runs(design: str | None, command: str | None) -> str:
-    """The reason for an empty list of runs."""
+    """Reason for an empty list of runs, and a remedy."""
     place = run_store.folder()
     if place is None:
         return f"runs are not recorded: {run_store.SWITCH} is set"

@@ -1,7 +1,8 @@
-"""Standard streams: width, colour, progress, and faults as lines or JSON.
+"""Output to the standard streams: width, colour, progress, and faults as lines or JSON.
 
 A closed pipe ends the output but not the command, which keeps its exit status. Data is written
-completely before Ctrl-C takes effect. An unexpected exception becomes a line and an exit code.
+completely before Ctrl-C takes effect. An unexpected exception gives a one-line message and an exit
+code.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from ..rendering.console import Style
 
 NARROWEST, WIDEST, USUAL, TERMINAL = 40, 1000, 100, 80
-"""Widths in columns: minimum, maximum, without a terminal, terminal of unknown width."""
+"""Line widths in characters: smallest, largest, without a terminal, for unknown terminals."""
 PATIENCE, PAUSE = 1.0, 0.2
 """Seconds before the first progress report, and between reports."""
 
@@ -37,7 +38,7 @@ class _Progress:
     """State of the streams during a command."""
 
     printed: bool = False
-    """Whether standard output already has data, which no second JSON object may follow."""
+    """Whether data were already printed to standard output; no second JSON object may follow."""
     held: bool = False
     """Whether Ctrl-C is delayed."""
     interrupted: bool = False
@@ -52,7 +53,7 @@ def interrupted() -> bool:
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C. A plain KeyboardInterrupt through an `exec` would make Python exit by signal."""
+    """Raised on Ctrl-C: a KeyboardInterrupt inside `exec` would make Python exit by signal."""
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:
@@ -62,7 +63,7 @@ def _interrupt(number: int, frame: FrameType | None) -> None:
 
 
 def prepare() -> None:
-    """Start a command: handle Ctrl-C, and replace characters that an encoding lacks."""
+    """Prepare the streams: handle Ctrl-C, and replace characters that the encoding lacks."""
     _now.printed = _now.held = _now.interrupted = False
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # unless it is ignored
         with suppress(ValueError):  # not the main thread
@@ -73,7 +74,7 @@ def prepare() -> None:
 
 
 def style() -> Style:
-    """Capabilities of standard output."""
+    """Which text styles standard output can show."""
     stream: TextIO | None = sys.stdout
     if stream is None:
         return {"colour": False, "unicode": False, "width": USUAL}
@@ -95,7 +96,7 @@ def out(text: str, *, end: str = "\n") -> None:
 
     Raises
     ------
-    InputError : not writable, such as a full disk; a closed pipe is not a fault
+    InputError : if it is not writable, for example on a full disk; a closed pipe is no fault
     """
     stream: TextIO | None = sys.stdout
     if stream is None:
@@ -149,13 +150,13 @@ def err(text: str) -> None:
     try:
         stream.write(escaped(text) + "\n")
         stream.flush()
-    except OSError:  # no stream left for the message
+    except OSError:  # no stream remains for the message
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 @contextmanager
 def watching() -> Iterator[None]:
-    """Show progress on standard error if it is a terminal; the line is removed at the end."""
+    """Show progress on standard error if it is a terminal; remove the line at the end."""
     stream: TextIO | None = sys.stderr
     if stream is None or not stream.isatty() or os.environ.get("TERM") == "dumb":
         yield
@@ -200,14 +201,14 @@ def as_json() -> bool:
 def faults(diagnostics: Iterable[Diagnostic], code: ExitCode) -> ExitCode:
     """Print faults as lines, or as a JSON object with ``--json``; returns `code`.
 
-    If standard output already has data, or fails, they become lines on standard error.
+    If standard output already has data, or fails, the faults become lines on standard error.
     """
     lines = list(diagnostics)
     if as_json() and not _now.printed:
         try:
             out_json({"errors": [fault.to_dict() for fault in lines]})
             return code
-        except InputError as error:  # standard output itself fails
+        except InputError as error:  # standard output itself has failed
             lines += error.diagnostics
     for fault in lines:
         err(str(fault))
@@ -217,7 +218,7 @@ def faults(diagnostics: Iterable[Diagnostic], code: ExitCode) -> ExitCode:
 DEBUG = "ACTUATOR_OPT_DEBUG"
 """Environment variable that enables tracebacks (any text except "0")."""
 _LONGEST = 300
-"""Maximum length of an exception in a line."""
+"""Largest number of characters of an exception's text in a message."""
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS}
 """Error codes of the operating system for a full disk."""
 
@@ -228,7 +229,7 @@ def debugging() -> bool:
 
 
 def unexpected(error: Exception) -> tuple[list[Diagnostic], ExitCode]:
-    """Line and exit code of an unexpected exception."""
+    """One-line message and exit code for an unexpected exception."""
     if debugging():
         import traceback
 
@@ -251,7 +252,7 @@ def unexpected(error: Exception) -> tuple[list[Diagnostic], ExitCode]:
 
 
 def _of_system(error: OSError) -> Diagnostic:
-    """An error of the operating system."""
+    """Message and exit code for an error of the operating system."""
     reason = error.strerror or type(error).__name__
     if error.filename is not None:
         remedy = "free disk space, or write elsewhere" if error.errno in _FULL else "check the file"

@@ -1,4 +1,4 @@
-"""Studies of a single design: `uncertainty`, `seal` and `simulate`."""
+"""Commands that study a single design: `uncertainty`, `seal` and `simulate`."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def uncertainty(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Yield, Sobol indices and tornado from scatter."""
+    """Yield under scatter, Sobol indices and tornado."""
     from .. import api as verbs
 
     job = Job(

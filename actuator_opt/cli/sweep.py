@@ -137,7 +137,7 @@ def sweep(
 
 @contextmanager
 def _resumable(store: Path | None, quiet: bool) -> Iterator[None]:
-    """If Ctrl-C ends a sweep with a store, explain how to resume."""
+    """If Ctrl-C ends a sweep that has a database, explain how to resume it."""
     try:
         yield
     except KeyboardInterrupt:
@@ -149,7 +149,7 @@ def _resumable(store: Path | None, quiet: bool) -> Iterator[None]:
 def _drawn(
     swept: Swept, figures: list[str], show: list[str], out: Path
 ) -> tuple[list[dict[str, str]], list[Diagnostic]]:
-    """Files of the figures, and faults of failed figures, reported after the results."""
+    """Draw the figures; return their files, and faults of failed figures to report at the end."""
     from .. import api as verbs
 
     files: list[dict[str, str]] = []
@@ -165,7 +165,7 @@ def _drawn(
 
 
 def _kept(reduce: str | None) -> int:
-    """Number of best designs to keep."""
+    """Read the number of best designs to keep."""
     if reduce is None:
         return 10
     name, _, number = reduce.partition(":")

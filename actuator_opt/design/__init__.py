@@ -1,4 +1,4 @@
-"""The design file: read into a `Design` in SI, with the place of every value kept."""
+"""Read design files into a `Design` in SI, and record where in the file each value is written."""
 
 from __future__ import annotations
 

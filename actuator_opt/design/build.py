@@ -1,4 +1,4 @@
-"""Build a `Design`, or another root section, from a tree; or list all of its faults."""
+"""Build a `Design`, or another root section, from a tree of values; or list all its faults."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ _TABLE_KEYS = {
     "uncertainty": "PATHs such as cylinder.bore, each with a distribution",
     "set": "PATHs of the design such as cylinder.bore, each with its value",
 }
-"""Contents of the tables whose keys are free names."""
+"""For tables whose keys are free names: text that describes their contents."""
 Root = TypeVar("Root", bound=Section)
 
 
 @dataclass(frozen=True, slots=True)
 class Built:
-    """Result of a build: a design, or faults."""
+    """Result of `build`: a design, or the faults that prevent one."""
 
     design: Design | None
     faults: tuple[Fault, ...]
@@ -45,7 +45,7 @@ class Built:
 
 @dataclass(frozen=True, slots=True)
 class Checked(Generic[Root]):
-    """A tree in SI where its values are valid, the section built from it, and its faults."""
+    """Result of `check`: tree with its valid values in SI, section built from it, and faults."""
 
     tree: dict[str, Any]
     section: Root | None
@@ -65,8 +65,8 @@ def build(
     ----------
     tree : dicts, lists, texts with units and SI numbers, in the shape of the design file
     materials : names and kinds of the library; None leaves material names unchecked
-    metrics : metrics that requirements and the objective may name; default: `metrics.METRICS`
-    contradictions : whether contradictory values are faults
+    metrics : allowed names of metrics in requirements and objective; default: `metrics.METRICS`
+    contradictions : whether values that contradict each other are reported as faults
     """
     metrics = METRICS if metrics is None else metrics
     checked = check(tree, Design, metrics, cross_field if contradictions else None)
@@ -89,8 +89,8 @@ def check(
     ----------
     tree : dicts, lists, texts with units and SI numbers, in the shape of the file
     root : section type of the whole file
-    metrics : metrics that requirements may name
-    cross : checks values of a tree in SI against each other
+    metrics : allowed names of metrics in requirements
+    cross : function that checks the values of a tree in SI against each other
     """
     copy: dict[str, Any] = copy_tree(tree)
     faults = list(_nothing(copy, ()))
@@ -109,14 +109,14 @@ def check(
 
 
 def copy_tree(node: Any) -> Any:
-    """A copy of a tree: new dicts and lists, the same values."""
+    """Copy a tree: dicts and lists are copied, values are shared."""
     if isinstance(node, Mapping):
         return {key: copy_tree(value) for key, value in node.items()}
     return [copy_tree(item) for item in node] if isinstance(node, (list, tuple)) else node
 
 
 def _nothing(node: Any, loc: Loc) -> Iterator[Fault]:
-    """Keys and list entries without a value."""
+    """Yield a fault for each key or list entry without a value."""
     pairs = node.items() if isinstance(node, dict) else enumerate(node)
     for key, value in pairs:
         if value is None:
@@ -138,7 +138,7 @@ def _to_si(tree: dict[str, Any], root: type[Section]) -> None:
 
 
 def _unless_known(faults: Iterable[Fault], reported: Sequence[Fault]) -> list[Fault]:
-    """Faults whose place, and the places above it, have no known fault; the first of each place."""
+    """Leave out faults at or inside faulty locations; keep one fault per location."""
     faulty = {fault.loc for fault in reported}
     new = []
     for fault in faults:
@@ -149,7 +149,7 @@ def _unless_known(faults: Iterable[Fault], reported: Sequence[Fault]) -> list[Fa
 
 
 def _section_at(root: type[Section], loc: Loc) -> tuple[type[Section] | None, KeyEntry | None]:
-    """Section and entry of the model at a place (None inside tables)."""
+    """Section and key entry of the model at a location (None inside tables)."""
     section: type[Section] | None = root
     entry: KeyEntry | None = None
     for key in loc:
@@ -163,7 +163,7 @@ def _section_at(root: type[Section], loc: Loc) -> tuple[type[Section] | None, Ke
 
 
 def _translate(error: ValidationError, root: type[Section]) -> Iterator[Fault]:
-    """Faults of the model's structure in the terms of the file."""
+    """Translate pydantic's validation errors into faults in the terms of the file."""
     for item in error.errors(include_url=False):
         loc: Loc = tuple(item["loc"])
         kind, value = item["type"], item["input"]
@@ -219,7 +219,7 @@ def _unknown_key(loc: Loc, root: type[Section]) -> Fault:
 
 
 def how_to_add(name: str, entry: KeyEntry | None) -> str:
-    """A line that adds a missing key."""
+    """Line of YAML that adds a missing key."""
     if entry is None:
         return f'add "{name}: …"'
     if isinstance(entry.kind, Of):
@@ -235,7 +235,7 @@ def how_to_add(name: str, entry: KeyEntry | None) -> str:
 
 
 def to_tree(section: Section) -> dict[str, Any]:
-    """A design, or a section, as dicts, lists, texts and SI numbers; unset values are absent."""
+    """Convert a design or section to dicts, lists, texts and SI numbers; omit unset values."""
 
     def plain(value: Any) -> Any:
         if isinstance(value, Section):
@@ -257,15 +257,16 @@ def with_values(
     metrics: Mapping[str, Quantity] | None = None,
     contradictions: bool = True,
 ) -> Design:
-    """The design with changed values: PATH to SI number or text with a unit; checked again.
+    """Copy a design with changed values by PATH (SI numbers, or texts with units); check it.
 
-    A variable that started at the old value starts at the new value. Without `contradictions`
-    values may contradict each other, as at the least infeasible point of a search.
+    If an optimisation variable started at the old value, it now starts at the new value. Without
+    `contradictions` values may contradict each other; this is needed where a search found no
+    feasible design.
 
     Raises
     ------
     InputError
-        a PATH without a value, an unsuitable value, or a resulting contradiction
+        if a PATH has no value, a value is unsuitable, or the new values contradict each other
     """
     tree = to_tree(design)
     diagnostics = []

@@ -1,8 +1,8 @@
-"""Discrete choices of the optimiser: PATHs, each with a list of allowed values (`choices`).
+"""Block `choices`: the discrete values that the optimiser may try for each PATH.
 
-The values have the notation of the value they replace: numbers with their unit, counts, names of
-materials, words. `recheck` converts their texts to values of a design, in place, and yields their
-faults. Values may contradict each other in some combinations; the optimiser skips these.
+Allowed values are written like the value they replace: numbers with their unit, counts, names of
+materials, words. `recheck` converts them in the tree to values of a design and yields their faults.
+The optimiser skips combinations whose values contradict each other.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ from .requirements import in_faulty_block
 from .structure import KeyEntry, MaterialLookup, number_of, value_at
 
 Value: TypeAlias = float | bool | str | Fraction
-"""An allowed value: SI number, boolean, name or word, or share of the stroke."""
+"""An allowed value: SI number, boolean, name or word, or fraction of the stroke."""
 
 MOST_VALUES = 50
-"""Most values of one PATH."""
+"""Largest number of allowed values for one PATH."""
 
 MOST_COMBINATIONS = 1000
-"""Most combinations of all choices; every combination is tried."""
+"""Largest number of combinations of all choices; the optimiser tries every combination."""
 
 
 def recheck(tree: dict[str, Any]) -> Iterator[Fault]:
-    """Check the choices: known PATHs other than variables, distinct valid values, not too many."""
+    """Check that PATHs are known and no variables, and values valid, distinct and not too many."""
     block = tree.get("choices")
     if not isinstance(block, dict):
         return
@@ -41,7 +41,7 @@ def recheck(tree: dict[str, Any]) -> Iterator[Fault]:
     for path, values in block.items():
         loc = ("choices", path)
         if in_faulty_block(path, tree):
-            block[path] = [0.0]  # the fault of the block is enough
+            block[path] = [0.0]  # the block as a whole already has a fault
             continue
         try:
             target = choosable(path, tree)
@@ -78,7 +78,7 @@ def recheck(tree: dict[str, Any]) -> Iterator[Fault]:
 
 
 def choosable(path: str, tree: Any) -> Target:
-    """The value that a choice sets; raises `ValueFault`."""
+    """Find the value that a choice may set; raise `ValueFault` if it cannot be a choice."""
     try:
         target = resolve(path, tree)
     except ValueFault as fault:
@@ -104,12 +104,12 @@ def _example(target: Target) -> str:
 
 
 def _values(loc: tuple[str, str], values: list[Any], target: Target) -> Iterator[Fault]:
-    """Convert every value to that of a design; yields faults of invalid and duplicate values."""
+    """Convert every value to a value of a design; yield faults of invalid or duplicate values."""
     assert target.entry is not None
     valid: list[tuple[int, Value]] = []
     for index, raw in enumerate(values):
         if raw is None:
-            continue  # already a fault
+            continue  # already reported as a fault
         try:
             value = values[index] = _read(raw, target.entry)
         except ValueFault as fault:
@@ -123,7 +123,7 @@ def _values(loc: tuple[str, str], values: list[Any], target: Target) -> Iterator
 
 
 def _read(raw: Any, entry: KeyEntry) -> Value:
-    """A value as its target field reads it; raises `ValueFault`."""
+    """Read an allowed value like a value of its target field; raise `ValueFault` if invalid."""
     if entry.choices:
         if raw in entry.choices:
             return str(raw)
@@ -136,7 +136,7 @@ def _read(raw: Any, entry: KeyEntry) -> Value:
 
 
 def same(value: Value, other: Value) -> bool:
-    """Whether two allowed values are equal; numbers up to rounding, as units differ.
+    """Whether two allowed values are equal; numbers in different units may differ by rounding.
 
     >>> same(2.62e-3, 0.262 * 0.01), same("nbr_70", "nbr_90")
     (True, False)
@@ -148,7 +148,7 @@ def same(value: Value, other: Value) -> bool:
 
 
 def material_faults(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
-    """Unknown materials, and materials that do not suit their place."""
+    """Yield faults for unknown materials, and for materials of a kind that the PATH refuses."""
     block = tree.get("choices")
     for path, values in block.items() if isinstance(block, dict) else ():
         try:
@@ -176,7 +176,7 @@ def _is_list(values: object) -> bool:
 
 
 def combinations(design: Design) -> Iterator[dict[str, Value]]:
-    """Every combination of the choices by PATH; the last PATH of the file changes fastest."""
+    """List every combination of the choices; the last PATH in the file changes fastest."""
     block: Mapping[str, Sequence[Value]] = design.choices
     for chosen in itertools.product(*block.values()):
         yield dict(zip(block, chosen, strict=True))
@@ -189,7 +189,7 @@ def quantity_of_choice(path: str, value: object, tree: Any) -> Quantity | None:
 
 
 def plain(value: Value) -> float | bool | str:
-    """An allowed value for JSON: numbers in SI, a share of the stroke as written.
+    """Convert an allowed value for JSON: numbers in SI, a fraction of the stroke as written.
 
     >>> plain(0.00178), plain(Fraction(0.5))
     (0.00178, '50 %')
@@ -198,7 +198,7 @@ def plain(value: Value) -> float | bool | str:
 
 
 def shown(path: str, value: Value, tree: Any) -> str:
-    """An allowed value for display, in the unit of its quantity."""
+    """Text of an allowed value, in the display unit of its quantity."""
     quantity, number = quantity_of_choice(path, value, tree), number_of(value)
     if quantity is None or number is None:
         return str(value).lower() if isinstance(value, bool) else str(value)
@@ -206,7 +206,7 @@ def shown(path: str, value: Value, tree: Any) -> str:
 
 
 def left_out(design: Design) -> tuple[str, ...]:
-    """A remark for each PATH whose own value is not among its choices."""
+    """Remarks on PATHs whose value in the design is not among their allowed values."""
     remarks = []
     block: Mapping[str, Sequence[Value]] = design.choices
     for path, values in block.items():

@@ -1,6 +1,6 @@
-"""Choices of a design file: one type each, with the meaning of every word.
+"""Words that a design file allows for some keys: a type for each key, with each word's meaning.
 
-Words for kinds (seal types, friction laws, laws of contact and hardness) come from registries.
+Other words (seal types, friction laws, laws of contact and hardness) come from registries.
 """
 
 from __future__ import annotations

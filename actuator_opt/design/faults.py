@@ -1,8 +1,9 @@
-"""Contradictions between values of a design, each reported at one of the values.
+"""Check a design for values that contradict each other; report each fault at one of these values.
 
-Every check is a small function of a `FileView`. It yields nothing if a required value is missing or
-already faulty, so the checks also run on a file with other faults. Barrel and rod have theirs in
-`wall_faults`, seals in `seal_faults`; each joint of caps and head has its own.
+Every check is a small function of a `FileView`. It yields nothing if a value that it requires is
+missing or faulty, so the checks also work on a file with other faults. Checks of barrel and rod are
+in `wall_faults`, those of seals in `seal_faults`, and those of each joint between caps and barrel
+in the joint's module.
 """
 
 from __future__ import annotations
@@ -21,11 +22,11 @@ from .model import PLAIN_CAP, closed_length
 from .structure import FileView, Loc, MaterialLookup, child, leaves, length_text
 
 _ROUND = math.radians(0.01)
-"""Joint angles in remedies are rounded inwards to this step (rad), for short numbers."""
+"""Suggested joint angles are rounded to this step (rad), into the allowed range."""
 
 
 class _Reach(NamedTuple):
-    """Pin-to-pin range of the actuator, and the linkage."""
+    """Smallest and largest pin-to-pin length of the actuator, and its linkage."""
 
     closed: float
     stroke: float
@@ -35,7 +36,7 @@ class _Reach(NamedTuple):
 
 
 def _closed(view: FileView) -> float | None:
-    """Pin-to-pin length of the retracted actuator; None if a part is unknown."""
+    """Pin-to-pin length of the retracted actuator; None if one of its parts is unknown."""
     stroke, piston = view.number("cylinder", "stroke"), view.number("piston", "length")
     head = view.number("head", "length") if view.has("head") else piston
     barrel = view.number("barrel", "length")
@@ -69,7 +70,11 @@ def _reach(view: FileView) -> _Reach | None:
 
 
 def linkage(view: FileView) -> Iterator[Fault]:
-    """No dead point between the stops: |a - r| < l < a + r."""
+    """Check that the linkage reaches no dead point between the stops.
+
+    |a - r| < l < a + r, with the distances a and r of the two pivots from the joint axis and the
+    pin-to-pin length l.
+    """
     reach = _reach(view)
     if reach is None:
         return
@@ -93,7 +98,7 @@ def linkage(view: FileView) -> Iterator[Fault]:
 
 
 def inertia(view: FileView) -> Iterator[Fault]:
-    """A joint speed, torque or inertia needs a linkage."""
+    """Require a linkage if a joint speed, torque or inertia is stated."""
     if view.number("load", "inertia") and not view.has("linkage"):
         yield _no_linkage(("load", "inertia"), "load.mass")
 
@@ -104,7 +109,7 @@ def _no_linkage(loc: Loc, instead: str) -> Fault:
 
 
 def linkage_load_cases(view: FileView) -> Iterator[Fault]:
-    """A case has an angle or a position, one speed, and stays within the range of the joint."""
+    """Check that a load case has one speed, and an angle or position within the joint's range."""
     for index, case in enumerate(view.items("load_cases")):
         if not isinstance(case, dict):
             continue
@@ -119,7 +124,7 @@ def linkage_load_cases(view: FileView) -> Iterator[Fault]:
 
 
 def _angle(view: FileView, loc: Loc) -> Iterator[Fault]:
-    """The joint angle of a case is between those of both stops."""
+    """Check that the joint angle of a load case lies between the angles at both stops."""
     angle, reach = view.number(*loc, "angle"), _reach(view)
     if angle is None or reach is None:
         return
@@ -153,7 +158,7 @@ LINKAGE_CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
 
 
 def lines(view: FileView) -> Iterator[Fault]:
-    """Every line has a wall; a line beyond the throttle requires a throttle."""
+    """Check that every line has a wall, and that a line beyond a throttle has this throttle."""
     for index in range(len(view.items("lines"))):
         inner = view.number("lines", index, "inner_diameter")
         outer = view.number("lines", index, "outer_diameter")
@@ -175,9 +180,9 @@ ENDS = get_args(get_args(choices.End)[0])
 
 
 def ports(view: FileView) -> Iterator[Fault]:
-    """The selected end of the lines is described."""
+    """Check that the component at the selected end of the lines is described."""
     end = view.text("ports", "end")
-    if end not in ENDS:  # a separate fault, reported at its place
+    if end not in ENDS:  # reported as a separate fault
         return
     block = {"valve": ("valve",), "reducing_valve": ("ports", "reducing_valve")}.get(end or "")
     if block is not None and not view.has(*block):
@@ -203,7 +208,7 @@ def ports(view: FileView) -> Iterator[Fault]:
 
 
 def valve(view: FileView) -> Iterator[Fault]:
-    """The centred valve leaks less than the open valve passes, at the same pressure drop."""
+    """Check that a centred valve leaks less than it passes when open, at equal pressure drop."""
     numbers = [
         view.number("valve", name)
         for name in ("rated_flow", "rated_drop", "leakage_flow", "leakage_drop")
@@ -222,7 +227,7 @@ def valve(view: FileView) -> Iterator[Fault]:
 
 
 def stiffness(view: FileView) -> Iterator[Fault]:
-    """The published topologies do not include sticking seals."""
+    """Refuse the stiffness of sticking seals in combinations published without it."""
     published = view.text("stiffness", "topology") != "per_chamber"
     if published and view.text("stiffness", "seals") == "sticking":
         yield Fault(
@@ -233,7 +238,7 @@ def stiffness(view: FileView) -> Iterator[Fault]:
 
 
 def control(view: FileView) -> Iterator[Fault]:
-    """A position loop needs a valve."""
+    """Require a valve if a position loop is stated."""
     if view.has("control") and not view.has("valve"):
         yield Fault(
             ("control",), "no valve to control", "add valve, or remove control", at_key=True
@@ -241,7 +246,7 @@ def control(view: FileView) -> Iterator[Fault]:
 
 
 def held_pressures(view: FileView) -> Iterator[Fault]:
-    """Held pressures are given for both chambers or for neither."""
+    """Check that held pressures are stated for both chambers or for neither."""
     for index in range(len(view.items("load_cases"))):
         loc = ("load_cases", index)
         a, b = view.has(*loc, "pressure_a"), view.has(*loc, "pressure_b")
@@ -277,7 +282,7 @@ CIRCUIT_CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
 def _smaller(
     view: FileView, inner: Loc, outer: Loc, *, factor: float = 1.0, why: str = ""
 ) -> Iterator[Fault]:
-    """`inner` must be smaller than `factor` times `outer`."""
+    """Check that `inner` is smaller than `factor` times `outer`."""
     small, large = view.number(*inner), view.number(*outer)
     if small is None or large is None or small < large * factor:
         return
@@ -290,7 +295,7 @@ def _smaller(
 
 
 def rod(view: FileView) -> Iterator[Fault]:
-    """The rod fits the bore, its bore and its thread fit the rod."""
+    """Check that the rod fits into the bore, and the rod's own bore and thread into the rod."""
     yield from _smaller(view, ("rod", "outer_diameter"), ("cylinder", "bore"))
     yield from _smaller(view, ("rod", "inner_diameter"), ("rod", "outer_diameter"))
     yield from _smaller(view, ("cylinder", "port_diameter"), ("cylinder", "bore"))
@@ -315,7 +320,7 @@ def rod(view: FileView) -> Iterator[Fault]:
 
 
 def barrel_length(view: FileView) -> Iterator[Fault]:
-    """The barrel has room for stroke, piston and head."""
+    """Check that the barrel is long enough for stroke, piston and head."""
     length = view.number("barrel", "length")
     parts = [
         view.number("cylinder", "stroke"),
@@ -332,7 +337,7 @@ def barrel_length(view: FileView) -> Iterator[Fault]:
 
 
 def supply(view: FileView) -> Iterator[Fault]:
-    """The supply exceeds the return; proof is not below supply pressure."""
+    """Check that supply exceeds return pressure, and proof is not below supply pressure."""
     pressure, back = view.number("supply", "pressure"), view.number("supply", "return_pressure")
     ratio = view.number("supply", "proof_ratio")
     text = quantities.INPUTS["pressure"].text
@@ -351,7 +356,7 @@ def supply(view: FileView) -> Iterator[Fault]:
 
 
 def environment(view: FileView) -> Iterator[Fault]:
-    """The coldest temperature is below the hottest."""
+    """Check that the lowest temperature is below the highest."""
     low = view.number("environment", "temperature_min")
     high = view.number("environment", "temperature_max")
     text = quantities.INPUTS["temperature"].text
@@ -364,7 +369,7 @@ def environment(view: FileView) -> Iterator[Fault]:
 
 
 def _case_pressure(view: FileView, index: int) -> Iterator[Fault]:
-    """The driven port of a case has at least return and at most supply pressure."""
+    """Check that the pressure of a load case is between return and supply pressure."""
     loc = ("load_cases", index, "pressure")
     pressure, supply = view.number(*loc), view.number("supply", "pressure")
     back = view.number("supply", "return_pressure")
@@ -380,7 +385,7 @@ def _case_pressure(view: FileView, index: int) -> Iterator[Fault]:
 
 
 def load_cases(view: FileView) -> Iterator[Fault]:
-    """Names are unique; force or torque with its lever; pressures and positions are in range."""
+    """Check names (unique), force or torque with lever arm, pressures and positions (in range)."""
     seen: dict[str, int] = {}
     stroke = view.number("cylinder", "stroke")
     for index, case in enumerate(view.items("load_cases")):
@@ -441,14 +446,14 @@ CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
 
 
 def cross_field(tree: Any) -> Iterator[Fault]:
-    """All contradictions between values of a tree in SI."""
+    """Yield all contradictions between the values of a tree in SI."""
     view = FileView(tree)
     for check in CHECKS:
         yield from check(view)
 
 
 def material_faults(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
-    """All faults that depend on the material library."""
+    """Yield all faults that depend on the material library."""
     yield from _material_names(tree, materials)
     yield from wall_faults.of_materials(tree, materials)
     yield from wall_faults.of_end_materials(tree, materials)
@@ -457,7 +462,7 @@ def material_faults(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
 
 
 def _material_names(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
-    """Unknown materials, and materials that do not suit their place."""
+    """Yield faults for unknown materials, and for materials of a kind that their key refuses."""
     joint = wall_faults.joint_of(FileView(tree))
     for loc, entry, name in leaves(tree):
         if not isinstance(entry.kind, MaterialName) or not isinstance(name, str):

@@ -1,6 +1,6 @@
-"""Standard housings of seals, guides and wipers, extrusion limits, and the check of a gland.
+"""Standard housings (grooves) of seals, guides and wipers, extrusion limits, check of a gland.
 
-ISO 5597 (lip seals), ISO 7425-1 and -2 (sliding rings with an O-ring behind), ISO 10766 (guides),
+ISO 5597 (lip seals), ISO 7425-1 and -2 (sliding rings energised by an O-ring), ISO 10766 (guides),
 ISO 6195 (wipers). Lengths are in m, pressures in Pa. Every row states source and confidence.
 """
 
@@ -25,9 +25,10 @@ _NEAR = 1e-6
 class Housing:
     """Groove of a standard series, for a range of rod or bore diameters.
 
-    `sizes` are the nominal diameters; empty if every diameter of the range is nominal. `section`
-    is the O-ring section behind a sliding ring, or the thickness of a guide; 0 without a ring.
-    `gaps` are the largest radial gaps behind the seal by pressure; `gap` is that of a guide, or 0.
+    `sizes` are the nominal diameters; empty if every diameter of the range is nominal. `section` is
+    the section of the O-ring behind a sliding ring, or the thickness of a guide; otherwise 0.
+    `gaps` are the largest allowed radial gaps behind a seal, by pressure; `gap` is the radial gap
+    of a guide, otherwise 0.
     """
 
     standard: str
@@ -58,7 +59,7 @@ class Housing:
 
 @dataclass(frozen=True, slots=True)
 class ExtrusionTable:
-    """Largest radial gaps without back-up ring, by hardness (Shore A)."""
+    """Largest radial gaps that need no back-up ring, by pressure and hardness (Shore A)."""
 
     name: str
     rows: tuple[tuple[float, Points], ...]
@@ -68,7 +69,7 @@ class ExtrusionTable:
 
 @dataclass(frozen=True, slots=True)
 class Deviation:
-    """A gland dimension outside its limits; `excess` is the signed distance."""
+    """A groove dimension outside the limits of its standard gland."""
 
     quantity: str
     value: float
@@ -84,7 +85,7 @@ class Deviation:
 
 @functools.cache
 def housings(element: str, place: Place) -> tuple[Housing, ...]:
-    """Housings of an element at a place, in the order of the standard."""
+    """Housings of an element on `rod` or `piston`, in the order of the standard."""
     return tuple(
         _housing(group, row)
         for group in tables()["housings"]
@@ -125,7 +126,7 @@ def housings_for(element: str, place: Place, diameter: float) -> tuple[Housing, 
 
     Raises
     ------
-    InputError : the standard has no housing for that diameter
+    InputError : if the standard has no housing for this diameter
     """
     listed = housings(element, place)
     fitting = [housing for housing in listed if housing.fits(diameter)]
@@ -142,7 +143,7 @@ def housings_for(element: str, place: Place, diameter: float) -> tuple[Housing, 
 
 @functools.cache
 def extrusion_tables() -> Mapping[str, ExtrusionTable]:
-    """Tables of extrusion limits by name; ``sealanddesign`` is the verified table."""
+    """Tables of extrusion limits by name; only ``sealanddesign`` is verified."""
     return {
         group["table"]: ExtrusionTable(
             group["table"],
@@ -170,22 +171,22 @@ def gland_deviations(
     stretch: float,
     back_up_rings: int = 0,
 ) -> tuple[Deviation, ...]:
-    """Dimensions of a groove that violate its standard gland; empty if none.
+    """List the dimensions of a groove that are outside the limits of its standard gland.
 
     The squeeze range follows from the depth limits of the gland and the tolerance of the ring.
 
     Parameters
     ----------
-    gland : standard gland of the ring's section (`standard_sizes.gland`)
+    gland : standard gland for the section of the ring (`standard_sizes.gland`)
     squeeze_min, squeeze_max : squeeze limits of the groove with its tolerances
     width : width of the groove, m
-    fill : largest fill of the groove by the ring
+    fill : largest share of the groove filled by the ring
     stretch : stretch of the installed ring
     back_up_rings : number of back-up rings
 
     Raises
     ------
-    InputError : the table has no width for that number of back-up rings
+    InputError : if the table has no width for this number of back-up rings
     """
     limits = tables()["gland_limits"]
     tolerance = gland.section_tolerance or section_tolerance(gland.section).value

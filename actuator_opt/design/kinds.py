@@ -1,7 +1,7 @@
 """Kinds of values in a design file: quantity, material name, text, position and others.
 
-Each kind annotates a field in `model`: pydantic calls it to validate values, and the reader, PATHs,
-writer and JSON Schema read it. One declaration serves them all.
+Each field in `model` is annotated with its kind. Pydantic validates the field's value with it;
+reader, PATHs, writer and JSON Schema use the same declaration.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ MATERIAL_EXAMPLES = {
 
 
 class ValueFault(ValueError):
-    """An unusable value: `message` states the fault, `remedy` the cure."""
+    """An unusable value: `message` states the fault, `remedy` how to correct it."""
 
     def __init__(self, message: str, remedy: str) -> None:
         super().__init__(f"{message}; {remedy}")
@@ -76,7 +76,7 @@ class ValueFault(ValueError):
 
 
 def example(quantity: Quantity) -> str:
-    """An example value of a quantity, as text."""
+    """Text of an example value of a quantity."""
     if quantity.name in EXAMPLES:
         return EXAMPLES[quantity.name]
     value = max(quantity.lower, 0.0) if quantity.lower > -quantities.INFINITY else 0.0
@@ -97,7 +97,7 @@ def _range_fault(shown_value: str, number: float, quantity: Quantity) -> ValueFa
 
 
 def check_range(number: float, quantity: Quantity, shown_value: str | None = None) -> float:
-    """`number` (SI) if in the range of the quantity; the last few bits are forgiven."""
+    """Return `number` (SI) if it is in the range of its quantity, apart from rounding errors."""
     slack = 1e-12
     lower = quantity.lower - slack * abs(quantity.lower)
     upper = quantity.upper + slack * abs(quantity.upper)
@@ -111,7 +111,7 @@ def check_range(number: float, quantity: Quantity, shown_value: str | None = Non
 
 
 def _unit_fault(text: str, quantity: Quantity, error: units.UnitError) -> ValueFault:
-    """The same fault with the unit and the example of this quantity."""
+    """Extend a fault of a unit with the unit and an example of the quantity."""
     name, message, remedy = shown(text.strip()), shown(error.message, 160), error.remedy
     if _DECIMAL_COMMA.match(text):
         return ValueFault(f'"{name}": decimal comma', f'write "{name.replace(",", ".", 1)}"')
@@ -128,12 +128,12 @@ def _unit_fault(text: str, quantity: Quantity, error: units.UnitError) -> ValueF
 
 
 def read_quantity(value: object, quantity: Quantity) -> float:
-    """SI value from text with a unit (a file) or an SI number (a script).
+    """Read a quantity in SI from a text with a unit (in a file) or an SI number (in a script).
 
     Raises
     ------
     ValueFault
-        not a number, no unit, a unit of another dimension, outside the declared range
+        if it is no number, has no unit or a unit of another dimension, or is outside its range
     """
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return check_range(float(value), quantity)
@@ -152,7 +152,7 @@ def read_quantity(value: object, quantity: Quantity) -> float:
 
 
 def shape_in_words(value: object) -> str:
-    """Shape of a value in words."""
+    """Describe in words whether a value is a text, a list or a block."""
     if value is None:
         return "nothing"
     if isinstance(value, dict):
@@ -169,7 +169,7 @@ class ValueKind:
     example: str = "…"
 
     def validate(self, value: Any) -> Any:
-        """The value for the design; raises `ValueFault`."""
+        """Convert a stated value to the design's value; raise `ValueFault` if it is invalid."""
         raise NotImplementedError
 
     def _call(self, value: Any) -> Any:
@@ -187,7 +187,7 @@ class ValueKind:
 
 
 class Of(ValueKind):
-    """A float of a stated quantity: text needs its unit, a Python number is SI."""
+    """A number with a quantity: a text needs a unit, a Python number is in SI."""
 
     def __init__(self, quantity: str, help: str = "") -> None:
         self.quantity = (quantities.INPUTS | quantities.SCENARIOS)[quantity]
@@ -195,19 +195,19 @@ class Of(ValueKind):
         self.example = example(self.quantity)
 
     def validate(self, value: Any) -> float:
-        """SI value."""
+        """Convert to SI."""
         return read_quantity(value, self.quantity)
 
 
 @dataclass(frozen=True, slots=True)
 class Fraction:
-    """A position as a fraction of the stroke: it scales with the stroke."""
+    """A piston position as a fraction of the stroke, so that it moves when the stroke changes."""
 
     value: float
 
 
 class PositionKind(ValueKind):
-    """``worst``, a length from the cap end, or a fraction of the stroke (``50 %``)."""
+    """Position: ``worst``, a length from the cap end, or a fraction of the stroke (``50 %``)."""
 
     help = "piston position from the cap end: worst, a length, or a share of the stroke (50 %)"
     example = "50 %"
@@ -215,12 +215,12 @@ class PositionKind(ValueKind):
     fraction = quantities.INPUTS["fraction"]
 
     def quantity_of(self, value: object) -> Quantity:
-        """Quantity of a position as written."""
+        """Quantity of a position: length or ratio, depending on how it is written."""
         is_share = isinstance(value, Fraction) or (isinstance(value, str) and "%" in value)
         return self.fraction if is_share else self.length
 
     def validate(self, value: Any) -> Position:
-        """``"worst"``, a length in m, or a `Fraction`."""
+        """Convert to ``"worst"``, a length in m, or a `Fraction`."""
         if isinstance(value, Fraction):
             return Fraction(check_range(value.value, self.fraction))
         if isinstance(value, str):
@@ -248,7 +248,7 @@ def position_at(position: Position, stroke: Array) -> Array | None:
 
 
 class Text(ValueKind):
-    """Free text of at most `longest` characters; `multiline` for notes."""
+    """Free text of at most `longest` characters; with `multiline`, it may have several lines."""
 
     example = "robot knee"
 
@@ -258,7 +258,7 @@ class Text(ValueKind):
         self.multiline = multiline
 
     def validate(self, value: Any) -> str:
-        """The text itself."""
+        """Return the text if it is valid."""
         if not isinstance(value, str):
             raise ValueFault(f"need a text, not {shape_in_words(value)}", "write one value")
         unprintable = [
@@ -289,8 +289,8 @@ class Boolean(ValueKind):
         self.help = help
 
     def validate(self, value: Any) -> bool:
-        """True or False."""
-        if value in (0, 1):  # booleans, and numbers set by a script
+        """Convert to True or False."""
+        if value in (0, 1):  # accept booleans, and numbers that a script sets
             return bool(value)
         if isinstance(value, str) and value.strip().lower() in self.words:
             return self.words[value.strip().lower()]
@@ -304,7 +304,7 @@ class Choice(ValueKind):
     Parameters
     ----------
     help : text for the JSON Schema
-    words : allowed words; if empty: those of the field's `Literal`
+    words : allowed words; if empty, the words of the field's `Literal`
     """
 
     def __init__(self, help: str, words: tuple[str, ...] = ()) -> None:
@@ -312,7 +312,7 @@ class Choice(ValueKind):
         self.words = words
 
     def validate(self, value: Any) -> Any:
-        """The value itself: `words` or the `Literal` refuse others."""
+        """Return the value if it is among `words`; if none are given, the `Literal` checks it."""
         return value
 
     def __get_pydantic_core_schema__(
@@ -325,17 +325,17 @@ class Choice(ValueKind):
 
 
 def choice_of(help: str, registry: kinds.Kinds[Any]) -> Choice:
-    """A choice from a registry of kinds, with the meaning of each."""
+    """A choice among the names of a registry, with the meaning of each name."""
     return Choice(f"{help}; {registry.help}", registry.names)
 
 
 class CaseName(Text):
-    """Name of a load case, valid inside a PATH: ``load_cases[NAME].force``."""
+    """Name of a load case; it must be usable inside a PATH such as ``load_cases[NAME].force``."""
 
     example = "stance"
 
     def validate(self, value: Any) -> str:
-        """The name itself."""
+        """Return the name if it is valid."""
         text = super().validate(value)
         if _NAME.fullmatch(text) is None:
             raise ValueFault(
@@ -346,7 +346,7 @@ class CaseName(Text):
 
 
 class MaterialName(Text):
-    """Name of a library material; `role` states which kinds suit this place."""
+    """Name of a library material; `role` states which kinds of material the field accepts."""
 
     def __init__(
         self, role: Literal["structural", "isotropic", "fluid", "seal", "fastening"]
@@ -358,16 +358,16 @@ class MaterialName(Text):
 
 
 class SizesKind(ValueKind):
-    """The sizes of a variable: a series by name, or a list."""
+    """Allowed sizes of a variable: the name of a series, or a list."""
 
     help = "allowed sizes: a series such as iso_3320, or a list of values"
     example = "iso_3320"
 
     def validate(self, value: Any) -> str | tuple[float, ...]:
-        """The name, or the values in SI."""
+        """Return the name or list; its entries are checked later."""
         if isinstance(value, str):
             return value
-        if not isinstance(value, (list, tuple)):  # entries are checked where units are known
+        if not isinstance(value, (list, tuple)):  # `sizes` checks the entries
             raise ValueFault(
                 f"need sizes, not {shape_in_words(value)}", "write a series, or a list"
             )
@@ -375,13 +375,13 @@ class SizesKind(ValueKind):
 
 
 class ObjectiveKind(ValueKind):
-    """A metric, or a block of metrics with positive weights."""
+    """An objective: a metric, or a block of metrics with positive weights."""
 
     help = "a metric, or several with weights (each is divided by its value in the design)"
     example = "mass"
 
     def validate(self, value: Any) -> str | dict[str, float]:
-        """The metric's name, or name to weight."""
+        """Return the metric's name, or weights by the name of the metric."""
         if isinstance(value, str):
             return value
         if not isinstance(value, Mapping) or not value:

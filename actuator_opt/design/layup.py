@@ -1,12 +1,13 @@
-"""Compact lay-up notation: ``plies: "[90_4 / +-25_2 / 0]s"`` in place of a list of layers.
+"""Compact lay-up notation: ``plies: "[90_4 / +-25_2 / 0]s"`` instead of a list of layers.
 
 Angles are in degrees from the tube axis, layers from the inside outwards::
 
     layup = item {"/" item}
     item  = angle ["_" n]  |  "+-" angle ["_" n]  |  "[" layup "]" ["_" n] ["s"]
 
-``+-25`` (or ±25) is a balanced pair of plies; 25 alone is one ply at that signed angle, 0 and
-90 have no sign. ``_n`` repeats, ``s`` mirrors a group; neighbours of equal angle form one layer.
+``+-25`` (or ±25) is a balanced pair of plies. 25 without a sign is a single ply at +25 degrees; 0
+and 90 have no sign. ``_n`` repeats a ply or group, and ``s`` mirrors a group. Neighbouring plies of
+equal angle form one layer.
 """
 
 from __future__ import annotations
@@ -34,11 +35,11 @@ _TOKEN = re.compile(
     r"|(?P<mark>[\[\]/_sS])|(?P<odd>[^\W\d_]+|\S))"
 )
 _OWN_KEYS = ("plies", "ply_thickness", "angle", "thickness", "balanced")
-"""Keys that define the layers; other keys are kept as written."""
+"""Keys of a compact entry that define its layers; other keys are copied to a layer as written."""
 
 
 class NotationFault(ValueFault):
-    """A fault of a notation, with the position of its character."""
+    """A fault of a notation, with the position of the faulty character."""
 
     def __init__(self, offset: int, message: str, remedy: str) -> None:
         super().__init__(message, remedy)
@@ -54,17 +55,17 @@ class PlyGroup(NamedTuple):
     offset: int
 
     def same(self, other: PlyGroup) -> bool:
-        """Whether two layers are equal but for their number of plies."""
+        """Whether two layers are equal apart from their number of plies."""
         return (float(self.angle), self.balanced) == (float(other.angle), other.balanced)
 
 
 def read_notation(text: str, most: int = MOST_LAYERS) -> tuple[PlyGroup, ...]:
-    """Layers of a notation, from the inside outwards.
+    """Read the layers of a notation, from the inside outwards.
 
     Raises
     ------
     NotationFault
-        not a lay-up, an angle beyond 90 degrees, more than `most` layers
+        if it is no lay-up, an angle exceeds 90 degrees, or there are more than `most` layers
 
     >>> [(layer.angle, layer.balanced, layer.plies) for layer in read_notation("[90_2 / +-25]s")]
     [('90', True, 2), ('25', True, 4), ('90', True, 2)]
@@ -83,7 +84,7 @@ def read_notation(text: str, most: int = MOST_LAYERS) -> tuple[PlyGroup, ...]:
 
 
 def _joined(layers: Sequence[PlyGroup]) -> list[PlyGroup]:
-    """Layers with neighbours of equal angle merged."""
+    """Merge neighbouring layers of equal angle."""
     joined: list[PlyGroup] = []
     for layer in layers:
         if joined and joined[-1].same(layer):
@@ -114,7 +115,7 @@ class _Parser:
         return self.tokens[self.at][2]
 
     def unexpected(self, expected: str) -> NotationFault:
-        """The current token violates the grammar."""
+        """Fault of a token that violates the grammar."""
         text, remedy = self.text, f'write e.g. "{EXAMPLE}"'
         if self.kind == "end":
             return NotationFault(
@@ -131,7 +132,7 @@ class _Parser:
         return NotationFault(self.offset, f'"{shown(text)}" where {expected} is expected', remedy)
 
     def layup(self, depth: int) -> list[PlyGroup]:
-        """Items between slashes."""
+        """Read items separated by slashes."""
         layers = self.item(depth)
         while self.text == "/":
             self.at += 1
@@ -139,7 +140,7 @@ class _Parser:
         return self.limited(layers)
 
     def limited(self, layers: Sequence[PlyGroup]) -> list[PlyGroup]:
-        """Neighbours merged; at most the allowed number of layers."""
+        """Merge neighbouring layers of equal angle; raise a fault if too many layers remain."""
         joined = _joined(layers)
         if len(joined) > self.most:
             message = f"more than {self.most} layers"
@@ -147,7 +148,7 @@ class _Parser:
         return joined
 
     def item(self, depth: int) -> list[PlyGroup]:
-        """A ply, a pair or a group, with its repeats."""
+        """Read a ply, a pair or a group, with its number of repeats."""
         if self.text != "[":
             layer = self.ply()
             return [layer._replace(plies=layer.plies * self.repeats())]
@@ -168,7 +169,7 @@ class _Parser:
         return layers
 
     def repeats(self) -> int:
-        """The count after an underscore; 1 without an underscore."""
+        """Read the number of repeats after an underscore; 1 without an underscore."""
         if self.text != "_":
             return 1
         self.at += 1
@@ -185,7 +186,7 @@ class _Parser:
         return count
 
     def ply(self) -> PlyGroup:
-        """An angle with its sign."""
+        """Read an angle with its sign."""
         offset, pair = self.offset, self.kind == "pair"
         signed, sign = self.kind in ("pair", "sign"), "-" if self.text == "-" else ""
         self.at += signed
@@ -202,7 +203,7 @@ class _Parser:
 
 
 def expanded(document: Document) -> Document:
-    """The document with all compact entries expanded into layers; every place stays in the text.
+    """Expand all compact entries into layers; faults still point at the compact text.
 
     Faults of an entry are added to the document. A faulty entry stays a single layer without
     thickness and is not checked further.
@@ -215,7 +216,7 @@ def expanded(document: Document) -> Document:
 
 
 def _expand_wall(document: Document, wall: Loc, items: Sequence[Any]) -> Document:
-    """Expand a list entry by entry; the old index i becomes `starts[i]`."""
+    """Expand the compact entries of one wall; entry i then starts at index `starts[i]`."""
     expanded_items: list[Any] = []
     starts: list[int] = []
     places: dict[Loc, NodeSpan] = {}
@@ -243,7 +244,7 @@ def _expand_wall(document: Document, wall: Loc, items: Sequence[Any]) -> Documen
         shorthands.append(Shorthand(wall, first, len(layers), _extent(document, loc)))
         for number, layer in enumerate(layers):
             places |= _places(document, loc, (*wall, first + number), layer)
-    if faults:  # PATHs to layers that do not exist yet would only repeat them
+    if faults:  # PATHs into this entry would only repeat these faults
         variables = child(document.data, "variables")
         paths = variables if isinstance(variables, dict) else ()
         unusable |= {("variables", path) for path in paths if path.startswith(f"{spell(wall)}[")}
@@ -266,7 +267,7 @@ def _expand_wall(document: Document, wall: Loc, items: Sequence[Any]) -> Documen
 
 
 def _with(node: Any, loc: Loc, value: Any) -> Any:
-    """A copy of a tree with another value at one place."""
+    """Copy a tree and replace the value at one location."""
     return value if not loc else {**node, loc[0]: _with(node[loc[0]], loc[1:], value)}
 
 
@@ -281,7 +282,7 @@ class _EntryFault(NamedTuple):
 
 
 def _entry_faults(item: Mapping[str, Any]) -> Iterator[_EntryFault]:
-    """All faults of a compact entry except those of its material."""
+    """List all faults of a compact entry except those of its material."""
     for key in ("angle", "thickness", "balanced"):
         if key in item:
             message = f"{key} and plies in one entry: plies already defines it"
@@ -309,7 +310,7 @@ def _entry_faults(item: Mapping[str, Any]) -> Iterator[_EntryFault]:
 
 
 def _diagnostic(document: Document, loc: Loc, fault: _EntryFault, first_loc: Loc) -> Diagnostic:
-    """A fault of the compact entry at `loc`, whose first layer is now at `first_loc`."""
+    """Diagnostic for the compact entry at `loc`, expanded into layers from `first_loc` on."""
     at = (*loc, fault.key)
     span = document.keys.get(at) if fault.at_key else document.values.get(at)
     if fault.offset is not None:
@@ -319,7 +320,7 @@ def _diagnostic(document: Document, loc: Loc, fault: _EntryFault, first_loc: Loc
 
 
 def _character(document: Document, loc: Loc, offset: int) -> NodeSpan | None:
-    """Place of a character of a text; of the whole text if it is folded or has escapes."""
+    """Location of a character of a text; of the whole text if that is folded or has escapes."""
     span, value = document.values.get(loc), child_at(document.data, loc)
     if span is None or not isinstance(value, str):
         return span
@@ -332,7 +333,7 @@ def _character(document: Document, loc: Loc, offset: int) -> NodeSpan | None:
 
 
 def _entries(item: Mapping[str, Any], layers: Sequence[PlyGroup]) -> Iterator[dict[str, Any]]:
-    """Entries in list form; unknown keys stay in the first."""
+    """Layers of a compact entry as list entries; unknown keys stay in the first layer."""
     number, unit = units.split(item["ply_thickness"])
     for layer in layers:
         thickness = (Decimal(repr(number)) * layer.plies).normalize()
@@ -346,7 +347,7 @@ def _entries(item: Mapping[str, Any], layers: Sequence[PlyGroup]) -> Iterator[di
 
 
 def _places(document: Document, loc: Loc, layer_loc: Loc, layer: PlyGroup) -> dict[Loc, NodeSpan]:
-    """Places of the values of a layer: those of the notation at its angle."""
+    """Locations of a layer's values: those where its angle is written in the notation."""
     angle_span = _character(document, (*loc, "plies"), layer.offset)
     places = {layer_loc: angle_span} | {
         (*layer_loc, key): angle_span for key in ("angle", "thickness", "balanced")
@@ -358,10 +359,10 @@ def _places(document: Document, loc: Loc, layer_loc: Loc, layer: PlyGroup) -> di
 
 
 def _extent(document: Document, loc: Loc) -> NodeSpan:
-    """Extent of a compact entry: from its first key to the end of its last value."""
+    """Extent of a compact entry in the text: from its first key to the end of its last value."""
     span = document.values[loc]
     if document.text.startswith("{", span.start):
         return span
     below = [at for place, at in document.values.items() if place[: len(loc)] == loc != place]
-    end = max(at.end for at in below)  # the end of a block scalar is on the next line
+    end = max(at.end for at in below)  # a block scalar ends at the beginning of the next line
     return span._replace(end=len(document.text[:end].rstrip()))

@@ -3,11 +3,11 @@
 All values are SI. A property may be a table over temperature or pressure; its `value` is then
 the value at the reference point, and scaling it scales the table.
 
-Fits over speed minimise sum w (B - B_fit)^2 over the measured points; equal weights unless weights
-are given (1/B^2 fits relative errors). Linear parameters are eliminated, so only exponents are
-searched [GolubPereyra1973], from every start of a grid. Bounds are those of the linearised model
-with Student's t [SeberWild1989]. They assume independent points: for points of a smooth curve they
-show the misfit of the law, not scatter.
+Fits of damping B over speed minimise sum w (B - B_fit)^2 over the measured points. The weights w
+are equal unless given; w = 1/B^2 fits relative errors. Linear parameters are eliminated, so only
+exponents are searched [GolubPereyra1973], from every start of a grid. Confidence bounds follow from
+the linearised model and Student's t [SeberWild1989]. They assume independent points: if the points
+are read from a smooth curve, the bounds show how badly the law fits, not scatter.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ KINDS: Final = ("metal", "ply", "polymer", "fluid", "seal", "adhesive")
 CONFIDENCES: Final = ("verified", "secondary", "unverified", "derived")
 BASES: Final = ("typical", "mean", "A", "B", "S", "minimum", "maximum", "limit", "nominal")
 FAMILIES: Final = ("mineral", "ester", "phosphate_ester", "water_glycol")
-"""Fluid families; a seal's `suits` lists those that its compound withstands."""
+"""Fluid families; a seal compound's `suits` lists the families that it withstands."""
 ROLES: Final[Mapping[str, tuple[str, ...]]] = {
     "structural": ("metal", "ply", "polymer"),
     "isotropic": ("metal", "polymer"),
@@ -42,7 +42,7 @@ ROLES: Final[Mapping[str, tuple[str, ...]]] = {
     "seal": ("seal",),
     "fastening": ("metal", "adhesive"),
 }
-"""Kinds of material for each role in a design."""
+"""Kinds of material that each role in a design accepts."""
 
 REQUIRED: Final[Mapping[str, tuple[str, ...]]] = {
     "metal": ("density", "youngs_modulus", "poissons_ratio"),
@@ -72,8 +72,8 @@ class Spread:
 
     Parameters
     ----------
-    kind : ``cv`` standard deviation over mean, ``tolerance`` half width over value, ``factor``
-        largest over nominal value, and nominal over smallest value
+    kind : ``cv`` (standard deviation divided by mean), ``tolerance`` (half width divided by value)
+        or ``factor`` (largest divided by nominal value, equal to nominal divided by smallest value)
     size : relative, or the factor
     """
 
@@ -83,7 +83,7 @@ class Spread:
 
 @dataclass(frozen=True, slots=True)
 class Property:
-    """A property of a material; `points` if tabulated over `argument`."""
+    """A property of a material; `points` is its table over `argument`, if it has one."""
 
     quantity: Quantity
     value: float
@@ -117,7 +117,7 @@ class Property:
         return tuple(value for _, value in self.points)
 
     def at(self, argument: Array, *, value: Array | None = None) -> Array:
-        """Linear interpolation of the table, constant beyond its ends; the value if not tabulated.
+        """Interpolate the table linearly, constant beyond its ends; `value` if there is no table.
 
         Parameters
         ----------
@@ -171,7 +171,7 @@ class Material:
 
     @property
     def isotropic(self) -> bool:
-        """Whether a single modulus describes it (metals, polymers, apparent values)."""
+        """Whether a single modulus describes the material (metals, polymers, apparent values)."""
         return "youngs_modulus" in self.properties and "youngs_modulus_1" not in self.properties
 
     @property
@@ -192,7 +192,7 @@ class Material:
         return self.properties["kinematic_viscosity"].points
 
     def stating(self, stated: Mapping[str, float]) -> Material:
-        """The material with the properties that a design adds or replaces; SI."""
+        """Copy the material with the properties (SI) that a design adds or replaces."""
         new = {name: value for name, value in stated.items() if name not in self.properties}
         if not new:
             return self
@@ -205,7 +205,7 @@ class Material:
         return replace(self, properties=properties)
 
     def completed(self) -> dict[str, Property]:
-        """Stated properties and the derived ply constants, marked ``derived``."""
+        """Stated properties, and ply constants derived from them (marked ``derived``)."""
         properties = dict(self.properties)
         if self.kind not in ROLES["structural"]:
             return properties
@@ -228,20 +228,20 @@ class Material:
 
 
 def compatible(fluid: Material, seal: Material) -> bool | None:
-    """Whether a compound withstands a fluid; None if the library does not state it."""
+    """Whether a seal compound withstands a fluid; None if the library does not state it."""
     if not fluid.family or not seal.suits:
         return None
     return fluid.family in seal.suits
 
 
 def ply_constants(numbers: Mapping[str, Array]) -> dict[str, Array]:
-    """Complete elastic constants of a ply; for isotropic materials also ply strengths.
+    """Complete the elastic constants of a ply; for isotropic materials also its strengths.
 
     Missing ply constants follow transverse isotropy: E3 = E2, nu13 = nu12, G13 = G12,
     G23 = E2/(2(1 + nu23)), nu23 = 0.40. A material with one modulus becomes a ply with equal
     constants, G = E/(2(1 + nu)) unless given. Its strength in tension and compression is the yield
-    (else ultimate) strength, in shear that over sqrt(3) (von Mises). Elementwise, complex-step
-    safe.
+    (else ultimate) strength; in shear, this strength divided by sqrt(3) (von Mises). Elementwise,
+    complex-step safe.
 
     Parameters
     ----------
@@ -288,7 +288,7 @@ def _isotropic_ply(numbers: Mapping[str, Array]) -> dict[str, Array]:
 
 
 def compliance_determinant(constants: Mapping[str, float]) -> float:
-    """Stability of a ply: positive if its compliance is positive definite.
+    """Check of a ply's elastic constants: positive if its compliance is positive definite.
 
     The smallest of 1 - nu12 nu21 - nu23 nu32 - nu13 nu31 - 2 nu21 nu32 nu13 [Lempriere1968] and
     the three factors 1 - nu_ij nu_ji.
@@ -302,7 +302,9 @@ def compliance_determinant(constants: Mapping[str, float]) -> float:
 def allowable_factor(
     numbers: Mapping[str, Array], name: str, *, basis: str, temperature: Array, wet: bool = False
 ) -> Array:
-    """Remaining share of a strength: temperature x moisture x basis x process knock-down.
+    """Share of a strength that remains after all knock-downs, as their product.
+
+    The knock-downs are for temperature, moisture, basis and process.
 
     The temperature factor falls linearly from 1 at 23 degC to the stated knock-down at
     `knockdown_temperature` and beyond, but not below 0.05; a missing knock-down is 1.
@@ -335,21 +337,21 @@ _EXAMPLES = {
     "bulk_modulus_slope": "6", "pressure_viscosity": "18 1/GPa", "tait_modulus": "8.4 GPa",
     "tait_decay": "0.0058 1/K", "tait_coefficient": "11.9",
 }  # fmt: skip
-"""An example of each property, for mineral oil, for messages."""
+"""An example value of each property of mineral oil, for messages."""
 
 
 def bulk_modulus_law(stated: str | None, properties: Container[str]) -> str:
-    """The stated law; else linear if the slope is a known property, else constant."""
+    """Law of bulk modulus: as stated; else linear if its slope is known, else constant."""
     return stated or ("linear" if "bulk_modulus_slope" in properties else "constant")
 
 
 def viscosity_law(stated: str | None, properties: Container[str]) -> str:
-    """The stated law; else Roelands if its coefficient is a known property."""
+    """Law of how viscosity rises with pressure: as stated; else Roelands if its data are known."""
     return stated or ("roelands" if "pressure_viscosity" in properties else "none")
 
 
 def of_fluid(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
-    """Stated laws of the oil without the data they need in library or design."""
+    """Faults of stated oil laws that need data which neither library nor design has."""
     view = FileView(tree)
     name = view.text("fluid", "material")
     if name is None or not isinstance(materials, Properties) or materials.kind(name) != "fluid":
@@ -380,10 +382,10 @@ def _needs(laws: Kinds[Any], law: str | None) -> tuple[str, ...]:
 
 
 FASTEST = 10.0
-"""Largest decay of an exponential between neighbouring points: beyond it only one point counts."""
+"""Largest decay exponent between neighbouring points: beyond it, only one point has an effect."""
 
 LARGEST_POWER = 300.0
-"""Largest exponent of an amplitude extrapolated to rest, far from overflow."""
+"""Largest exponent when an amplitude is extrapolated to zero speed; it avoids overflow."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -397,14 +399,14 @@ class LawFit:
     law: Callable[..., Array]
     parameters: Mapping[str, Parameter]
     covariance: Array
-    """Covariance of the parameters in their order; infinite if not determined together."""
+    """Covariance of the parameters, in their order; infinite for undetermined parameters."""
     speed: Array
     damping: Array
     residuals: Array
     """Measured minus fitted damping [N s/m]."""
     r_squared: float | None
     quantile: float
-    """Student's t of the bounds; infinite without degrees of freedom."""
+    """Student's t for the confidence bounds; infinite without degrees of freedom."""
     doubts: tuple[str, ...]
     """Reasons for undetermined parameters; empty if all are determined."""
 
@@ -420,7 +422,7 @@ class LawFit:
 
     @property
     def largest_error(self) -> float:
-        """Largest |B_fit/B - 1| of all points."""
+        """Largest relative error |B_fit/B - 1| of all points."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return float(np.max(np.abs(self.residuals / self.damping)))
 
@@ -429,7 +431,7 @@ class LawFit:
         return self.law(speed=speed, **self.values)
 
     def bounds(self, speed: Array) -> tuple[Array, Array]:
-        """Confidence bounds of the fitted curve (mean value, not a single point) at speeds.
+        """Confidence bounds of the fitted curve at speeds; single measurements scatter further.
 
         Infinite where the points leave a parameter unbounded.
         """
@@ -525,7 +527,7 @@ def assess(
     least: Mapping[str, float] | None = None,
     doubts: tuple[str, ...] = (),
 ) -> LawFit:
-    """Fitted law from least-squares values: bounds, R-squared, undetermined parameters.
+    """Rate least-squares values of a law: confidence bounds, R-squared, undetermined parameters.
 
     Parameters
     ----------
@@ -533,9 +535,9 @@ def assess(
     law : function B(speed, values), safe under a complex step
     values : least-squares parameters by name, SI
     speed, damping, weights : the points
-    least : sizes of parameters that may be near 0, as steps that matter to the curve; the size of
-        other parameters is their value
-    doubts : parameters that the search already left undetermined
+    least : scales of parameters that may be near 0, large enough to change the curve visibly; the
+        scale of another parameter is its value
+    doubts : reasons for parameters that the search already left undetermined
 
     Returns
     -------
@@ -573,7 +575,7 @@ def assess(
 
 
 def _slopes(law: Callable[..., Array], values: Mapping[str, float], speed: Array) -> Array:
-    """Derivatives of the law by its parameters, (..., parameters), by complex steps."""
+    """Derivatives of the law for each of its parameters, (..., parameters), by complex steps."""
     speed = np.asarray(speed, dtype=float)
     columns = []
     for name, value in values.items():
@@ -591,17 +593,17 @@ def _r_squared(damping: Array, fitted: Array, weights: Array) -> float | None:
 
 
 def _reference(rate: float, abscissa: Array) -> float:
-    """Argument at which an exponential is largest over the points."""
+    """Abscissa of the point at which an exponential is largest."""
     return float(abscissa[0] if rate < 0 else abscissa[-1])
 
 
 def _shifted(rate: float, abscissa: Array) -> Array:
-    """e^(rate x) over its largest value at the points: never overflows."""
+    """e^(rate x), divided by its largest value at the points so that it never overflows."""
     return np.exp(rate * (abscissa - _reference(rate, abscissa)))
 
 
 def _both_signs(least: float, most: float, count: int) -> list[float]:
-    """A geometric grid of rates of both signs."""
+    """Grid of rates, geometrically spaced, of both signs."""
     half = np.geomspace(least, most, count)
     return [float(rate) for rate in (*-half[::-1], *half)]
 
@@ -613,9 +615,9 @@ def _projected(
     basis: Callable[[float], Array],
     steepest: float,
 ) -> tuple[Array, Array]:
-    """Least-squares rates and amplitudes: amplitudes by linear least squares for every rate.
+    """Search least-squares rates; for every rate, linear least squares give the amplitudes.
 
-    The best distinct starts are refined within +-steepest.
+    The best distinct starting points are refined, with rates limited to +-steepest.
     """
     root = np.sqrt(weights / np.sum(weights))
     scale = float(np.max(np.abs(damping))) or 1.0
@@ -651,7 +653,7 @@ def _projected(
 def _distinct_starts(
     starts: Sequence[tuple[float, ...]], costs: list[float], count: int = 6
 ) -> Array:
-    """Starts of least cost that differ from each other by more than a third in a rate."""
+    """Starting points of least cost that differ by more than a third in some rate."""
     chosen: list[tuple[float, ...]] = []
     for k in np.argsort(costs):
         start = np.array(starts[k])
@@ -665,7 +667,7 @@ def _distinct_starts(
 def _points(
     speed: Array, damping: Array, weights: Array | None, *, parameters: int
 ) -> tuple[Array, Array, Array]:
-    """Points in order of speed, as arrays; raises a one-line error if unusable."""
+    """Sort the points by speed, as arrays; raise a one-line error if they are unusable."""
     v, b = (np.atleast_1d(np.asarray(values, dtype=float)) for values in (speed, damping))
     w = np.ones(v.shape) if weights is None else np.atleast_1d(np.asarray(weights, dtype=float))
     if v.ndim != 1 or v.shape != b.shape or v.shape != w.shape:

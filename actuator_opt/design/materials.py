@@ -1,6 +1,6 @@
-"""Material libraries: shipped entries, overridden by the user's files; look-up by name.
+"""Material libraries: shipped entries, which the user's files can override; look-up by name.
 
-A YAML file maps names to entries, and each fault has file and line. The file is split at its
+A YAML file maps names to entries; every fault states file and line. The file is split at its
 top-level keys and only requested entries are parsed, so a large library does not slow the start.
 """
 
@@ -34,9 +34,9 @@ _ENTRY_KEYS = (
 )  # fmt: skip
 _PROPERTY_KEYS = ("value", "points", "note", *_META)
 _ARGUMENTS = {"temperature": 313.15, "pressure": float("inf")}
-"""Arguments of tables and their reference values (the nearest point is used)."""
+"""Arguments of tables with their reference values; the table's nearest point gives the value."""
 Parent: TypeAlias = Callable[[str], Material | None]
-"""Returns the material of an ``inherit:``; None if unknown."""
+"""Function that returns the material named by ``inherit:``; None if unknown."""
 
 
 @dataclass(slots=True, eq=False)
@@ -52,7 +52,7 @@ class MaterialFile:
     _sources: dict[str, str] | None = None
 
     def names(self) -> list[str]:
-        """Entries of the file, including templates (leading underscore)."""
+        """Names of the entries, including templates (leading underscore)."""
         return [name for name in self.places if name != "sources"]
 
     def kind(self, name: str) -> str | None:
@@ -79,7 +79,7 @@ class MaterialFile:
         return self._sources
 
     def fault(self, name: str, message: str, advice: str = "") -> Diagnostic:
-        """A fault at the head of an entry."""
+        """Fault of an entry as a whole, shown at its first line."""
         _, _, line = self.places[name]
         return Diagnostic(message, advice, self.path, line, 1, name, f"{name}:")
 
@@ -130,7 +130,7 @@ def read_entry(file: MaterialFile, name: str, parent: Parent) -> Material:
     Parameters
     ----------
     file, name : file and name of the entry
-    parent : returns the material of an ``inherit:``
+    parent : function that returns the material named by ``inherit:``
     """
     reader = _Reader(file, name)
     entry = reader.entry(parent)
@@ -156,7 +156,7 @@ class _Reader:
         self.faults.append(self.document.diagnostic(span, message, advice, path))
 
     def entry(self, parent: Parent) -> Material | None:
-        """Material of the entry, or None if it is not a block."""
+        """Read the entry as a material; None if it is not a block."""
         data = self.document.data.get(self.name)
         if not isinstance(data, dict):
             self.fault(
@@ -419,7 +419,7 @@ class Library:
                 first[key] = file
 
     def names(self, *, kind: str | None = None, role: str | None = None) -> list[str]:
-        """Names in alphabetical order, of a kind or of the kinds that suit a role."""
+        """Names in alphabetical order, of one kind or of all kinds that suit a role."""
         kinds = ROLES[role] if role else (kind,) if kind else None
         return sorted(
             name
@@ -498,10 +498,10 @@ class Library:
         return entry
 
     def _parent(self, index: int, name: str) -> Material | None:
-        """The material that `inherit: name` refers to in file `index`.
+        """Find the material that `inherit: name` refers to in file `index`.
 
-        Searched in the same file first (except the entry being read), then in overridden files,
-        last in the other files of its folder.
+        It is searched in the same file first (except for the entry being read), then in the files
+        that this file overrides, last in the other files of its folder.
         """
         folder = Path(self._files[index].path).parent
         order = [index, *range(index - 1, -1, -1)]

@@ -1,8 +1,8 @@
 """The Design: contents of a design file in SI, as typed sections.
 
-Every number names its quantity (`Of`): parsing, range checks, the JSON Schema and reports read one
-declaration (`quantities.INPUTS`). A value may have bounds of a variable, bounds of a test, or
-scatter. Sections contain no physics.
+Every number names its quantity (`Of`), which is declared once in `quantities.INPUTS` for parsing,
+range checks, JSON Schema and reports. A value may be an optimisation variable with bounds, or have
+confidence bounds from a test, or scatter. Sections contain no physics.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Line(Section):
 
 
 class Valve(Section):
-    """A proportional or servo valve with four edges, linear in the signal."""
+    """A proportional or servo valve with four control edges that open linearly with the signal."""
 
     rated_flow: Annotated[float, Of("rated_flow", "flow through one metering edge at full signal")]
     rated_drop: Annotated[
@@ -77,7 +77,7 @@ class Valve(Section):
 
 
 class Throttle(Section):
-    """One-way flow-control valves that throttle the outflow; linear about the flow of each case."""
+    """One-way flow-control valves that throttle the outflow, linearised for each load case."""
 
     area: Annotated[float, Of("orifice_area", "area of the fully open needle")]
     opening: Annotated[float, Of("opening", "opening of the needle")] = 1.0
@@ -88,7 +88,7 @@ class Throttle(Section):
 
 
 class ReducingValve(Section):
-    """A pressure reducing valve as a second-order line end, for small signals."""
+    """A pressure reducing valve at the end of a line: a second-order model for small signals."""
 
     conductance: Annotated[float, Of("conductance", "static regulating conductance")]
     passive_conductance: Annotated[
@@ -99,7 +99,7 @@ class ReducingValve(Section):
 
 
 class Accumulator(Section):
-    """A gas accumulator on the line of one chamber; the gas has fluid.polytropic_index."""
+    """A gas accumulator on the line of one chamber; fluid.polytropic_index applies to its gas."""
 
     chamber: choices.Chamber
     gas_volume: Annotated[float, Of("gas_volume", "gas volume at the precharge")]
@@ -109,7 +109,7 @@ class Accumulator(Section):
 
 
 class Ports(Section):
-    """End of both lines while the load excites the actuator, with the position loop open."""
+    """Components at the ends of both lines while the load excites the actuator, without control."""
 
     end: choices.End = "closed"
     throttle: Throttle | None = None
@@ -127,7 +127,7 @@ class PositionLoop(Section):
 
 
 class Linkage(Section):
-    """Two pivots about a joint axis with the actuator between them; angles grow as it extends."""
+    """Two pivots around a joint axis, joined by the actuator; angles grow as it extends."""
 
     base_radius: Annotated[float, Of("pivot_radius", "distance from joint axis to fixed pivot")]
     crank_radius: Annotated[float, Of("pivot_radius", "distance from joint axis to crank pin")]
@@ -154,7 +154,7 @@ def closed_length(
 
 
 class Variable(Section):
-    """Bounds and start (SI) of a dimension that the optimiser varies; in the file, units by PATH.
+    """Bounds and start (SI) of a dimension that the optimiser varies.
 
     It varies continuously, or takes the `sizes` of a series or a list, or multiples of `step`.
     """
@@ -167,9 +167,9 @@ class Variable(Section):
 
 
 class TestBounds(Section):
-    """Test result for a value of the design: its 95 % bounds.
+    """95 % confidence bounds of a value of the design, from a test.
 
-    SI; in the file, units by PATH.
+    In SI; in the file, with units that suit the PATH.
     """
 
     lower: float
@@ -181,7 +181,7 @@ Shape: TypeAlias = Literal["normal", "lognormal", "uniform", "loguniform", "tria
 
 
 class Uncertain(Section):
-    """Scatter of a value; SI, in the file units by PATH."""
+    """Scatter of a value, in SI; in the file, with units that suit the PATH."""
 
     distribution: Annotated[
         Shape,
@@ -228,7 +228,7 @@ class FluidSection(Section):
 
 
 class Supply(Section):
-    """Gauge pressures at the ports of the actuator."""
+    """Gauge pressures of supply and return, at the actuator's ports."""
 
     pressure: Annotated[float, Of("working_pressure", "gauge pressure at the driven port")]
     return_pressure: Annotated[float, Of("pressure", "gauge pressure at the other port")] = 0.0
@@ -236,7 +236,7 @@ class Supply(Section):
 
 
 class Environment(Section):
-    """Environmental temperatures (trapped oil, thermal mismatch, service limits)."""
+    """Environmental temperatures, for trapped oil, thermal mismatch and service limits."""
 
     temperature_min: Annotated[float, Of("temperature", "lowest temperature of the actuator")]
     temperature_max: Annotated[float, Of("temperature", "highest temperature of the actuator")]
@@ -305,7 +305,7 @@ class Ply(Section):
 
 
 MOST_LAYERS = 24
-"""Most layers of a wall."""
+"""Largest number of layers of a wall."""
 
 
 class Barrel(Section):
@@ -341,7 +341,7 @@ class Thread(Section):
 class RetentionThread(Section):
     """Metric thread of tie rods, or of caps screwed onto the barrel's outside.
 
-    The barrel is turned down to the diameter of the caps' thread; default: its outer diameter.
+    For caps, the barrel's end is turned down to the thread diameter; default: its outer diameter.
     """
 
     diameter: Annotated[
@@ -436,7 +436,7 @@ class _Retention(Section):
 
 
 def _own_fields() -> dict[str, Any]:
-    """Keys that only some joints have, each with its quantity."""
+    """Keys of `retention` that only some joints have, each with its quantity."""
     joint_fields = {
         field.key: field for joint in JOINTS.values() for field in joint.fields if field.quantity
     }
@@ -468,7 +468,7 @@ class Clevis(Section):
 
 
 class Stiffness(Section):
-    """Contributions to the axial stiffness, and their combination."""
+    """Contributions to the axial stiffness that the model includes, and how they are combined."""
 
     topology: choices.Topology = "per_chamber"
     seals: choices.SealState = "sliding"
@@ -481,7 +481,7 @@ class Stiffness(Section):
 
 
 class LoadCase(Section):
-    """A duty: force or joint torque, direction, speed, position.
+    """A load case: force or joint torque, direction, speed and position.
 
     A joint torque acts on the stated lever arm, or through the linkage.
     """
@@ -547,14 +547,14 @@ class Limit(Section):
 
 
 class Objective(Section):
-    """A metric, or several with weights (each divided by its value in the original design)."""
+    """Metric to optimise, or several with weights, each divided by its value in the design."""
 
     minimise: Annotated[str | dict[str, float] | None, ObjectiveKind()] = None
     maximise: Annotated[str | dict[str, float] | None, ObjectiveKind()] = None
 
     @property
     def aim(self) -> Sense:
-        """Whether small ("min") or large values are better."""
+        """Sense of the objective: "min" if small values are better, "max" if large values are."""
         return "max" if self.minimise is None else "min"
 
     @property
@@ -565,7 +565,7 @@ class Objective(Section):
 
 
 def _like_the_piston(stated: dict[str, Any]) -> Head:
-    """A head with the piston's material and length, if the file has none."""
+    """Add a head with the piston's material and length if the file describes none."""
     piston = stated.get("piston")
     if piston is None:  # a missing piston is a separate fault
         return Head.model_construct(material="", length=0.0)
@@ -573,11 +573,11 @@ def _like_the_piston(stated: dict[str, Any]) -> Head:
 
 
 PLAIN_CAP = 0.25
-"""Default thickness over bore of the end plates."""
+"""Default thickness of the end plates, divided by the bore."""
 
 
 def _plain_caps(stated: dict[str, Any]) -> Caps:
-    """End plates of the piston's material and a quarter of the bore, if the file has none."""
+    """Add caps if the file describes none: piston material, a quarter of the bore thick."""
     piston, cylinder = stated.get("piston"), stated.get("cylinder")
     if piston is None or cylinder is None:
         return Caps.model_construct(material="", thickness=0.0)
@@ -585,7 +585,7 @@ def _plain_caps(stated: dict[str, Any]) -> Caps:
 
 
 class Design(Section):
-    """A hydraulic actuator with its duties, variables and requirements."""
+    """A hydraulic actuator with its load cases, variables and requirements."""
 
     name: Annotated[str, Text("title of the design")]
     notes: Annotated[str, Text("free text for the report", 20000, multiline=True)] = ""
@@ -615,9 +615,9 @@ class Design(Section):
     requirements: dict[str, Limit] = {}  # noqa: RUF012 (pydantic copies it)
     waivers: dict[str, Annotated[str, Text("why the check does not apply")]] = {}  # noqa: RUF012 (pydantic copies it)
     measured: dict[str, TestBounds] = {}  # noqa: RUF012 (pydantic copies it)
-    """Bounds of values from a test record, by PATH."""
+    """Confidence bounds of values from a test record, by PATH."""
     uncertainty: dict[str, Uncertain] = {}  # noqa: RUF012 (pydantic copies it)
-    """Scatter of values by PATH, in addition to the scatter of libraries and practice."""
+    """Scatter of values by PATH, in addition to the scatter in libraries and practice tables."""
     materials: dict[str, dict[str, float]] = {}  # noqa: RUF012 (pydantic copies it)
     """Properties (SI) that replace those of the library in this design, by material name."""
     objective: Objective = Objective(minimise="mass")

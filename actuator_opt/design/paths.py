@@ -36,7 +36,7 @@ _TABLES = (*_ENDS, *_TEXTS, "requirements", "materials", "objective")
 
 
 class _Token(NamedTuple):
-    """One step of a PATH: a key, or the text in brackets."""
+    """One part of a PATH: a key, or the text in brackets."""
 
     text: str
     bracket: bool
@@ -44,7 +44,7 @@ class _Token(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """Target of a PATH: canonical spelling, place in the tree, quantity of a number.
+    """Target of a PATH: canonical spelling, location in the tree, and quantity of a number.
 
     `entry` is None for values of tables (variables, requirements, materials, …).
     """
@@ -56,7 +56,7 @@ class Target:
 
 
 def spell(loc: Loc, tree: Any = None) -> str:
-    """The canonical PATH of a place; load cases by name if the name is unique in `tree`.
+    """The canonical PATH of a location; a load case is named if its name is unique in `tree`.
 
     >>> spell(("barrel", "layup", 1, "thickness"))
     'barrel.layup[1].thickness'
@@ -86,12 +86,13 @@ def resolve(
     metrics: Mapping[str, Quantity] | None = None,
     root: type[Section] = Design,
 ) -> Target:
-    """The target of `path` in a section of type `root` or in its tree.
+    """Find the target of `path` in a section of type `root`, or in its tree.
 
     Raises
     ------
     ValueFault
-        malformed, unknown (with the most similar name), or a block instead of a value
+        if the PATH is malformed, unknown (with the most similar name), or names a block, not a
+        value
     """
     path = path.strip()
     if len(path) > 200 or _PATH.fullmatch(path) is None:
@@ -144,7 +145,7 @@ def _resolve_section(
 
 
 def _index(path: str, text: str, node: Any, loc: Loc) -> int:
-    """Index of a list entry given by number or, for load cases, by name."""
+    """Index of a list entry, which is given by number or, for load cases, by name."""
     items = node if isinstance(node, (list, tuple)) else ()
     names = [child(item, "name") for item in items]
     if text in names:
@@ -158,7 +159,7 @@ def _index(path: str, text: str, node: Any, loc: Loc) -> int:
 
 
 def _resolve_table(head: str, rest: str, tree: Any, metrics: Mapping[str, Quantity]) -> Target:
-    """A value of a table, whose names are free (a PATH, a metric, a material)."""
+    """Find a value of a table whose keys are free names (PATHs, metrics, materials)."""
     path = f"{head}.{rest}"
     name, _, last = rest.rpartition(".")
     if head in _TEXTS:
@@ -231,7 +232,7 @@ def _target(path: str, design: Design) -> Target:
 def numbers(design: Design) -> dict[str, float]:
     """All numbers of a design in SI by canonical PATH; unset optional values are absent.
 
-    Positions stated as a fraction of the stroke stay fractions; bounds of variables are left out.
+    Positions stated as a fraction of the stroke stay fractions; bounds of variables are omitted.
     """
     values: dict[str, float] = {}
     for loc, _, value in leaves(design):
@@ -271,7 +272,7 @@ def put(tree: dict[str, Any], target: Target, value: object) -> None:
     Raises
     ------
     ValueFault
-        a value where a block is needed
+        if a block is needed at a PATH that has a single value
     """
     node: Any = tree
     for depth, key in enumerate(target.loc):

@@ -1,4 +1,4 @@
-"""Design files: read and checked in one pass, each fault with line and column.
+"""Read and check design files in one pass; every fault has its line and column.
 
 `load` reads files of other root sections in the same way.
 """
@@ -48,7 +48,7 @@ class Override(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class FileSource:
-    """Places of the values of a file, for later faults (from an evaluation or a plug-in)."""
+    """Locations of the values of a file, for faults found later by evaluation or plug-in."""
 
     document: Document
     overrides: Mapping[Loc, Override] = field(default_factory=dict)
@@ -56,7 +56,7 @@ class FileSource:
     root: type[Section] = Design
     """Section type of the file."""
     metrics: Mapping[str, Quantity] | None = None
-    """Metrics that requirements may name; default: `metrics.METRICS`."""
+    """Allowed names of metrics in requirements; default: `metrics.METRICS`."""
 
     @property
     def file(self) -> str:
@@ -69,7 +69,7 @@ class FileSource:
         return self.document.text
 
     def diagnostic(self, path: str, message: str, remedy: str = "") -> Diagnostic:
-        """A fault of the value at a PATH; for a PATH that the file lacks, at its block."""
+        """Diagnostic for the value at a PATH; it points at the block if the file lacks the PATH."""
         try:
             loc = resolve(path, self.document.data, self.metrics, self.root).loc
         except ValueFault:
@@ -77,11 +77,11 @@ class FileSource:
         return self.at(Fault(loc, message, remedy), path)
 
     def of_variable(self, path: str, message: str, remedy: str = "") -> Diagnostic:
-        """A fault of the entry of a PATH under `variables`."""
+        """Diagnostic for the entry of a PATH in the block `variables`."""
         return self.at(Fault(("variables", path), message, remedy, at_key=True), path)
 
     def at(self, fault: Fault, path: str | None = None) -> Diagnostic:
-        """A fault as a diagnostic."""
+        """Convert a fault to a diagnostic."""
         if path is None:
             path = spell(fault.loc, self.document.data) or None
         if path is not None:
@@ -97,7 +97,7 @@ class FileSource:
         return span[:2] if isinstance(span, NodeSpan) else (0, 0)
 
     def _find(self, fault: Fault) -> NodeSpan | Override | None:
-        """Nearest place in the text at or above a fault, or the value that replaced it."""
+        """Nearest location in the text at or above a fault, or the override of the value."""
         for depth in range(len(fault.loc), -1, -1):
             loc = fault.loc[:depth]
             if loc in self.overrides:
@@ -174,7 +174,7 @@ def load(
     overrides: Iterable[Override | tuple[str, str]] = (),
     metrics: Mapping[str, Quantity] | None = None,
 ) -> tuple[Root, FileSource]:
-    """The section that a document describes, and the places of its values.
+    """Build the section that a document describes, and record the locations of its values.
 
     Parameters
     ----------
@@ -213,7 +213,7 @@ def load(
 
 
 _MARKS = {"design": "cylinder", "scenario": "design"}
-"""Key that identifies the kind of file."""
+"""Key that identifies each kind of file."""
 
 
 def is_scenario(source: str | Path) -> bool:
@@ -238,7 +238,7 @@ def _unusable(fault: Fault, document: Document) -> bool:
 
 
 def _once(faults: Sequence[Fault], document: Document) -> list[Fault]:
-    """Faults that the layers of a compact entry share, reported once."""
+    """Drop repeated faults that the layers of a compact entry share."""
     unique, seen = [], set()
     for fault in faults:
         shorthand = document.shorthand(fault.loc)
@@ -254,7 +254,7 @@ def _once(faults: Sequence[Fault], document: Document) -> list[Fault]:
 def _in_order(
     source: FileSource, diagnostics: Sequence[Diagnostic], faults: Sequence[Fault]
 ) -> list[Diagnostic]:
-    """Faults by line and column, at most `MOST_FAULTS`, with the number of omitted faults.
+    """Sort faults by line and column; keep at most `MOST_FAULTS` and count the omitted faults.
 
     Faults of other files and of the command line come first.
     """
@@ -269,7 +269,7 @@ def _in_order(
 
 
 def _bare_is_si(value: str, quantity: Quantity | None) -> str:
-    """`value` with the SI unit if it is a bare number."""
+    """Add the SI unit to `value` if it is a bare number."""
     if quantity is None:
         return value
     try:
@@ -282,7 +282,7 @@ def _bare_is_si(value: str, quantity: Quantity | None) -> str:
 
 
 def opened(source: str | Path, kind: str = "design") -> tuple[str, str]:
-    """Text and name of a file, of standard input, or of a text of several lines."""
+    """Read text and name of a file, of standard input, or of a text of several lines."""
     if isinstance(source, str) and ("\n" in source or "\r" in source):
         return source, TEXT
     name = STDIN if source == "-" else str(source)

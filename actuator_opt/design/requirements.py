@@ -1,7 +1,7 @@
-"""Tables of free names: variables, requirements, measured values and others.
+"""Check tables whose keys are free names: variables, requirements, measured values and others.
 
-Their units depend on their key (a PATH, a metric, a property). Each function converts the texts of
-its block to SI numbers in place and yields their faults.
+The unit of an entry depends on its key (a PATH, a metric, a property). Each function converts the
+texts of its block to SI numbers in place and yields their faults.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ _LARGEST = {
     "flow": 1e3, "damping": 1e13, "energy": 1e12, "power": 1e12, "torque": 1e10,
     "time": 1e6,
 }  # fmt: skip
-"""Limits beyond these SI values are typing errors, for any metric."""
+"""Larger limits (SI) are refused as typing errors, whatever the metric."""
 
 
 def limit_quantity(metric: Quantity) -> Quantity:
-    """Quantity for the limits of a metric: signed or not, within plausible values."""
+    """Quantity for the limits of a metric, whose range contains only plausible values."""
     largest = _LARGEST.get(metric.dimension, 1e15)
     return replace(metric, lower=max(metric.lower, 0.0), upper=min(metric.upper, largest))
 
@@ -47,7 +47,7 @@ def _number(block: dict[str, Any], loc: Loc, quantity: Quantity) -> Fault | None
 
 
 def requirements(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Iterator[Fault]:
-    """Known metrics with at least one limit, in the unit of the metric, in order."""
+    """Check requirements: known metric, at least one limit, right unit, minimum below maximum."""
     block = tree.get("requirements")
     for metric, limit in block.items() if isinstance(block, dict) else ():
         loc = ("requirements", metric)
@@ -80,7 +80,7 @@ def requirements(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Itera
 
 
 def variables(tree: dict[str, Any]) -> Iterator[Fault]:
-    """PATHs of numbers with ordered bounds in range, and the start between them."""
+    """Check variables: PATHs of numbers, bounds ordered and in range, start between the bounds."""
     block = tree.get("variables")
     if not isinstance(block, dict):
         return
@@ -91,7 +91,7 @@ def variables(tree: dict[str, Any]) -> Iterator[Fault]:
                 "lower": 0.0,
                 "upper": 1.0,
                 "start": 0.0,
-            }  # the block has a fault
+            }  # the block as a whole already has a fault
             continue
         try:
             target = _movable(path, tree)
@@ -115,7 +115,7 @@ def variables(tree: dict[str, Any]) -> Iterator[Fault]:
 
 
 def measured(tree: dict[str, Any]) -> Iterator[Fault]:
-    """PATHs of numbers that are set, with ordered bounds in range."""
+    """Check measured values: PATHs of numbers that are set, bounds ordered and in range."""
     block = tree.get("measured")
     if not isinstance(block, dict):
         return
@@ -153,7 +153,7 @@ def measured(tree: dict[str, Any]) -> Iterator[Fault]:
 
 
 def in_faulty_block(path: str, tree: dict[str, Any]) -> bool:
-    """Whether the block of a PATH is missing or not a block, which is a separate fault."""
+    """Whether the block of a PATH is missing or malformed, which is a separate fault."""
     name = path.partition(".")[0]
     entry = entries(Design).get(name)
     if entry is None or entry.section is None or entry.shape == "table":
@@ -164,7 +164,7 @@ def in_faulty_block(path: str, tree: dict[str, Any]) -> bool:
 
 
 def _movable(path: str, tree: dict[str, Any]) -> Target:
-    """The number that a variable varies; raises `ValueFault`."""
+    """Find the number that a variable varies; raise `ValueFault` if there is none."""
     try:
         target = resolve(path, tree)
     except ValueFault as fault:
@@ -186,7 +186,7 @@ def _movable(path: str, tree: dict[str, Any]) -> Target:
 def _start(
     loc: tuple[str, str], bounds: dict[str, Any], target: Target, tree: dict[str, Any]
 ) -> Iterator[Fault]:
-    """Order of the bounds; the start is `start`, else the value in the design."""
+    """Check the order of the bounds; the start is `start`, otherwise the value in the design."""
     quantity = target.quantity
     assert quantity is not None
     lower, upper, start = (bounds.get(key) for key in ("lower", "upper", "start"))
@@ -224,13 +224,13 @@ def _start(
 
 
 def _between(lower: float, start: float, upper: float) -> bool:
-    """Whether a start is within its bounds; the last bits of a unit are forgiven."""
+    """Whether a start is within its bounds, apart from rounding when units are converted."""
     slack = 1e-12 * max(abs(lower), abs(upper))  # as for declared ranges, see `kinds.check_range`
     return lower - slack <= start <= upper + slack
 
 
 def objective(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Iterator[Fault]:
-    """Exactly one of minimise and maximise; known metrics; positive weights."""
+    """Check the objective: either `minimise` or `maximise`, known metrics, positive weights."""
     block = tree.get("objective")
     if not isinstance(block, dict):
         return
@@ -265,11 +265,11 @@ def _weights(
             fault = Fault((*loc, metric), "0: must be > 0", "write a weight, or remove the line")
         if fault is not None:
             yield fault
-            terms[metric] = 1.0  # already reported: the model need not refuse it again
+            terms[metric] = 1.0  # already reported, so the model need not refuse it again
 
 
 def waivers(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Iterator[Fault]:
-    """Waivers name a metric of the check list."""
+    """Check that every waiver names a metric of the check list."""
     block = tree.get("waivers")
     for metric in block if isinstance(block, dict) else ():
         if metric not in metrics:
@@ -278,7 +278,7 @@ def waivers(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Iterator[F
 
 
 def materials(tree: dict[str, Any]) -> Iterator[Fault]:
-    """Changed properties in their units (material names are checked in `faults`)."""
+    """Check properties that a design changes, in their units (`faults` checks material names)."""
     block = tree.get("materials")
     property_quantities = quantities.MATERIAL_PROPERTIES
     for material, properties in block.items() if isinstance(block, dict) else ():
@@ -306,7 +306,7 @@ def materials(tree: dict[str, Any]) -> Iterator[Fault]:
 def recheck(
     tree: dict[str, Any], metrics: Mapping[str, Quantity], root: type[Section] = Design
 ) -> Iterator[Fault]:
-    """All of the above checks that apply to a section of type `root`."""
+    """Run all checks of this module that apply to a section of type `root`."""
     checks = {
         "variables": variables(tree),
         "measured": measured(tree),

@@ -41,7 +41,7 @@ _NUMBER = r"(\d[\d_]*\.?\d*|\.\d+)([eE][+-]?\d+)?"
 
 
 def text_of(help: str, quantity: Quantity | None = None) -> str:
-    """Hover text: meaning, symbol, range, units and an example."""
+    """Hover text of a key: meaning, symbol, range, units and an example."""
     if quantity is None:
         return help
     names = ", ".join(units.units_of(quantity.dimension)) or "none (a bare number)"
@@ -64,7 +64,7 @@ def _unit_pattern(name: str) -> str:
 
 
 def quantity_schema(quantity: Quantity, help: str = "") -> Schema:
-    """Schema of a quantity: text with a unit; a bare number where the reader accepts it."""
+    """Schema of a quantity: a text with a unit, or a bare number if the reader accepts that."""
     names = sorted(units.units_of(quantity.dimension), key=len, reverse=True)
     bare = quantity.dimension in ("ratio", "count")
     sign = "[+-]?" if quantity.lower < 0 or quantity.dimension == "temperature" else r"\+?"
@@ -172,7 +172,7 @@ def entry_schema(entry: KeyEntry, materials: MaterialLookup | None) -> Schema:
 
 
 def section_schema(section: type[Section], materials: MaterialLookup | None) -> Schema:
-    """A block of keys; the required keys are offered as a snippet."""
+    """Schema of a block of keys; the editor offers the required keys as a snippet."""
     keys = entries(section)
     schema: Schema = {
         "description": (section.__doc__ or "").split("\n\n")[0].replace("\n    ", " "),
@@ -190,7 +190,7 @@ def section_schema(section: type[Section], materials: MaterialLookup | None) -> 
 
 
 def _with_notation(schema: Schema) -> Schema:
-    """A layer, or several layers in compact notation."""
+    """Schema of a wall's entry: a layer, or several layers in compact notation."""
     excluded = [{"required": [key]} for key in ("angle", "thickness", "balanced")]
     schema["properties"]["plies"] = {
         "title": "lay-up in compact notation",
@@ -222,11 +222,11 @@ def _snippet(entry: KeyEntry) -> Any:
 
 _REFERENCE = str.maketrans({"/": "_per_", "^": "", "*": "_", "%": "percent"})
 _LISTED = {"barrel.layup": 6, "rod.layup": 4, "lines": 2}
-"""Number of entries of a list whose PATHs are listed by name under `variables`."""
+"""Number of list entries whose PATHs are offered by name under `variables`."""
 _OF_TABLES = (
     r"^(name|notes|(objective|requirements|variables|measured|uncertainty|materials|waivers)\..+)$"
 )
-"""PATHs that `set` accepts besides those of the parts."""
+"""PATHs that `set` accepts in addition to those of the parts."""
 
 
 def json_schema(
@@ -240,7 +240,7 @@ def json_schema(
     Parameters
     ----------
     root : section type of the file
-    materials : library whose names are offered; None accepts any name
+    materials : library whose material names are offered; None: any name is accepted
     metrics : allowed metrics; default: `metrics.METRICS`
     """
     metrics = METRICS if metrics is None else metrics
@@ -281,7 +281,7 @@ def _of_parts(section: type[Section] = Design, prefix: str = "") -> dict[str, Ke
 
 
 def _by_path(schemas: Mapping[str, Schema]) -> Schema:
-    """Properties by PATH; indexed PATHs as patterns, the first entries of a list by name."""
+    """Schemas by PATH: patterns for indexed PATHs, and names for the first entries of a list."""
     properties: Schema = {}
     patterns: Schema = {}
     for path, schema in schemas.items():
@@ -326,7 +326,7 @@ def _variables(definitions: Schema) -> Schema:
 
 
 def _start_and_sizes(quantity: Quantity, path: str) -> Schema:
-    """Keys of a variable besides its bounds."""
+    """Schemas of a variable's keys apart from its bounds."""
     value = {"$ref": f"#/definitions/{quantity.name}"}
     suitable = [s for s in SERIES.values() if s.paths.fullmatch(path.replace("[*]", "[0]"))]
     sizes = {"type": "array", "minItems": 1, "maxItems": MOST_SIZES, "uniqueItems": True}
@@ -373,7 +373,7 @@ def _uncertainty(definitions: Schema) -> Schema:
 
 
 def _distribution(title: str, quantity: Quantity, definitions: Schema) -> Schema:
-    """An entry of `uncertainty`; entries of the same quantity share a definition."""
+    """Schema of an entry of `uncertainty`; entries of the same quantity share a definition."""
     name = f"uncertainty_{quantity.name}"
     if name not in definitions:
         definitions[name] = _shared(quantity, definitions)
@@ -381,7 +381,7 @@ def _distribution(title: str, quantity: Quantity, definitions: Schema) -> Schema
 
 
 def _shared(quantity: Quantity, definitions: Schema) -> Schema:
-    """An entry of `uncertainty` for any value of a quantity."""
+    """Shared definition of an entry of `uncertainty`, for all values of a quantity."""
     schema = section_schema(Uncertain, None)
     for key in [name for name in schema["properties"] if name not in NUMBERS]:
         definitions.setdefault(f"key_{key}", schema["properties"][key])

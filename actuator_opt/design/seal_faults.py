@@ -1,4 +1,4 @@
-"""Faults of the seals: sizes of the type, room for the grooves, squeeze, films, stated profiles."""
+"""Check the seals: sizes of each type, space for grooves, squeeze, oil films, stated profiles."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .structure import FileView, Loc, MaterialLookup, Properties, child_at, leng
 
 
 def elements(view: FileView) -> Iterator[Loc]:
-    """Place of every sealing element the file states."""
+    """Location of every sealing element that the file states."""
     for name in ("piston", "rod"):
         yield ("seals", name)
         if view.has("seals", name, "secondary"):
@@ -28,7 +28,7 @@ def elements(view: FileView) -> Iterator[Loc]:
 
 
 def fields(view: FileView) -> Iterator[Fault]:
-    """Every seal has the sizes of its type, and no others; a piston has no wiper."""
+    """Check that a seal has exactly the sizes of its type, and that a piston has no wiper."""
     for loc in elements(view):
         kind = _kind(view, loc)
         if kind is not None:
@@ -49,7 +49,7 @@ def _kind(view: FileView, loc: Loc) -> SealType | None:
 
 
 def _sizes(view: FileView, loc: Loc, kind: SealType) -> Iterator[Fault]:
-    """Missing and superfluous sizes of a type; every type accepts a groove width."""
+    """Yield missing and superfluous sizes of a seal type; every type accepts a groove width."""
     for size in SIZES:
         if size.key in kind.needed and not view.has(*loc, size.key):
             yield Fault(
@@ -68,7 +68,7 @@ def _sizes(view: FileView, loc: Loc, kind: SealType) -> Iterator[Fault]:
 
 
 def _back_ups(view: FileView, loc: Loc) -> Iterator[Fault]:
-    """Back-up rings need material and thickness, which have no effect without rings."""
+    """Check that back-up rings have material and thickness, which have no effect without rings."""
     stated = view.text(*loc, "back_up") != "none"
     for field, example in (("back_up_material", "back_up_ptfe"), ("back_up_thickness", "1.4 mm")):
         if stated and not view.has(*loc, field):
@@ -87,7 +87,7 @@ def _back_ups(view: FileView, loc: Loc) -> Iterator[Fault]:
 
 
 def widths(view: FileView) -> Iterator[Fault]:
-    """The parts in a groove fit its width; a land is not wider than its ring."""
+    """Check that rings fit the width of their groove, and that no land is wider than its ring."""
     for loc in elements(view):
         kind = _kind(view, loc)
         if kind is None:
@@ -118,7 +118,7 @@ def widths(view: FileView) -> Iterator[Fault]:
 
 
 def _grooves(view: FileView, seal: str) -> Iterator[tuple[Loc, float, float]]:
-    """Place of a fault, depth at nominal squeeze and least width of every groove of a seal."""
+    """For every groove of a seal: location for faults, depth at nominal squeeze, least width."""
     for loc in elements(view):
         if loc[1] != seal:
             continue
@@ -147,7 +147,7 @@ def _grooves(view: FileView, seal: str) -> Iterator[tuple[Loc, float, float]]:
 
 
 def grooves(view: FileView) -> Iterator[Fault]:
-    """The seal grooves lie inside piston and head and leave a core and a wall."""
+    """Check that seal grooves fit inside piston and head, and leave a core or wall of metal."""
     bore, rod_diameter = view.number("cylinder", "bore"), view.number("rod", "outer_diameter")
     for seal, part in (("piston", "piston"), ("rod", "head")):
         seal_grooves = list(_grooves(view, seal))
@@ -186,7 +186,7 @@ def grooves(view: FileView) -> Iterator[Fault]:
 
 
 def clearances(view: FileView) -> Iterator[Fault]:
-    """The gap behind a ring is smaller than the groove depth; otherwise the ring slips out."""
+    """Check that the gap behind a ring is smaller than the groove depth, so it cannot slip out."""
     for seal, part in (("piston", "piston"), ("rod", "head")):
         gap = view.number(part, "clearance")
         seal_grooves = [(depth, loc) for loc, depth, _ in _grooves(view, seal)]
@@ -204,7 +204,7 @@ def clearances(view: FileView) -> Iterator[Fault]:
 
 
 def squeeze(view: FileView) -> Iterator[Fault]:
-    """The nominal squeeze of an O-ring is in the range of its law; others have squeeze > 0."""
+    """Check that an O-ring's nominal squeeze is in the range of its law; of other rings, > 0."""
     for loc in elements(view):
         value, kind = view.number(*loc, "squeeze"), _kind(view, loc)
         if value is None or kind is None:
@@ -230,7 +230,7 @@ def squeeze(view: FileView) -> Iterator[Fault]:
 
 
 def shapes(view: FileView) -> Iterator[Fault]:
-    """Inner dimensions of a ring fit its section."""
+    """Check that inner dimensions of a ring fit into its section."""
     for loc in elements(view):
         kind = _kind(view, loc)
         if kind is not None:
@@ -254,13 +254,13 @@ def shapes(view: FileView) -> Iterator[Fault]:
 
 
 def _at_loc(loc: Loc, size_faults: Iterable[SizeFault]) -> Iterator[Fault]:
-    """Faults of sizes at their place."""
+    """Convert faults of sizes to faults at a location of the file."""
     for size_fault in size_faults:
         yield Fault((*loc, size_fault.key), size_fault.message, size_fault.remedy)
 
 
 def profiles(view: FileView) -> Iterator[Fault]:
-    """Stated contact pressures: positions increase from 0, one stress each, sorted by pressure."""
+    """Check that profiles have positions rising from 0, a stress for each, and rising pressures."""
     for loc in elements(view):
         last = -1.0
         for index, _ in enumerate(view.items(*loc, "contact")):
@@ -301,7 +301,7 @@ def profiles(view: FileView) -> Iterator[Fault]:
 
 
 def reach(view: FileView) -> Iterator[Fault]:
-    """Stated profiles extend from zero pressure to the supply pressure."""
+    """Check that stated profiles extend from zero pressure to the supply pressure."""
     supply, text = view.number("supply", "pressure"), INPUTS["pressure"].text
     for loc in elements(view):
         count = len(view.items(*loc, "contact"))
@@ -322,7 +322,7 @@ def reach(view: FileView) -> Iterator[Fault]:
 
 
 def films(view: FileView) -> Iterator[Fault]:
-    """Both elements of a pair have the same friction law; a film needs a single ring or a pair."""
+    """Check that a pair has a common friction law, and a film has a single ring or a pair."""
     for name in ("piston", "rod"):
         both: list[Loc] = [("seals", name)]
         if view.has("seals", name, "secondary"):
@@ -355,12 +355,12 @@ def _numbers(block: object) -> dict[str, float]:
 
 
 SLIDING_RING = 3.0
-"""Least ratio of modulus to modulus by hardness that marks a compound as a plastic sliding ring on
-rubber; that of a hard polyurethane is about 1."""
+"""Stated modulus divided by the modulus that follows from hardness: from this ratio on, a compound
+is taken for a plastic sliding ring on rubber. For a hard polyurethane the ratio is about 1."""
 
 
 def sliding_rings(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
-    """A step ring needs a compound with a sliding ring; other types need a compound without."""
+    """Check that step rings, and only they, use a compound with a sliding ring."""
     view = FileView(tree)
     if not isinstance(materials, Properties):
         return

@@ -17,13 +17,14 @@ from . import choices
 from .kinds import MaterialName, Of, Section
 
 BACK_UPS = {"none": 0, "one": 1, "both": 2}
-"""Number of back-up rings by the word of `back_up`."""
+"""Number of back-up rings for each word of `back_up`."""
 
 
 class ContactProfile(Section):
-    """Static contact pressure of an element at one sealed pressure, from another source.
+    """Static contact pressure of an element at one sealed pressure, from test or simulation.
 
-    Profiles are interpolated between sealed pressures; the last reaches the supply pressure.
+    Profiles are interpolated between sealed pressures; the last profile must be at or above supply
+    pressure.
     """
 
     pressure: Annotated[float, Of("pressure", "sealed pressure of this profile, gauge")]
@@ -38,7 +39,7 @@ class ContactProfile(Section):
 
 
 class SealElement(Section):
-    """Radial sealing ring in its groove; `count` of them in a row.
+    """Radial sealing ring in its groove, or `count` of them in a row.
 
     `section` is the free radial height of the squeezed part: the O-ring, the O-ring behind a step
     ring, the lips of a U-cup, the body of a compact seal.
@@ -92,12 +93,12 @@ class SealElement(Section):
 
     @property
     def seal_type(self) -> SealType:
-        """Its seal type."""
+        """Seal type of the element."""
         return TYPES[self.type]
 
     @property
     def friction_law(self) -> FrictionLaw:
-        """Its friction law."""
+        """Friction law of the element."""
         return LAWS[self.friction]
 
     @property
@@ -106,7 +107,7 @@ class SealElement(Section):
         return BACK_UPS[self.back_up]
 
     def stated_sizes(self) -> dict[str, float]:
-        """Sizes of its type that the design states, SI."""
+        """Sizes of the element's type that the design states, SI."""
         sizes = {size.key: getattr(self, size.key) for size in SIZES}
         return {key: value for key, value in sizes.items() if value is not None}
 
@@ -155,7 +156,7 @@ class Seal(SealElement):
     guide: Guide | None = None
 
     def elements(self) -> dict[str, SealElement]:
-        """Sealing elements by the tail of their PATH, from the pressure side outwards."""
+        """Sealing elements by the end of their PATH, from the pressure side outwards."""
         second = {} if self.secondary is None else {"secondary.": self.secondary}
         return {"": self, **second}
 

@@ -1,8 +1,8 @@
-"""Discrete sizes of a variable: its own list, a step, a standard series, whole plies.
+"""Discrete sizes of a variable: from its own list, a step, a standard series, or whole plies.
 
 Some sizes depend on another variable: the rod of a catalogue cylinder on its bore, the squeeze of a
 standard gland on its ring, an odd number of plies on their angle, the bore of a tubular rod on its
-outer diameter. `groups` joins such variables; its rows are the allowed combinations.
+outer diameter. `groups` joins such variables and lists their allowed combinations.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ from .standard_sizes import SERIES, SizeSeries
 from .structure import FileView, Loc, child, child_at, number_of, value_at
 
 MOST_SIZES = 1000
-"""Most sizes of a variable, and rows of a group."""
+"""Largest number of sizes of a variable, and of combinations of a group."""
 
 ROOM = 1e-9
-"""Relative distance beyond a bound that counts as on the bound."""
+"""Relative distance by which a size may exceed a bound, for rounding."""
 
 
 @dataclass(frozen=True, slots=True)
 class VariableGroup:
-    """Variables by PATH, the source of their sizes, and the allowed combinations (SI)."""
+    """Variables with discrete sizes: PATHs, source of the sizes, allowed combinations (SI)."""
 
     paths: tuple[str, ...]
     labels: tuple[str, ...]
@@ -39,7 +39,7 @@ class VariableGroup:
 
 @dataclass(frozen=True, slots=True)
 class _Rule:
-    """Rule for the sizes of a variable: given the value of `parent`, if it has a parent."""
+    """Rule for the sizes of a variable, which may depend on the value of a `parent` variable."""
 
     path: str
     label: str
@@ -101,7 +101,7 @@ def _read_step(loc: Loc, bounds: dict[str, Any], quantity: Quantity) -> Iterator
 
 
 def _difference(quantity: Quantity) -> Quantity:
-    """Quantity of a step: from zero to the whole range."""
+    """Quantity of a step: its range is from zero to the width of the variable's range."""
     if quantity.dimension == "temperature":
         raise ValueFault("a temperature has no step", "list its sizes")
     return replace(quantity, lower=0.0)
@@ -137,7 +137,7 @@ def _read_list(
 def groups(
     tree: Any, *, plies: bool = False, standard: bool = False
 ) -> tuple[tuple[VariableGroup, ...], tuple[Fault, ...]]:
-    """Variables with discrete sizes; dependent variables share a group.
+    """Find the variables with discrete sizes; variables that depend on each other share a group.
 
     Parameters
     ----------
@@ -148,7 +148,7 @@ def groups(
 
     Returns
     -------
-    the groups, and the faults of variables without a suitable size
+    groups, and faults of variables without a suitable size
     """
     view = FileView(tree)
     rules = {path: rule for path in _paths(tree) if (rule := _rule(view, path, plies, standard))}
@@ -169,7 +169,7 @@ class _NoSize(Exception):
         self.path, self.message, self.remedy = path, message, remedy
 
     def fault(self, tree: Any) -> Fault:
-        """The fault at the key that requires sizes, else at the variable."""
+        """Fault at the key that requires sizes; without such a key, at the variable."""
         block: Loc = ("variables", self.path)
         for key in ("sizes", "step"):
             if child_at(tree, (*block, key)) is not None:
@@ -178,7 +178,7 @@ class _NoSize(Exception):
 
 
 def _paths(tree: Any) -> list[str]:
-    """Variables that are numbers with valid bounds."""
+    """List the variables that are numbers with valid bounds."""
     block = child(tree, "variables")
     numeric = []
     for path in block if isinstance(block, dict) else ():
@@ -195,7 +195,7 @@ def _paths(tree: Any) -> list[str]:
 
 
 def _rule(view: FileView, path: str, plies: bool, standard: bool) -> _Rule | None:
-    """Rule for the sizes of a variable, by file or option; None if free."""
+    """Rule for the sizes of a variable, from file or option; None if it varies continuously."""
     sizes, step = (child_at(view.tree, ("variables", path, key)) for key in ("sizes", "step"))
     lower, upper = _bounds(view, path)
     if isinstance(step, float):
@@ -238,13 +238,13 @@ def _bounds(view: FileView, path: str) -> tuple[float, float]:
 
 
 def _multiples(step: float, bounds: tuple[float, float]) -> list[float]:
-    """Multiples of a step, from below to above the bounds, in decimals."""
+    """Multiples of a step, from just below to just above the bounds, exact in decimals."""
     first, last = (int(bound // step) for bound in bounds)
     return [float(count * Decimal(repr(step))) for count in range(first - 1, last + 3)]
 
 
 def _families(rules: dict[str, _Rule]) -> Iterator[list[_Rule]]:
-    """Dependent rules together, parents first, in the order of the variables."""
+    """Group rules that depend on each other, parents first, in the order of the variables."""
     remaining = dict(rules)
 
     def below(path: str) -> Iterator[_Rule]:
@@ -263,7 +263,7 @@ def _families(rules: dict[str, _Rule]) -> Iterator[list[_Rule]]:
 
 
 def _group(view: FileView, members: Sequence[_Rule]) -> VariableGroup:
-    """All allowed combinations of a group; raises `_NoSize`."""
+    """List all allowed combinations of a group; raise `_NoSize` if there are none."""
     rows: list[tuple[float, ...]] = [()]
     column = {rule.path: index for index, rule in enumerate(members)}
     for rule in members:
@@ -289,7 +289,7 @@ def _group(view: FileView, members: Sequence[_Rule]) -> VariableGroup:
 
 
 def _fixed(view: FileView, rule: _Rule, column: dict[str, int]) -> float | None:
-    """Value of a parent that is not a variable; None without a parent, or if it is free."""
+    """Value of a fixed parent; None if there is no parent, or if the parent is a variable."""
     if rule.parent is None or rule.parent in column:
         return None
     if child_at(view.tree, ("variables", rule.parent)) is None:
@@ -304,7 +304,7 @@ def _fixed(view: FileView, rule: _Rule, column: dict[str, int]) -> float | None:
 
 
 def _none_fits(view: FileView, rule: _Rule, values: Sequence[float]) -> _NoSize:
-    """No size between the bounds: states the nearest sizes."""
+    """Fault if no size lies between the bounds; it states the nearest sizes."""
     quantity = resolve(rule.path, view.tree).quantity
     assert quantity is not None
     lower, upper = _bounds(view, rule.path)

@@ -3,8 +3,9 @@
 Tables: ISO 3320 bores and rods, ISO 6020-2/6022 pairs, O-rings and glands. Lengths are in m,
 pressures in Pa; every row states source and confidence.
 
-Series for the `sizes` of a variable: standards, whole plies, feasible angles. A series states its
-PATHs, whether it applies to a design, the variable its sizes depend on, and the sizes themselves.
+Series for the `sizes` of a variable are standards, whole plies and feasible angles. A series states
+for which PATHs and designs it applies, on which variable its sizes depend, and the sizes
+themselves.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ Use: TypeAlias = Literal["reciprocating", "static"]
 Direction: TypeAlias = Literal["nearest", "up", "down"]
 
 _SAME = 0.005
-"""A gland row applies to sections within 0.5 % of its own; others are interpolated."""
+"""A tabulated gland applies to ring sections within 0.5 % of its own; others are interpolated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,10 +67,10 @@ class ORing:
 
 @dataclass(frozen=True, slots=True)
 class Gland:
-    """Groove of an O-ring; depth is the radial space of the ring, including rod or bore.
+    """Groove of an O-ring; its depth is the whole radial space of the ring, up to rod or bore.
 
-    A table without tolerances gives equal limits and no radii (0). `back_up_widths` are the
-    smallest and largest width with one and with two back-up rings; empty if not tabulated.
+    If a table has no tolerances, both limits are equal and the radii are 0. `back_up_widths` are
+    the smallest and largest widths, with one and with two back-up rings; empty if not tabulated.
     """
 
     use: str
@@ -102,7 +103,7 @@ class Gland:
 
         Raises
         ------
-        InputError : not tabulated for this number
+        InputError : if the table has no width for this number
         """
         widths = ((self.width_min, self.width_max), *self.back_up_widths)
         if not 0 <= back_up_rings < len(widths):
@@ -112,7 +113,7 @@ class Gland:
 
     @property
     def squeeze(self) -> float:
-        """Nominal squeeze over section."""
+        """Nominal squeeze, as a share of the section."""
         return 1 - self.depth / self.section
 
     @property
@@ -130,7 +131,7 @@ class Gland:
 
 @functools.lru_cache(maxsize=1)
 def tables() -> Mapping[str, Any]:
-    """Contents of ``standards.yaml``, numbers as text."""
+    """Contents of ``standards.yaml``, with numbers as text."""
     path = store.data_folder("materials") / "standards.yaml"
     text = yaml_source.decode(path.read_bytes(), str(path))
     document = yaml_source.parse(text, str(path))
@@ -182,7 +183,7 @@ def tube_walls() -> tuple[StandardSize, ...]:
 
 @functools.cache
 def cylinder_pairs(series: str | None = None) -> tuple[CylinderPair, ...]:
-    """Bore and rod pairs of ISO 6020-2 (160 bar) and ISO 6022 (250 bar), or of a named series."""
+    """Pairs of bore and rod of ISO 6020-2 (160 bar) and ISO 6022 (250 bar), or of one series."""
     return tuple(
         CylinderPair(
             group["series"], metres(bore), metres(rod),
@@ -213,11 +214,11 @@ def ring_sections() -> tuple[float, ...]:
 
 
 def section_tolerance(section: float) -> StandardSize:
-    """Tolerance (both ways, m) of a ring's free section, m: ISO 3601-1, else that of its band.
+    """Tolerance (plus or minus, m) of a ring's free section: ISO 3601-1, else by size band.
 
     Raises
     ------
-    InputError : the section is thicker than the bands
+    InputError : if the section is thicker than all size bands
     """
     sizes, bands = tables()["section_tolerances"], tables()["section_tolerance_bands"]
     for size, tolerance in sizes["rows"]:
@@ -232,10 +233,10 @@ def section_tolerance(section: float) -> StandardSize:
 
 @functools.cache
 def glands(use: Use, table: str | None = None) -> tuple[Gland, ...]:
-    """Tabulated glands of an application, ascending by section.
+    """Tabulated glands of an application (reciprocating, static), ascending by section.
 
-    From the table ``as568``, ``metric`` or ``series_g`` (moving hydraulic seals only); by default
-    from the first two.
+    `table` is ``as568``, ``metric`` or ``series_g`` (moving hydraulic seals only); by default the
+    first two are used.
     """
     tabulated: list[Gland] = []
     for name in ("as568", "metric") if table is None else (table,):
@@ -276,7 +277,7 @@ def gland(section: float, use: Use = "reciprocating", *, table: str | None = Non
 
     Raises
     ------
-    InputError : section outside the tables, or no glands for this use
+    InputError : if the section is outside the tables, or they have no glands for this use
     """
     if table is not None and not glands(use, table):
         message = f"the {table} table has no {use} glands"
@@ -343,7 +344,7 @@ def nearest_standard(
 
 
 WHOLE = 1e-6
-"""Fraction of a ply, and angle (rad), that counts as zero."""
+"""Fraction of a ply, and angle (rad), below which a value counts as zero."""
 Bounds = tuple[float, float]
 
 
@@ -354,8 +355,8 @@ class SizeSeries:
     Parameters
     ----------
     name, label : name in the file and in reports
-    suits, paths : suitable variables, in words and as a pattern of PATHs
-    option : option that selects it if the file does not ("file": no option)
+    suits, paths : variables to which it applies, in words and as a pattern of PATHs
+    option : command-line option that selects the series ("file": only the file can select it)
     needs_parent : whether its sizes require those of the parent variable
     """
 
@@ -375,7 +376,7 @@ class SizeSeries:
         return None
 
     def each(self, view: FileView, path: str) -> str:
-        """Name of a single size."""
+        """Noun for a single size of the series, for messages."""
         return f"{self.label} size"
 
     def values(
@@ -386,12 +387,12 @@ class SizeSeries:
 
 
 def along(angle: float) -> bool:
-    """Whether an angle is 0 or 90 degrees, where a balanced pair is two equal plies."""
+    """Whether an angle is 0 or 90 degrees, where both plies of a balanced pair are equal."""
     return abs(math.sin(2 * angle)) <= WHOLE
 
 
 def _layer(view: FileView, path: str, key: str) -> float | None:
-    """A number of the layer of a PATH."""
+    """Read a number of the layer to which a PATH belongs."""
     match = re.match(r"(barrel|rod)\.layup\[(\d+)\]", path)
     assert match is not None
     return view.number(match[1], "layup", int(match[2]), key)
@@ -406,7 +407,7 @@ class _Iso3320(SizeSeries):
 
 
 class _Pairs(SizeSeries):
-    """Bore and rod of a catalogue cylinder: both, or either with the other fixed."""
+    """Bore and rod of a catalogue cylinder: both vary, or one varies and the other is fixed."""
 
     def _other(self, path: str) -> str:
         return "cylinder.bore" if path != "cylinder.bore" else "rod.outer_diameter"
@@ -439,7 +440,7 @@ def _same(size: float, other: float | None) -> bool:
 
 
 class _Walls(SizeSeries):
-    """Walls of drawn steel tube, of a metal layer or of a hollow rod."""
+    """Wall thicknesses of drawn steel tube, for a metal layer or a hollow rod."""
 
     def fault(self, view: FileView, path: str) -> tuple[str, str] | None:
         if path == "rod.inner_diameter" or _layer(view, path, "ply_thickness") is None:
@@ -461,7 +462,7 @@ class _Walls(SizeSeries):
 
 
 class _Glands(SizeSeries):
-    """O-ring sections, with squeeze and groove of their gland at mid-tolerance."""
+    """O-ring sections, each with squeeze and groove of its gland at mid-tolerance."""
 
     def _seal(self, path: str) -> tuple[str, ...]:
         return tuple(path.split(".")[:-1])
@@ -505,7 +506,7 @@ class _WholePlies(SizeSeries):
         return path.removesuffix("thickness") + "angle"
 
     def _singly(self, view: FileView, path: str, angle: float | None) -> bool:
-        """Whether plies count singly: not balanced, or at 0 or 90 degrees."""
+        """Whether a layer may have an odd number of plies: not balanced, or at 0 or 90 degrees."""
         balanced = view.flag(*self._loc(path), "balanced")
         return balanced is False or (angle is not None and along(angle))
 

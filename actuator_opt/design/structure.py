@@ -1,6 +1,6 @@
-"""Structure of the model, and a file's tree by that structure: values by place, faults at places.
+"""Structure of the model; look-up of a tree's values by their location, and faults at locations.
 
-Reader, PATHs, writer and JSON Schema traverse the keys of each section and the kind of each value,
+Reader, PATHs, writer and JSON Schema find the keys of each section and the kind of each value here,
 so none of them names a field.
 """
 
@@ -42,7 +42,7 @@ class KeyEntry:
     section: type[Section] | None = None
     least: int = 0
     most: int | None = None
-    """Fewest and most entries of a list."""
+    """Smallest and largest number of entries of a list."""
 
     def quantity(self, value: object = None) -> Quantity | None:
         """Quantity of this number; for a position it depends on the notation."""
@@ -105,7 +105,7 @@ def child(node: Any, key: str | int) -> Any:
 
 
 def child_at(tree: Any, loc: Loc) -> Any:
-    """Value at a place of a tree, or None."""
+    """Value at a location of a tree, or None."""
     for key in loc:
         tree = child(tree, key)
     return tree
@@ -113,7 +113,7 @@ def child_at(tree: Any, loc: Loc) -> Any:
 
 @cache
 def lists_of(section_type: type[Section], section: type[Section] = Design) -> tuple[Loc, ...]:
-    """Places of the lists of a section type.
+    """Locations of all lists in a section type.
 
     >>> from .model import Ply
     >>> lists_of(Ply)
@@ -131,7 +131,7 @@ def lists_of(section_type: type[Section], section: type[Section] = Design) -> tu
 def leaves(
     node: Any, section: type[Section] = Design, loc: Loc = ()
 ) -> Iterator[tuple[Loc, KeyEntry, Any]]:
-    """All present values and choices below a node: (loc, entry, value).
+    """Yield all stated values and choices below a node: (loc, entry, value).
 
     Tables of free names (variables, requirements, …) are skipped, as are parts of a faulty dict
     that do not have the model's structure.
@@ -154,7 +154,7 @@ def leaves(
 
 
 def number_of(value: object) -> float | None:
-    """SI number of a leaf; None for texts."""
+    """SI number of a single value; None for texts."""
     if isinstance(value, Fraction):
         return value.value
     if isinstance(value, (int, float)) and not isinstance(value, bool):
@@ -163,7 +163,7 @@ def number_of(value: object) -> float | None:
 
 
 def value_at(tree: Any, loc: Loc, section: type[Section] = Design) -> Any:
-    """Value at a place of a section or its tree, else the default of the model."""
+    """Value at a location of a section or its tree; if not stated, the default of the model."""
     node, default = tree, None
     for key in loc:
         node = child(node, key)
@@ -202,27 +202,27 @@ class Properties(Protocol):
 
 
 class FileView:
-    """A tree in SI, read by dotted keys, with the defaults of the model; None if unusable."""
+    """Read values of a tree in SI, with the model's defaults; None for unusable values."""
 
     def __init__(self, tree: Any, root: type[Section] = Design) -> None:
         self.tree = tree
         self.root = root
 
     def value(self, *loc: str | int) -> Any:
-        """Value at a place, else its default."""
+        """Value at a location; if not stated, its default."""
         return value_at(self.tree, loc, self.root)
 
     def number(self, *loc: str | int) -> float | None:
-        """The SI number at a place."""
+        """The SI number at a location."""
         return number_of(self.value(*loc))
 
     def text(self, *loc: str | int) -> str | None:
-        """The text at a place."""
+        """The text at a location."""
         value = self.value(*loc)
         return value if isinstance(value, str) else None
 
     def flag(self, *loc: str | int) -> bool | None:
-        """The boolean at a place."""
+        """The boolean at a location."""
         value = self.value(*loc)
         return value if isinstance(value, bool) else None
 
@@ -232,14 +232,14 @@ class FileView:
         return value if isinstance(value, (list, tuple)) else ()
 
     def has(self, *loc: str | int) -> bool:
-        """Whether the file states a value here."""
+        """Whether the file states a value at this location."""
         return child_at(self.tree, loc) is not None
 
 
 def without_effect(
     view: FileView, loc: Loc, keys: Iterable[str], where: str, remedy: str = "remove the line"
 ) -> Iterator[Fault]:
-    """A fault for each of these keys below a place that the file states."""
+    """Yield a fault for each of these keys, below a location, that the file states in vain."""
     for key in keys:
         if view.has(*loc, key):
             yield Fault((*loc, key), f"without effect {where}", remedy, at_key=True)

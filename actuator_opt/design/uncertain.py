@@ -1,7 +1,7 @@
 """Entries of ``uncertainty``: quantities of their keys, and ranges of the distributions.
 
-Distributions are centred on the value in the design and move with it, except absolute bounds. An
-optimiser can therefore vary the value.
+Distributions are centred on the value in the design and move with it, except for absolute bounds.
+An optimiser can therefore vary the value.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ def class_limits(name: str, size: float) -> tuple[float, float]:
 
 
 def _place(row: dict[str, Any]) -> int:
-    """Index of a size step."""
+    """Index of the size step that a row's text names."""
     return [step["to"] for step in _table()["rows"]].index(row["to"])
 
 
@@ -83,7 +83,7 @@ KEYS: dict[str, tuple[tuple[str, ...], ...]] = {
     "triangular": (("half_width",), ("tolerance",), ("lower", "upper")),
     "fixed": ((),),
 }
-"""Key groups of each distribution, of which an entry uses exactly one group."""
+"""Groups of keys for each distribution; an entry uses exactly one group."""
 
 VARIATION = replace(
     INPUTS["coefficient"], name="variation", symbol="CV", unit="%", upper=1.0,
@@ -96,7 +96,7 @@ NUMBERS = ("lower", "upper", "deviation", "half_width", "cv", "factor")
 """Keys with numeric values."""
 
 REACH = 5.0
-"""Truncation of normal and lognormal samples in standard deviations: 6e-7 lie beyond."""
+"""Normal and lognormal samples are truncated at this many standard deviations; 6e-7 lie beyond."""
 
 
 def quantity_of_entry(key: str, quantity: Quantity) -> Quantity | None:
@@ -143,7 +143,7 @@ def limits(shape: str, entry: Stated, value: float) -> tuple[float, float]:
 
 
 def ratio(shape: str, entry: Stated) -> float:
-    """Largest value over the value in the design, for a logarithmic distribution."""
+    """Largest sample divided by the value in the design, for a logarithmic distribution."""
     if shape == "loguniform":
         return float(entry["factor"])
     return exp(REACH * log_deviation(entry))
@@ -156,7 +156,7 @@ def log_deviation(entry: Stated) -> float:
 
 
 def misfit(shape: str, entry: Stated, value: float, quantity: Quantity) -> tuple[str, str]:
-    """Fault and remedy of a distribution about a value; empty if valid."""
+    """Fault and remedy of a distribution around a value; empty texts if valid."""
     try:
         low, high = limits(shape, entry, value)
     except ValueFault as fault:

@@ -34,7 +34,7 @@ def faults(tree: dict[str, Any]) -> Iterator[Fault]:
 
 
 def _number(path: str, tree: dict[str, Any]) -> Target:
-    """The number at a PATH; raises `ValueFault`."""
+    """Find the number at a PATH; raise `ValueFault` if there is none."""
     try:
         target = resolve(path, tree)
     except ValueFault as fault:
@@ -53,7 +53,7 @@ def _number(path: str, tree: dict[str, Any]) -> Target:
 
 
 def _read(loc: tuple[str, str], entry: dict[str, Any], target: Target) -> Iterator[Fault]:
-    """Convert numbers to SI, in place."""
+    """Convert the numbers of an entry to SI, in place."""
     assert target.quantity is not None
     for key in NUMBERS:
         quantity = quantity_of_entry(key, target.quantity)
@@ -68,7 +68,7 @@ def _read(loc: tuple[str, str], entry: dict[str, Any], target: Target) -> Iterat
 def _fit(
     loc: tuple[str, str], entry: dict[str, Any], target: Target, tree: dict[str, Any]
 ) -> Iterator[Fault]:
-    """The keys suit the distribution, the bounds include the value, samples stay in range."""
+    """Check that keys suit the distribution, bounds include the value, and samples are in range."""
     shape = entry.get("distribution", "uniform" if "tolerance" in entry else None)
     if shape is None:
         yield Fault((*loc, "distribution"), "missing", 'add e.g. "distribution: normal"')

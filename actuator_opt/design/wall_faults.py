@@ -1,6 +1,6 @@
-"""Faults of barrel, rod and their joint: impossible layers, unsuitable materials and keys.
+"""Check barrel, rod and joint: impossible layers, unsuitable materials, unsuitable keys.
 
-Each joint declares the keys and checks of `retention` in its module in `joints`.
+The module of each joint in `joints` declares its keys of `retention` and its checks.
 """
 
 from __future__ import annotations
@@ -35,13 +35,13 @@ PLY_STRENGTHS = (
 """Strengths that every failure criterion needs; other strengths have defaults."""
 
 _WITHOUT_PLIES = ("isotropic", "as_published")
-"""Wall models without failure of plies."""
+"""Wall models that do not check the failure of plies."""
 
 _ELASTIC = (*PLY_CONSTANTS, "youngs_modulus", "poissons_ratio", "shear_modulus")
 
 
 def signs(view: FileView) -> Iterator[Fault]:
-    """A balanced pair has no sign, neither in its angle nor in its bounds."""
+    """Check that angles of balanced pairs have no sign, neither as values nor as bounds."""
     for wall in lists_of(Ply):
         for index in range(len(view.items(*wall))):
             loc = (*wall, index, "angle")
@@ -62,7 +62,7 @@ def signs(view: FileView) -> Iterator[Fault]:
 
 
 def barrel_model(view: FileView) -> Iterator[Fault]:
-    """The isotropic wall model has a single layer."""
+    """Check that the isotropic wall model is used with a single layer."""
     layers = len(view.items("barrel", "layup"))
     if view.text("barrel", "model") == "isotropic" and layers > 1:
         yield Fault(
@@ -73,7 +73,7 @@ def barrel_model(view: FileView) -> Iterator[Fault]:
 
 
 def autofrettage(view: FileView) -> Iterator[Fault]:
-    """The liner yields above the supply pressure, inside layers that contain it."""
+    """Check that autofrettage has a liner that yields above supply pressure, and outer layers."""
     loc = ("barrel", "autofrettage_pressure")
     pressure, supply = view.number(*loc), view.number("supply", "pressure")
     if pressure is None:
@@ -93,7 +93,7 @@ def autofrettage(view: FileView) -> Iterator[Fault]:
 
 
 def laminated_rod(view: FileView) -> Iterator[Fault]:
-    """The bore of a laminated rod follows from its layers; fittings need both."""
+    """Check that a laminated rod states no bore, and that only a laminated rod has fittings."""
     layers = len(view.items("rod", "layup"))
     if not layers:
         if view.has("rod", "fitting"):
@@ -141,7 +141,7 @@ CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
 
 
 def of_materials(tree: Any, materials: MaterialLookup) -> Iterator[Fault]:
-    """Faults of the walls that depend on the material library."""
+    """Yield faults of the walls that depend on the material library."""
     view = FileView(tree)
     yield from _kinds(view, materials)
     if isinstance(materials, Properties):
@@ -155,7 +155,7 @@ def _names(view: FileView, wall: Loc) -> list[str | None]:
 
 
 def _kinds(view: FileView, materials: MaterialLookup) -> Iterator[Fault]:
-    """Autofrettage needs a metal liner; a laminated rod needs metal fittings."""
+    """Check that autofrettage has a metal liner, and a laminated rod has metal fittings."""
     first = next(iter(_names(view, ("barrel", "layup"))), None)
     stated = view.number("barrel", "autofrettage_pressure") is not None
     if stated and first is not None and materials.kind(first) not in (None, "metal"):
@@ -184,7 +184,7 @@ class _StatedProperties:
         self.materials = materials
 
     def changed(self, name: str) -> dict[str, float]:
-        """Properties that the design states; faulty values are left out."""
+        """Properties that the design states; faulty values are omitted."""
         block = child(self.block, name)
         pairs = block.items() if isinstance(block, Mapping) else ()
         return {key: value for key, value in pairs if isinstance(value, float)}
@@ -203,7 +203,7 @@ def known_numbers(view: FileView, materials: Properties, name: str) -> dict[str,
 
 
 def _strengths(view: FileView, properties: _StatedProperties) -> Iterator[Fault]:
-    """Every ply of the barrel has the strengths of the selected criterion."""
+    """Check that every ply of the barrel has the strengths that the failure criterion needs."""
     criterion = view.text("barrel", "criterion")
     if not view.has("barrel", "criterion") or view.text("barrel", "model") in _WITHOUT_PLIES:
         return
@@ -219,7 +219,7 @@ def _strengths(view: FileView, properties: _StatedProperties) -> Iterator[Fault]
 
 
 def _stiffness(view: FileView, properties: _StatedProperties) -> Iterator[Fault]:
-    """Changed elastic constants keep the stiffness positive definite."""
+    """Check that with changed elastic constants, the stiffness is still positive definite."""
     for name in properties.block if isinstance(properties.block, Mapping) else ():
         changed = [key for key in properties.changed(name) if key in _ELASTIC]
         numbers = properties.numbers(name) if changed else {}
@@ -244,7 +244,7 @@ def joint_of(view: FileView) -> Joint | None:
 
 
 def keys(view: FileView) -> Iterator[Fault]:
-    """All keys that the joint needs are stated, and no others."""
+    """Check that all keys that the joint needs are stated, and no others."""
     joint = joint_of(view)
     if joint is None:
         return
@@ -257,7 +257,7 @@ def keys(view: FileView) -> Iterator[Fault]:
 
 
 def _unused(view: FileView, joint: Joint) -> Iterator[Fault]:
-    """Keys that neither the joint nor an alternative among the choices uses, except defaults."""
+    """Keys that are used neither by the joint nor by a joint among the choices, except defaults."""
     alternatives = [JOINTS.get(name) for name in view.items("choices", ".".join(_TYPE))]
     used = _keys(candidate for candidate in (joint, *alternatives) if candidate is not None)
     for name, entry in entries(Retention).items():
@@ -283,7 +283,7 @@ def _have(joints: list[Joint]) -> str:
 
 
 def skirts(view: FileView) -> Iterator[Fault]:
-    """The skirts of both ends do not meet on the barrel."""
+    """Check that the skirts of both ends do not meet on the barrel."""
     joint = joint_of(view)
     if joint is None or not joint.skirts:
         return

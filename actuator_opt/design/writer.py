@@ -1,4 +1,4 @@
-"""Write a design to YAML exactly: reading the text again gives the same numbers, bit for bit.
+"""Write a design as YAML so that reading it again gives the same numbers, bit for bit.
 
 If the design was read from a text, only changed values are replaced, so comments, units and layout
 are kept. A text that cannot be edited in this way is rewritten. The start file of `init` is a
@@ -36,7 +36,7 @@ _WORDS = frozenset(("y", "n", "yes", "no", "on", "off", "true", "false", "null",
 
 
 def scalar(text: str) -> str:
-    """A text as a YAML scalar that every reader parses as this text.
+    """Write a text as a YAML scalar that every YAML parser reads as this text.
 
     >>> scalar("robot knee"), scalar("no"), scalar("a: b")
     ('robot knee', "'no'", "'a: b'")
@@ -56,7 +56,7 @@ def exact_text(value: float, quantity: Quantity | None, unit: str | None = None)
     """
     if quantity is None or quantity.dimension == "count":
         return repr(int(value)) if value == int(value) else repr(value)
-    share = quantity.name == "fraction"  # a position without % is a length
+    share = quantity.name == "fraction"  # a position without "%" is a length
     for name in dict.fromkeys((unit, quantity.unit, quantity.si_unit)):
         if name is None or (share and not name):
             continue
@@ -68,7 +68,7 @@ def exact_text(value: float, quantity: Quantity | None, unit: str | None = None)
 
 
 def _candidates(value: float, unit: units.Unit) -> Iterator[str]:
-    """Texts in a unit for an SI value and its nearest neighbours, shortest first."""
+    """Texts in a unit for an SI value, shortest first, then for neighbouring numbers."""
     low = high = unit.from_si(value)
     for digits in (6, 9, 12, 15, 16, 17):
         yield f"{low:.{digits}g}"
@@ -86,7 +86,7 @@ def to_yaml(
     *,
     metrics: Mapping[str, Quantity] | None = None,
 ) -> str:
-    """Text of a design file that reads back as `design`, bit for bit.
+    """Text of a design file; reading it gives `design` again, bit for bit.
 
     Parameters
     ----------
@@ -109,11 +109,11 @@ _TABLES = (("variables",), ("requirements",), ("measured",), ("uncertainty",))
 
 
 class _CannotEdit(Exception):
-    """The text does not match the design's structure (flow style, removed blocks, plies)."""
+    """The text cannot be edited: flow style, removed blocks, changed number of plies."""
 
 
 class _Edit(NamedTuple):
-    """Replacement of ``text[start:end]`` by `new`, nested `depth` blocks deep."""
+    """Replacement of ``text[start:end]`` by `new`, inside `depth` nested blocks."""
 
     start: int
     end: int
@@ -129,7 +129,7 @@ class _Leaves:
         self.metrics = metrics
 
     def quantity(self, loc: Loc, value: object) -> Quantity | None:
-        """Quantity of the number at a place of a design file."""
+        """Quantity of the number at a location of a design file."""
         head = loc[0]
         if head in ("variables", "measured"):
             return resolve(str(loc[1]), self.design, self.metrics).quantity
@@ -151,7 +151,7 @@ class _Leaves:
         return entry.quantity(value) if entry else None
 
     def text(self, loc: Loc, value: Any, old: str | None = None) -> str:
-        """YAML scalar of a value, in the unit of the text it replaces."""
+        """YAML scalar of a value, in the unit of the text that it replaces."""
         number = number_of(value)
         if number is None:
             return str(value).lower() if isinstance(value, bool) else scalar(value)
@@ -201,7 +201,7 @@ def _below(section: type[Section] | None, key: str) -> type[Section] | None:
 def _stated(
     node: dict[str, Any], section: type[Section] | None, design: Design, loc: Loc = ()
 ) -> dict[str, Any]:
-    """A tree without values that equal the model's defaults."""
+    """Convert a section to a tree, without values that equal the model's defaults."""
     stated: dict[str, Any] = {}
     table = loc in _TABLES
     for key, value in node.items():
@@ -222,7 +222,7 @@ def _stated(
 
 
 def _lines(node: dict[str, Any], loc: Loc, writer: _Leaves, indent: str) -> Iterator[str]:
-    """A block in block style."""
+    """Write the lines of a block in YAML's block style."""
     for key, value in node.items():
         here = (*loc, key)
         name = key if re.fullmatch(r"[^\W\d]\w*[\w.\[\] +-]*", key) else scalar(key)
@@ -243,7 +243,7 @@ def _lines(node: dict[str, Any], loc: Loc, writer: _Leaves, indent: str) -> Iter
 
 
 def _edited_text(design: Design, document: Document | None, metrics: Mapping[str, Quantity]) -> str:
-    """The document's text with the design's values; empty if not editable."""
+    """Replace values in the document's text by those of the design; empty if impossible."""
     try:
         text = "" if document is None else _edited(design, document, metrics)
     except _CannotEdit:
@@ -252,7 +252,7 @@ def _edited_text(design: Design, document: Document | None, metrics: Mapping[str
 
 
 def _in_list_form(document: Document) -> Document | None:
-    """The document with its compact lay-ups as lists; None if there are none."""
+    """Rewrite compact lay-ups of a document as lists; None if it has none."""
     text, newline = document.text, "\r\n" if "\r\n" in document.text else "\n"
     for shorthand in sorted(document.shorthands, key=lambda s: s.entry.start, reverse=True):
         start, end = shorthand.entry.start, shorthand.entry.end
@@ -274,7 +274,7 @@ def _in_list_form(document: Document) -> Document | None:
 
 
 def _as_read(text: str) -> str:
-    """A value of the file as YAML; false and numbers with a unit need no quotes."""
+    """Write a text of the file as YAML; booleans and numbers with a unit need no quotes."""
     plain = text == "false" or re.fullmatch(r"[+-]?[\w.]+ \w+", text)
     return text if plain else scalar(text)
 
@@ -290,12 +290,12 @@ def _reads_back(text: str, design: Design, metrics: Mapping[str, Quantity]) -> b
 
 
 def _edited(design: Design, document: Document, metrics: Mapping[str, Quantity]) -> str:
-    """The document's text with the design's values."""
+    """Replace values in the document's text by those of the design."""
     writer = _Leaves(design, metrics)
     edits: list[_Edit] = []
     _compare(to_tree(design), document.data, (), Design, document, writer, edits)
     text = document.text
-    # from the end backwards; at the same place, lines of inner blocks come first
+    # edit from the end backwards; at the same position, lines of inner blocks come first
     order = sorted(enumerate(edits), key=lambda pair: (pair[1].start, -pair[1].depth, pair[0]))
     for _, edit in reversed(order):
         text = text[: edit.start] + edit.new + text[edit.end :]
@@ -311,7 +311,7 @@ def _compare(
     writer: _Leaves,
     edits: list[_Edit],
 ) -> None:
-    """Collect the edits of a block."""
+    """Compare a block with the document and collect its edits."""
     if not isinstance(old, dict) or any(key not in node for key in old):
         raise _CannotEdit
     table = loc in _TABLES
@@ -339,7 +339,7 @@ def _compare(
 def _replacement(
     value: Any, old: Any, loc: Loc, document: Document, writer: _Leaves
 ) -> Iterator[_Edit]:
-    """Edit of a value, if it changed."""
+    """Edit that replaces a value, if it changed."""
     if not isinstance(old, str):
         raise _CannotEdit
     if writer.same(loc, value, old):
@@ -351,7 +351,7 @@ def _replacement(
 
 
 def _insertion(stated: dict[str, Any], loc: Loc, document: Document, writer: _Leaves) -> _Edit:
-    """New lines at the end of a block: below the line of its last value."""
+    """Edit that adds new values at the end of a block, below the line of its last value."""
     text = document.text
     block = document.values[loc]
     if document.shorthand(loc):
@@ -365,7 +365,7 @@ def _insertion(stated: dict[str, Any], loc: Loc, document: Document, writer: _Le
         key = list(node)[-1] if isinstance(node, dict) else len(node) - 1
         last, node = (*last, key), child(node, key)
     end = document.values[last].end
-    if not text.startswith("\n", end - 1):  # a block scalar ends after its line
+    if not text.startswith("\n", end - 1):  # a block scalar ends at the start of the next line
         end = text.find("\n", end) + 1 or len(text)
     newline = "\r\n" if "\r\n" in text else "\n"
     lead = "" if text.startswith("\n", end - 1) else newline

@@ -1,4 +1,4 @@
-"""YAML text to a tree of texts with places; ambiguous YAML is refused or kept as text.
+"""Parse YAML into a tree of texts with locations; ambiguous YAML is refused or kept as text.
 
 Scalars stay text as written: no booleans, octals, sexagesimals, dates or floats are resolved.
 Anchors, aliases, tags and merge keys are refused, so a document cannot grow when read.
@@ -18,7 +18,7 @@ from .structure import Loc
 
 try:
     from yaml.cyaml import CParser as _Parser  # type: ignore[attr-defined]
-except ImportError:  # PyYAML without libyaml: same events, slower
+except ImportError:  # PyYAML without libyaml gives the same events, but more slowly
     from yaml.parser import Parser
     from yaml.reader import Reader
     from yaml.scanner import Scanner
@@ -44,7 +44,7 @@ _START = {
 
 
 class NodeSpan(NamedTuple):
-    """Place of a node: line and column from 1, and its characters ``text[start:end]``."""
+    """Location of a node: line and column, both from 1, and its characters ``text[start:end]``."""
 
     line: int
     column: int
@@ -63,7 +63,7 @@ class Shorthand(NamedTuple):
 
 @dataclass(slots=True)
 class Document:
-    """A parsed YAML file: its tree of texts, and the places of keys and values."""
+    """A parsed YAML file: its tree of texts, and the locations of keys and values."""
 
     file: str
     text: str
@@ -74,14 +74,14 @@ class Document:
     faults: list[Diagnostic] = field(default_factory=list)
     """Faults that do not stop the parser: duplicate keys, tags, anchors."""
     unusable: set[Loc] = field(default_factory=set)
-    """Places of unreadable values (aliases)."""
+    """Locations of unreadable values (aliases)."""
     shorthands: tuple[Shorthand, ...] = ()
     """Layers in compact notation, expanded by `layup.expanded`."""
     kind: str = "design"
     """Kind of the file, in words."""
 
     def shorthand(self, loc: Loc) -> Shorthand | None:
-        """The compact entry that contains a place."""
+        """The compact entry that contains a location."""
         for shorthand in self.shorthands:
             depth = len(shorthand.wall)
             if len(loc) > depth and loc[:depth] == shorthand.wall:
@@ -93,7 +93,7 @@ class Document:
     def diagnostic(
         self, span: NodeSpan | None, message: str, remedy: str = "", path: str | None = None
     ) -> Diagnostic:
-        """A fault at a place of this file."""
+        """Diagnostic at a location of this file."""
         line, column = (span.line, span.column) if span else (None, None)
         source = None
         if line is not None and line <= len(self.lines):
@@ -103,7 +103,7 @@ class Document:
 
 
 def decode(data: bytes, file: str, kind: str = "design") -> str:
-    """Text of a file's bytes; raises `InputError` unless valid UTF-8 of moderate size."""
+    """Decode a file; raise `InputError` if it is no valid UTF-8 or too large."""
     if len(data) > MAX_BYTES:
         raise InputError(
             Diagnostic(
@@ -125,7 +125,7 @@ def decode(data: bytes, file: str, kind: str = "design") -> str:
 
 
 def parse(text: str, file: str, kind: str = "design") -> Document:
-    """Tree of a YAML text; raises `InputError` if it cannot be parsed."""
+    """Parse a YAML text into a tree; raise `InputError` if this is impossible."""
     text = text.removeprefix("\ufeff")
     document = Document(file, text, lines=_BREAK.split(text), kind=kind)
     if len(text) > MAX_BYTES:
@@ -165,7 +165,7 @@ class _Frame:
     key: str | None = None
     """Key of the next value; None if a key is expected."""
     drop: bool = False
-    """The next value belongs to a refused key."""
+    """Whether the next value belongs to a refused key and is dropped."""
 
 
 class _Builder:

@@ -1,4 +1,4 @@
-"""The explorer: a stored sweep as an interactive offline page."""
+"""The explorer: show a stored sweep as an interactive offline page."""
 
 from .page import ExplorerFile, design_beside, page, write_explorer
 

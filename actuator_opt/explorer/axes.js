@@ -1,4 +1,4 @@
-// Parallel axes: a line per design; ranges by dragging, or by the handles at their ends.
+// Parallel axes: a line for each design. Ranges are set by dragging, or by handles at their ends.
 const TOP = 80, FOOT = 24;
 let AXES = [];
 
@@ -10,7 +10,7 @@ function axisPlaces() {
 function shareOf(column, value) { return column.high > column.low ? (held(column, value) - column.low) / (column.high - column.low) : 0.5; }
 
 const MOST = [4000, 10000];
-// Designs to draw as lines, of those cut and of those that pass: every n-th of more, and n.
+// Designs to draw as lines, either excluded or passing. Of too many, every n-th; returns also n.
 function thinned(visible) {
   const step = Math.ceil((visible ? COUNT : N - COUNT) / MOST[visible]), rows = [];
   for (let k = 0, seen = 0; k < N; k++) if (VISIBLE[k] === visible && seen++ % step === 0) rows.push(k);
@@ -70,10 +70,10 @@ function setRange(column, low, high) {
   else STATE.ranges.set(column, [low <= one.low ? -Infinity : low, high >= one.high ? Infinity : high]);
   refresh();
 }
-// The range of a column within its scale; an end of the scale is no limit.
+// The selected range of a column, within its scale; a range may end where the scale ends.
 function rangeOf(column) { return (STATE.ranges.get(column) || [-Infinity, Infinity]).map((v) => held(COLUMNS[column], v)); }
 
-// A column's name, which may break where a PATH has its joints.
+// The name of a column, as text that may break after the separators of a PATH.
 function broken(column) {
   const words = document.createElement("span");
   for (const part of (column.unit ? `${column.name}, ${column.unit}` : column.name).split(/(?<=[._\]])/)) {
@@ -81,11 +81,11 @@ function broken(column) {
   }
   return words;
 }
-// Have axes of some columns, where their ranges can be seen.
+// Show axes of these columns, so that their ranges are visible.
 function showAxes(columns) {
   for (const column of columns) if (!STATE.axes.includes(column)) CHOICES[column].click();
 }
-// Names of the axes, and two sliders each.
+// Build the names of the axes, and two sliders for each axis.
 function buildAxes() {
   const box = byId("axes");
   for (const one of AXES) for (const node of [one.name, ...one.handles]) node.remove();
@@ -139,7 +139,7 @@ function slide(event, column, end) {
   event.preventDefault();
   say(`${COUNT} of ${N} designs left`);
 }
-// Drag a range: a new one, or one end of the range there is.
+// Drag a new range, or one end of the existing range.
 function brush(event, column, end) {
   const one = COLUMNS[column], box = byId("axes").getBoundingClientRect(), { low } = axisPlaces();
   const value = (e) => one.low + Math.min(Math.max((low - (e.clientY - box.top)) / (low - TOP), 0), 1) * (one.high - one.low);

@@ -1,5 +1,5 @@
 "use strict";
-// The data of the page: numbers by column, limits, sections.
+// Decode the data of the page: columns of numbers, limits, sections.
 const DATA = JSON.parse(document.getElementById("data").textContent);
 const byId = (id) => document.getElementById(id);
 
@@ -10,8 +10,8 @@ function decoded(text, kind) {
 }
 
 const N = DATA.rows;
-// Ends of a column's scale. Few numbers far out, of designs that are none, stand at its ends, so
-// that the others can be told apart; `below` and `above` say that there are such.
+// Ends of a column's scale. A few outliers are drawn at the ends of the scale, so that the other
+// values are distinguishable; `below` and `above` state whether there are outliers.
 function ends(values, texts) {
   const sorted = values.filter(Number.isFinite).sort(), n = sorted.length;
   if (!n) return { low: 0, high: 1 };
@@ -50,7 +50,7 @@ function trimmed(value) {
   return String(Number(value.toPrecision(size >= 1000 ? 6 : 4))).replace("-", "−");
 }
 
-// A word of a POSIX shell, as it must be typed.
+// Quote a word for a POSIX shell.
 function quoted(word) {
   return /^[\w@%+=:,./-]+$/.test(word) ? word : "'" + word.replaceAll("'", "'\"'\"'") + "'";
 }
@@ -114,7 +114,7 @@ function canvas(id) {
   g.font = "12px system-ui, 'DejaVu Sans', sans-serif";
   return { g, w, h };
 }
-// A canvas as it was painted last, or painted anew where that is out of date.
+// Show a canvas as it was last painted; paint it again if that is out of date.
 const KEPT = new Map();
 function kept(id, paint) {
   const drawn = canvas(id), { g, w, h } = drawn;

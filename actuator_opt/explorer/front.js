@@ -1,5 +1,5 @@
-// What the scatter's two columns say together: the Pareto line, and a range of both by dragging.
-// Designs that pass and that none of these betters in both, along the first column.
+// Additions to the scatter plot: its Pareto line, and the selection of both ranges by dragging.
+// Passing designs that no other passing design beats in both columns, ordered by the first column.
 function front() {
   const x = COLUMNS[STATE.x], y = COLUMNS[STATE.y], a = x.values, b = y.values, rows = [];
   if (!x.better || !y.better) return rows;
@@ -8,7 +8,7 @@ function front() {
   let best = -Infinity;
   return rows.filter((k) => { const good = y.better * b[k] > best; if (good) best = y.better * b[k]; return good; });
 }
-// Stairs: what lies behind them is worse than some design in both.
+// Draw the Pareto line as stairs; a point behind it is worse than some design in both columns.
 function drawFront(g, rows) {
   if (!rows.length) return;
   const { px, py } = PLACED;
@@ -28,7 +28,7 @@ function tellFront(rows) {
     ...without.map(([one, count]) => `${count} designs have no ${one.label} and are not drawn.`),
   ].filter(Boolean).join(" ");
 }
-// The ranges of both columns, as a frame.
+// Draw the ranges of both columns as a frame.
 function drawRanges(g, toX, toY) {
   const span = (column, at) => rangeOf(column).map(at).sort((p, q) => p - q);
   if (!STATE.ranges.has(STATE.x) && !STATE.ranges.has(STATE.y)) return;
@@ -36,7 +36,7 @@ function drawRanges(g, toX, toY) {
   g.strokeStyle = ink("--accent"); g.lineWidth = 1.5; g.setLineDash([5, 4]);
   g.strokeRect(x0, y0, x1 - x0, y1 - y0); g.setLineDash([]);
 }
-// Drag a frame; a touch scrolls the page instead.
+// Drag a frame with the mouse; a touch scrolls the page instead.
 function brushFrame(event) {
   if (event.pointerType === "touch" || event.button) return;
   const from = onScatter(event), columns = [STATE.x, STATE.y];
@@ -58,7 +58,7 @@ function brushFrame(event) {
   };
   window.addEventListener("pointermove", move); window.addEventListener("pointerup", up);
 }
-// Where a pointer stands, as shares of the two axes.
+// Position of the pointer, as shares of the two axes.
 function onScatter(event) {
   const box = byId("scatter").getBoundingClientRect(), m = MARGIN, within = (v) => Math.min(Math.max(v, 0), 1);
   return [within((event.clientX - box.left - m.left) / (box.width - m.left - m.right)),

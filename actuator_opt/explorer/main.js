@@ -1,7 +1,7 @@
-// The parts together: one state, drawn anew where it changes.
+// Connect the parts of the page: they share one state, and are drawn again when it changes.
 let WAITING = false;
 const CHOICES = [];
-// Everything; or, with `above`, only what stands above what is painted.
+// Redraw everything; with `above`, only the marks above the painted pictures.
 function redraw(above) {
   if (above !== true) KEPT.clear();
   if (WAITING) return;
@@ -9,7 +9,7 @@ function redraw(above) {
   requestAnimationFrame(() => { WAITING = false; draw(); });
 }
 function draw() { drawScatter(); drawLegend(); drawLines(); placeAxes(); }
-// On paper: dark on white, at the width of a sheet, drawn for it.
+// Draw for print: dark on white, at the width of a sheet.
 function printing(on) {
   document.documentElement.classList.toggle("printing", on);
   KEPT.clear(); draw();
@@ -22,7 +22,7 @@ function refresh() {
   LIMITS.forEach((one) => { one.note.textContent = noteOf(one); });
   redraw();
 }
-// How many designs a limit cuts, and how many of them nothing else that is asked for cuts.
+// How many designs a limit excludes, and how many of them no other selected limit excludes.
 function noteOf(limit) {
   let alone = 0;
   for (let k = 0; k < N; k++) if (limit.cut[k] && MISSED[k] === (limit.asked ? 1 : 0)) alone++;

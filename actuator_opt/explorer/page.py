@@ -1,7 +1,8 @@
-"""The page of an explored sweep: markup, style, script and data in a single, self-contained file.
+"""Write the page of an explored sweep: one self-contained file with style, script and data.
 
-Data (columns, limits, sections, texts) are in a JSON block that no text can close. The script
-inserts texts as text nodes, and the security policy of the page allows no other script.
+Data (columns, limits, sections, texts) are in a JSON block; escaping keeps any text from closing
+it. The script inserts texts as text nodes, and the security policy of the page allows no other
+script.
 """
 
 from __future__ import annotations
@@ -34,17 +35,17 @@ from ..sweeps.result import MORE_IS_BETTER, better
 from ..version import VERSION
 
 AXES = 8
-"""Number of parallel axes shown at first."""
+"""Number of parallel axes that the page shows at first."""
 REASONS = 3
 """Maximum number of failure reasons listed."""
 MOST = 1e30
-"""Largest stored margin, which single precision can represent."""
+"""Stored margins are limited to this value, which single precision can represent."""
 MM = 1000.0
 _WORDS = {"bore": "bore ⌀", "rod": "rod ⌀", "closed_length": "closed length"}
 
 
 def payload(explored: Explored, *, design: str, plugins: Sequence[str]) -> dict[str, Any]:
-    """All data of the page, as JSON."""
+    """Return all data of the page, as JSON."""
     columns = _columns(explored)
     limits, further_checks = _limits(explored)
     command = ["actuator-opt", "report", design]
@@ -74,7 +75,7 @@ def _base64(values: Array, kind: str) -> str:
 
 
 def _column(name: str, label: str, unit: str, values: Array) -> dict[str, Any]:
-    """A column in its display unit; a single number if all rows are equal."""
+    """Return a column in its display unit; a single number if all rows are equal."""
     column: dict[str, Any] = {"name": name, "label": label, "unit": unit_text(unit)}
     if np.isfinite(values[0]) and (values == values[0]).all():
         return column | {"value": float(np.float32(values[0]))}
@@ -82,7 +83,7 @@ def _column(name: str, label: str, unit: str, values: Array) -> dict[str, Any]:
 
 
 def _columns(explored: Explored) -> list[dict[str, Any]]:
-    """Varied inputs, then the least margin and every metric that any design has.
+    """Return the columns: varied inputs, least margin, and every metric that any design has.
 
     `better` is 1 if larger values are better, -1 if smaller values are, 0 if neither.
     """
@@ -93,7 +94,7 @@ def _columns(explored: Explored) -> list[dict[str, Any]]:
         quantity = quantity_of(column.name, study.design)
         values = quantity.to_display(numbers[:, k])
         columns.append(_column(column.name, column.name, quantity.unit, np.asarray(values)))
-    percent = np.round(100 * numbers[:, -3], 9) + 0.0  # no rounding errors of zero on the axis
+    percent = np.round(100 * numbers[:, -3], 9) + 0.0  # drop rounding errors around zero
     margin = _column("least_margin", "least margin of all", "%", percent)
     columns.append(margin | {"better": MORE_IS_BETTER})
     for k, name in enumerate(study.metrics, count):
@@ -106,7 +107,7 @@ def _columns(explored: Explored) -> list[dict[str, Any]]:
 
 
 def _texts(explored: Explored, path: str) -> dict[str, Any]:
-    """A column of texts, as the index of each row's text."""
+    """Return a column of texts: the different texts, and the index of each row's text."""
     texts = explored.kept.texts[path]
     number = [texts.index(variant[path]) for variant in explored.variants]
     codes = _base64(np.array(number)[explored.variant], "<u2")
@@ -114,7 +115,7 @@ def _texts(explored: Explored, path: str) -> dict[str, Any]:
 
 
 def _exact(explored: Explored) -> list[dict[str, Any]]:
-    """Varied inputs in SI with all digits, for the command."""
+    """Return varied inputs in SI with all digits, for the command that the page shows."""
     columns = []
     for path in explored.kept.texts:
         column = _texts(explored, path)
@@ -126,7 +127,7 @@ def _exact(explored: Explored) -> list[dict[str, Any]]:
 
 
 def _limits(explored: Explored) -> tuple[list[dict[str, Any]], str]:
-    """Limits that exclude designs, the user's limits first; and a sentence on the other limits."""
+    """Return limits that exclude designs, the user's own first; and a sentence on other limits."""
     study = explored.study
     base = prepare(study.design, plugins=study.plugins).values()
     quantities = with_own(study.plugins)
@@ -160,14 +161,14 @@ def _limits(explored: Explored) -> tuple[list[dict[str, Any]], str]:
 
 
 def _label(limit: MetricLimit, quantity: Quantity, plugins: Sequence[Plugin]) -> str:
-    """A limit in words: its quantity and its load case."""
+    """Name a limit by its quantity and its load case."""
     own = any(plugin.name == limit.name for plugin in plugins)
     words = limit.name if own or limit.origin == "check" else quantity.label
     return f"{words} ({limit.case})" if limit.case else words
 
 
 def _start(explored: Explored, columns: list[dict[str, Any]]) -> dict[str, Any]:
-    """Initial axes: the objective over the first selected metric, else the varied inputs."""
+    """Choose the initial axes: objective and first selected metric, else the varied inputs."""
     place = {column["name"]: k for k, column in enumerate(columns)}
     study = explored.study
     margin = place["least_margin"]
@@ -178,7 +179,7 @@ def _start(explored: Explored, columns: list[dict[str, Any]]) -> dict[str, Any]:
     shown_metrics = explored.shown
     first = (*varied[: AXES - max(3, len(shown_metrics))], *shown_metrics, goal, *requirements)
     shown = [k for k in first if "value" not in columns[place[k]]]
-    last = [] if shown_metrics else [margin]  # zero for every design of a front
+    last = [] if shown_metrics else [margin]  # this is zero for every design of a front
     axes = sorted({*(place[name] for name in dict.fromkeys(shown[: AXES - len(last)])), *last})
     varied_input = next((k for k in numbers if "value" not in columns[place[k]]), varied[0])
     metrics = (k for k in requirements if k != goal and "value" not in columns[place[k]])
@@ -195,7 +196,7 @@ def _start(explored: Explored, columns: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def _summary(explored: Explored) -> str:
-    """Summary of the rows: designs shown, omitted, failed and damaged."""
+    """Summarise the rows: how many designs are shown, omitted, failed and damaged."""
     kept = explored.kept
     evaluated, shown = kept.rows - explored.failed, len(explored.numbers)
     feasible = int((explored.numbers[:, -1] == 1.0).sum())
@@ -217,7 +218,7 @@ def _summary(explored: Explored) -> str:
 
 
 def _shapes(explored: Explored) -> dict[str, Any]:
-    """Templates, the dimensions that change them, and the template of every row."""
+    """Return the section templates, the dimensions that change them, and each row's template."""
     count = len(explored.numbers)
     template_of = np.full(count, -1)
     slots: list[Array] = []
@@ -247,7 +248,7 @@ def _shapes(explored: Explored) -> dict[str, Any]:
 
 
 def _template(template: Template, dimensions: list[int]) -> dict[str, Any]:
-    """A template in mm: its numbers at zero dimensions, and their slopes by each dimension."""
+    """Return a section template in mm: coordinates at zero dimensions, and slopes per dimension."""
     zero = template.numbers - template.slopes[:, dimensions] @ template.origin[dimensions]
     rows, places = np.nonzero(template.slopes[:, dimensions])
     return {
@@ -275,7 +276,7 @@ _ESCAPES = {c: f"\\u{ord(c):04x}" for c in "<>&\u2028\u2029"}
 
 @dataclass(frozen=True, slots=True)
 class ExplorerFile:
-    """A file of the explorer, with its hash."""
+    """A file that the explorer has written, with its hash."""
 
     path: Path
     sha256: str
@@ -289,12 +290,12 @@ class ExplorerFile:
 
 
 def page(explored: Explored, *, design: str, plugins: Sequence[str] = ()) -> str:
-    """The page as HTML.
+    """Return the page as HTML.
 
     Parameters
     ----------
     explored : the sweep
-    design : file name of the base design, beside the page
+    design : file name of the base design, in the folder of the page
     plugins : files with user metrics, for the command
     """
     data = payload(explored, design=design, plugins=plugins)
@@ -312,7 +313,7 @@ def page(explored: Explored, *, design: str, plugins: Sequence[str] = ()) -> str
 
 
 def design_beside(target: Path) -> Path:
-    """File of the base design, beside the page."""
+    """Return the file of the base design, in the folder of the page."""
     return target.with_name(f"{target.stem}_base.yaml")
 
 
@@ -323,7 +324,7 @@ def write_explorer(
     plugins: Sequence[str] = (),
     remarks: Sequence[str] = (),
 ) -> list[ExplorerFile]:
-    """Write the page, and beside it the base design that its command uses.
+    """Write the page, and into its folder the base design that the page's command uses.
 
     Parameters
     ----------
@@ -365,6 +366,6 @@ def _hash(text: str) -> str:
 
 
 def _json(data: dict[str, Any]) -> str:
-    """JSON without characters of markup."""
+    """Convert data to JSON without characters of markup."""
     text = encoded(data, ensure_ascii=False, separators=(",", ":"))
     return re.sub("[<>&\u2028\u2029]", lambda match: _ESCAPES[match[0]], text)

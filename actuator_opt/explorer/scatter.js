@@ -1,4 +1,4 @@
-// The scatter: points by two columns, coloured by a third; chosen by pointer or by keys.
+// Scatter plot of two columns, coloured by a third. The user selects designs by pointer or keys.
 const MARGIN = { left: 68, right: 14, top: 10, bottom: 42 };
 let PLACED = { px: new Float32Array(N), py: new Float32Array(N) };
 
@@ -6,7 +6,7 @@ function axisSpan(column) {
   const room = (column.high - column.low || Math.abs(column.high) || 1) * 0.04;
   return [column.low - room, column.high + room];
 }
-// What stands while the pointer moves is drawn once, what it chooses above it.
+// The points are painted once; marks of the selected designs are drawn above them.
 function drawScatter() {
   const { g, w, h } = kept("scatter", paintScatter), { px, py } = PLACED, m = MARGIN;
   if (STATE.lit >= 0) { g.save(); g.beginPath(); g.rect(m.left, m.top, w - m.left - m.right, h - m.top - m.bottom); g.clip(); drawCut(g, LIMITS[STATE.lit].cut); g.restore(); }
@@ -43,7 +43,7 @@ function paintScatter(g, w, h) {
   if (!COUNT) { g.fillStyle = ink("--grey"); g.textAlign = "center"; g.fillText("No design passes all that is asked for; those it cuts are faint.", w / 2, m.top + 16); }
   tellFront(best);
 }
-// A cross over every design that a requirement cuts.
+// Draw a cross over every design that a requirement excludes.
 function drawCut(g, cut) {
   g.strokeStyle = ink("--bad"); g.lineWidth = 1;
   g.beginPath();
@@ -119,7 +119,7 @@ function nearest(event) {
   }
   return found;
 }
-// The next design by one column, then by the other; those that pass where there are any.
+// The next design in order of one column, then the other; only passing designs, if there are any.
 function stepped(first, second, way) {
   const a = COLUMNS[first].values, b = COLUMNS[second].values, rows = [];
   for (let k = 0; k < N; k++) if ((VISIBLE[k] || !COUNT) && a[k] === a[k] && b[k] === b[k]) rows.push(k);

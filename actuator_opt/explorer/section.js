@@ -1,4 +1,4 @@
-// The section of a design: a template whose points move with its dimensions, in mm.
+// Draw the section of a design: a template whose points move with the dimensions, in mm.
 const SHAPES = DATA.shapes;
 const DIMENSIONS = SHAPES.dimensions.map((text) => decoded(text, Float32Array));
 const WHICH = decoded(SHAPES.which, Int16Array);
@@ -12,7 +12,7 @@ function numbersOf(row) {
   for (const [number, dimension, slope] of template.slopes) found[number] += slope * DIMENSIONS[dimension][row];
   return { template, found };
 }
-// Every section stands at one scale, so that two can be compared: that of the largest.
+// All sections have the same scale, that of the largest, so that they are comparable.
 function extent() {
   if (EXTENT) return EXTENT;
   let left = Infinity, right = -Infinity, radius = 0;

@@ -1,4 +1,4 @@
-"""Files for other programs: STEP of turned parts, DXF of the section, XLSX of the results."""
+"""Files for other programs: turned parts as STEP, the section as DXF, results as XLSX."""
 
 from .files import FORMATS, ExportFile, require_formats, write_exports
 

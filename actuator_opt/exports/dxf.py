@@ -1,8 +1,8 @@
-"""The longitudinal section as DXF: true lengths in mm, hatched, dimensioned, one layer per part.
+"""Draw the longitudinal section as DXF in mm, hatched and dimensioned, one layer per part.
 
 Diameters are above the parts, lengths below, without overlaps. Dimensions are DIMENSION entities
 that measure the drawing (DIMLFAC 1): if a line is moved in CAD, its dimension follows. All lengths
-are in mm of the drawing; `DrawingSizes` has the sizes of letters and gaps.
+are in mm of the drawing at full scale; `DrawingSizes` has the sizes of letters and gaps.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from .step import EYES, Profile, joined, millimetres, title
 from .words import plain
 
 LETTER = 0.95
-"""Upper estimate of character width over height, as fonts differ between programs."""
+"""Upper estimate of character width divided by height, as fonts differ between programs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +65,7 @@ class Length:
 
 @dataclass(frozen=True, slots=True)
 class Placed:
-    """A length with its row, counted outwards, and the centre of its text."""
+    """A length with the number of its row, counted outwards, and the centre of its text."""
 
     length: Length
     row: int
@@ -78,7 +78,7 @@ def _clear(middle: float, half: float, lines: Sequence[float]) -> bool:
 
 
 def _middle(length: Length, paper: DrawingSizes, lines: Sequence[float]) -> tuple[float, bool]:
-    """Centre of a text over its own dimension line, else beside it, clear of all lines."""
+    """Centre of a text: on its own dimension line if it fits, else beside it and off all lines."""
     half, pad = paper.width(length.text) / 2, 0.5 * paper.letter
     centre = (length.start + length.end) / 2
     inner = [x for x in lines if length.start < x < length.end]
@@ -98,10 +98,10 @@ def _middle(length: Length, paper: DrawingSizes, lines: Sequence[float]) -> tupl
 
 
 def rows(lengths: Sequence[Length], paper: DrawingSizes) -> list[Placed]:
-    """Assign every length to a row: short lengths next to the parts, long lengths outside.
+    """Assign each length to a row: short lengths near the parts, long lengths further out.
 
-    Extension lines of a length cross all rows nearer to the parts, so a text must not overlap the
-    ends of lengths in its own row or further out.
+    Extension lines of a length cross all rows between it and the parts. A text must therefore not
+    overlap the ends of lengths in its own row or further out.
     """
     ordered = sorted(set(lengths), key=lambda x: (round(x.end - x.start, 6), x.start))
     ends = sorted({x for length in ordered for x in (length.start, length.end)})
@@ -128,7 +128,8 @@ def rows(lengths: Sequence[Length], paper: DrawingSizes) -> list[Placed]:
 LAYER = "dimensions"
 STYLE = "TRUE"
 _COLOUR, _BY_LAYER, _BLACK_OR_WHITE = 153, 256, 7
-"""Colours of lines, readable on black and on white; text takes the colour the ground lacks."""
+"""Colour numbers of DXF: dimension lines (readable on black and white), colour of the layer, and
+black or white in contrast to the background."""
 _SMALLEST = 1e-6
 """Shorter lengths (mm) are not dimensioned."""
 
@@ -151,7 +152,7 @@ class _Diameter:
 
 
 def number(value: float) -> str:
-    """A length in the format of the dimension style: three decimals, no trailing zeros.
+    """Text of a length as the dimension style formats it: three decimals, no trailing zeros.
 
     >>> number(12.0), number(7.12345)
     ('12', '7.123')
@@ -187,7 +188,7 @@ def reach(profiles: Sequence[Profile], x: float) -> float:
 
 
 def _stations(lengths: Mapping[str, float]) -> dict[str, tuple[float, float]]:
-    """Start and end of every axial length, mm."""
+    """Start and end position of every axial length, mm."""
     mm = {name: 1000 * value for name, value in lengths.items()}
     face = mm["eye_offset"]
     start = face + mm["plate"]
@@ -224,7 +225,7 @@ def lengths_below(
     ----------
     space : model space
     evaluated : `lengths` of the evaluation
-    skirts : start and end of the dimensioned skirt, mm, if any
+    skirts : start and end of the skirt to dimension, mm, if any
     profiles : half-sections of all parts
     paper : sizes of letters and gaps
 
@@ -286,7 +287,7 @@ def _diameters(evaluated: Mapping[str, float]) -> list[_Diameter]:
 def diameters_above(
     space: Any, evaluated: Mapping[str, float], profiles: Sequence[Profile], paper: DrawingSizes
 ) -> float:
-    """Draw diameters, with texts in one row above the parts; returns the highest y used."""
+    """Draw diameters, with texts in one row above the parts; return the highest y used."""
     diameters = _diameters(evaluated)
     top = max(r for profile in profiles for _, r in profile)
     widths = [paper.width(diameter.shown) for diameter in diameters]
@@ -315,21 +316,22 @@ def diameters_above(
 
 
 _SHEET = 270.0
-"""Paper length (mm) for the section: A3 with space for dimensions."""
+"""Length of paper (mm) available for the section: A3 without the space for dimensions."""
 
 _SCALES = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0)
-"""mm of the drawing per mm of paper: 10:1 to 1:200 of ISO 5455."""
+"""Scales, as mm of the drawing per mm of paper: 10:1 to 1:200 of ISO 5455."""
 
 _METAL = ((45.0, 1.5), (135.0, 1.5), (45.0, 0.9), (135.0, 0.9), (30.0, 2.0), (150.0, 2.0))
 _COMPOSITE = ((60.0, 0.8), (120.0, 0.8), (75.0, 1.1), (105.0, 1.1))
 _POLYMER = ((15.0, 1.2),)
-"""Angle and spacing (mm of paper) of hatches, by material in order of appearance."""
+"""Hatches (angle, spacing in mm of paper), assigned to materials in order of appearance."""
 
 _COLOURS = (7, 23, 142, 94, 6, 42, 134, 200, 54, 213, 233, 74)
 """Colours of the layers, by part: each is visible on black and white (7 adapts itself)."""
 
 _Corner: TypeAlias = tuple[float, float, float]
-"""x, y and bulge of a polyline: tan of a quarter of the arc to the next corner."""
+"""Corner of a polyline: x, y and bulge (tangent of a quarter of the arc's angle to the next
+corner)."""
 
 
 def paper_for(length: float) -> DrawingSizes:
@@ -351,7 +353,7 @@ def _straight(points: Profile) -> list[_Corner]:
 
 
 def _halves(profile: Profile) -> list[list[_Corner]]:
-    """The section of a part: both halves, or a single piece if the part meets the axis."""
+    """Section of a part: both halves, or a single piece if the part reaches the axis."""
     below = tuple((x, -r) for x, r in reversed(profile))
     on_axis = [k for k, (_, r) in enumerate(profile) if r == 0]
     if not on_axis:
@@ -363,7 +365,7 @@ def _halves(profile: Profile) -> list[list[_Corner]]:
 
 
 def _eye(centre: float, pin: float, side: int) -> list[list[_Corner]]:
-    """The eye of `mass.eye_volume` seen along its pin: lug with neck, and the hole."""
+    """Outlines of an eye (of `mass.eye_volume`) seen along its pin: lug with neck, and the hole."""
     foot, half = centre + side * sqrt(0.75) * pin, pin / 2
     arc = -side * tan(radians(300 / 4))
     end = centre + side * 2 * pin
@@ -376,14 +378,14 @@ def _profiles(outline: Outline) -> list[Profile]:
 
 
 def _cut(evaluation: Evaluation, outline: Outline) -> list[list[_Corner]]:
-    """Closed lines of a part in the section plane."""
+    """Closed outlines of a part in the section plane."""
     if outline.part in EYES:
         at, side = ("pin_cap", 1) if outline.part == "cap eye" else ("pin_rod", -1)
         lengths = evaluation.lengths
         return _eye(1000 * lengths[at], 1000 * lengths["pin"], side)
     lines = [half for profile in _profiles(outline) for half in _halves(profile)]
     if outline.bars % 2:
-        return [line for line in lines if line[0][1] > 0]  # no bar opposite the first
+        return [line for line in lines if line[0][1] > 0]  # no bar lies opposite the first
     return lines
 
 
@@ -404,7 +406,7 @@ def _hatch(
     *,
     nested: bool,
 ) -> None:
-    """Hatch closed lines, jointly if nested; fill them if no hatch style is given."""
+    """Hatch closed outlines, jointly if nested; fill them if no hatch style is given."""
     for group in [lines] if nested else [[line] for line in lines]:
         hatch = space.add_hatch(dxfattribs={**attributes, "hatch_style": 0})
         if style is None:
@@ -454,7 +456,7 @@ def _words(
     space: Any, evaluation: Evaluation, outlines: Sequence[Outline], paper: DrawingSizes,
     corner: tuple[float, float], origin: str,
 ) -> None:  # fmt: skip
-    """Title and parts list, line by line below the dimensions."""
+    """Draw title and parts list, line by line below the dimensions."""
     space.doc.layers.add("text", color=7, lineweight=18)
     scale = paper.scale
     size = f"1:{scale:g}" if scale >= 1 else f"{1 / scale:g}:1"
@@ -499,7 +501,7 @@ def _ordered_classes(document: Any) -> None:
 
 
 def _skirts(outlines: Sequence[Outline], start: float) -> list[tuple[float, float]]:
-    """The skirt of the cap end, if any."""
+    """Start and end of the skirt at the cap end, if any."""
     caps = [
         profile for outline in outlines if outline.part == "caps" for profile in _profiles(outline)
     ]
@@ -508,7 +510,7 @@ def _skirts(outlines: Sequence[Outline], start: float) -> list[tuple[float, floa
 
 
 def dxf(evaluation: Evaluation, *, program: str, date: str | None = None) -> bytes:
-    """The section of an evaluation as a DXF file (R2010).
+    """Draw the section of an evaluated design; return the text of a DXF file (R2010).
 
     Parameters
     ----------

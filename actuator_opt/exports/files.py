@@ -1,4 +1,4 @@
-"""Write an evaluation as files for other programs: all complete, or none."""
+"""Write an evaluation as files for other programs: all of them completely, or none."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ class ExportFile:
 
 
 def require_formats(formats: Sequence[str]) -> tuple[str, ...]:
-    """The requested formats without duplicates; refuse unknown formats and missing libraries.
+    """Drop duplicate formats; refuse unknown formats, and formats whose library is missing.
 
     Raises
     ------
-    UsageError : unknown format, or no format
-    ActuatorError : the library is not installed
+    UsageError : if a format is unknown, or none is given
+    ActuatorError : if the library of a format is not installed
     """
     if not formats:
         raise UsageError(Diagnostic("no format given", f"add --format {'|'.join(FORMATS)}"))
@@ -87,7 +87,7 @@ def write_exports(
 
     Raises
     ------
-    InputError : a part cannot be drawn, or the folder is not writable; no file is left
+    InputError : if a part cannot be drawn, or the folder is not writable; no file is written
     """
     names = require_formats(formats)
     contents = {f"{stem}.{name}": _content(evaluation, name, date) for name in names}

@@ -1,8 +1,8 @@
 """STEP (ISO 10303-214): turned parts as closed solids of planes, cylinders and cones.
 
-The half-section of a body, traversed anticlockwise, gives one face per edge and one circle per
-corner. A circle separates two faces, so each edge is used twice, once in each direction. Faces
-around the axis are closed by a seam.
+The half-section of a body is followed anticlockwise. It gives a face for each edge and a circle for
+each corner. The circle separates two faces, which use it in opposite directions. Faces around the
+axis are closed by a seam.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _NAMES = {
     "caps": ("cap, cap end", "cap, rod end"),
     "rod.fitting": ("rod.fitting, piston end", "rod.fitting, rod end"),
 }
-"""Names of a part's bodies, from the cap end on; others have the name of the part."""
+"""Names of a part's bodies, starting at the cap end; bodies of other parts have the part's name."""
 _RINGS = tuple(
     f"{place} {ring}"
     for place in ("piston", "rod")
@@ -34,7 +34,7 @@ _RINGS = tuple(
 )
 EYES = ("cap eye", "rod eye")
 NOT_TURNED = ("oil", *_RINGS, *EYES)
-"""Parts of the section that are not exported: the model does not define their shape."""
+"""Parts of the section that are not exported, because the model does not define their shape."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +53,7 @@ class SolidBody:
 
 
 def title(part: str) -> str:
-    """Name of an outline's part in files: its PATH if it has one.
+    """Name of an outline's part in files: its PATH, if it has one.
 
     >>> title("layup[1]"), title("glands"), title("rod.layup[0]")
     ('barrel.layup[1]', 'head', 'rod.layup[0]')
@@ -85,7 +85,7 @@ def _turn(a: Point, b: Point, c: Point) -> float:
 
 
 def tidy(profile: Sequence[Point]) -> Profile:
-    """The same polygon anticlockwise from its lowest corner, without collinear corners."""
+    """Reorder a polygon anticlockwise from its lowest corner; drop collinear corners."""
     corners = [a for a, b in edges(profile) if a != b]
     triples = [(corners[k - 1], b, corners[(k + 1) % len(corners)]) for k, b in enumerate(corners)]
     turns = [b for a, b, c in triples if _turn(a, b, c) != 0]
@@ -106,13 +106,13 @@ def _between(point: Point, edge: _Edge) -> bool:
 
 
 def _pieces(edge: _Edge, corners: Iterable[Point]) -> Iterator[_Edge]:
-    """An edge, split at corners that lie on it."""
+    """Split an edge at corners that lie on it."""
     on = sorted({p for p in corners if _between(p, edge)}, reverse=edge[0] > edge[1])
     yield from pairwise((edge[0], *on, edge[1]))
 
 
 def _joined(profile: Profile, other: Profile) -> Profile | None:
-    """Two polygons with a common run of edges, merged; None if they share no run or several."""
+    """Merge two polygons that share one run of edges; None if they share no run, or several."""
     corners = (*profile, *other)
     pieces = [
         piece for edge in (*edges(profile), *edges(other)) for piece in _pieces(edge, corners)
@@ -128,7 +128,7 @@ def _joined(profile: Profile, other: Profile) -> Profile | None:
 
 
 def joined(polygons: Iterable[Profile]) -> list[Profile]:
-    """Polygons merged along shared edges, in axial order.
+    """Merge polygons along shared edges; return them in axial order.
 
     >>> plate = ((0.0, 0.0), (2.0, 0.0), (2.0, 5.0), (0.0, 5.0))
     >>> skirt = ((2.0, 4.0), (6.0, 4.0), (6.0, 5.0), (2.0, 5.0))
@@ -180,7 +180,7 @@ def _fault(part: str) -> InputError:
 
 
 def _bars(outline: Outline) -> SolidBody:
-    """Round bars evenly spaced about the axis, the first in the plane of the section."""
+    """Bodies of round bars, evenly spaced around the axis; the first is in the section plane."""
     profile = tidy(millimetres(outline.polygons[0]))
     first, low = profile[0]
     last, high = max(profile)
@@ -210,11 +210,11 @@ def _bodies(outline: Outline) -> Iterator[SolidBody]:
 
 
 def bodies(evaluation: Evaluation) -> list[SolidBody]:
-    """All turned parts of an evaluation, without oil, seals in grooves and eyes.
+    """All turned parts of an evaluated design; oil, seals in grooves and eyes are omitted.
 
     Raises
     ------
-    InputError : a part's section crosses itself
+    InputError : if the section of a part crosses itself
     """
     solid_bodies: list[SolidBody] = []
     for outline in evaluation.outlines:
@@ -228,7 +228,7 @@ def bodies(evaluation: Evaluation) -> list[SolidBody]:
 SCHEMA = "AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }"
 
 _UNCERTAINTY = 1e-6
-"""Distance below which points coincide (mm), as stated in the file."""
+"""Distance (mm) below which points coincide, as stated in the file."""
 
 
 def text(words: str) -> str:
@@ -269,38 +269,38 @@ class Records:
         self._known: dict[str, str] = {}
 
     def add(self, record: str) -> str:
-        """Add a record; returns its number for references."""
+        """Add a record; return its number, by which others refer to it."""
         number = f"#{len(self.lines) + 1}"
         self.lines.append(f"{number}={record};")
         return number
 
     def shared(self, record: str) -> str:
-        """Add a record once; equal records are shared."""
+        """Add a record unless an equal record exists; return its number."""
         if record not in self._known:
             self._known[record] = self.add(record)
         return self._known[record]
 
     def point(self, x: float, y: float, z: float = 0.0) -> str:
-        """A Cartesian point."""
+        """Add a Cartesian point."""
         return self.shared(f"CARTESIAN_POINT('',({real(x)},{real(y)},{real(z)}))")
 
     def direction(self, x: float, y: float, z: float = 0.0) -> str:
-        """A unit vector."""
+        """Add a unit vector."""
         return self.shared(f"DIRECTION('',({real(x)},{real(y)},{real(z)}))")
 
     def frame(self, origin: str, along: float = 1.0) -> str:
-        """A frame with its main axis along x (or opposite), angles counted from y."""
+        """Add a coordinate system with its main axis along +x or -x; angles count from y."""
         axis, zero = self.direction(along, 0.0), self.direction(0.0, 1.0)
         return self.shared(f"AXIS2_PLACEMENT_3D('',{origin},{axis},{zero})")
 
     def place(self, at: tuple[float, float, float]) -> str:
-        """A frame moved but not rotated, which all CAD readers interpret alike."""
+        """Add a coordinate system, moved but not rotated; all CAD readers interpret it alike."""
         axis, zero = self.direction(0.0, 0.0, 1.0), self.direction(1.0, 0.0)
         return self.shared(f"AXIS2_PLACEMENT_3D('',{self.point(*at)},{axis},{zero})")
 
 
 def listed(numbers: Iterable[str]) -> str:
-    """References as a list."""
+    """Text of a list of references."""
     return f"({','.join(numbers)})"
 
 
@@ -335,10 +335,10 @@ class _Skin:
         return r.add(f"EDGE_LOOP('',{listed(sides)})")
 
     def face(self, start: Point, end: Point) -> str:
-        """The face that an edge of the section sweeps; the material is left of the edge."""
+        """Add the face that an edge of the section sweeps; material is to the left of the edge."""
         r = self.records
         rims = [(self.circles[c], c is end, c[1]) for c in (start, end) if c in self.circles]
-        if start[0] == end[0]:  # the larger rim is the outer bound
+        if start[0] == end[0]:  # the larger rim is the face's outer boundary
             rims.sort(key=lambda rim: -rim[2])
             kinds = ("FACE_OUTER_BOUND", "FACE_BOUND")
             bounds = [
@@ -358,7 +358,7 @@ class _Skin:
         return r.add(f"ADVANCED_FACE('',({bound}),{self._round(start, end)},.{same}.)")
 
     def _round(self, start: Point, end: Point) -> str:
-        """The cylinder or cone of an edge; the axis of a cone points to its wide end."""
+        """Add the cylinder or cone of an edge; the axis of a cone points to its wide end."""
         r = self.records
         (x, radius), (far, wide) = sorted((start, end), key=lambda corner: corner[1])
         if radius == wide:
@@ -393,7 +393,7 @@ class _Product:
         self.representation = ""
 
     def shaped(self, kind: str, items: Iterable[str]) -> None:
-        """Assign the shape."""
+        """Assign a shape to the part."""
         r = self._records
         record = f"{kind}({text(self.name)},{listed(items)},{self._space})"
         self.representation = r.add(record)
@@ -401,7 +401,7 @@ class _Product:
 
 
 class _Contexts:
-    """Application, disciplines and units; mm, rad, sr."""
+    """Contexts of the file: application, disciplines and units (mm, rad, sr)."""
 
     def __init__(self, records: Records) -> None:
         r = records
@@ -434,7 +434,7 @@ class _Contexts:
 def _placed(
     records: Records, whole: _Product, part: _Product, name: str, home: str, place: str
 ) -> None:
-    """Add a part to the assembly: its own frame `home` is mapped to `place`."""
+    """Add a part to the assembly; its own coordinate system `home` is mapped to `place`."""
     r = records
     use = r.add(
         f"NEXT_ASSEMBLY_USAGE_OCCURRENCE({text(name)},{text(name)},'',"
@@ -451,7 +451,7 @@ def _placed(
 
 
 def step(bodies: Sequence[SolidBody], *, name: str, program: str, date: str | None = None) -> str:
-    """An assembly as a STEP file.
+    """Write an assembly as the text of a STEP file.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
-"""An evaluation as a workbook: limits with live margins, the section, variables, masses.
+"""Write an evaluation as a workbook: limits with margins, section, variables, masses.
 
-Margins and verdicts are formulas of the limit and result cells: they follow a changed limit.
-Numbers are in display units; where a formula needs SI, the factor is beside it. Excel and
-LibreOffice compute the formulas when they open the file.
+Margins and verdicts are formulas, so they follow if the user changes a limit.
+Numbers are in display units; where a formula needs SI, the conversion factor is in a cell beside
+it. Excel and LibreOffice compute the formulas when they open the file.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ from ..rendering.paper import images
 from .words import plain
 
 TOLERANCE = "0.000001"
-"""Largest violation of a margin that counts as met, in formulas."""
+"""Largest violation of a limit that still counts as met, as text for formulas."""
 _TIGHT = "yes, no reserve"
-"""Verdict of a limit that is met without reserve (`evaluation.result.NO_RESERVE`)."""
+"""Verdict on a limit that is met without reserve (`evaluation.result.NO_RESERVE`)."""
 
 _EPOCH = (1980, 1, 1, 0, 0, 0)
-"""Earliest time of a zip archive: same input, same bytes."""
+"""Earliest time that a zip archive allows; a fixed time makes equal input give equal files."""
 
 _LIMITS = (
     "quantity",
@@ -47,7 +47,7 @@ _LIMITS = (
     "remark",
 )
 _FONT = {"name": "Calibri", "size": 11}
-"""Font of every cell; without a font, programs use their own."""
+"""Font of every cell; if it were not stated, programs would use their own."""
 _LINE = 15.0
 """Height of a line of text, points."""
 _PIXELS = 96 / 25.4
@@ -60,7 +60,7 @@ _FIRST = 5
 
 @dataclass(frozen=True, slots=True)
 class _Scale:
-    """Unit of a row: the display unit; SI if that has an offset (degC) and so no ratios."""
+    """Unit of a row: the display unit, or SI if the display unit has an offset (degC)."""
 
     name: str
     factor: float
@@ -82,7 +82,7 @@ def _scale(quantity: Quantity) -> _Scale:
 
 
 def _format(value: float | None) -> str:
-    """A number format of five digits.
+    """Number format that shows five digits of a value.
 
     >>> _format(10.1234567), _format(123456.0), _format(0.00123)
     ('0.000', '0', '0.0000000')
@@ -95,7 +95,7 @@ def _format(value: float | None) -> str:
 class _Sheet:
     """A sheet that is filled row by row; programs never read its texts as formulas.
 
-    Columns have the stated width, or more if texts below the head need more.
+    Columns have the stated width, or a larger one if texts below the head need it.
     """
 
     def __init__(self, book: Any, title: str, widths: Sequence[float]) -> None:
@@ -195,7 +195,7 @@ def _limit_row(sheet: _Sheet, at: int, evaluation: Evaluation, row: Requirement 
 def _limits(
     book: Any, title: str, evaluation: Evaluation, rows: Sequence[Requirement | Check]
 ) -> None:
-    """A sheet of limits: limit, result, margin and verdict, with live formulas."""
+    """Add a sheet of limits: limit, result, margin and verdict, as formulas."""
     kind = "requirement" if title == "Requirements" else "check"
     widths = (25, 20, 7, 9, 14, 14, 24, 7, 12, 16, 16)
     sheet = _Sheet(book, title, widths)
@@ -217,7 +217,7 @@ def _limits(
 
 
 def _section(book: Any, evaluation: Evaluation) -> None:
-    """The longitudinal section as a picture below the requirements."""
+    """Add the longitudinal section as a picture below the requirements."""
     drawing = section(evaluation)
     picture = library("openpyxl.drawing.image").Image(
         io.BytesIO(images(drawing.ink, "section")["section.png"])
@@ -229,7 +229,7 @@ def _section(book: Any, evaluation: Evaluation) -> None:
 
 
 def _variables(book: Any, evaluation: Evaluation) -> None:
-    """Variables of the optimiser with their bounds."""
+    """Add a sheet with the variables of the optimiser and their bounds."""
     sheet = _Sheet(book, "Variables", (20, 20, 9, 12, 12, 12, 14))
     sheet.put("A1", f"{evaluation.name}: variables", bold=True)
     design = evaluation.design
@@ -248,7 +248,7 @@ def _variables(book: Any, evaluation: Evaluation) -> None:
 
 
 def _mass(book: Any, evaluation: Evaluation) -> None:
-    """Masses of the parts with their sum and a chart; oil below."""
+    """Add a sheet with the masses of the parts, their sum, the mass of the oil, and a chart."""
     quantity = METRICS["mass"]
     sheet = _Sheet(book, "Mass", (24, 14, 12))
     sheet.put("A1", f"{evaluation.name}: mass", bold=True)
@@ -312,7 +312,7 @@ def _about(book: Any, evaluation: Evaluation, program: str, date: str | None) ->
 
 
 def _packed(book: Any) -> bytes:
-    """Bytes of the workbook, equal for equal contents."""
+    """Bytes of the workbook, which are equal for equal contents."""
     raw, clean = io.BytesIO(), io.BytesIO()
     with zipfile.ZipFile(raw, "w") as archive:
         library("openpyxl.writer.excel").ExcelWriter(book, archive).write_data()
@@ -324,7 +324,7 @@ def _packed(book: Any) -> bytes:
 
 
 def xlsx(evaluation: Evaluation, *, program: str, date: str | None = None) -> bytes:
-    """Workbook of an evaluation.
+    """Write an evaluation as a workbook; return its bytes.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Sweeps: many designs, evaluated in chunks, stored in a database or reduced to the best."""
+"""Sweeps: evaluate many designs in chunks; store them in a database or keep only the best."""
 
 from __future__ import annotations
 

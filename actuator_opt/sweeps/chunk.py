@@ -1,4 +1,4 @@
-"""One chunk of a sweep: its designs, evaluated in groups that differ only in numbers."""
+"""Evaluate one chunk of a sweep, in groups of designs that differ only in numbers."""
 
 from __future__ import annotations
 
@@ -30,19 +30,20 @@ BATCH = 1024
 """Designs evaluated at once when only the best of a chunk are wanted."""
 
 LEAST_SCREENED = 2048
-"""Least number of designs that justifies a screen, which takes some 20 ms to build."""
+"""Smallest number of designs for which a screen saves time; it takes some 20 ms to build."""
 
 NO_ANSWER = "not computable for these dimensions"
 MARGIN, MISSED, FEASIBLE = "least_margin", "governing_limit", "feasible"
-"""Columns beside the metrics: least margin, number of its limit, whether all limits are met."""
+"""Columns after the metrics: least margin, number of the limit with it, whether all limits are
+met."""
 
 
 @dataclass(frozen=True)
 class Chunk:
-    """Rows of consecutive points from `first` on; `computed` of them were not read from a database.
+    """Rows of consecutive points from `first` on; `computed` is how many were newly computed.
 
-    A reduced chunk only has the rows of the points numbered `places`; no other point can be among
-    the best.
+    A reduced chunk only has the rows of the points numbered `places`, as no other point can be
+    among the best.
     """
 
     first: int
@@ -52,7 +53,7 @@ class Chunk:
     feasible: Array
     places: Array | None = None
     damaged: int = 0
-    """Rows computed again because the database holds them damaged."""
+    """Rows computed again because they are damaged in the database."""
 
     @property
     def ranked(self) -> Array:
@@ -68,7 +69,7 @@ class Chunk:
 
 @dataclass
 class Study:
-    """A design with the axes that vary; computes the rows of any of its points."""
+    """A design with the axes of its sweep; it computes the rows of any of its points."""
 
     design: Design
     plan: Plan
@@ -76,9 +77,9 @@ class Study:
     full: bool = True
     """Whether to compute every metric, or only those that rank designs."""
     more: tuple[str, ...] = ()
-    """Metrics to compute beside those that rank designs."""
+    """Metrics to compute in addition to those that rank designs."""
     engine: Engine = "numpy"
-    """Array library of the screen, which rules out designs that cannot be among the best."""
+    """Array library of the screen, which excludes designs that cannot be among the best."""
     goal: Goal = field(init=False)
     designs: Designs = field(init=False)
     _screens: dict[tuple[object, ...], Scores | None] = field(default_factory=dict, repr=False)
@@ -142,7 +143,8 @@ class Study:
     def reduced(self, first: int, count: int, limit: float, keep: int) -> Chunk:
         """Return the rows that may be among the `keep` best, with an objective below `limit`.
 
-        The most promising points come first, until the others cannot improve on the best `keep`.
+        Points are evaluated in order of promise, until no other point can improve on the best
+        `keep`.
         """
         points = self.plan.points(first, count)
         scores = self._scores(points, limit)
@@ -160,7 +162,7 @@ class Study:
         return self._joined(first, parts, len(scores), keep)
 
     def _scores(self, points: SweepPoints, limit: float) -> Array:
-        """Return each point's estimated objective: infinite if ruled out, -inf if unknown."""
+        """Return each point's estimated objective: infinite if excluded, -inf if unknown."""
         scores = np.full(len(points.variant), -np.inf)
         apart = self.designs.apart
         varied = [k for k, axis in enumerate(self.plan.numeric) if axis.path not in apart]
@@ -171,7 +173,7 @@ class Study:
         return scores
 
     def _joined(self, first: int, parts: Sequence[Chunk], computed: int, keep: int) -> Chunk:
-        """Join parts into one reduced chunk, without feasible designs beyond the `keep` best."""
+        """Join parts into one reduced chunk; of the feasible designs, keep only the `keep` best."""
         rows, failures, places = [np.empty((0, len(self.columns)))], {}, [np.empty(0, dtype=int)]
         count = 0
         for part in parts:
@@ -189,7 +191,7 @@ class Study:
     def _screen(self, variant: int, fixed: Mapping[str, float]) -> Scores | None:
         """Return a screen for designs that differ only in numbers, if there are enough of them.
 
-        None for the user's own metrics, which are not closed expressions.
+        There is none if the user's own metrics matter, as these are not closed expressions.
         """
         axes = [axis for axis in self.plan.numeric if axis.path not in self.designs.apart]
         group_size = self.plan.count / self.plan.variants / self.designs.apart_count
@@ -213,7 +215,7 @@ class Study:
     ) -> dict[int, str]:
         """Return the faults of feasible rows that the design reader would reject.
 
-        Rows are checked from the best on, until `enough` are valid.
+        Rows are checked in order, the best first, until `enough` are valid.
         """
         faults: dict[int, str] = {}
         feasible = np.flatnonzero(chunk.feasible)
@@ -292,7 +294,7 @@ class Study:
 
 
 def key_head(texts: Mapping[str, str]) -> hashlib.blake2b:
-    """Return the part of a key that depends on texts; the row's numbers are added after it."""
+    """Return the part of a key that depends on texts; the row's numbers follow it."""
     return hashlib.blake2b(json.dumps(dict(texts), sort_keys=True).encode(), digest_size=16)
 
 

@@ -1,4 +1,4 @@
-"""Designs of a sweep: which numbers vary as arrays, and which need a new design."""
+"""Prepare the designs of a sweep: some numbers vary as arrays, others need a new design."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ VARIANTS = 8
 """Maximum number of text combinations in which a number is checked."""
 
 AT_ONCE = 4096
-"""Maximum number of designs in one model call; more take memory without saving time."""
+"""Maximum number of designs in one model call; more would take memory without saving time."""
 
 SHARES = (0.0, 1.0, 0.5, 0.25, 0.75)
-"""Shares of a range, tried until two of them give a valid design."""
+"""Points of a range, as shares of its width, tried until two of them give a valid design."""
 
 MOST_TESTED = 32
 """Maximum number of listed values that are checked; longer lists are thinned evenly."""
 
 AGREE = 1e-9
-"""Relative tolerance between varying a number as an array and setting it in the design."""
+"""Relative tolerance when results of an array are compared with those of single designs."""
 
 
 class _Variation(NamedTuple):
@@ -50,8 +50,8 @@ class _Variation(NamedTuple):
 class Designs:
     """The designs of a plan, prepared when needed.
 
-    `apart` are numbers that need a new design for each value, such as temperatures of strengths. A
-    number that no model reads in any of the checked combinations raises `InputError`.
+    `apart` are numbers that need a new design for each value, such as temperatures that change
+    strengths. A number that no model reads in any of the checked combinations raises `InputError`.
     """
 
     design: Design
@@ -59,7 +59,7 @@ class Designs:
     plugins: tuple[Plugin, ...] = ()
     apart: tuple[str, ...] = field(init=False)
     contradicts: bool = field(init=False, default=False)
-    """Whether some value of an axis contradicts the rest of the design, by the reader's rules."""
+    """Whether some value of an axis contradicts the design, by the rules of the reader."""
     _subjects: dict[tuple[object, ...], PreparedDesign | str] = field(
         default_factory=dict, repr=False
     )
@@ -76,7 +76,7 @@ class Designs:
         return self.__dict__ | {"_subjects": {}}
 
     def changed(self, values: Mapping[str, float | str]) -> Design:
-        """Return the design with other values; raises `InputError`."""
+        """Return the design with other values; raise `InputError` if it is invalid."""
         if not values:
             return self.design
         metrics = with_own(self.plugins)
@@ -108,7 +108,7 @@ class Designs:
 
     @property
     def apart_count(self) -> float:
-        """Return the number of designs to prepare for values set apart; infinite for a range."""
+        """Return how many designs the `apart` numbers require; infinite if one has a range."""
         count = 1.0
         for axis in self.plan.numeric:
             if axis.path in self.apart:
@@ -121,7 +121,7 @@ class Designs:
         Raises
         ------
         InputError
-            no model reads it, and it changes no design
+            if no model reads it, and it changes no design
         """
         count = self.plan.variants
         variants = np.unique(np.linspace(0, count - 1, min(count, VARIANTS)).astype(int))
@@ -135,7 +135,7 @@ class Designs:
         return varies
 
     def _varies_in(self, axis: SweepAxis, texts: Mapping[str, str]) -> _Variation:
-        """Whether an array of the `_test_values` values gives the results of setting each value."""
+        """Whether an array of the `_test_values` gives the same results as setting each value."""
         separate: dict[float, Many] = {}
         for value, mandatory in _test_values(axis):
             if len(separate) >= 2 and not mandatory:
@@ -147,7 +147,7 @@ class Designs:
         if not separate:
             return _Variation(False, True)
         try:
-            base = self.made(texts)  # prepared like the rows: "worst" then ignores the position
+            base = self.made(texts)  # prepared like the rows, where "worst" ignores the position
         except InputError:
             base = self.made({**texts, axis.path: next(iter(separate))})
         combined = evaluate_many(base, {axis.path: np.array(list(separate))}, len(separate))
@@ -159,7 +159,7 @@ class Designs:
         return _Variation(agrees, axis.path in combined.read)
 
     def alike(self, points: SweepPoints) -> Iterator[tuple[Array, int, dict[str, float]]]:
-        """Yield points by prepared design: places, combination of texts, values set apart."""
+        """Group points by prepared design: point numbers, combination of texts, `apart` values."""
         paths = [axis.path for axis in self.plan.numeric]
         separate_axes = [k for k, path in enumerate(paths) if path in self.apart]
         if not separate_axes and self.plan.variants == 1:
@@ -179,7 +179,7 @@ class Designs:
     ) -> Iterator[tuple[Array, PreparedDesign | str, dict[str, Array]]]:
         """Yield the points of each prepared design with the arrays that vary.
 
-        The reason replaces a design that is invalid.
+        For an invalid design, yield the reason instead of the design.
         """
         paths = [axis.path for axis in self.plan.numeric]
         for indices, variant, fixed in self.alike(points):
@@ -207,9 +207,9 @@ class Designs:
 
 
 def _test_values(axis: SweepAxis) -> Iterator[tuple[float, bool]]:
-    """Yield test values of an axis, and whether each is mandatory; any two of the others suffice.
+    """Yield test values of an axis, and whether each must be tested; of the others, two suffice.
 
-    All values of a short list are mandatory, and so is zero: the design may change in kind there
+    All values of a short list must be tested, and so must zero, where a design may differ in kind
     (no speed, no angle).
     """
     assert axis.values is not None

@@ -1,4 +1,4 @@
-"""Rows of a stored sweep, with the margin of every limit and the section of every design."""
+"""Read the rows of a stored sweep, with margins of all limits and sections of all designs."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ BEST = 100
 """Number of best feasible designs that thinning always keeps."""
 
 VARIANTS = 1_000_000
-"""Maximum number of text combinations (a choice, far above what sweeps use)."""
+"""Maximum number of text combinations (our choice, far above what sweeps use)."""
 
 
 @dataclass(frozen=True)
 class RowGroup:
-    """Rows that share one prepared design, and their sections."""
+    """Rows that share a prepared design, and the drawn sections of their designs."""
 
     places: Array
     shapes: Shapes
@@ -57,13 +57,13 @@ class Explored:
     best: Array
     """Objective, to be minimised."""
     most: int
-    """Number of rows above which a study is thinned."""
+    """Number of rows above which only every n-th row is read."""
     origin: str = "Study"
     """Name of the source of the rows."""
     shown: tuple[str, ...] = ()
-    """Initial metrics of the x and y axis, where not the default."""
+    """Metrics shown first on the x and y axis; empty for the default."""
     damaged: int = 0
-    """Damaged rows, which are left out."""
+    """Number of damaged rows, which are omitted."""
 
     @property
     def kind(self) -> str:
@@ -77,7 +77,7 @@ class Explored:
 
     @property
     def thinned(self) -> bool:
-        """Whether some rows were left out."""
+        """Whether some rows were omitted because there are too many."""
         return len(self.numbers) < self.kept.rows - self.failed
 
 
@@ -94,13 +94,14 @@ def explored(
     ----------
     path : database of sweeps
     study : its number, or its hash; default: the newest
-    most : rows; larger studies keep every n-th row by key, and the best feasible ones
+    most : maximum number of rows; of larger studies, every n-th row by key is read, and the best
+        feasible rows
     plugins : the user's metrics and constraints, as in the sweep
 
     Raises
     ------
     InputError
-        no such file or study, or rows of other models, materials or custom metrics
+        if file or study are missing, or rows are of other models, materials or custom metrics
     """
     with reading(path, VERSION) as reader:
         stored = reader.study(reader.number(study) if isinstance(study, str) else study)
@@ -159,7 +160,7 @@ def explored_designs(
     design : common design, without free variables
     points : numbers of each design, by PATH (SI)
     plugins : the user's metrics and constraints
-    origin, shown : as `Explored`
+    origin, shown : as in `Explored`
     """
     paths = sorted(points[0])
     values = np.array([[point[path] for point in points] for path in paths])
@@ -192,8 +193,8 @@ def _evaluated(
 ) -> tuple[tuple[MetricLimit, ...], Array, tuple[RowGroup, ...]]:
     """Return the limits, the margin of each in every row, and the sections.
 
-    Rows that need separate prepared designs, for temperatures say, share the sections of one of
-    them if it has their dimensions.
+    Rows that need separate prepared designs, for example for temperatures, share sections if their
+    dimensions are equal.
     """
     paths = [axis.path for axis in study.plan.numeric]
     limits: dict[str, MetricLimit] = {}
@@ -223,7 +224,7 @@ def _evaluated(
 
 
 def _hidden(study: Study) -> tuple[str, ...]:
-    """Return the parts whose outline does not follow their varied numbers."""
+    """Return the parts whose drawn outline does not follow the varied numbers."""
     fitting_varies = any(axis.path.startswith("rod.fitting.") for axis in study.plan.axes)
     return ("rod.fitting",) if fitting_varies else ()
 
@@ -241,8 +242,8 @@ def _variants(stored: StoredRows, path: Path) -> tuple[dict[str, str], ...]:
 def _study(stored: StoredRows, plugins: tuple[Plugin, ...], path: Path, ends: Array) -> Study:
     """Return the study that made the rows, from the design stored in the database.
 
-    Its plan has the texts, and the numbers in column order, each between its `ends` in the rows. It
-    contains no points.
+    Its plan has the varied texts, and the varied numbers in column order, each between the `ends`
+    that it has in the rows. It contains no points.
     """
     metrics = with_own(plugins)
     try:
@@ -294,7 +295,7 @@ def _thinned(
 
 @dataclass(frozen=True)
 class _Best:
-    """The best feasible rows so far."""
+    """The best feasible rows read so far."""
 
     keys: list[bytes]
     numbers: Array

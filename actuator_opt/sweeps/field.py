@@ -1,4 +1,4 @@
-"""A grid of two numbers as a field: metrics and margins at its nodes, lines of zero margin."""
+"""Field over a grid of two numbers: metrics and margins at its nodes, and zero-margin lines."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from .chunk import Study
 from .plan import Plan, SweepPoints
 
 FINEST = 161
-"""Maximum number of nodes per axis (a choice: one per mm of paper); finer grids are thinned."""
+"""Maximum number of nodes per axis (our choice: one per mm of paper); finer grids are thinned."""
 
 FAR = 2.0
-"""Limit at which margins are clipped (a choice: +-200 %)."""
+"""Margins beyond +-200 % are clipped (our choice)."""
 
 NOTHING = -1.0
 """Margin assigned to a wall of negative thickness."""
@@ -33,10 +33,10 @@ CLOSE = 1e-9
 
 @dataclass(frozen=True)
 class Boundary:
-    """Zero line of one limit of a study (`number` of its `binding`), in SI.
+    """Zero line of one limit of a study, which is `number` in its `binding`; in SI.
 
-    `lines` are (n, 2) points of zero margin; `missed` the areas where the limit is missed, each a
-    list of rings.
+    `lines` are (n, 2) points of zero margin. `missed` are the areas where the limit is missed, each
+    as a list of closed lines.
     """
 
     number: int
@@ -49,9 +49,9 @@ class Field:
     """Nodes of a grid (first axis, second axis), in SI.
 
     `rows` are those of the sweep, (nodes, nodes, columns), NaN where a design failed. `margins` are
-    (limits, nodes, nodes), NaN without a value. `failed` marks nodes without a design, whether for
-    a fault or for a negative wall. `room`, (limits,), is the tolerance within which a limit counts
-    as met. `thinned`: whether the sweep had more nodes.
+    (limits, nodes, nodes), NaN without a value. `failed` marks nodes without a design, because of a
+    fault or a negative wall. `room`, (limits,), is the tolerance within which a limit counts as
+    met. `thinned` states whether the sweep had more nodes.
     """
 
     study: Study
@@ -98,8 +98,8 @@ class Field:
     def _on_zero(self, number: int, table: Array, curves: Sequence[Array]) -> list[Array]:
         """Return curves with their points moved to zero margin.
 
-        Points move along the edge between a met and a missed node. They stay where each design
-        needs a new preparation.
+        Points move along the edge between a met and a missed node. They are not moved if every
+        value needs a newly prepared design.
         """
         if self.study.designs.apart or not curves:
             return list(curves)
@@ -128,7 +128,7 @@ class Field:
             below = min(max(int(np.searchsorted(axis, value)) - 1, 0), len(axis) - 2)
             places.append((near, near) if on else (below, below + 1))
         (i, k), (j, m) = places
-        if (i == k) == (j == m):  # a node, or inside a cell
+        if (i == k) == (j == m):  # the point is a node, or inside a cell
             return None
         ends = [float(table[i, j]), float(table[k, m])]
         if (ends[0] < 0) == (ends[1] < 0) or not np.isfinite(ends).all():
@@ -175,7 +175,7 @@ def require_grid(plan: Plan) -> None:
     Raises
     ------
     UsageError
-        another method, not two axes, names on an axis, or a single value
+        if it is no full factorial, has not two axes, or an axis has names or a single value
     """
     for axis in plan.named:
         message = f"a contour needs numbers, but {axis.path} takes names"
@@ -220,11 +220,11 @@ def field(study: Study) -> Field:
         failed[k, list(chunk.rows.failures)] = True
     mesh = np.stack([part.ravel() for part in np.meshgrid(xs, ys, indexing="ij")])
     margins = margins_at(study, mesh).reshape(-1, len(xs), len(ys))
-    tolerated = np.abs(margins) <= TOLERANCE  # within tolerance: met, as in every verdict
+    tolerated = np.abs(margins) <= TOLERANCE  # met within the tolerance, as in every verdict
     room = np.where(tolerated.any(axis=(1, 2)), TOLERANCE, 0.0)
     margins += room[:, None, None]
     cut_away = _cut_away(study, margins)
-    margins[:, failed & ~cut_away] = np.nan  # a negative wall keeps the margins of its shape
+    margins[:, failed & ~cut_away] = np.nan  # negative walls keep margins
     failed |= cut_away
     rows = np.stack([chunk.rows.numbers for chunk in chunks])
     thinned = any(len(value) > FINEST for value in values)

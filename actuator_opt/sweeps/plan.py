@@ -1,4 +1,4 @@
-"""Points of a sweep by number: full factorial, Sobol or Latin hypercube.
+"""Compute the points of a sweep from their numbers: full factorial, Sobol, Latin hypercube.
 
 Only the axes are stored; each point is computed from its number. A sweep of any size takes the same
 memory, can start anywhere and gives the same points in any number of processes.
@@ -30,7 +30,7 @@ FORM = 'write PATH=A..B:N or PATH=a,b,c, e.g. --vary cylinder.bore="18..40 mm:12
 MOST_LISTED = 10_000
 """Maximum number of values in a list."""
 DESCRIPTIVE = frozenset({"name", "notes", "reproduces", "waivers", "objective"})
-"""Blocks of a design that change none of its metrics or limits."""
+"""Blocks of a design that affect neither metrics nor limits."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class SweepAxis:
         return self.at(np.arange(self.count or 2))
 
     def at(self, places: Array) -> Array:
-        """Return the values at some places of `numbers`, without computing all of them."""
+        """Return the values at some indices of `numbers`, without computing all of them."""
         assert self.values is not None
         if not self.range:
             values: Array = self.values[places]
@@ -92,9 +92,9 @@ def read_axis(text: str, design: Design, metrics: Metrics = None) -> SweepAxis:
     Raises
     ------
     UsageError
-        the text does not have this form
+        if the text does not have this form
     InputError
-        no such PATH, or a value that does not fit there
+        if the PATH is unknown, or a value does not suit it
     """
     path, sign, values = text.partition("=")
     if not sign or not path.strip() or not values.strip():
@@ -136,7 +136,7 @@ def _with_unit(texts: list[str]) -> list[str]:
 
 
 def _number(path: str, text: str, design: Design, metrics: Metrics) -> float:
-    """Return one value as the design stores it, checked at its PATH."""
+    """Return a value as the design stores it, after checking that it suits its PATH."""
     value = _value(path, text, design, metrics)
     if not isinstance(value, (int, float)) or isinstance(value, bool):
         message = f"{path}: {shown(text)} is not a number, so it cannot have a range"
@@ -186,7 +186,7 @@ def _listed(path: str, parts: list[str], design: Design, metrics: Metrics) -> Sw
         raise UsageError(Diagnostic(f"--vary {path}: {len(parts)} values", "write a range"))
     parts = _with_unit(parts)
     values = [_value(path, part, design, metrics) for part in dict.fromkeys(parts)]
-    if len(set(values)) < len(parts):  # catches 20 mm beside 2 cm
+    if len(set(values)) < len(parts):  # finds duplicates such as 20 mm and 2 cm
         raise UsageError(Diagnostic(f"--vary {path}: a value twice", FORM))
     if all(
         isinstance(value, (int, float))
@@ -203,16 +203,16 @@ def _listed(path: str, parts: list[str], design: Design, metrics: Metrics) -> Sw
 Method = Literal["grid", "sobol", "lhs"]
 METHODS = get_args(Method)
 MOST = 2**30
-"""Maximum points of the sampled methods: those of a Sobol sequence of 30 bits."""
+"""Maximum number of points for the sampled methods: that of a 30-bit Sobol sequence."""
 
 MOST_GRID = 10**12
-"""Maximum points of a grid (a choice: some days of work when only the best are kept)."""
+"""Maximum number of grid points (our choice: some days of computing if only the best are kept)."""
 
 BITS = 30
 """Bits of a Sobol coordinate."""
 
 DIGITS = 12
-"""Low bits of the Sobol number that a table covers."""
+"""Number of low bits of a Sobol point's number for which a table is used."""
 
 ROUNDS = 6
 """Rounds of the permutation of a Latin hypercube."""
@@ -220,13 +220,13 @@ ROUNDS = 6
 
 @dataclass(frozen=True)
 class SweepPoints:
-    """Points of a sweep: number of the text combination of each, and numbers (axes, n)."""
+    """Points of a sweep: index of each point's text combination, and numbers (axes, n)."""
 
     variant: Array
     numbers: Array
 
     def some(self, places: Array) -> SweepPoints:
-        """Return the points at some places."""
+        """Return the points at some indices."""
         return SweepPoints(self.variant[places], self.numbers[:, places])
 
 
@@ -310,13 +310,14 @@ def plan(axes: Sequence[SweepAxis], *, method: Method, count: int | None, seed: 
     ----------
     axes : varied numbers and texts
     method : full factorial, Sobol or Latin hypercube
-    count : points of the sampled methods
-    seed : of the sampled methods
+    count : number of points for the sampled methods
+    seed : seed of the sampled methods
 
     Raises
     ------
     UsageError
-        an unknown method, nothing to vary, a PATH twice, a range without steps, or no count
+        if the method is unknown, there is no axis, a PATH occurs twice, or steps or count are
+        missing
     """
     if method not in METHODS:
         raise UsageError(Diagnostic(f"--method {method}: unknown", f"use {', '.join(METHODS)}"))
@@ -353,8 +354,8 @@ def plan(axes: Sequence[SweepAxis], *, method: Method, count: int | None, seed: 
 def _sobol(index: Array, dimension: int, count: int, seed: int) -> Array:
     """Return scrambled Sobol points (dimension, n) by number [Sobol1967] [Owen1998].
 
-    A point is the exclusive or of the first point and one number per digit of the Gray code of its
-    index k, k ^ k/2. The lower `DIGITS` digits come from a table.
+    Point k is the exclusive or of the first point and a direction number for each nonzero binary
+    digit of the Gray code of k, which is k ^ k/2. The lower `DIGITS` digits come from a table.
     """
     table, digits = _sobol_parts(dimension, max(count - 1, 1).bit_length(), seed)
     low, high = index & (len(table) - 1), index >> DIGITS
@@ -369,7 +370,7 @@ def _sobol(index: Array, dimension: int, count: int, seed: int) -> Array:
 
 @lru_cache(maxsize=4)
 def _sobol_parts(dimension: int, bits: int, seed: int) -> tuple[Array, Array]:
-    """Return the first points, and the numbers of the Gray code digits from `DIGITS` - 1 on."""
+    """Return the first points, and direction numbers of Gray code digits from `DIGITS` - 1 on."""
     from scipy.stats import qmc
 
     engine = qmc.Sobol(dimension, scramble=True, bits=BITS, rng=np.random.default_rng(seed))
@@ -377,17 +378,18 @@ def _sobol_parts(dimension: int, bits: int, seed: int) -> tuple[Array, Array]:
     digits = [table[-1] ^ table[0]]
     for number in range(DIGITS, bits):
         engine.fast_forward(2 ** (number + 1) - 1 - engine.num_generated)
-        with warnings.catch_warnings():  # SciPy wants powers of two in every call
+        with warnings.catch_warnings():  # SciPy requires a power of two in every call
             warnings.simplefilter("ignore", UserWarning)
             digits.append((engine.random(1)[0] * 2.0**BITS).astype(np.int64) ^ table[0])
     return table, np.array(digits)
 
 
 def _latin(index: Array, dimension: int, count: int, seed: int) -> Array:
-    """Return a Latin hypercube [McKay1979]: each of n equal parts of every axis once.
+    """Return a Latin hypercube [McKay1979]: each of n equal parts of every axis is used once.
 
-    The part of point k is a permutation of k that needs no table. A Feistel network over the next
-    power of four repeats until the result is in range [Black2002].
+    On each axis, point k is in the part given by a permutation of k, which needs no table: a
+    Feistel network over the next power of four is repeated until the result is in range
+    [Black2002].
     """
     points = np.empty((dimension, len(index)))
     for axis in range(dimension):

@@ -1,4 +1,4 @@
-"""Results of a sweep, and the rows to draw: a bounded, evenly thinned number of rows.
+"""Results of a sweep, and the rows to draw, which are thinned evenly to a bounded number.
 
 The Pareto lines of the figures are exact.
 """
@@ -18,12 +18,12 @@ from ..version import VERSION
 from .chunk import Chunk, Study
 
 MOST_POINTS = 4096
-"""Maximum number of rows for figures, for feasible designs and for others (a choice: print resolves
-no more). Above it every second row is dropped."""
+"""Maximum number of rows for figures, separately for feasible and other designs (our choice: print
+resolves no more). If there are more, every second row is dropped."""
 
 
 LONGEST = 65_536
-"""Points kept per Pareto line (a choice: 1 MB each)."""
+"""Maximum number of points in a Pareto line (our choice: 1 MB each)."""
 
 
 LESS_IS_BETTER = -1
@@ -33,9 +33,9 @@ MORE_IS_BETTER = 1
 
 
 def better(study: Study, metric: str) -> int:
-    """Return the better direction of a metric: by the objective, its limits, else its worst value.
+    """Return which direction of a metric is better, by objective, limits or worst value.
 
-    1 for more, -1 for less, 0 with limits on both sides.
+    The result is 1 if more is better, -1 if less is, and 0 if there are limits on both sides.
     """
     goal = study.goal
     if metric in goal.weights:
@@ -48,10 +48,10 @@ def better(study: Study, metric: str) -> int:
 
 
 def front(first: Array, second: Array) -> Array:
-    """Return the numbers of the non-dominated points, along `first`; less is better.
+    """Return the indices of the non-dominated points, ordered by `first`; less is better.
 
-    A point is dominated by another that is no worse in both values and better in one. Of equal
-    points the first stays.
+    A point is dominated if another point is no worse in both values and better in at least one. Of
+    equal points, the first is kept.
     """
     order = np.lexsort((second, first))
     finite = order[np.isfinite(first[order]) & np.isfinite(second[order])]
@@ -92,7 +92,7 @@ class Pool:
 
 @dataclass
 class Sample:
-    """Feasible and other rows, collected as a sweep runs; failed designs are left out.
+    """Feasible and other rows, collected as a sweep runs; failed designs are omitted.
 
     `watch` are metrics; every pair has a Pareto line over all feasible designs.
     """
@@ -103,7 +103,7 @@ class Sample:
     _fronts: dict[tuple[str, str], Array] = field(default_factory=dict, repr=False)
 
     def add(self, study: Study, chunk: Chunk) -> None:
-        """Collect the rows of a chunk that are drawn."""
+        """Collect the rows of a chunk for drawing."""
         rows = chunk.rows.numbers
         valid = np.ones(len(rows), dtype=bool)
         valid[list(chunk.rows.failures)] = False
@@ -152,7 +152,7 @@ def _extended(study: Study, pair: tuple[str, str], previous: Array | None, rows:
 
 @dataclass(frozen=True, order=True)
 class Best:
-    """One of the best designs: its objective (to be minimised), point and row."""
+    """One of the best designs, with its objective (to be minimised), point and row."""
 
     objective: float
     number: int
@@ -176,14 +176,15 @@ class Swept(Displayed):
     """Rows computed again because the database holds them damaged."""
     failed: int = 0
     feasible: int | None = 0
-    """None when only the best are kept, as most designs are then never evaluated."""
+    """Number of feasible designs; None if only the best are kept, as most are then not
+    evaluated."""
     screened: int = 0
-    """Designs ruled out by the screen or by better ones of their chunk, in reduced sweeps."""
+    """In a reduced sweep, designs excluded by the screen or by better designs of their chunk."""
     best: list[Best] = field(default_factory=list)
     failures: dict[str, int] = field(default_factory=dict)
-    """Failed designs by reason."""
+    """Number of failed designs, by reason."""
     missed: dict[str, int] = field(default_factory=dict)
-    """Infeasible designs by the limit missed most."""
+    """Number of infeasible designs, by the limit that they miss most."""
     seconds: float = 0.0
     sample: Sample = field(default_factory=Sample)
     """Rows for drawing."""

@@ -33,11 +33,11 @@ from .result import Sample, Swept
 Task = TypeVar("Task")
 
 PATIENCE = "10s"
-"""Time limit for a scheduler to answer."""
+"""Time that a scheduler has to answer."""
 
 
 RETRIES = 5
-"""Maximum restarts of a task after its worker is lost."""
+"""Maximum number of restarts of a task after its worker is lost."""
 
 
 WAITING = 3
@@ -49,19 +49,19 @@ def on_cluster(
 ) -> Iterator[Chunk]:
     """Yield the results of tasks run on a cluster, in order.
 
-    Every task carries the study, so workers may leave and join at any time.
+    Every task contains the study, so workers may leave and join at any time.
 
     Parameters
     ----------
-    address : of the Dask scheduler, such as tcp://10.0.0.1:8786
+    address : address of the Dask scheduler, such as tcp://10.0.0.1:8786
     study : the sweep
-    work : computes the chunk of one task
-    tasks : in order
+    work : function that computes the chunk of one task
+    tasks : tasks in order
 
     Raises
     ------
     UsageError
-        Dask is not installed, or no scheduler answers at the address
+        if Dask is not installed, or no scheduler answers at the address
     """
     try:
         from distributed import Client
@@ -102,13 +102,13 @@ def _remote_chunk(blob: bytes, task: Any) -> Any:
 
 
 class MissingRows(NamedTuple):
-    """Keys and point numbers of the rows that the database lacks; None where it lacks all."""
+    """Keys and point numbers of the rows that the database lacks; None if it lacks all."""
 
     first: int
     keys: list[bytes]
     some: Array | None
     damaged: int
-    """Rows that the database holds damaged."""
+    """Number of rows that are damaged in the database."""
 
 
 def missing_rows(base: Database, study: Study, first: int, count: int) -> MissingRows:
@@ -135,25 +135,25 @@ def stored_rows(base: Database, study: Study, first: int, count: int) -> tuple[S
 
 
 CHUNK = 4096
-"""Points of a chunk: one transaction and one message between processes."""
+"""Points of a chunk, which is one database transaction and one message between processes."""
 
 REDUCED = 65_536
 """Points of a chunk when only the best are kept."""
 
 SECTIONS = 16
-"""Sections of a sweep examined if no design is feasible."""
+"""Number of places in a sweep that are examined if no design is feasible."""
 
 SMALL_CHUNK = 8
-"""Points of a chunk when each needs a new design, which may take tables of oil films."""
+"""Points of a chunk if each needs a new design, which may have to calculate oil-film tables."""
 
 LOCAL_SECONDS = 0.5
-"""Seconds of work up to which starting more processes does not pay."""
+"""Seconds of work below which starting more processes does not save time."""
 MASKS = hasattr(signal, "pthread_sigmask")
 """Whether the system can delay a signal."""
 
 
 class ChunkTask(NamedTuple):
-    """Points to compute: a whole chunk, or some of it."""
+    """Points to compute: all points of a chunk, or some."""
 
     first: int
     size: int
@@ -179,17 +179,17 @@ def sweep(
     Parameters
     ----------
     study : the design and the points
-    store : database to read rows from and write them to
-    keep : best feasible designs to keep
-    workers : processes; default: one per core
+    store : database from which rows are read, and to which they are written
+    keep : number of best feasible designs to keep
+    workers : number of processes; default: one per core
     scheduler : address of a Dask scheduler, used instead of local processes
-    each : called with every chunk, in order
-    watch : metrics whose Pareto lines are kept, over all designs
+    each : function that is called with every chunk, in order
+    watch : metrics; the Pareto line of every pair, over all designs, is kept
 
     Raises
     ------
     InputError
-        the database cannot be used
+        if the database cannot be used
     """
     began = time.perf_counter()
     swept = Swept(
@@ -226,7 +226,7 @@ def _chunk_size(study: Study) -> int:
 
 
 def _explain(swept: Swept) -> None:
-    """Count the missed limits in some sections of the sweep, as too few designs were evaluated."""
+    """Count missed limits at some places of the sweep, if too few designs were evaluated."""
     count, size = swept.study.plan.count, CHUNK // SECTIONS
     swept.missed = {}
     starts = range(0, count, size)
@@ -243,14 +243,14 @@ def swept_again(
     each: Callable[[Chunk], None] | None = None,
     watch: Sequence[str] = (),
 ) -> Swept:
-    """Read a whole sweep from its database; nothing is computed or written.
+    """Read a whole sweep from its database, without computing or writing anything.
 
-    Parameters as `sweep`.
+    The parameters are those of `sweep`.
 
     Raises
     ------
     InputError
-        no such file, other models, or a sweep that is missing or incomplete
+        if the file is missing, has other models, or the sweep is missing or incomplete
     """
     began = time.perf_counter()
     swept = Swept(study, study.plan.count, sample=Sample(tuple(watch)))
@@ -285,7 +285,7 @@ def _computed(
         yield from on_cluster(scheduler, study, _chunk, tasks)
         return
     remaining = iter(tasks)
-    count = workers or (1 if "jax" in sys.modules else os.cpu_count() or 1)  # no forks with threads
+    count = workers or (1 if "jax" in sys.modules else os.cpu_count() or 1)  # no fork with threads
     count = min(count, chunks)  # all workers start at once, even without work
     if workers is None or count == 1:
         yield from _local_chunks(study, chunks, remaining, patient=count == 1)
@@ -296,7 +296,7 @@ def _computed(
         waiting: deque[Future[Chunk]] = deque()
         try:
             for task in chain([first_task], remaining):
-                with _without_interrupts():  # processes start here
+                with _without_interrupts():  # the processes start here
                     waiting.append(pool.submit(_work, task))
                 if len(waiting) > 2 * count:
                     yield waiting.popleft().result()
@@ -310,7 +310,7 @@ def _computed(
 def _local_chunks(
     study: Study, chunks: int, tasks: Iterator[ChunkTask], *, patient: bool
 ) -> Iterator[Chunk]:
-    """Yield chunks computed in this process: all, or until further processes pay off."""
+    """Yield chunks computed in this process: all of them, or until more processes save time."""
     for count, task in enumerate(tasks, start=1):
         began = time.perf_counter()
         chunk = _chunk(study, task)
@@ -318,7 +318,7 @@ def _local_chunks(
         yield chunk
         pays = (
             count > 1 and (chunks - count) * seconds > LOCAL_SECONDS
-        )  # the first chunk takes longer
+        )  # the first chunk takes longer than others
         if pays and not patient:
             return
 
@@ -336,10 +336,11 @@ def _begin(study: Study) -> None:
 
 
 def _end_with_parent() -> None:
-    """End this process when its parent ends, for whatever reason.
+    """End this process when its parent process ends, for whatever reason.
 
     It waits until the parent's end of a pipe closes, which works without system signals. A forked
-    process also inherits the pipes of earlier processes, so the last process ends first.
+    process also inherits the pipes of earlier processes, so the process that started last ends
+    first.
     """
     parent = multiprocessing.parent_process()
     if parent is not None:
@@ -349,7 +350,7 @@ def _end_with_parent() -> None:
 
 @contextmanager
 def _without_interrupts() -> Iterator[None]:
-    """Delay Ctrl-C, so that a starting process does not receive it."""
+    """Delay Ctrl-C, so that a process does not receive it while it starts."""
     if not MASKS:
         yield
         return
@@ -386,7 +387,7 @@ def _stored(
         version=VERSION,
         texts=[(axis.path, text) for axis in study.plan.named for text in axis.texts],
     ) as base:
-        queue: deque[MissingRows] = deque()  # checks keys only; the rows are read later
+        queue: deque[MissingRows] = deque()  # this checks only the keys; the rows are read later
 
         def tasks() -> Iterator[ChunkTask]:
             for first in starts:

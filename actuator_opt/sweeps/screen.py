@@ -1,4 +1,4 @@
-"""Screen of a sweep: rules out most designs early, by closed expressions.
+"""Screen of a sweep: closed expressions exclude most designs early.
 
 The models run once with symbols. Objective and limits that become closed expressions of the varied
 numbers are compiled for NumPy, or JAX where installed. Designs that pass are evaluated in full, so
@@ -32,11 +32,11 @@ ENGINES: tuple[Engine, ...] = get_args(Engine)
 
 
 Scores: TypeAlias = Callable[[Array, Array], Array]
-"""Estimated objective (n,) of numbers (axes, n) below a bound; infinite where ruled out."""
+"""Function that estimates objectives (n,) of numbers (axes, n); infinite for excluded designs."""
 
 
 LEAST_BATCH = 1024
-"""Smallest batch of a compiled function; larger batches double, each compiled once."""
+"""Smallest batch of a compiled function; larger batches double in size, each compiled once."""
 
 
 def usable_engine(name: str, *, reduced: bool) -> Engine:
@@ -45,7 +45,7 @@ def usable_engine(name: str, *, reduced: bool) -> Engine:
     Raises
     ------
     UsageError
-        an unknown name, or a full sweep, which always uses NumPy
+        if the name is unknown, or for a full sweep, which always uses NumPy
     """
     if name not in ENGINES:
         raise UsageError(Diagnostic(f"--engine {name}: unknown", f"use {' or '.join(ENGINES)}"))
@@ -83,13 +83,13 @@ def fused(scores: Scores) -> Scores:
 
 
 ROOM = 2 * TOLERANCE
-"""Margin below which a design is ruled out, beyond the rounding of reordered operations."""
+"""A design is excluded if it violates a limit by more than this, which exceeds rounding errors."""
 
 CLOSE = 1e-9
-"""Relative tolerance of the objective, against the same rounding."""
+"""Relative tolerance of the objective, which also exceeds rounding errors."""
 
 TEST_POINTS = 512
-"""Random points that show which limits rule out most designs."""
+"""Number of random points that show which limits exclude most designs."""
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ class Limits:
     signs: Array
 
     def missed(self, numbers: Array) -> Iterator[Array]:
-        """Yield for each limit whether it is missed, (n,) or one for all."""
+        """Yield for each limit whether it is missed: (n,), or a single value for all designs."""
         with np.errstate(all="ignore"):
             for value, bound, sign in zip(
                 self.compiled(numbers), self.bounds, self.signs, strict=True
@@ -113,8 +113,8 @@ class Limits:
 class Screen:
     """Compiled objective and limits of designs that differ in numbers (axes, n).
 
-    `stages` are limits in sequence: each stage checks only what passed those before. They are
-    compiled for arrays of `library`.
+    `stages` are groups of limits. Each stage checks only the designs that passed the stages before
+    it. The stages are compiled for arrays of `library`.
     """
 
     objective: Any
@@ -124,7 +124,7 @@ class Screen:
     def scores(self, numbers: Array, limit: Array) -> Array:
         """Return the estimated objective, (n,): infinite where a limit or `limit` is missed.
 
-        Minus infinity where the estimate is not finite.
+        It is minus infinity where the estimate is not finite.
         """
         scores = self.bounded_objective(numbers, limit) + np.zeros(numbers.shape[1])
         for stage in self.stages:
@@ -136,7 +136,7 @@ class Screen:
         return scores
 
     def bounded_objective(self, numbers: Array, limit: Array) -> Array:
-        """Return the objective, (n,) or one for all: infinite where it is above `limit`."""
+        """Return the objective, (n,) or one value for all designs: infinite if above `limit`."""
         arrays = self.library
         with np.errstate(all="ignore"):
             objective, *others = self.objective(numbers)
@@ -146,7 +146,7 @@ class Screen:
         return arrays.where(objective > rounded_up(limit), np.inf, objective)
 
     def scores_at_once(self, numbers: Array, limit: Array) -> Array:
-        """Return `scores` from every limit of every design, as required for compilation."""
+        """Return `scores`, but check every limit of every design, as compiled code must."""
         scores = self.bounded_objective(numbers, limit)
         for stage in self.stages:
             for missed in stage.missed(numbers):
@@ -155,7 +155,7 @@ class Screen:
 
 
 def rounded_up(objective: Array) -> Array:
-    """Return an objective plus a rounding tolerance; designs above it are worse."""
+    """Return an objective plus a rounding tolerance; only designs above this are surely worse."""
     return objective + CLOSE * abs(objective)
 
 
@@ -164,8 +164,8 @@ def screen(
 ) -> Scores | None:
     """Return a screen for designs whose numbers at `paths` vary between `ends` (axes, 2).
 
-    None if the objective is not a closed expression of them, or if a number cannot vary as an
-    array.
+    Return None if the objective is no closed expression of these numbers, or if a number cannot
+    vary as an array.
     """
     variables = {
         path: Variable(lower=float(low), upper=float(high), start=float((low + high) / 2))
@@ -213,7 +213,7 @@ def _limits(
 
 
 def _decisive(limits: Limits, points: Array) -> list[int]:
-    """Return a few limits that rule out every point that all limits together rule out."""
+    """Return a few limits that exclude every point that all limits together exclude."""
     missed = np.stack(
         [np.broadcast_to(limit_missed, points.shape[1]) for limit_missed in limits.missed(points)]
     )

@@ -1,4 +1,4 @@
-"""Yield, sensitivity indices, tornado and robust optima of a design with uncertain inputs."""
+"""Designs with uncertain inputs: yield, sensitivity indices, tornado and robust optima."""
 
 from .inputs import Input
 from .result import Uncertainty

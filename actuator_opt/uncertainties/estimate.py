@@ -1,7 +1,7 @@
-"""Distributions of inputs, and estimates with confidence bounds.
+"""Distributions of inputs; estimates of probabilities and indices with confidence bounds.
 
-Distributions are quantile functions, from cumulative probability to value. Estimates are
-probabilities and variance-based sensitivity indices, from points of the unit cube.
+Distributions are quantile functions, which map cumulative probability to value. Probabilities and
+variance-based sensitivity indices are estimated from points of the unit cube.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ LEVEL = 0.95
 """Confidence level of all bounds."""
 
 Outputs = Callable[[Vector], Vector]
-"""Outputs (k, n) at points (d, n) of the unit cube."""
+"""Function for outputs (k, n) at points (d, n) of the unit cube."""
 
 
 @dataclass(frozen=True, slots=True)
 class Rate:
-    """Probability with its 95 % bounds."""
+    """A probability with its 95 % confidence bounds."""
 
     value: float
     lower: float
@@ -51,7 +51,7 @@ def exact(hits: int, count: int) -> Rate:
 
 
 SUMMED = 2000
-"""Largest number of draws whose bounds are summed directly, as SciPy is slow to load."""
+"""Up to this number of draws, bounds are summed directly, as SciPy is slow to load."""
 
 
 def _least(hits: int, count: int) -> float:
@@ -75,9 +75,9 @@ def _least(hits: int, count: int) -> float:
 def replicated(hits: Vector, points: int) -> Rate:
     """Return the share of hits in independent replicates of `points` quasi-random points each.
 
-    Bounds use Student's t over the replicates [Owen2013]. With fewer than one miss or one hit per
-    replicate, their scatter carries no information. The bounds are then those of independent draws,
-    which are wider.
+    Bounds use Student's t over the replicates [Owen2013]. If replicates have on average fewer than
+    one miss or one hit, their scatter gives no information. The bounds are then the wider bounds of
+    independent draws.
     """
     total, replicates = int(hits.sum()), len(hits)
     pooled = exact(total, points * replicates)
@@ -88,12 +88,12 @@ def replicated(hits: Vector, points: int) -> Rate:
 
 
 def half_width(values: Vector) -> float:
-    """Return half the 95 % interval of the mean of independent replicates, by Student's t."""
+    """Return half the 95 % confidence interval of the mean of independent replicates."""
     return _student(len(values)) * float(np.std(values, ddof=1))
 
 
 def _student(count: int) -> float:
-    """Return half the 95 % interval of a mean, divided by the standard deviation of the values."""
+    """Return half the 95 % interval of a mean, divided by the values' standard deviation."""
     from scipy.special import stdtrit
 
     return float(stdtrit(count - 1, (1 + LEVEL) / 2)) / float(np.sqrt(count))
@@ -110,14 +110,14 @@ def quasi(dimension: int, power: int, seed: tuple[int, ...]) -> Vector:
 
 @dataclass(frozen=True, slots=True)
 class Indices:
-    """Variance-based sensitivity indices of k outputs to d inputs, with half widths.
+    """Variance-based sensitivity indices of k outputs to d inputs, with confidence intervals.
 
     Parameters
     ----------
     first, total : (d, k); NaN where an output does not vary
-    first_half, total_half : half of their 95 % intervals
-    variance : (k,)
-    dropped : share of the rows in which some output has no value
+    first_half, total_half : half of their 95 % confidence intervals
+    variance : variance of each output (k,)
+    dropped : share of the rows that are dropped, as some output has no value
     """
 
     first: Vector
@@ -129,24 +129,25 @@ class Indices:
 
 
 TOGETHER = 2048
-"""Maximum number of points in one call; several columns share a call."""
+"""Maximum number of points in one call, for which several columns are joined."""
 REPLICATES = 8
-"""Independent randomisations behind each index interval."""
+"""Number of independent randomisations from which each interval of an index follows."""
 
 
 def indices(outputs: Outputs, dimension: int, *, rows: int, seed: int) -> Indices:
     """Return the first-order and total indices of every output.
 
-    First order by V_i = E[f(B) (f(AB_i) - f(A))] / V [Saltelli2010], total by E[(f(A) - f(AB_i))^2]
-    / 2V [Jansen1999]. A and B are halves of one scrambled Sobol sequence in 2d dimensions; AB_i is
-    A with column i of B. Intervals come from `REPLICATES` randomisations.
+    The first-order index of input i is E[f(B) (f(AB_i) - f(A))] / V [Saltelli2010], its total index
+    E[(f(A) - f(AB_i))^2] / 2V [Jansen1999], with the variance V of the output f. A and B are halves
+    of one scrambled Sobol sequence in 2d dimensions; AB_i is A with column i of B. Confidence
+    intervals follow from `REPLICATES` randomisations.
 
     Parameters
     ----------
-    outputs : (k, n) at points (d, n)
-    dimension : d
-    rows : total points over all replicates; (d + 2) evaluations each
-    seed : of the randomisations
+    outputs : function for outputs (k, n) at points (d, n)
+    dimension : number of inputs d
+    rows : number of points, summed over all replicates; each takes (d + 2) evaluations
+    seed : seed of the randomisations
     """
     power = max(3, round(np.log2(max(rows, 1) / REPLICATES)))
     parts = []
@@ -177,7 +178,11 @@ def indices(outputs: Outputs, dimension: int, *, rows: int, seed: int) -> Indice
 def _replicate_moments(
     outputs: Outputs, points: Vector, dimension: int, replicate: int
 ) -> tuple[Vector, int]:
-    """Return V_i, V_Ti and V (2 d + 1, k) of one randomisation, and the number of dropped rows."""
+    """Return the variances of one randomisation, and the number of dropped rows.
+
+    The variances (2 d + 1, k) are the first-order and total parts of each input, then the variance
+    of each output.
+    """
     first, second = points[:dimension], points[dimension:]
     a, b = outputs(first), outputs(second)
     mixed: list[Vector] = []
@@ -275,13 +280,13 @@ def normal_quantile(share: Vector) -> Vector:
 def about(
     shape: str, stated: Mapping[str, Any], value: float, within: tuple[float, float]
 ) -> Distribution:
-    """Return the distribution of an entry of the design file about a nominal value.
+    """Return the distribution of an entry of the design file, centred on a nominal value.
 
     Parameters
     ----------
     shape, stated : as in the design file, SI
     value : nominal value
-    within : valid range; draws outside it are set to the bound
+    within : valid range; draws outside it are set to its bounds
     """
     low, high = limits(shape, stated, value)
     if shape == "normal":

@@ -1,10 +1,11 @@
-"""Uncertain inputs of a design, collected from its file, tests, libraries and common practice.
+"""Collect the uncertain inputs of a design from its file, tests, libraries and practice.
 
-Sources in order of precedence: an entry of ``uncertainty``; bounds of ``measured`` (95 %, normal);
-the scatter that a library states for a property; ISO 286 and common practice for diameters, walls,
-angles and air. A coefficient of variation is normal, a tolerance uniform and a factor uniform in
-the logarithm, since bounds say no more [JCGM100]. Values already evaluated at their worst are not
-drawn: strengths stay at their allowables, gland tolerances at their limits.
+The sources in order of precedence are: an entry of ``uncertainty``; 95 % bounds of ``measured``
+(normal distribution); scatter that a library states for a property; ISO 286 and common practice for
+diameters, walls, angles and air content. A coefficient of variation means a normal distribution, a
+tolerance a uniform distribution, and a factor a uniform distribution of the logarithm, since bounds
+give no more information [JCGM100]. Values already evaluated at their worst are not drawn: strengths
+keep their allowables, and glands the limits of their tolerances.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ from .estimate import Distribution, about
 GUARANTEED = ("limit", "minimum", "maximum", "A", "B", "S")
 """Bases of values that are already lower bounds."""
 OWN = ("friction_coefficient", "breakaway_ratio", "stribeck_speed")
-"""Seal properties a design may state instead of using the compound's."""
+"""Seal properties that a design may state; otherwise those of the compound apply."""
 NORMAL_95 = 1.959964
 _ANYTHING = (-np.inf, np.inf)
 
@@ -47,7 +48,7 @@ class Input:
     ----------
     path : PATH
     quantity : its quantity
-    value : nominal value of the design, SI
+    value : nominal value in the design, SI
     distribution : distribution of its draws
     origin : design, measured, library or practice
     why : source of its scatter
@@ -81,7 +82,7 @@ def inputs(subject: PreparedDesign) -> tuple[Input, ...]:
     Raises
     ------
     InputError
-        an entry of ``uncertainty`` that no model reads, or that leaves the valid range
+        if no model reads an entry of ``uncertainty``, or its samples leave the valid range
     """
     paths_read = read_by_models(subject)
     candidates = (
@@ -94,14 +95,14 @@ def inputs(subject: PreparedDesign) -> tuple[Input, ...]:
     }
     for path, entry in subject.design.uncertainty.items():
         if path not in paths_read and subject.design.choices:
-            continue  # read for another option of a choice
+            continue  # read only with another option of a choice
         by_path[path] = _stated(subject, path, entry.model_dump(), path in paths_read)
     ordered = (by_path[path] for path in sorted(by_path))
     return tuple(entry for entry in ordered if entry.distribution.shape != "fixed")
 
 
 def read_by_models(subject: PreparedDesign) -> set[str]:
-    """Return the PATHs that the models read, including the factor on a modulus from hardness."""
+    """Return the PATHs that models read, and factors on moduli that follow from hardness."""
     factors = {f"materials.{name}.{_FACTOR}": np.ones(2) for name in _compounds(subject)}
     values = subject.values(factors)
     compute(subject, values)
@@ -143,7 +144,7 @@ def _measured(subject: PreparedDesign) -> Iterator[Input]:
 
 
 def _library(subject: PreparedDesign) -> Iterator[Input]:
-    """Yield the inputs whose scatter a library states, for materials and for seals."""
+    """Yield inputs whose scatter a library states, for materials and seals."""
     for name, material in subject.materials.items():
         for key, entry in material.properties.items():
             if "strength" not in key and entry.basis not in GUARANTEED:
@@ -189,7 +190,10 @@ def _compounds(subject: PreparedDesign) -> list[str]:
 
 
 def _moduli(subject: PreparedDesign) -> Iterator[Input]:
-    """Yield the factor on each compound's modulus, log-uniform over the hardness laws."""
+    """Yield a factor on each seal compound's modulus, for the spread between hardness laws.
+
+    It is log-uniform between the laws' smallest and largest modulus.
+    """
     laws: dict[str, set[str]] = {}
     for place in ("piston", "rod"):
         for element in getattr(subject.design.seals, place).elements().values():
@@ -215,7 +219,7 @@ def _moduli(subject: PreparedDesign) -> Iterator[Input]:
 
 
 def _practice(subject: PreparedDesign) -> Iterator[Input]:
-    """Yield diameters, walls, ply angles and air content, whose scatter is common practice."""
+    """Yield inputs with commonly assumed scatter: diameters, walls, ply angles and air content."""
     table: Mapping[str, str] = tables()["scatter_of_dimensions"]
     origin = citation(table["source"])
     classes = {
@@ -244,14 +248,14 @@ def _practice(subject: PreparedDesign) -> Iterator[Input]:
         quantity = quantity_of(path, subject.design)
         try:
             distribution = about(shape, stated, value, (quantity.lower, quantity.upper))
-        except ValueFault:  # outside the table of ISO 286
+        except ValueFault:  # the size is outside the table of ISO 286
             continue
         why = f"{stated['tolerance']}, {origin}" if "tolerance" in stated else origin
         yield Input(path, quantity, value, distribution, "practice", why, table["confidence"])
 
 
 CHUNK = 2048
-"""Maximum number of draws in one model call, which bounds the memory."""
+"""Maximum number of draws in one model call, which limits memory."""
 TOLERANCE = 1e-6
 """A limit is met at a margin of -TOLERANCE or more, as in an evaluation."""
 
@@ -272,7 +276,7 @@ class ModelDraws:
 
     @property
     def met(self) -> Vector:
-        """Return which limits are met (m, n); a limit without a value is not."""
+        """Return which limits are met (m, n); a limit without a value counts as missed."""
         return np.asarray(self.margins >= -TOLERANCE)
 
 
@@ -283,7 +287,7 @@ class UncertainModel:
     ----------
     subject : the design
     inputs : uncertain inputs
-    metrics : metrics to evaluate beside the margins
+    metrics : metrics to evaluate in addition to the margins
     """
 
     def __init__(
@@ -318,11 +322,11 @@ class UncertainModel:
         return self.where(np.array(quantiles).reshape(len(self.inputs), shares.shape[1]))
 
     def outputs(self, shares: Vector) -> Vector:
-        """Return margins, the least margin of the requirements, and metrics: (m + 1 + k, n)."""
+        """Return (m + 1 + k, n): margins, least margin of the requirements, and metrics."""
         return np.concatenate([self.flat(self.at(part)) for part in chunks(shares)], axis=1)
 
     def flat(self, drawn_inputs: ModelDraws) -> Vector:
-        """Stack margins, their least and metrics; a margin of 1e9 or more counts as missing."""
+        """Stack margins, least margin and metrics; a margin of 1e9 or more counts as missing."""
         margins = np.where(np.abs(drawn_inputs.margins) < 1e9, drawn_inputs.margins, np.nan)
         with np.errstate(all="ignore"):
             least = np.min(drawn_inputs.margins[self.own], axis=0, initial=np.inf)
@@ -350,7 +354,7 @@ def _stacked(arrays: Sequence[Vector], count: int) -> Vector:
 
 
 def _margin(limit: MetricLimit, computed: MetricArrays, numbers: Values, count: int) -> Vector:
-    """Return the least margin of a limit over cases and places (n,); NaN without a value."""
+    """Return the least margin of a limit (n,) over load cases and locations; NaN if unknown."""
     least = np.full(count, np.inf)
     has_value = False
     for row in rows_of(limit, computed, numbers):
@@ -367,10 +371,10 @@ def _require_metrics(metrics: Sequence[str], computed: MetricArrays) -> None:
 
 
 def without_drawn_basis(subject: PreparedDesign, inputs: Sequence[Input]) -> PreparedDesign:
-    """Return the design without the basis knock-down of strengths that are drawn.
+    """Return the design without the knock-down for statistical basis of drawn strengths.
 
-    The knock-down from mean to allowable accounts for scatter; drawing the strength covers it
-    already. Knock-downs for temperature, moisture and process stay.
+    This knock-down, from mean to allowable, accounts for scatter, which drawing the strength
+    already does. Knock-downs for temperature, moisture and process still apply.
     """
     drawn_paths = {uncertain.path for uncertain in inputs}
     factors = dict(subject.factors)

@@ -20,11 +20,11 @@ class LimitYield:
 
     Parameters
     ----------
-    name, metric, sense, limit : of the limit, SI
+    name, metric, sense, limit : name, metric, sense and value (SI) of the limit
     required : whether it is a requirement; otherwise it belongs to the check list
     margin : margin of the nominal design; None without a value
-    rate : probability of meeting it
-    margins : at 1, 5, 50, 95 and 99 % of the draws; None without a value
+    rate : probability of meeting the limit
+    margins : margins at the 1, 5, 50, 95 and 99 % quantiles of the draws; None without a value
     """
 
     name: str
@@ -48,9 +48,10 @@ class LimitYield:
 
 @dataclass(frozen=True, slots=True)
 class Index:
-    """Share of an output's variance due to one input: alone (first), with interactions (total).
+    """Share of an output's variance due to one input, alone (first) or with interactions (total).
 
-    `first` and `total` come with half of their 95 % intervals; None where the output is constant.
+    Each of `first` and `total` has half of its 95 % confidence interval. They are None if the
+    output is constant.
     """
 
     path: str
@@ -78,7 +79,7 @@ class Index:
 
 @dataclass(frozen=True, slots=True)
 class Swing:
-    """Output with one input at its 5 % and 95 % quantile, all others nominal."""
+    """Values of an output with one input at its 5 % and 95 % quantile, and all others nominal."""
 
     path: str
     output: str
@@ -108,7 +109,7 @@ class StoredDraws:
 
 
 LEAST = "least margin"
-"""Name of the output that is the least margin of the requirements."""
+"""Name of the output that contains the least margin of all requirements."""
 
 
 @dataclass(frozen=True)
@@ -117,18 +118,18 @@ class Uncertainty(Displayed):
 
     Parameters
     ----------
-    name, version, spec_hash : of the design
+    name, version, spec_hash : name and hash of the design, and version of the program
     inputs : uncertain inputs
-    count, method, seed : of the draws
+    count, method, seed : number, method and seed of the draws
     rate : probability of meeting all requirements
     rate_checks : probability of also meeting the check list
-    limits : each requirement, then each check
+    limits : results for each requirement, then each check
     nominal : outputs of the nominal design, by name; a margin has the name of its limit
     units : metrics among the outputs, with their SI unit
-    indices, swings : by input and output
-    index_rows, dropped : rows behind the indices, and the share of them without a value
+    indices, swings : sensitivity indices and tornado entries, by input and output
+    index_rows, dropped : number of rows used for the indices, and share of rows without a value
     kept : draws stored for tables and figures
-    notes : what the yield covers
+    notes : notes on what the yield covers
     """
 
     name: str
@@ -167,7 +168,7 @@ class Uncertainty(Displayed):
         return all(x.margin is not None and x.margin >= -1e-6 for x in self.required)
 
     def of_output(self, output: str) -> tuple[list[Index], list[Swing]]:
-        """Return indices and swings of one output, the largest first."""
+        """Return indices and tornado entries of one output, the largest first."""
         indices = [index for index in self.indices if index.output == output]
         swings = [swing for swing in self.swings if swing.output == output]
         indices.sort(key=lambda index: (-(index.total or 0.0), index.path))

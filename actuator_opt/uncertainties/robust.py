@@ -1,10 +1,10 @@
 """Robust optima: meet all limits with a stated probability.
 
 The design is optimised repeatedly. At each optimum, draws of the uncertain inputs give the margins
-of all limits. Each limit then needs a reserve: the distance from its nominal margin to a quantile
-of its draws. The design is optimised again with these reserves until they converge. The failure
-probability allowed for one limit follows from how often any limit fails. Independent draws then
-verify the last design.
+of all limits. Each limit then needs a reserve, which is the distance from its nominal margin to a
+quantile of the drawn margins. The design is optimised again with these reserves until they
+converge. The failure probability allowed for a single limit is adjusted to how often any limit
+fails. Independent draws then verify the last design.
 """
 
 from __future__ import annotations
@@ -28,27 +28,27 @@ from .inputs import TOLERANCE, UncertainModel, inputs, read_by_models
 from .study import draw
 
 Search = Callable[[PreparedDesign, bool], Optimisation]
-"""Search for an ordinary optimum of a design; the flag asks for prices."""
+"""Function that finds an ordinary optimum of a design; the flag requests what each limit costs."""
 
 LEAST, MOST = 0.5, 0.9999
-"""Range of probabilities a user may request."""
+"""Range of probabilities that a user may request."""
 ROUNDS = 12
 """Maximum number of optimisation rounds."""
 REFUSALS = 3
-"""Maximum number of reductions of infeasible reserves to those of the nearest design."""
+"""Maximum number of times that infeasible reserves are reduced to those of the nearest design."""
 STILL = 2e-3
 """Relative change of the objective that counts as converged."""
 FAR = 1.0
-"""Margin of a draw above which a limit needs no reserve, as it is far from active. A reserve of a
-life, for example, could exceed the margin of every other design."""
+"""If a drawn margin exceeds this, the limit is far from active and needs no reserve. The reserve of
+a life, for example, could otherwise exceed the margin of every other design."""
 AIM, ROOM = 0.85, 0.15
-"""Target share of the allowed failures, and the tolerance on it. The requested yield then lies
-outside the bounds of the verifying draws."""
+"""Share of the allowed failures at which the search aims, and its tolerance. With this distance,
+the bounds from the verifying draws lie above the requested yield."""
 
 
 @dataclass(frozen=True, slots=True)
 class _DesignDraws:
-    """Margins of the draws at one design, with the reserves that follow from them."""
+    """Drawn margins of one design, with the reserves that follow from them."""
 
     model: UncertainModel
     covered: Array
@@ -57,11 +57,11 @@ class _DesignDraws:
 
     @property
     def rate(self) -> float:
-        """Return the share of draws that meet every covered limit."""
+        """Return the share of draws that meet every limit that the yield covers."""
         return float((self.margins[self.covered] >= -TOLERANCE).all(axis=0).mean())
 
     def reserves(self, level: float) -> dict[str, float]:
-        """Return the reserves by limit; each limit alone then fails with probability `level`."""
+        """Return the reserve of each limit with which it fails with probability `level`."""
         reserves = {}
         for row in np.flatnonzero(self.covered):
             margins = np.where(np.isnan(self.margins[row]), -np.inf, self.margins[row])
@@ -81,13 +81,13 @@ def robust(
     ----------
     subject : the prepared design
     target : probability, 0.5 to 0.9999
-    search : search for an ordinary optimum
-    seed : of the draws; the same seed gives the same design
+    search : function that finds an ordinary optimum
+    seed : seed of the draws; the same seed gives the same design
 
     Raises
     ------
     UsageError
-        a probability outside that range
+        if the probability is outside this range
     """
     require(target)
     ordinary = search(subject, False)
@@ -109,7 +109,7 @@ def require(target: float) -> None:
 
 
 def _without_choices(subject: PreparedDesign, ordinary: Optimisation) -> PreparedDesign:
-    """Return the design with the choices of its ordinary optimum, and only their inputs."""
+    """Return the design with choices fixed as in its ordinary optimum, and only inputs in use."""
     if not subject.design.choices:
         return subject
     design = ordinary.design.model_copy(update={"choices": {}})
@@ -126,14 +126,14 @@ def _prepared(design: Design, subject: PreparedDesign) -> PreparedDesign:
 
 
 class _FailureLevel:
-    """Allowed failure probability of one limit, adjusted by how often any limit fails."""
+    """Failure probability allowed for a single limit, adjusted to how often any limit fails."""
 
     def __init__(self, aim: float) -> None:
         self.aim = self.value = aim
         self.last: tuple[float, float] | None = None
 
     def near(self, failure_rate: float) -> bool:
-        """Whether the failure rate is near the target, or below it at the largest level."""
+        """Whether the failure rate is near the target, or below it at the largest allowed level."""
         return abs(failure_rate - self.aim) <= ROOM * self.aim or (
             failure_rate < self.aim == self.value
         )
@@ -150,7 +150,7 @@ class _FailureLevel:
 
 
 class _RobustSearch:
-    """Optimisations with reserves from the draws at the previous optimum."""
+    """Repeated optimisation, each with reserves from draws at the previous optimum."""
 
     def __init__(
         self,
@@ -216,10 +216,10 @@ class _RobustSearch:
             reserves = draws.reserves(level.value)
 
     def _nearer(self, nearest: _DesignDraws, level: float) -> dict[str, float]:
-        """Return the reserves available at the least infeasible design.
+        """Return the reserves that the least infeasible design can provide.
 
-        Its draws may still meet the target if one limit fails more and others less than the level.
-        Reserves up to its own margins are then enough.
+        Its draws may still meet the target, if one limit fails more often and others less often
+        than the level. Reserves up to the design's own margins are then enough.
         """
         reserves = nearest.reserves(level)
         if nearest.rate < self.target:
@@ -230,7 +230,7 @@ class _RobustSearch:
     def _keep(
         self, optimisation: Optimisation, draws: _DesignDraws, reserves: dict[str, float]
     ) -> None:
-        """Keep the better design: first by its yield, then by its objective."""
+        """Keep this design if its yield is better than before, or its objective at equal yield."""
         sign = -1.0 if optimisation.design.objective.maximise is not None else 1.0
 
         def rank(candidate: Optimisation, draws: _DesignDraws) -> tuple[float, float]:
@@ -242,7 +242,7 @@ class _RobustSearch:
             self.best, self.draws, self.reserves = optimisation, draws, reserves
 
     def result(self) -> Optimisation:
-        """Return the final design with prices, verified with independent draws."""
+        """Return the final design, with the cost of each limit, verified by independent draws."""
         optimisation, reserves, draws = self._last()
         if self.ordinary.choices is not None:
             choices = self.ordinary.choices
@@ -277,7 +277,7 @@ class _RobustSearch:
         return replace(optimisation, robust=outcome, sentence=sentence, remedy=remedy)
 
     def _last(self) -> tuple[Optimisation, dict[str, float], _DesignDraws]:
-        """Return the final design with its reserves: the best feasible, else the nearest one."""
+        """Return the final design with its reserves: the best feasible, else the nearest design."""
         if self.draws.rate >= self.target:
             self.infeasible = {}
         reserves = self.infeasible or self.reserves
@@ -301,7 +301,7 @@ class _RobustSearch:
         return replace(certificate, sentence=f"{certificate.sentence}; {words}")
 
     def _shortfalls(self) -> str:
-        """Name the limits whose required reserve exceeds the margin of the last design by most."""
+        """Name the limits whose required reserve most exceeds the margin of the last design."""
         margins = dict(zip(self.names, self.draws.nominal, strict=True))
         shortfalls = sorted((margins[x] - reserve, x) for x, reserve in self.infeasible.items())
         limits_named = [
@@ -353,13 +353,13 @@ class _RobustSearch:
 
 
 def _no_design_meets(optimisation: Optimisation) -> str:
-    """Return the start of a sentence: no design of these sizes meets ..."""
+    """Return the beginning of a sentence: "no design of these sizes meets ..."."""
     sizes = "" if optimisation.rounding is None else f" of {optimisation.rounding.name}"
     return f"no design{sizes} meets"
 
 
 def _solved(optimisation: Optimisation) -> bool:
-    """Whether an optimum meets all limits with their reserves, in the requested sizes."""
+    """Whether an optimum has the requested sizes and meets all limits with their reserves."""
     infeasible = optimisation.status == "infeasible" or optimisation.status.startswith("limit_inf")
     usable = optimisation.status != "undefined" and not optimisation.status.startswith(
         "interrupted"
@@ -369,7 +369,7 @@ def _solved(optimisation: Optimisation) -> bool:
 
 
 def _covered_rate(model: UncertainModel, covered: Array, count: int, seed: int) -> Rate:
-    """Return how often independent draws meet all covered limits."""
+    """Return how often independent draws meet all limits that the yield covers."""
     model.own = covered
     return draw(model, count, seed, stream=1).rates()[-2]
 

@@ -1,4 +1,4 @@
-"""Uncertainty study: draws of the uncertain inputs, yield with bounds, indices and tornado."""
+"""Uncertainty study: draw the uncertain inputs; estimate yield, indices and tornado."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .result import LEAST, Index, LimitYield, StoredDraws, Swing, Uncertainty, n
 
 
 def _notes(subject: PreparedDesign, uncertain_inputs: Sequence[Input]) -> Iterator[str]:
-    """Yield notes on what is drawn, and what is not."""
+    """Yield notes on which inputs are drawn, and which are not."""
     drawn_paths = {entry.path for entry in uncertain_inputs}
     strengths = sorted(path for path in drawn_paths if "strength" in path)
     if not uncertain_inputs:
@@ -62,15 +62,16 @@ def _notes(subject: PreparedDesign, uncertain_inputs: Sequence[Input]) -> Iterat
 
 
 COUNT = 10_000
-"""Draws for the yield."""
+"""Default number of draws for the yield."""
 ROWS = 1024
-"""Rows for the indices; each takes (inputs + 2) evaluations."""
+"""Default number of rows for the indices; each takes (inputs + 2) evaluations."""
 BLOCKS = 16
-"""Randomisations of quasi-random draws."""
+"""Number of randomisations of quasi-random draws."""
 MOST_KEPT = 16_384
-"""Draws stored for quantiles, figures and tables; any subset of independent draws is unbiased."""
+"""Maximum number of draws stored for quantiles, figures and tables; a part of independent draws
+gives unbiased results."""
 ENDS = (0.05, 0.95)
-"""Cumulative probabilities of an input in the tornado."""
+"""Cumulative probabilities at which the tornado evaluates an input."""
 POINTS = (0.01, 0.05, 0.5, 0.95, 0.99)
 """Cumulative probabilities at which margins are reported."""
 
@@ -89,16 +90,16 @@ def uncertainty(
     Parameters
     ----------
     subject : the prepared design
-    count : draws for the yield
+    count : number of draws for the yield
     seed : the same seed gives the same draws
     quasi_random : draw scrambled Sobol points in `BLOCKS` randomisations
-    rows : rows for the indices; 0 for none
-    metrics : evaluated beside the margins; default: those of the objective
+    rows : number of rows for the indices; 0 for no indices
+    metrics : metrics to evaluate in addition to the margins; default: those of the objective
 
     Raises
     ------
     InputError
-        an invalid entry of ``uncertainty``, or a metric that the design does not have
+        if an entry of ``uncertainty`` is invalid, or the design does not have a metric
     """
     began = time.perf_counter()
     uncertain_inputs = inputs(subject)
@@ -136,14 +137,14 @@ def uncertainty(
 
 @dataclass(frozen=True, slots=True)
 class HitCounts:
-    """Draws that meet each limit, all requirements and all limits, (m + 2, blocks)."""
+    """Numbers of draws that meet each limit, all requirements and all limits, (m + 2, blocks)."""
 
     hits: Vector
     per_block: int
     kept: StoredDraws
 
     def rates(self) -> list[Rate]:
-        """Return the probability of each row of hits."""
+        """Return the probability for each row of counts."""
         if self.hits.shape[1] == 1:
             return [exact(int(row[0]), self.per_block) for row in self.hits]
         return [replicated(row, self.per_block) for row in self.hits]
@@ -162,9 +163,9 @@ def draw(
     Parameters
     ----------
     model : design with its uncertain inputs
-    count : draws
+    count : number of draws
     seed, stream : two streams of one seed are independent
-    blocks : randomisations of quasi-random points; 1 for independent draws
+    blocks : number of randomisations of quasi-random points; 1 for independent draws
     keep : maximum number of draws to store
     """
     size, limits = len(model.inputs), len(model.limits)
@@ -220,7 +221,7 @@ def _limits(
 
 
 def quantiles(margins: Vector) -> Vector:
-    """Return the margins at `POINTS`; a draw without a value counts as the least."""
+    """Return the quantiles of margins at `POINTS`; a draw without a value counts as the lowest."""
     ordered = np.where(np.isnan(margins), -np.inf, margins)
     return np.quantile(ordered, POINTS, method="inverted_cdf")
 
@@ -260,8 +261,8 @@ def _swings(model: UncertainModel, outputs: Sequence[str]) -> tuple[Swing, ...]:
 
 
 DRAWS = 500
-"""Draws of the estimate (a choice: bounds within 4.5 % of the yield, for a few per cent of the time
-of a search)."""
+"""Number of draws of the estimate (our choice: its bounds are within 4.5 % of the yield, and it
+takes a few per cent of a search's time)."""
 
 
 def quick_yield(subject: PreparedDesign, evaluation: Evaluation, *, seed: int = 0) -> YieldEstimate:
@@ -275,8 +276,8 @@ def quick_yield(subject: PreparedDesign, evaluation: Evaluation, *, seed: int = 
 
     Returns
     -------
-    the estimate; without a value, but with the reason, where the nominal design already misses a
-    requirement, where draws are slow or where the block ``uncertainty`` is invalid
+    the estimate; it has a reason instead of a value if the nominal design misses a requirement,
+    draws are slow, or the block ``uncertainty`` is invalid
     """
     if not evaluation.met:
         return YieldEstimate(why="the design itself misses a requirement")

@@ -1,8 +1,9 @@
-"""Symbols: values that record the operations on them.
+"""Symbols: values that record the operations applied to them.
 
 Equal operations on equal operands share a node; operations on numbers are evaluated at once.
 Every node has bounds of its value (a square is not negative, a limited signal keeps its limits).
-The bounds decide comparisons, so the guards of a model cost nothing where they cannot act.
+Comparisons whose result follows from the bounds vanish, so a model's guards cost nothing where they
+cannot act.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ ANY: Final[Bounds] = (-math.inf, math.inf)
 
 
 def bounds_of(value: Any) -> Bounds:
-    """Bounds of a symbol or a number; NaN has no bounds."""
+    """Lower and upper bound of a symbol or number; NaN is unbounded."""
     if hasattr(value, "bounds"):
         limits: Bounds = value.bounds
         return limits
@@ -31,7 +32,7 @@ def bounds_of(value: Any) -> Bounds:
 
 
 def bounds(op: str, args: tuple[Any, ...]) -> Bounds:
-    """Bounds of a result from those of its operands."""
+    """Bounds of an operation's result, from the bounds of its operands."""
     if op == "add":
         (a, b), (c, d) = bounds_of(args[0]), bounds_of(args[1])
         return _clean(a + c, b + d)
@@ -64,7 +65,7 @@ def _of_function(op: str, args: tuple[Any, ...]) -> Bounds:
         domain, function = _RISING[op]
         low, high = bounds_of(args[0])
         low, high = at_end(function, max(low, domain)), at_end(function, max(high, domain))
-        if op == "sqrt":  # rounds alike on every system
+        if op == "sqrt":  # rounding is equal on every system
             return low, high
         low, high = _wider(low, high)
         return max(low, at_end(function, domain)), min(high, at_end(function, math.inf))
@@ -88,7 +89,7 @@ _RISING: Final[dict[str, tuple[float, Callable[[float], float]]]] = {
 
 
 def at_end(function: Callable[[float], float], value: float) -> float:
-    """A function at an end of its range; infinite where it has no value there.
+    """Value of a function at an end of its operand's range; infinite if there is none.
 
     Towards the edge of the domain a logarithm tends to -infinity, a negative power to +infinity.
     """
@@ -118,7 +119,7 @@ def _of_wave(op: str, low: float, high: float) -> Bounds:
     room = ROUNDING * (1 + max(abs(low), abs(high)))
 
     def passes(place: float) -> bool:
-        """Whether the interval contains a place, plus a whole number of turns."""
+        """Whether the interval contains an angle, plus a whole number of turns."""
         turn = 2 * math.pi
         return math.ceil((low - place) / turn - room) <= math.floor((high - place) / turn + room)
 
@@ -140,7 +141,7 @@ def _hull(*values: float) -> Bounds:
 
 
 def _of_choice(condition: Any, yes: Any, no: Any) -> Bounds:
-    """Bounds of a choice; a value compared with the other branch is limited by it."""
+    """Bounds of a choice; if its condition compares the branches, it is a minimum or maximum."""
     (a, b), (c, d) = bounds_of(yes), bounds_of(no)
     if getattr(condition, "op", None) in ("lt", "le"):
         less, more = condition.args
@@ -158,7 +159,7 @@ def _same(first: Any, second: Any) -> bool:
 
 
 Expression: TypeAlias = Any
-"""A symbol, or its numeric value if known."""
+"""A symbol, or a number if its value is known."""
 
 _FUNCTIONS: dict[str, Callable[[float], float]] = {
     "sqrt": math.sqrt,
@@ -175,7 +176,7 @@ _FUNCTIONS: dict[str, Callable[[float], float]] = {
 
 @dataclass(slots=True)
 class Graph:
-    """Nodes of one trace in creation order: operands precede results."""
+    """Nodes of one trace in order of creation, so operands precede results."""
 
     nodes: list[Symbol] = field(default_factory=list)
     known: dict[tuple[Any, ...], Symbol] = field(default_factory=dict)
@@ -185,13 +186,13 @@ class Graph:
     """Index of a tabulated function whose slope this function is."""
 
     def variable(self, name: str, limits: Bounds = ANY) -> Symbol:
-        """A free number, `name` in the code, with its limits."""
+        """Add a variable: a number within limits, called `name` in generated code."""
         symbol = self.node("variable", (name,))
         symbol.bounds = limits
         return symbol
 
     def flag(self, name: str) -> Symbol:
-        """A free truth value; it changes only at restarts of an integration."""
+        """Add a boolean variable; it changes only when an integration restarts."""
         return self.node("flag", (name,))
 
     def table(
@@ -200,7 +201,7 @@ class Graph:
         time: Symbol,
         slope: Callable[..., Any] | None = None,
     ) -> Symbol:
-        """A tabulated function of time with its slope; both accept floats and NumPy arrays."""
+        """Add a tabulated function of time with its slope; both accept floats and NumPy arrays."""
         number = len(self.tables)
         self.tables.append(function)
         if slope is not None:
@@ -330,7 +331,7 @@ def _graph(*values: Any) -> Graph:
 
 
 def _ordered(first: Any, second: Any) -> tuple[Any, Any]:
-    """Operands of a commutative operation in a fixed order: numbers first, then by age."""
+    """Order the operands of a commutative operation: numbers first, then by creation."""
     if isinstance(second, Symbol) and (
         not isinstance(first, Symbol) or first.index <= second.index
     ):
@@ -526,7 +527,7 @@ Namespace = SimpleNamespace(
     atan2=atan2,
     **{name: partial(apply, name) for name in _FUNCTIONS},
 )
-"""Array-API namespace of symbols: the functions that models use."""
+"""Array-API namespace of symbols, with the functions that models use."""
 _BOOLEAN = {"lt", "le", "and", "or", "not", "flag"}
 
 
@@ -536,7 +537,7 @@ def is_boolean(symbol: Symbol) -> bool:
 
 
 def needed(outputs: Sequence[Any], known: Iterable[Symbol] = ()) -> list[Symbol]:
-    """Nodes that the outputs need, operands first; operands of `known` nodes are left out."""
+    """Nodes that the outputs depend on, operands first; operands of `known` nodes are omitted."""
     seen: set[int] = {symbol.index for symbol in known}
     symbols: list[Symbol] = []
     stack = [out for out in outputs if isinstance(out, Symbol)]
@@ -551,14 +552,14 @@ def needed(outputs: Sequence[Any], known: Iterable[Symbol] = ()) -> list[Symbol]
 
 xp = Namespace
 Slopes: TypeAlias = dict[int, Any]
-"""Nonzero derivatives by the number of their variable."""
+"""Nonzero derivatives, by the index of the variable."""
 
 
 def jacobian(outputs: Sequence[Any], variables: Sequence[Symbol]) -> list[list[Any]]:
-    """Derivatives of outputs (rows) by variables (columns); 0.0 where independent.
+    """Derivatives of outputs (rows) with respect to variables (columns); 0.0 where independent.
 
-    A choice has the derivative of the selected branch; flags have none; a tabulated function has
-    its given slope; a root has zero slope at zero, where its true slope is infinite.
+    The derivative of a choice is that of the selected branch, and of a tabulated function its given
+    slope. Flags have none. The slope of a root at zero is set to zero; its true slope is infinite.
     """
     known: dict[int, Slopes] = {variable.index: {k: 1.0} for k, variable in enumerate(variables)}
     for node in needed(outputs):
@@ -574,7 +575,7 @@ def jacobian(outputs: Sequence[Any], variables: Sequence[Symbol]) -> list[list[A
 
 
 def _slopes(node: Symbol, known: dict[int, Slopes]) -> Slopes:
-    """Derivatives of a node from those of its operands."""
+    """Derivatives of a node, from the derivatives of its operands."""
     inner = [known.get(a.index, {}) if isinstance(a, Symbol) else {} for a in node.args]
     columns = dict.fromkeys(k for slopes in inner for k in slopes)
     if not columns:
@@ -593,7 +594,7 @@ def _scaled(factor: Any) -> Callable[..., Any]:
 
 
 def _steep(value: Any) -> Any:
-    """Value of a root for its slope formula: infinite at zero, so that the slope there is zero."""
+    """Replace a zero root by infinity, so that the slope formula, 1/(2 root), gives zero."""
     return choose(less(0.0, value), value, math.inf)
 
 
@@ -616,7 +617,7 @@ _RULES: dict[str, Callable[..., Callable[..., Any]]] = {
     "sin": lambda node, a: _scaled(xp.cos(a)),
     "cos": lambda node, a: _scaled(-xp.sin(a)),
 }
-"""Derivative of every operation from those of its operands."""
+"""Rule for every operation: its derivative from the derivatives of its operands."""
 DEEPEST = 12
 """Deepest nesting of operations in a line of code; deeper operations get their own line."""
 _OPERATORS = {"add": "+", "sub": "-", "mul": "*", "div": "/", "lt": "<", "le": "<="}
@@ -634,7 +635,7 @@ def function(
     arguments : arguments of the function, ``"t, y, m"``
     unpack : code of every variable and flag by name: ``{"x": "y[0]"}``; a key of several names,
         ``"a, b"``, unpacks them together
-    outputs : expressions
+    outputs : expressions to compute
     """
     scope: dict[str, Any] = {f"_{key}": getattr(math, key) for key in _MATH}
     return _compiled(name, arguments, unpack, outputs, scope, {}, many=False)
@@ -650,7 +651,7 @@ def vectorised(
 ) -> Callable[..., Any]:
     """As `function`, for arrays; both branches of every choice are computed.
 
-    `known` gives code for expressions that are not to be computed again; `library` is NumPy or a
+    `known` gives code for expressions that are already computed; `library` is NumPy or a
     library with the same function names.
     """
     scope: dict[str, Any] = {f"_{key}": getattr(library, _NUMPY.get(key, key)) for key in _MATH}
@@ -684,7 +685,7 @@ def _compiled(
     ]
     lines += _lines(nodes, outputs, known, many)
     source = f"def {name}({arguments}):\n" + "\n".join(lines)
-    exec(compile(source, f"<{name}>", "exec"), scope)  # generated text only: operations and numbers
+    exec(compile(source, f"<{name}>", "exec"), scope)  # generated text, no input
     compiled: Callable[..., Any] = scope[name]
     return compiled
 
@@ -692,7 +693,7 @@ def _compiled(
 def _lines(
     nodes: Sequence[Symbol], outputs: Sequence[Any], known: Mapping[Symbol, str], many: bool
 ) -> list[str]:
-    """A line for every node that is used twice or nested deeply, then the return."""
+    """Write a line for every node that is used twice or nested deeply, then the return line."""
     uses: dict[int, int] = {}
     for node in nodes:
         for operand in node.operands:

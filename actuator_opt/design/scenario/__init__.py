@@ -1,4 +1,4 @@
-"""Scenarios: events on a design over time."""
+"""Scenarios: input signals and events that act on a design over time."""
 
 from __future__ import annotations
 

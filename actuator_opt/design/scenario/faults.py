@@ -1,4 +1,4 @@
-"""Contradictions between values of a scenario, or between scenario and design."""
+"""Check a scenario for values that contradict each other or the design."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _hertz = quantities.INPUTS["frequency"].text
 def part_lists(
     section: type[Section] = Scenario, loc: tuple[str, ...] = ()
 ) -> Mapping[tuple[str, ...], type[Section]]:
-    """Places of the signals in a scenario, with the section type of their parts.
+    """Locations of the signals in a scenario, with the section type of their parts.
 
     >>> [".".join(loc) for loc in part_lists()][:3]
     ['motor.torque', 'load.force', 'load.torque']
@@ -54,7 +54,7 @@ def part_lists(
 
 
 def _parts(view: FileView) -> Iterator[tuple[Loc, str, type[Section]]]:
-    """Place, shape and section of every part with a known shape."""
+    """Location, shape and section of every part with a known shape."""
     for place, section in part_lists().items():
         for index in range(len(view.items(*place))):
             shape = view.text(*place, index, "shape")
@@ -63,7 +63,7 @@ def _parts(view: FileView) -> Iterator[tuple[Loc, str, type[Section]]]:
 
 
 def shapes(view: FileView) -> Iterator[Fault]:
-    """Each part has the keys that its shape needs, and no others."""
+    """Check that each part has the keys that its shape needs, and no others."""
     for loc, shape, section in _parts(view):
         shape_kind, keys = SHAPES[shape], entries(section)
         for key in shape_kind.needed:
@@ -79,7 +79,7 @@ def shapes(view: FileView) -> Iterator[Fault]:
 
 
 def order(view: FileView) -> Iterator[Fault]:
-    """Each part ends after its start, and starts before the scenario ends."""
+    """Check that each part ends after its start, and starts before the scenario ends."""
     duration = view.number("duration")
     for loc, shape, _ in _parts(view):
         start, end = view.number(*loc, "start"), view.number(*loc, "end")
@@ -96,7 +96,7 @@ def order(view: FileView) -> Iterator[Fault]:
 
 
 def sampling(view: FileView) -> Iterator[Fault]:
-    """The number of samples is reasonable for the run and for each of its sines."""
+    """Check that the run and every period of its sines have a reasonable number of samples."""
     duration, stated = view.number("duration"), view.number("sample_time")
     if duration is None or (stated is None and view.has("sample_time")):
         return
@@ -119,7 +119,7 @@ def sampling(view: FileView) -> Iterator[Fault]:
 
 
 def _sines(view: FileView, duration: float, sample: float, stated: bool) -> Iterator[Fault]:
-    """Sines that the sample time cannot resolve; only the fastest of several."""
+    """Yield a fault for sines that the sample time cannot resolve; of several, for the fastest."""
     waves: list[tuple[float, Loc]] = []
     for loc, shape, _ in _parts(view):
         frequency = view.number(*loc, "frequency")
@@ -147,7 +147,7 @@ def _sines(view: FileView, duration: float, sample: float, stated: bool) -> Iter
 
 
 def _rounded(value: float, way: Callable[[float], int]) -> float:
-    """A time rounded up or down to three digits."""
+    """Round a time up or down to three digits."""
     step = 10.0 ** (math.floor(math.log10(value)) - 2)
     return way(value / step * (1 + (_SLACK if way is math.floor else -_SLACK))) * step
 
@@ -159,13 +159,13 @@ REFERENCES: Mapping[str, str] = {
     "shaft_speed": "shaft_speed_gain",
     "shaft_angle": "shaft_angle_gain",
 }
-"""Every loop by its reference, with its gain."""
+"""Reference of every control loop, with the name of its gain."""
 STEP_RESULTS = ("rise_time", "settling_time", "overshoot", "steady_state_ratio")
 """Results derived from the response to a single step."""
 
 
 def stated(view: FileView, *loc: str) -> bool:
-    """Whether the file states this value; empty lists do not count."""
+    """Whether the file states this value; an empty list counts as not stated."""
     return child_at(view.tree, loc) not in (None, [], ())
 
 
@@ -175,7 +175,7 @@ def stated_references(view: FileView) -> list[str]:
 
 
 def drives(view: FileView) -> Iterator[Fault]:
-    """Either signal or control drives the valve, which must end the lines."""
+    """Check that either signal or control drives the valve, and that the lines end at the valve."""
     driven = [name for name in ("signal", "control") if stated(view, name)]
     if len(driven) == 2:
         message = "a signal beside control: both would drive the valve"
@@ -193,7 +193,7 @@ def drives(view: FileView) -> Iterator[Fault]:
 
 
 def reference(view: FileView) -> Iterator[Fault]:
-    """Exactly one reference, of an existing motion."""
+    """Check that control has exactly one reference, for a motion that exists."""
     if not isinstance(child_at(view.tree, ("control",)), dict):
         return
     references = stated_references(view)
@@ -214,7 +214,7 @@ def reference(view: FileView) -> Iterator[Fault]:
 
 
 def tuning(view: FileView) -> Iterator[Fault]:
-    """The gain and times that the tuning needs are stated, and no others."""
+    """Check that exactly the gain and the times that the tuning needs are stated."""
     references, law, tuning_kind = (
         stated_references(view),
         view.text("control", "law"),
@@ -248,7 +248,7 @@ def tuning(view: FileView) -> Iterator[Fault]:
 
 
 def _unread(view: FileView, law: ControlLaw, tuning_kind: str) -> Iterator[Fault]:
-    """Keys without effect under this control law and tuning."""
+    """Yield faults for keys without effect under this control law and tuning."""
     for part in ("integral", "derivative"):
         if part not in law.parts:
             keys = [f"{part}_time", f"{part}_factor"]
@@ -263,7 +263,7 @@ def _unread(view: FileView, law: ControlLaw, tuning_kind: str) -> Iterator[Fault
 
 
 def step_results(view: FileView) -> Iterator[Fault]:
-    """Results of a step response need a stepping reference."""
+    """Check that results of a step response are required only with a stepping reference."""
     step_requirements = [name for name in STEP_RESULTS if view.has("requirements", name)]
     references = stated_references(view)
     if not step_requirements or len(references) > 1:
@@ -296,10 +296,10 @@ _area = quantities.INPUTS["orifice_area"].text
 
 
 def supply(view: FileView) -> Iterator[Fault]:
-    """A supply has the keys that its type needs, and no others."""
+    """Check that a supply has the keys that its type needs, and no others."""
     kind = view.text("supply", "type")
     supply_kind = SUPPLIES.get(kind or "")
-    if supply_kind is None:  # a separate fault, reported at its place
+    if supply_kind is None:  # reported as a separate fault
         return
     keys = entries(ValveSupply)
     for key in supply_kind.needed:
@@ -332,7 +332,7 @@ def supply(view: FileView) -> Iterator[Fault]:
 
 
 def cushion(view: FileView) -> Iterator[Fault]:
-    """A cushion reduces the flow area of the oil."""
+    """Check that a cushion reduces the flow area of the oil."""
     loc = ("stops", "cushion")
     opened, closed = view.number(*loc, "open_area"), view.number(*loc, "end_area")
     if opened is not None and closed is not None and closed >= opened:
@@ -344,7 +344,7 @@ def cushion(view: FileView) -> Iterator[Fault]:
 
 
 def load_cylinder(view: FileView) -> Iterator[Fault]:
-    """A load cylinder has an area and a pressure difference."""
+    """Check that a load cylinder has an effective area and a pressure difference."""
     loc = ("load", "cylinder")
     bore, rod = view.number(*loc, "bore"), view.number(*loc, "rod_diameter")
     if bore is not None and rod is not None and rod >= bore:
@@ -358,7 +358,7 @@ def load_cylinder(view: FileView) -> Iterator[Fault]:
 
 
 def friction(view: FileView) -> Iterator[Fault]:
-    """A friction curve starts with Coulomb friction; breakaway is not below it."""
+    """Check that a friction curve states Coulomb friction, and breakaway friction is not below."""
     model = view.text("friction", "model")
     friction_model = FRICTIONS.get(model or "")
     if friction_model is not None:
@@ -385,7 +385,7 @@ def friction(view: FileView) -> Iterator[Fault]:
 
 
 def motor(view: FileView) -> Iterator[Fault]:
-    """With a motor in place of the cylinder, no cylinder data are stated."""
+    """Check that no data of the cylinder are stated if a motor replaces it."""
     if not view.has("motor"):
         return
     where = "with a motor in place of the cylinder"
@@ -401,8 +401,8 @@ def motor(view: FileView) -> Iterator[Fault]:
 
 
 def held_ports(view: FileView) -> Iterator[Fault]:
-    """With held ports the valve moves no load."""
-    if not view.has("held_ports") or view.has("motor"):  # stating both is a separate fault
+    """Check that no load is stated if the valve has held ports."""
+    if not view.has("held_ports") or view.has("motor"):  # both: a separate fault
         return
     where, idle = "with held ports", ("control", "stops", "friction", "initial")
     yield from without_effect(view, (), idle, where, "remove it, or remove held_ports")
@@ -426,14 +426,14 @@ CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
 
 
 def cross_field(tree: Any) -> Iterator[Fault]:
-    """All contradictions between values of a scenario's tree in SI."""
+    """Yield all contradictions between values of a scenario's tree in SI."""
     view = FileView(tree, Scenario)
     for check in CHECKS:
         yield from check(view)
 
 
 def design_faults(scenario: Scenario, design: Design) -> Iterator[Fault]:
-    """All contradictions between scenario and design, at the scenario's places."""
+    """Yield all contradictions between scenario and design, at locations of the scenario."""
     yield from _missing_components(scenario, design)
     stroke = design.cylinder.stroke
     begin = scenario.initial.position
@@ -449,7 +449,7 @@ def design_faults(scenario: Scenario, design: Design) -> Iterator[Fault]:
 
 
 def _missing_components(scenario: Scenario, design: Design) -> Iterator[Fault]:
-    """Components that the scenario uses exist in the design."""
+    """Check that components that the scenario uses exist in the design."""
     needs_valve = {
         ("signal",): bool(scenario.signal),
         ("control",): scenario.control is not None,

@@ -1,7 +1,7 @@
-"""Kinds of a scenario: shapes of signals, components around the design, and its own values.
+"""Kinds that a scenario may name: shapes of signals, and components around the design.
 
-A shape is an entry of `SHAPES`: name, keys, course over time, report text. A component (supply,
-seal friction, port end, control law) declares its name and keys here and its equations in
+A shape is an entry of `SHAPES` with its name, keys, value over time and report text. A component
+(supply, seal friction, port end, control law) declares its name and keys here and its equations in
 `simulation.components`; without equations it fails at import (`kinds.per_kind`).
 """
 
@@ -129,7 +129,7 @@ SUPPLIES = kinds(
         words="controlled pump",
     ),
 )
-"""Every supply by name."""
+"""All types of supply by name."""
 
 
 FRICTIONS = kinds(
@@ -157,7 +157,7 @@ FRICTIONS = kinds(
         words="no dry friction",
     ),
 )
-"""Every friction model of the seals by name."""
+"""All friction models of the seals by name."""
 
 
 ENDS = kinds(
@@ -203,7 +203,7 @@ ENDS = kinds(
         at_cylinder=False,
     ),
 )
-"""Every end of the lines by name."""
+"""All ends of the lines by name."""
 
 
 LAWS = kinds(
@@ -212,7 +212,7 @@ LAWS = kinds(
     ControlLaw("pi", "proportional and integral", integral=True, derivative=False),
     ControlLaw("pid", "proportional, integral and derivative", integral=True, derivative=True),
 )
-"""Every control law by name."""
+"""All control laws by name."""
 
 
 Records = Mapping[tuple[str, str], tuple[Array, Array]]
@@ -220,7 +220,7 @@ Records = Mapping[tuple[str, str], tuple[Array, Array]]
 
 
 class SignalPart(Protocol):
-    """Attributes of a part that shapes read: times [s], frequency [Hz], phase [rad]."""
+    """Values of a part that shapes read: times [s], frequency [Hz], phase [rad]."""
 
     start: float
     end: float | None
@@ -232,20 +232,20 @@ class SignalPart(Protocol):
 
 
 class Clock(Protocol):
-    """Time of a system of equations, and time-dependent terms of a signal."""
+    """Time in a system of equations, and the time-dependent terms that signals use."""
 
     @property
     def time(self) -> Any:
         """The time [s], an expression."""
 
     def after(self, instant: float) -> Any:
-        """True after `time`; the integrator restarts there."""
+        """Whether the time is after `instant`, at which the integrator restarts."""
 
     def sine(self, angle: Any) -> Any:
-        """Sine of an expression [rad]."""
+        """Sine of an angle [rad], given as expression."""
 
     def samples(self, time: Array, values: Array) -> Any:
-        """Linear interpolation between samples, constant outside."""
+        """Interpolate samples linearly, constant before the first and after the last."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -257,13 +257,14 @@ class SignalShape:
     name, help : name in a scenario, and its meaning
     needed, read : required keys, and optional keys
     instead : shape to suggest for a key without effect
-    course : expression of the value over the time of a clock
+    course : expression for the value over the time of a clock
     initial : value at time zero
-    lasts : whether the final value is kept
-    moves_on : whether it changes gradually, so that a following error is defined
-    settles : whether it comes to rest, so that the response to a superposed step is defined
-    changes_after : whether it changes after a time [s]
-    words : text for a report, from texts of height and times
+    lasts : whether the signal keeps its final value
+    moves_on : whether the signal changes gradually, so that a following error is defined
+    settles : whether the signal becomes constant, so that the response to a superposed step is
+    defined
+    changes_after : whether the signal changes after a time [s]
+    words : text for a report, from the texts of height and times
     """
 
     name: str
@@ -304,7 +305,7 @@ def _end(part: SignalPart) -> float:
 
 
 def _turns_at(*names: str) -> Callable[[SignalPart, float, Records], bool]:
-    """Whether any of these times of a part comes after a given time."""
+    """Function: whether any of these times of a part is after a given time."""
 
     def after(part: SignalPart, moment: float, records: Records) -> bool:
         instants = (_end(part) if name == "end" else part.start for name in names)
@@ -334,7 +335,7 @@ def _ramps_after(part: SignalPart, moment: float, records: Records) -> bool:
 
 
 def _between(clock: Clock, part: SignalPart) -> Any:
-    """True from start to end."""
+    """Whether the time is between start and end of a part."""
     on = clock.after(part.start)
     if part.end is None:
         return on
@@ -468,11 +469,11 @@ SHAPES = kinds(
         words=lambda part, value, seconds: f"record {part.file}, {part.column}",
     ),
 )
-"""Every shape by name."""
+"""All shapes by name."""
 
 
 class Label(Text):
-    """A text with its own example."""
+    """A free text that has its own example."""
 
     def __init__(self, help: str, example: str, longest: int = 200) -> None:
         super().__init__(help, longest)

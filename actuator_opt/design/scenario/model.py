@@ -1,4 +1,4 @@
-"""The Scenario: signals and events on a design over time, in SI, as typed sections.
+"""The Scenario: signals and events that act on a design over time, as typed sections in SI.
 
 A signal is a list of parts that are added.
 """
@@ -75,15 +75,15 @@ class ShaftAngleSignal(SignalSegment):
 SAMPLES = 2000
 """Default number of samples of a run."""
 MOST_SAMPLES = 2_000_000
-"""Most samples of a run."""
+"""Largest number of samples of a run."""
 FEWEST_SAMPLES = 10
-"""Fewest samples of a run, and of each sine period in it."""
+"""Smallest number of samples of a run, and of each period of a sine in it."""
 
 Parts = Annotated[tuple[ValveSignal, ...], Field(max_length=100)]
 
 
 class Initial(Section):
-    """Initial state: at rest unless a speed is stated; default pressures hold the load."""
+    """Initial state: at rest unless a speed is stated; by default, pressures balance the load."""
 
     position: Annotated[Position | None, StartPosition()] = None
     """Default: mid-stroke."""
@@ -93,7 +93,7 @@ class Initial(Section):
 
 
 class Machine(Section):
-    """A pump or motor, Wilson model."""
+    """A pump or motor, with Wilson's model of its losses."""
 
     displacement: Annotated[float, Of("displacement", "displacement per revolution")]
     setting: Annotated[float, Of("displacement_setting", "displacement setting")] = 1.0
@@ -104,7 +104,7 @@ class Machine(Section):
 
 
 class PumpMachine(Machine):
-    """A pump with its shaft."""
+    """A pump with a driven shaft."""
 
     shaft_speed: Annotated[float, Of("drive_speed", "speed of the shaft")]
 
@@ -142,7 +142,7 @@ class ValveSupply(Section):
         float | None, Of("rated_flow", "flow of a fixed pump, or largest flow of a controlled pump")
     ] = None
     pump: PumpMachine | None = None
-    """Wilson pump, in place of `flow`."""
+    """Pump with Wilson's model, instead of a constant `flow`."""
     relief: ReliefValve | None = None
     gain: Annotated[float | None, Of("pump_gain", "controller gain of a controlled pump")] = None
     time_constant: Annotated[float | None, Of("time_constant", "lag of a controlled pump")] = None
@@ -151,7 +151,7 @@ class ValveSupply(Section):
 
 
 class Cushion(Section):
-    """A spear that throttles the oil before a stop."""
+    """A cushioning spear that throttles the oil shortly before a stop."""
 
     ends: kinds.CushionEnd = "both"
     length: Annotated[float, Of("part_length", "length of the cushioned travel")]
@@ -170,7 +170,7 @@ class Stops(Section):
 
 
 class ScenarioFriction(Section):
-    """Friction of the seals, from the design or stated here."""
+    """Friction of the seals: calculated from the design, or stated in the scenario."""
 
     model: kinds.Friction = "lugre"
     coulomb: Annotated[float | None, Of("coulomb_force", "F_C; default: from the design")] = None
@@ -191,7 +191,7 @@ class ScenarioFriction(Section):
 
 
 class Motor(Section):
-    """A hydraulic motor in place of the cylinder, between two pipes."""
+    """A hydraulic motor that replaces the cylinder, between two pipes."""
 
     machine: Machine
     inertia: Annotated[float, Of("inertia", "inertia of motor and load")]
@@ -201,14 +201,14 @@ class Motor(Section):
 
 
 class HeldPorts(Section):
-    """The valve alone, on a test bench with held port pressures."""
+    """Only the valve, on a test bench that keeps its port pressures constant."""
 
     pressure_a: Annotated[float, Of("pressure", "gauge pressure at port A")]
     pressure_b: Annotated[float, Of("pressure", "gauge pressure at port B")]
 
 
 class Drive(Section):
-    """An external drive of the rod: a rigid machine behind a spring, such as a load cylinder."""
+    """An external drive that moves the rod through a spring, such as a stiff test machine."""
 
     position: Annotated[tuple[PositionSignal, ...], Field(min_length=1, max_length=100)]
     stiffness: Annotated[float, Of("load_stiffness", "spring between machine and load")]
@@ -216,7 +216,7 @@ class Drive(Section):
 
 
 class LoadCylinder(Section):
-    """A double-rod load cylinder with its own valve, coupled to the rod.
+    """A double-rod cylinder with its own valve, coupled to the rod to load it.
 
     It starts at mid-stroke; the oil is that of the design.
     """
@@ -235,7 +235,7 @@ class LoadCylinder(Section):
 
 
 class ScenarioLoad(Section):
-    """The load of the rod; its mass is load.mass of the design."""
+    """The load on the rod; its mass is load.mass of the design."""
 
     force: Annotated[tuple[ForceSignal, ...], Field(max_length=100)] = ()
     torque: Annotated[tuple[TorqueSignal, ...], Field(max_length=100)] = ()
@@ -247,7 +247,7 @@ class ScenarioLoad(Section):
 
 
 class Controller(Section):
-    """A continuous controller of the valve signal; one of four references closes the loop."""
+    """A continuous controller of the valve signal, for one of four references."""
 
     position: Annotated[tuple[PositionSignal, ...], Field(max_length=100)] = ()
     speed: Annotated[tuple[SpeedSignal, ...], Field(max_length=100)] = ()
@@ -286,7 +286,7 @@ class Controller(Section):
 
 
 class Analysis(Section):
-    """Evaluation of the signals."""
+    """Settings for the evaluation of the signals."""
 
     window_cycles: Annotated[
         float, Of("cycles_per_window", "sine cycles per window of the dynamic stiffness")
@@ -294,7 +294,7 @@ class Analysis(Section):
 
 
 class Scenario(Section):
-    """Events on a design over time."""
+    """Signals and events that act on a design over time."""
 
     name: Annotated[str, Label("title of the scenario", "step response")]
     notes: Annotated[str, Text("free text for the report", 20000, multiline=True)] = ""

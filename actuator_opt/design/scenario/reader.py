@@ -1,4 +1,4 @@
-"""Scenario files: read like designs, together with the design they name; and their start file.
+"""Read scenario files, like design files, and the design they name; write a start file.
 
 The start file of `init --scenario` is a commented step under load for a design.
 """
@@ -32,7 +32,7 @@ from .model import Scenario, SignalSegment
 
 @dataclass(frozen=True, slots=True)
 class LoadedScenario:
-    """A scenario, its source, and its changes to the design."""
+    """A scenario, the file it comes from, and its changes to the design."""
 
     scenario: Scenario
     source: FileSource
@@ -47,7 +47,7 @@ class LoadedScenario:
         return self.folder / self.scenario.design
 
     def diagnostic(self, path: str, message: str, remedy: str = "") -> Diagnostic:
-        """A fault of the value at a PATH of the scenario."""
+        """Diagnostic for the value at a PATH of the scenario."""
         return self.source.diagnostic(path, message, remedy)
 
 
@@ -119,13 +119,13 @@ def read_design_of(
     ----------
     loaded : the scenario
     materials : names and kinds of materials; default: the library
-    metrics : metrics the design may name; default: `metrics.METRICS`
+    metrics : allowed names of metrics in the design; default: `metrics.METRICS`
 
     Raises
     ------
     InputError
-        with all faults of the design, those of changed values at their place in the scenario;
-        otherwise with all contradictions between the two
+        with all faults of the design, those of changed values at their location in the scenario;
+        otherwise with all contradictions between design and scenario
     """
     path = loaded.design_file
     try:
@@ -139,7 +139,7 @@ def read_design_of(
 
 
 def _at_its_name(fault: Diagnostic, loaded: LoadedScenario) -> Diagnostic:
-    """Move a fault of a whole design file to the line of the scenario that names it."""
+    """Move a fault of a whole design file to the line of the scenario that names the file."""
     path = str(loaded.design_file)
     if fault.file != path or fault.line is not None:
         return fault
@@ -147,9 +147,9 @@ def _at_its_name(fault: Diagnostic, loaded: LoadedScenario) -> Diagnostic:
 
 
 WIDE: Final = 1.5
-"""Step that counts as a gap in an evenly sampled record, over the normal step (a choice)."""
+"""In an evenly sampled record, a step this many times the normal step is a gap (our choice)."""
 REGULAR: Final = 0.9
-"""Least share of equal steps in an evenly sampled record (a choice)."""
+"""A record is evenly sampled if at least this share of its steps is equal (our choice)."""
 ROUNDED: Final = 1e-9
 """Relative tolerance of times."""
 
@@ -222,7 +222,7 @@ def gaps(time: Array, values: Array) -> list[SampleGap]:
 
 
 def gap_words(sample_gaps: list[SampleGap]) -> str:
-    """Number of missing samples and where: the only gap, or the first and the last.
+    """Text: how many samples are missing, and where (the only gap, or the first and the last).
 
     >>> gap_words([SampleGap(0.2, 0.2, 1)])
     '1 sample is missing at 0.2 s'
@@ -241,11 +241,11 @@ def gap_words(sample_gaps: list[SampleGap]) -> str:
 
 
 STEP = 0.1
-"""Step over the stroke (a choice: clearly visible, yet away from the stops)."""
+"""Step, as a share of the stroke (our choice: clearly visible, yet away from the stops)."""
 
 
 LOAD = 0.3
-"""Load over the smallest force of the load cases (a choice)."""
+"""Load, as a share of the smallest force of the load cases (our choice)."""
 
 
 _HEAD = """\
@@ -318,7 +318,7 @@ def scenario_text(design: Design, path: str, name: str = "step under load") -> s
     Raises
     ------
     ValueFault
-        an invalid name
+        if the name is invalid
     """
     title = Text().validate(name)
     forces = [abs(case.force) for case in design.load_cases if case.force]
@@ -336,5 +336,5 @@ def scenario_text(design: Design, path: str, name: str = "step under load") -> s
 
 
 def _round(value: float) -> str:
-    """Two significant digits, without an exponent."""
+    """Text with two significant digits, without an exponent."""
     return f"{float(f'{value:.2g}'):.12g}"
