@@ -202,7 +202,7 @@ class DynamicsStudy:
     case: str
     mass: float
     end: str
-    """What the lines end in: closed, valve, constant_pressure, reducing_valve."""
+    """Termination of the lines: closed, valve, constant_pressure, reducing_valve."""
     position: Array
     """Positions along the stroke [m], from the cap end. The next three fields are arrays over
     them."""

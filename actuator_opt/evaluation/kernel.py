@@ -276,8 +276,9 @@ class Base:
 
 @dataclass(frozen=True, slots=True)
 class Implicit:
-    """Models that are no closed formula of the dimensions. For a lower bound on a design space, the
-    caller passes bounds in their place.
+    """Models that are no closed formula of the dimensions.
+
+    For a lower bound on a design space, the caller passes bounds in their place.
     """
 
     wall: Callable[[Values, Design, MaterialValues, Geometry, LoadState], Wall] = (

@@ -204,7 +204,7 @@ def _rod(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
 def _rings(
     start: float, length: float, grooves: Sequence[Groove], counterface: float, side: int
 ) -> Iterator[_Part]:
-    """Parts in all grooves. A round ring is as wide as its section; others fill the groove."""
+    """Parts in every groove. A round ring is as wide as its section; others fill the groove."""
     shapes: dict[tuple[str, str], list[Polygon]] = {}
     for groove, left, right in _grooves(start, length, grooves):
         middle, half = (left + right) / 2, min(float(groove.ring_width), right - left) / 2

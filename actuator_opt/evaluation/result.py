@@ -349,7 +349,7 @@ class Evaluation(Displayed):
 
     @property
     def tally(self) -> str:
-        """How many requirements are met and, if all are, which checks are missed."""
+        """Number of requirements met and, if all are met, the missed checks."""
         total, met = len(self.requirements), sum(row.met for row in self.requirements)
         missed = [check.name for check in self.checks if check.status == "missed"]
         more = f" and {len(missed) - 1} more" if len(missed) > 1 else ""

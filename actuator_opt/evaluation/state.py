@@ -102,7 +102,7 @@ def oil_density(
 def kinematic_viscosity(
     v: Values, section: FluidSection, stock: MaterialValues, temperature: Array
 ) -> Array:
-    """Kinematic viscosity at zero gauge pressure: the oil's table, scaled to the stated viscosity."""
+    """Kinematic viscosity at zero gauge pressure, from the oil's table scaled to its viscosity."""
     oil = stock.material(section.material)
     points = oil.viscosity_points
     stated = oil.numbers["kinematic_viscosity"]

@@ -178,7 +178,7 @@ def _retention(joint_strength: Strength | str, out: MetricArrays) -> None:
 
 
 def joint_metrics(loaded_joint: LoadedJoint | None, out: MetricArrays) -> None:
-    """Compute the metrics of the joint; those of other joints get the reason why they are missing."""
+    """Compute the metrics of the joint; give a reason why those of other joints are missing."""
     metrics = {} if loaded_joint is None else loaded_joint.joint.own(loaded_joint.loaded)
     for joint in JOINTS.values():
         for name, absent in joint.metrics.items():
@@ -252,7 +252,7 @@ def _pins(v: Values, stock: MaterialValues, design: Design, push: Array, out: Me
 
 
 def _guided(grooves: Sequence[Groove], length: Array) -> Array:
-    """Length that carries side load: guide rings, or the part without its grooves if it has none."""
+    """Length that carries side load: guide rings, else the part minus its grooves."""
     for groove in grooves:
         if groove.role == "guide":
             return groove.count * groove.width

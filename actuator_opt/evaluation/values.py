@@ -45,7 +45,7 @@ class Values:
         return self[path] if path in self else default  # noqa: SIM401 (self[path] records the read)
 
     def case(self, field: str, default: Array = None) -> Array:
-        """The values of a field in all load cases, (cases, 1) or (cases, designs)."""
+        """The value of a field in every load case, (cases, 1) or (cases, designs)."""
         if field not in self._case_cache:
             self._case_cache[field] = stacked(
                 [self.get(f"load_cases[{name}].{field}", default) for name in self.cases]

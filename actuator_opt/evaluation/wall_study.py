@@ -341,7 +341,7 @@ def _stress_field(
 def _residual_stresses(
     layers: Sequence[Layer], autofrettage: Autofrettage, radius: Array
 ) -> list[Array]:
-    """Residual stresses of autofrettage at all points, in tube (z, t, r) and ply axes (1, 2, 3, 12).
+    """Residual stresses of autofrettage at all points, in tube axes z, t, r and ply axes.
 
     The wrap is elastic under the pressure and the axial force from the liner. In the liner,
     sigma_t - sigma_r is the yield strength Y up to the plastic radius c and Y c^2/r^2 beyond, minus
