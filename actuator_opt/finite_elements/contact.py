@@ -12,7 +12,7 @@ from .result import MountedContact, contact_end, stress_field
 from .section import Assembly
 
 HOLDING = 0.05
-"""Share by which the contact pressure may fall below the fluid pressure while the node still seals."""
+"""Share by which contact pressure may fall below the fluid pressure while a node still seals."""
 
 
 def boundary_nodes(section: Assembly, body: int) -> Integers:
@@ -68,9 +68,10 @@ def wetted(
 ) -> tuple[Integers, int | None]:
     """Which nodes of a chain the fluid reaches, and the index of the first node at the outer wall.
 
-    The fluid advances to the first node whose contact pressure exceeds the fluid pressure. This node
-    seals until its contact pressure is below the fluid pressure by the share `HOLDING`. The mesh
-    resolves the fluid front only to one node; without this hysteresis, two states may alternate.
+    The fluid advances to the first node whose contact pressure exceeds the fluid pressure. This
+    node seals until its contact pressure is below the fluid pressure by the share `HOLDING`. The
+    mesh resolves the fluid front only to one node; without this hysteresis, two states may
+    alternate.
 
     Parameters
     ----------

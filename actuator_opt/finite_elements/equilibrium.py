@@ -1,8 +1,8 @@
 """Equilibrium of bodies in contact with walls, with each other and with a fluid: Newton's method.
 
-A wall is a bound on displacements, so contact needs no penalty stiffness. A wall parallel to an axis
-bounds one displacement component of every boundary node. A node at its bound stays there as long
-as the wall pushes it. The contact force is the reaction of the wall.
+A wall is a bound on displacements, so contact needs no penalty stiffness. A wall parallel to an
+axis bounds one displacement component of every boundary node. A node at its bound stays there as
+long as the wall pushes it. The contact force is the reaction of the wall.
 
 The fluid reaches all boundary nodes from the sealed side up to the first node whose contact
 pressure exceeds the fluid pressure. Its pressure is a follower load. Simpson's rule on every
@@ -33,7 +33,7 @@ from .result import MountedContact, SealSolution
 from .section import Assembly
 
 SLOPES = np.array([[-1.5, 2.0, -0.5], [-0.5, 0.0, 0.5], [0.5, -2.0, 1.5]])
-"""Matrix from the positions of an edge's three nodes to d(position)/d(xi) there, xi from -1 to 1."""
+"""Matrix from positions of an edge's three nodes to d(position)/d(xi) there, xi from -1 to 1."""
 
 SIMPSON = np.array([1.0, 4.0, 1.0]) / 3
 
@@ -130,7 +130,7 @@ class ContactPair:
         self.upper, self.edges = upper, edges
 
     def _locate(self, places: Floats) -> tuple[Integers, Floats, Booleans]:
-        """Edge under every upper node, local coordinate from -1 to 1, and whether there is an edge."""
+        """Edge under every upper node, local coordinate (-1 to 1), and whether there is an edge."""
         x = places[self.upper, 0]
         ends = places[self.edges, 0]
         low, high = ends[:, 2], ends[:, 0]
@@ -243,8 +243,8 @@ SMALLEST_MOVE = 1e-7
 FREE = "the bodies can move freely"
 MOST_ITERATIONS = 40
 PATIENCE, STICKING = 15, 5e-4
-"""After `PATIENCE` iterations, a node with a tension below `STICKING` may stay in contact. If the end
-of the contact lies between two nodes, neither holding nor releasing the last node may be right."""
+"""After `PATIENCE` iterations, a node with a tension below `STICKING` may stay in contact. If the
+contact ends between two nodes, neither holding nor releasing the last node may be right."""
 LONGEST_MOVE = 0.1
 """Largest displacement of an iteration; the section is 1."""
 FLATTEST = 0.2
@@ -352,7 +352,7 @@ class NotConverged(Exception):
 
 
 def _update_walls(problem: ElementProblem, state: ElementState, force: Floats, pull: float) -> bool:
-    """Hold nodes that pass a bound, release nodes under tension; return whether anything changed."""
+    """Hold nodes that pass a bound, release nodes under tension; return whether any changed."""
     bounds, displacements = problem.bounds, state.values[: problem.section.displacements]
     fixed = bounds.lower == bounds.upper
     slack = 1e-10

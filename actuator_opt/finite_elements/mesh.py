@@ -90,7 +90,7 @@ def meshed(points: Floats, triangles: Integers, radius: float | None = None) -> 
         curved = library.MeshTri2(nodes.T.copy(), straight.t.copy(), sort_t=False)
     basis = library.Basis(curved, library.ElementTriP2(), intorder=ORDER)
     corner = library.Basis(curved, library.ElementTriP1(), intorder=ORDER)
-    if not np.array_equal(basis.element_dofs.T, numbered):  # the library must not renumber the nodes
+    if not np.array_equal(basis.element_dofs.T, numbered):  # the library must keep the numbering
         raise AssertionError("nodes were renumbered")
     shape = [np.asarray(basis.basis[k][0]) for k in range(6)]
     return Mesh(
@@ -174,7 +174,7 @@ class SlideRing:
 
 
 def _rounded(distance: Floats, angle: float, radius: float) -> Floats:
-    """Height above a flat face that bends up by an angle at distance 0, rounded by a tangent arc."""
+    """Height above a flat face that bends up by an angle at distance 0, through a tangent arc."""
     reach = radius * math.tan(angle / 2)
     arc = radius - np.sqrt(np.maximum(radius**2 - np.clip(distance + reach, 0, radius) ** 2, 0))
     along = math.tan(angle) * distance

@@ -78,7 +78,8 @@ class RoundRing:
     def mount(self, squeeze: float, groove_width: float) -> ElementState:
         """Lower the groove bottom and the side walls onto the ring.
 
-        Without friction, their order does not matter. The centre of the ring keeps its axial position.
+        Without friction, their order does not matter. The centre of the ring keeps its axial
+        position.
         """
         bounds, centre = self.problem.bounds, 2 * self.centre
         state = self.problem.start()

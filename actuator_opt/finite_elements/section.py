@@ -79,7 +79,7 @@ class Assembly:
         self._pattern()
 
     def _shape(self, bodies: Sequence[MeshedBody]) -> None:
-        """Derivative of the five components by the twelve displacements, and the integration weights."""
+        """Derivative of the five components by the twelve displacements; integration weights."""
         gradients = np.concatenate([b.mesh.gradients for b in bodies])
         self.weights: Floats = np.concatenate([b.mesh.weights for b in bodies])
         values = bodies[0].mesh.values
@@ -167,7 +167,7 @@ class Assembly:
         )
 
     def radii(self, places: Floats) -> Floats:
-        """Ratio of the circumference at every node to that of the sliding face; 1 in plane strain."""
+        """Ratio of circumference at every node to that of the sliding face; 1 in plane strain."""
         if self.sliding_radius is None:
             return np.ones(len(places))
         return np.asarray(1 + self.outward * places[:, 1] / self.sliding_radius)

@@ -36,8 +36,8 @@ from .section import Assembly, MeshedBody
 COARSE = 0.12
 """Largest element size of the slide ring, relative to the section of the rubber ring."""
 RAMP = 0.03
-"""Length over which the pressure on the back of the slide ring falls at the fluid front, relative to
-the rubber's section. It equals the spacing of the nodes there."""
+"""Length over which the pressure on the back of the slide ring falls at the fluid front, relative
+to the rubber's section. It equals the spacing of the nodes there."""
 SHIFT_STEP = 0.05
 """Axial displacement of the rubber ring per load step, relative to its section."""
 
@@ -97,7 +97,7 @@ class StepRing:
         self.back_wet: Floats = np.zeros(len(nodes))
 
     def wet_part(self, state: ElementState, places: Floats, pressure: float) -> Floats:
-        """The fluid comes from the left of both rings, and enters between them up to their contact."""
+        """The fluid comes from the left of both rings and enters between them up to their contact."""
         pressing = wall_pressing(self.section, state)
         pressing[self.round] += state.pair_force
         barrier = barriers(self.section, state, places, pressing, pressure)

@@ -62,7 +62,7 @@ def _strength(loaded: Loaded) -> Strength | str:
 
 
 def _envelope(loaded: Loaded, burst: Mapping[str, Array]) -> dict[str, Array]:
-    """Upper bounds of the bond factor from either wall alone; the same if both are equally stiff."""
+    """Upper bounds of the bond factor from either wall alone; equal for equally stiff walls."""
     overlap = _overlap(loaded)
     if isinstance(overlap, str):
         return {}

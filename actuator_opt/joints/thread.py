@@ -433,7 +433,7 @@ def _wall(loaded: Loaded) -> WallPressures:
 
 
 def _fatigue(loaded: Loaded) -> Fatigue:
-    """Axial stress at either root under pulsating force; the notch raises its range, not its mean."""
+    """Axial stress at either root under pulsating force; the notch raises only its range."""
     end_thread = _assessed(loaded)
     if isinstance(end_thread, str):
         return Fatigue()
@@ -449,7 +449,7 @@ def _fatigue(loaded: Loaded) -> Fatigue:
 
 
 def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
-    """Warn of a thread that leaves too little metal; an optimisation may start but not end there."""
+    """Warn of a thread that leaves too little metal; an optimisation may not end there."""
     lands = _lands(loaded)
     for name in LANDS:
         least = float(np.min(np.real(lands[name])))

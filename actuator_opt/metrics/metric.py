@@ -11,8 +11,8 @@ from ..base.quantities import INFINITY, Quantity, Sense
 from ..base.units import BASE, unit
 
 Feed = Literal["wall", "oil", "own"]
-"""Where validity warnings of a metric come from: the wall model of the barrel (by bore growth) or the
-bulk modulus of the oil. "own": a warning about the metric concerns the metric's own model."""
+"""Source of a metric's validity warnings: the wall model of the barrel (by bore growth) or the bulk
+modulus of the oil. "own": a warning about the metric concerns the metric's own model."""
 
 Wall = Literal["layered", "thin_laminate"]
 """Wall models of a laminated barrel."""

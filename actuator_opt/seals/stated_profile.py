@@ -70,7 +70,7 @@ def contact(tables: Sequence[PressureProfile], pressure: Array) -> SealContact:
 
 
 def _share(pressure: Array, pressures: Sequence[float], index: int) -> Array:
-    """Weight of a profile at a pressure: 1 at its own, falling to 0 at the next stated pressures."""
+    """Weight of a profile at a pressure: 1 at its own, falling to 0 at its neighbours'."""
     table_pressure = pressures[index]
     rising: Array = 1.0
     falling: Array = 1.0

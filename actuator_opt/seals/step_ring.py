@@ -96,7 +96,7 @@ def groove(sizes: Mapping[str, Array]) -> SealGroove:
 
 
 def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
-    """Outline of the sliding ring, whose land is between two tapers, and of the O-ring behind it."""
+    """Outline of the sliding ring, its land between two tapers, and of the O-ring behind it."""
     width, thick = sizes["width"], sizes["thickness"]
     land = min(sizes["land"], width)
     relief = min(sizes["relief"], width - land)
