@@ -97,7 +97,7 @@ class StepRing:
         self.back_wet: Floats = np.zeros(len(nodes))
 
     def wet_part(self, state: ElementState, places: Floats, pressure: float) -> Floats:
-        """The fluid comes from the left of both rings and enters between them up to their contact."""
+        """The fluid comes from the left of both rings and goes between them up to their contact."""
         pressing = wall_pressing(self.section, state)
         pressing[self.round] += state.pair_force
         barrier = barriers(self.section, state, places, pressing, pressure)

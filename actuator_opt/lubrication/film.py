@@ -34,9 +34,9 @@ from .newton import (
 from .reynolds import Contact, ReynoldsProblem, Vector, fault, flux
 
 LEAST_CONTACT = 1e-12
-"""Ratio of static pressure to asperity stiffness below which the surfaces count as barely touching."""
+"""Ratio of static pressure to asperity stiffness below which surfaces count as barely touching."""
 SLOWEST = 1e-4
-"""Lowest speed from which a film is continued to the wanted speed if nothing else converges [m/s]."""
+"""First speed of a continuation to the wanted speed, if no start from rest converges [m/s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,7 +202,7 @@ def _solved(contact: Contact, state: FilmState) -> NewtonResult:
 
 
 def _cold(contact: Contact) -> NewtonResult:
-    """Solve a film without an initial state: directly from rest, or else by continuation in speed."""
+    """Solve a film without initial state: directly from rest, or else by continuation in speed."""
     _, bed = scaled(contact)
     rest = _at_rest(contact, bed)
     outcome = _solved(contact, rest)

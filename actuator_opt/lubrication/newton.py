@@ -1,4 +1,4 @@
-"""Newton's method for a film: pressure, cavitated fraction, film and rigid shift are solved at once.
+"""Newton's method for a film, with pressure, cavitated fraction, film and rigid shift at once.
 
 The unknowns are pressure p, cavitated fraction theta and film h per node, and the rigid shift C of
 the seal. In scaled form the equations are
@@ -68,7 +68,7 @@ class FilmState:
 
 @dataclass(frozen=True, slots=True)
 class NewtonResidual:
-    """Scaled residuals: flow at inner nodes, complementarity, film, load, and pressure at both ends."""
+    """Scaled residuals: flow at inner nodes, complementarity, film, load, pressure at both ends."""
 
     flow: Vector
     complementarity: Vector
@@ -90,7 +90,7 @@ class NewtonResult:
 
 @lru_cache(maxsize=16)
 def kernel(nodes: int) -> Vector:
-    """Film thickness per unit pressure on a node: -int ln(x - s)^2 ds over its cell, for unit width.
+    """Film per unit pressure on a node: -int ln(x - s)^2 ds over its cell, for unit width.
 
     Another width only adds a constant times the integral of the pressure change d, which the load
     balance sets to zero.
@@ -171,7 +171,7 @@ def _widened(bands: tuple[Vector, Vector, Vector]) -> Vector:
 
 
 class LinearSystem:
-    """Linearised equations at a state; `solve` gives the change of the state that cancels residuals."""
+    """Linearised equations at a state; `solve` gives the change that cancels the residuals."""
 
     def __init__(self, flow: ReynoldsProblem, bed: Bed, state: FilmState) -> None:
         nodes = self.nodes = flow.nodes
@@ -268,7 +268,7 @@ def _allowed(state: FilmState, change: FilmState) -> float:
 def _measures(
     flow: ReynoldsProblem, bed: Bed, state: FilmState, newton_residual: NewtonResidual
 ) -> tuple[float, float, float]:
-    """Errors of a state: relative spread of the flux, load residual, largest other scaled residual."""
+    """Relative spread of the flux, load residual, and the largest of the other scaled residuals."""
     fluxes = flux(flow, state.pressure, state.cavitation, state.film)
     drag_flow = abs(flow.drive) * np.min(flow.gap(state.film)[1])
     spread = np.ptp(fluxes) / (abs(np.mean(fluxes)) + drag_flow + 1e-300)
@@ -316,7 +316,7 @@ def _newton(flow: ReynoldsProblem, bed: Bed, state: FilmState) -> NewtonResult:
 def follow(
     solve: Callable[[float, FilmState], NewtonResult], state: FilmState, first: float, last: float
 ) -> NewtonResult:
-    """Solve a film for a series of positive values from first to last, each from the previous state.
+    """Solve a film for positive values from first to last, each from the previous state.
 
     Parameters
     ----------

@@ -278,7 +278,7 @@ def flux(flow: ReynoldsProblem, pressure: Vector, cavitation: Vector, film: Vect
 
 
 def faces(flow: ReynoldsProblem, pressure: Vector, cavitation: Vector, film: Vector) -> FaceFlux:
-    """Flux and its derivatives for a real state; local laws are differentiated by a complex step."""
+    """Flux and its derivatives for a real state; a complex step differentiates local laws."""
     density, fluidity = flow.oil(pressure + 1j * STEP)
     opening, carried = flow.gap(film + 1j * STEP)
     density_slope, fluidity_slope = density.imag / STEP, fluidity.imag / STEP
@@ -311,5 +311,5 @@ def faces(flow: ReynoldsProblem, pressure: Vector, cavitation: Vector, film: Vec
 
 
 def banded(before: Vector, after: Vector) -> tuple[Vector, Vector, Vector]:
-    """Lower, middle and upper band of d(flux out - flux in)/d(node), for the rows of inner nodes."""
+    """Lower, middle and upper band of d(flux out - flux in)/d(node) at the inner nodes."""
     return -before[:-1], before[1:] - after[:-1], after[1:]

@@ -1,4 +1,4 @@
-"""Films between smooth surfaces: a gap of given shape, a slider, an elastic back-up ring on a rod."""
+"""Films between smooth surfaces: gap of given shape, slider, elastic back-up ring on a rod."""
 
 from __future__ import annotations
 
@@ -14,12 +14,16 @@ from .reynolds import Elastic, Lubricant, ReynoldsProblem, Vector
 _NARROWEST = 0.04
 """Square of the smallest relative half width of the initial pressure."""
 _FASTER = (1.0, 30.0)
-"""Multiples of the speed for which the initial guess of a loaded film is made; more gives thicker."""
+"""Multiples of the speed for the initial guess of a loaded film; a larger multiple gives a
+thicker film."""
 
 
 @dataclass(frozen=True, slots=True)
 class SmoothFilm:
-    """A solved film between smooth surfaces, or the reason for a failure. Forces are per circumference."""
+    """A solved film between smooth surfaces, or the reason for a failure.
+
+    Forces are per circumference.
+    """
 
     converged: bool
     reason: str
@@ -165,7 +169,7 @@ def _fixed_gap(gap: Gap) -> SmoothFilm:
 
 
 def _loaded_gap(gap: Gap) -> SmoothFilm:
-    """Solve a loaded gap, starting from the dry contact plus its inlet film, else from a thick film.
+    """Solve a loaded gap, starting from dry contact plus its inlet film, else from a thick film.
 
     At the inlet, a pressure gradient w lets a film of h* = sqrt(8 eta U/(9 w)) pass, with viscosity
     eta and speed U.

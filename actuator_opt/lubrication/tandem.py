@@ -10,9 +10,9 @@ from .film import Film, solve_film
 from .reynolds import Contact, Elastic, Lubricant, Surface, Vector
 
 HIGHEST = 1.5
-"""Default of the largest interseal pressure that is tried, as a multiple of the higher end pressure."""
+"""Default for the largest interseal pressure tried, as a multiple of the higher end pressure."""
 MATCH = 1e-8
-"""Difference at which two flows count as equal, relative to the larger flow plus the rod's flow."""
+"""Difference at which two flows count as equal, relative to the larger flow or the flow carried by the rod."""
 _MOST_TRIALS = 60
 _EMPTY = 0.9
 """Initial share without oil of the space between the seals, when starved films are solved."""
@@ -53,7 +53,7 @@ class Tandem:
     cavitation: float  # share of the space between the seals without oil, if starved [-]
     inner: Film | None
     outer: Film | None
-    match_residual: float  # difference of the flows, relative to the larger flow plus the rod's flow
+    match_residual: float  # relative difference of both flows, as in `MATCH`
 
 
 @dataclass(slots=True)
@@ -70,7 +70,7 @@ class _Row:
     films: tuple[Film | None, Film | None] = (None, None)
 
     def solve(self, pressure: float, cavitation: float = 0.0) -> tuple[Film, Film]:
-        """Solve the films of both seals; the seal that draws oil from the space between may starve."""
+        """Solve both films; the seal that draws oil from the space between them may starve."""
         draws_out = self.speed > 0
         first = self._film(
             self.inner, self.sealed_pressure, pressure, self.films[0],
