@@ -12,7 +12,8 @@ from .reynolds import Contact, Elastic, Lubricant, Surface, Vector
 HIGHEST = 1.5
 """Default for the largest interseal pressure tried, as a multiple of the higher end pressure."""
 MATCH = 1e-8
-"""Difference at which two flows count as equal, relative to the larger flow or the flow carried by the rod."""
+"""Difference at which two flows count as equal, relative to the largest of both flows and the flow
+that the rod carries."""
 _MOST_TRIALS = 60
 _EMPTY = 0.9
 """Initial share without oil of the space between the seals, when starved films are solved."""

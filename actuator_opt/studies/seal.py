@@ -171,7 +171,7 @@ class SealStudy(Displayed):
     ----------
     place : piston or rod
     out, back : the operating point on outstroke and instroke, at one speed and pressure
-    outer_pressure : gauge pressure on the outer side [Pa]; for a piston, in the chamber it moves into
+    outer_pressure : gauge pressure on the outer side [Pa]; for a piston, of the chamber it moves to
     stroke : stroke of the actuator [m]
     clearance : radial clearance behind the seal [m]
     growth : growth of the bore at the piston seal under the pressure [m]; 0 at the rod
