@@ -51,7 +51,7 @@ class Sealing:
         return self.growth * (pressure + float(self.rings[-1]["outer_pressure"]))
 
     def row(self, pressure: float, speed: float, **changes: float) -> FilmRow:
-        """Return film inputs at a pressure difference and speed; `changes` affect the first ring."""
+        """Return film inputs at a pressure and speed; `changes` are for the first ring."""
         grown = self.grown(pressure)
         rings = []
         for ring in self.rings:
